@@ -1,0 +1,84 @@
+"""Where a mechanism can be assembled: the check behind `solve`, and the crank-angle intervals for its message."""
+
+import warnings
+
+import numpy as np
+
+from .errors import AssemblyError, ConditionWarning, ParameterError
+
+NEAR_LIMIT = 1e-8
+"""Closure margin below which half the digits of velocities and forces are gone."""
+
+
+def check(mechanism, placement):
+    """Raise `AssemblyError` if the mechanism does not close at some angle; warn if it nearly does not."""
+    for group in mechanism.groups:
+        margin = group.closure(placement)
+        if not isinstance(margin, np.ndarray | np.float64) or margin.dtype == object:
+            continue
+        smallest = margin.min()
+        if smallest >= NEAR_LIMIT:
+            continue
+        if not np.all(np.isfinite(placement.angle)):
+            raise ParameterError("crank angles must be finite; found NaN or infinity")
+        if smallest >= 0:
+            _warn_near_limit(mechanism, placement, margin, smallest)
+        else:
+            raise _error(mechanism, group, placement, margin)
+
+
+def _warn_near_limit(mechanism, placement, margin, smallest):
+    angle = np.broadcast_to(placement.angle, margin.shape).flat[int(np.argmin(margin))]
+    lost = np.inf if smallest == 0 else -np.log10(smallest)
+    warnings.warn(
+        f"{mechanism.name}: at crank angle {np.degrees(angle):.9g} deg the coupler stands {smallest:.3g} (cosine "
+        f"squared) from its limit position; velocities and forces there have about {max(0.0, 16 - lost):.0f} correct "
+        "digits and grow without bound",
+        ConditionWarning,
+        stacklevel=4,
+    )
+
+
+def _error(mechanism, group, placement, margin):
+    open_ = margin < 0
+    count = int(open_.sum())
+    design, where = "", ()
+    if margin.ndim > 1:
+        where = tuple(int(i) for i in np.argwhere(open_.any(axis=-1))[0])
+        design = f" (first in design {where[0] if len(where) == 1 else where})"
+    gaps = intervals(mechanism, group, where, np.ravel(placement.angle))
+    text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(end):.6g} deg" for start, end in gaps)
+    return AssemblyError(
+        f"{mechanism.name} cannot be assembled at {count} of {margin.size} crank angles{design}: "
+        f"{group.condition(placement)}. It does not close for crank angles {text}. Change the lengths, or pass "
+        'on_gap="nan" to get NaN there and the rest exact',
+        gaps,
+    )
+
+
+def intervals(mechanism, group, design=(), angles=()):
+    """Crank-angle intervals within one turn where a group does not close, to rounding accuracy.
+
+    Found on a grid of half a degree and at the given angles, each end by root finding on the closure margin.
+    """
+    from scipy.optimize import elementwise
+
+    def margin(angle):
+        found = group.closure(mechanism.place(angle))
+        return np.broadcast_to(found, np.broadcast_shapes(found.shape, angle.shape))[design]
+
+    turn = 2 * np.pi
+    grid = np.unique(np.concatenate([np.linspace(0, turn, 721)[:-1], np.mod(angles, turn)]))
+    with np.errstate(invalid="ignore"):
+        gap = margin(grid) < 0
+        if gap.all():
+            return ((0.0, turn),)
+        ends = np.append(grid, grid[0] + turn)
+        change = np.flatnonzero(gap != np.roll(gap, -1))
+        root = elementwise.find_root(margin, (ends[change], ends[change + 1]))
+    edges = root.x
+    starts, stops = edges[~gap[change]], edges[gap[change]]
+    if stops.size and stops[0] < starts[0]:
+        stops = np.roll(stops, -1)
+        stops[-1] += turn
+    return tuple((float(start), float(stop)) for start, stop in zip(starts, stops, strict=True))

@@ -1,0 +1,89 @@
+"""Cam roller: a block slides in the slotted crank and carries a roller at A that runs on a fixed cam.
+
+The cam gives the radius r(phi) of the roller centre A along the crank ray (the pitch curve in polar form). The cam
+pushes along the normal of the pitch curve, which leans from the ray by the pressure angle, tan = r'/r; the slot
+pushes across the ray. Equilibrium of the block gives both, and what the slot gives the crank must bear.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from .elementary import sqrt
+from .links import Joint, Link, LinkMotion, Wrench
+from .planar import cross, dot, minus, subtracted, vector
+
+
+class RollerForces(NamedTuple):
+    """`cam`: cam on roller along the inward normal; `slot`: crank on block, positive with growing crank angle;
+    `crank_demand`: wrench about O that the crank must supply to the block.
+    """
+
+    cam: Any
+    slot: Any
+    crank_demand: Wrench
+
+
+def place(ray, radius, slope, curvature):
+    """Roller centre A on the ray, from r, r' and r'' (kernel)."""
+    x, y = ray
+    outward = curvature - radius
+    sideways = 2.0 * slope
+    return Joint(
+        (radius * x, radius * y),
+        (slope * x - radius * y, slope * y + radius * x),
+        (outward * x - sideways * y, outward * y + sideways * x),
+    )
+
+
+def resolve(ray, radius, slope, block_load, demand):
+    """Cam and slot force on the block (kernel).
+
+    `block_load` is the wrench of the block about A, `demand` the force it must supply to the coupler.
+    """
+    force = vector(subtracted(block_load.force, demand))
+    lean = slope / radius
+    outward = dot(force, ray)
+    cam = outward * sqrt(1.0 + lean * lean)
+    slot = -(cross(ray, force) + outward * lean)
+    crank_demand = Wrench((-slot * ray[1], slot * ray[0]), minus(slot * radius, block_load.moment))
+    return RollerForces(cam, slot, crank_demand)
+
+
+@dataclass(frozen=True, eq=False)
+class CamRoller:
+    """Block and roller at joint A, guided by the slotted crank and the fixed `cam`.
+
+    Parameters
+    ----------
+    cam : cams.Circle, cams.CosineLaw, cams.Sampled or alike
+        Anything with ``polar(angle, ray)`` that returns r, r', r'' in m.
+    block : Link
+        Block with roller; reference joint A, along the crank ray.
+    """
+
+    cam: Any
+    block: Link = Link()
+
+    @property
+    def links(self):
+        return {"block": self.block}
+
+    def place(self, placement):
+        polar = self.cam.polar(placement.angle, placement.ray)
+        joint = place(placement.ray, *polar)
+        placement.joints["A"] = joint
+        placement.links["block"] = LinkMotion(joint, placement.ray, 1.0, None)
+        placement.details["cam"] = polar
+
+    def closure(self, placement):
+        return placement.details["cam"][0]
+
+    def condition(self, placement):
+        return f"the pitch curve must go around O, but its radius falls to {placement.details['cam'][0].min():.6g} m"
+
+    def resolve(self, placement, loads, pushes, forces):
+        radius, slope, _ = placement.details["cam"]
+        found = resolve(placement.ray, radius, slope, loads["block"], forces.demand.get("A"))
+        forces.scalars["cam_force"] = found.cam
+        forces.scalars["slot_force"] = found.slot
+        forces.crank_demand = found.crank_demand

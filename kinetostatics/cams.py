@@ -1,0 +1,275 @@
+"""Fixed cams, described by the pitch curve of the roller centre in polar form about O.
+
+Every cam gives r(phi) with its first two derivatives, the pressure angle (between the cam normal and the crank ray)
+and the curvature radius of the pitch curve. Each r is a smooth closed form or spline; none loses digits anywhere on
+the turn.
+"""
+
+import math
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from . import checks
+from .crank import ray as ray_at
+from .elementary import namespace, sqrt
+from .errors import ParameterError
+
+
+class Cam:
+    """What follows from r, r', r'' for every cam. A cam is one method: ``polar(angle, ray) -> r, r', r''``."""
+
+    def polar(self, angle, ray):
+        raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")
+
+    def radius(self, phi):
+        """Radius of the pitch curve and its derivatives.
+
+        Parameters
+        ----------
+        phi : array
+            Crank angle, rad.
+
+        Returns
+        -------
+        r, r', r'' : tuple of arrays
+            In m, m/rad, m/rad2.
+        """
+        phi = _array(phi)
+        return self.polar(phi, ray_at(phi))
+
+    def pressure_angle(self, phi):
+        """Angle between the cam normal and the crank ray, atan(r'/r), rad; positive where the radius grows."""
+        r, slope, _ = self.radius(phi)
+        return namespace(r).atan(slope / r)
+
+    def curvature_radius(self, phi):
+        """Signed radius of curvature of the pitch curve, m; negative where it is hollow.
+
+        (r^2 + r'^2)^(3/2) / (r^2 + 2 r'^2 - r r''), for a polar curve.
+        """
+        r, slope, second = self.radius(phi)
+        square = r * r + slope * slope
+        return square * sqrt(square) / (square + slope * slope - r * second)
+
+
+def _array(phi):
+    return np.asarray(phi, dtype=float) if isinstance(phi, int | float | list | tuple) else phi
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Circle(Cam):
+    """Circular pitch curve around O.
+
+    Parameters
+    ----------
+    radius : float or array
+        Radius of the circle on which the roller centre runs, m.
+    centre : (x, y)
+        Centre relative to O, m; O lies inside.
+
+    Raises
+    ------
+    ParameterError
+        A value is not finite, the radius not positive, or O outside the circle.
+    """
+
+    pitch_radius: Any
+    centre: Any
+
+    def __init__(self, radius, centre=(0.0, 0.0)):
+        checks.require("circle cam", checks.positive("radius", radius), checks.pair("centre", centre))
+        x, y = centre
+        distance = sqrt(x * x + y * y)
+        if checks.known(distance - radius) and np.any(distance >= radius):
+            raise ParameterError(
+                f"circle cam: O must lie inside the pitch circle, but its centre is {np.max(distance):.6g} m from O "
+                f"and its radius {np.min(radius):.6g} m; bring the centre nearer or enlarge the radius"
+            )
+        object.__setattr__(self, "pitch_radius", radius)
+        object.__setattr__(self, "centre", (x, y))
+
+    def polar(self, angle, ray):
+        x, y = self.centre
+        along = x * ray[0] + y * ray[1]
+        across = y * ray[0] - x * ray[1]
+        root = sqrt((self.pitch_radius - across) * (self.pitch_radius + across))
+        r = along + root
+        lean = across / root
+        slope = lean * r
+        return r, slope, lean * slope - along * (1.0 + lean * lean) * r / root
+
+
+@dataclass(frozen=True, eq=False)
+class CosineLaw(Cam):
+    """Cam that moves the slider exactly by x_B = mean + amplitude cos(phi) along a guide through O.
+
+    A lies on the ray at the distance of the coupler length L from B, so r = x_B cos(phi) - w, where w is the signed
+    root of L^2 - x_B^2 sin(phi)^2. The two branches of the root join smoothly for one length only, L = max of
+    x_B sin(phi), reached at the singular angle phi*. Then the radicand has the double zero cos(phi) = cos(phi*) and,
+    divided by it, is a quadratic: with c = cos(phi), c* = cos(phi*), amplitude a, mean b
+
+        w = (c - c*) sqrt(a^2 c^2 + p c + q),   p = 2 a (b + a c*),   q = b^2 - a^2 + 2 c* p - c*^2 a^2
+
+    in which nothing cancels (law: Ukrainian study of sawframe 2R63; factored form: ours).
+
+    Parameters
+    ----------
+    amplitude : float or array
+        Half the stroke, m.
+    mean : float or array
+        Distance of mid-stroke from O, m; larger than the amplitude.
+    guide_angle : float
+        Direction of the guide from +x, rad.
+
+    Raises
+    ------
+    ParameterError
+        A value is not finite or positive, or the pitch curve does not go around O.
+    """
+
+    amplitude: Any
+    mean: Any
+    guide_angle: float = 0.0
+
+    def __post_init__(self):
+        checks.require(
+            "cosine-law cam",
+            checks.positive("amplitude", self.amplitude),
+            checks.positive("mean", self.mean),
+            checks.finite("guide_angle", self.guide_angle),
+        )
+        if checks.known(self.mean - self.amplitude) and np.any(self.mean <= self.amplitude):
+            raise ParameterError(
+                f"cosine-law cam: mean must exceed the amplitude, or the slider would run over O; got mean "
+                f"{self.mean} m and amplitude {self.amplitude} m"
+            )
+
+    @cached_property
+    def _cosine(self):
+        """c* by the root of 2 a c^2 + b c - a = 0 that does not cancel."""
+        a, b = self.amplitude, self.mean
+        return 2.0 * a / (b + sqrt(b * b + 8.0 * a * a))
+
+    @cached_property
+    def _quadratic(self):
+        a, b, c = self.amplitude, self.mean, self._cosine
+        p = 2.0 * a * (b + a * c)
+        return a * a, p, (b - a) * (b + a) + 2.0 * c * p - (c * a) ** 2
+
+    @property
+    def singular_angle(self):
+        """Crank angle from the guide direction at which the coupler is perpendicular to the ray, rad."""
+        return namespace(self._cosine).acos(self._cosine)
+
+    @property
+    def coupler_length(self):
+        """The one coupler length for which the law can be met, m."""
+        c = self._cosine
+        return (self.mean + self.amplitude * c) * sqrt((1.0 - c) * (1.0 + c))
+
+    def polar(self, angle, ray):
+        ux, uy = math.cos(self.guide_angle), math.sin(self.guide_angle)
+        c, s = ray[0] * ux + ray[1] * uy, ray[1] * ux - ray[0] * uy
+        a, b = self.amplitude, self.mean
+        square, p, q = self._quadratic
+        root = sqrt((square * c + p) * c + q)
+        bend = (square * c + 0.5 * p) / root
+        offset = c - self._cosine
+        by_c = b + 2.0 * a * c - root - offset * bend
+        by_c_twice = 2.0 * a - 2.0 * bend - offset * (square - bend * bend) / root
+        return (b + a * c) * c - offset * root, -s * by_c, s * s * by_c_twice - c * by_c
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Sampled(Cam):
+    """Cam from a table of angles and radii, by a periodic quintic spline through the points.
+
+    The spline has four continuous derivatives, so accelerations and forces are smooth.
+
+    Parameters
+    ----------
+    angle : array (N,)
+        Rad, rising, within one turn, end excluded; need not be evenly spaced.
+    radius : array (N,)
+        Radii of the pitch curve, m.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 8 points, angles not rising or more than one turn, a radius not positive or not finite.
+
+    Warns
+    -----
+    UserWarning
+        The table is too coarse: the second derivative changes by more than one per cent of the largest curvature
+        term when every other point is left out (scaled to the full table by the order of the spline).
+    """
+
+    angle: Any
+    samples: Any
+
+    def __init__(self, angle, radius):
+        angle, samples = (np.array(values, dtype=float) for values in (angle, radius))
+        checks.require(
+            "sampled cam",
+            None if angle.ndim == 1 and angle.shape == samples.shape else "angle and radius must be 1-D, of one length",
+            None if angle.size >= 8 else f"at least 8 points are needed, got {angle.size}",
+            checks.finite("angle", angle),
+            checks.positive("radius", samples),
+        )
+        step = np.diff(angle)
+        if np.any(step <= 0):
+            row = int(np.argmax(step <= 0)) + 1
+            raise ParameterError(
+                f"sampled cam: angles must rise, but row {row + 1} ({angle[row]:.6g} rad) follows {angle[row - 1]:.6g} rad"
+            )
+        if angle[-1] - angle[0] >= 2 * np.pi * (1 - 1e-12):
+            raise ParameterError(
+                f"sampled cam: angles must stay within one turn, end excluded; they span {angle[-1] - angle[0]:.9g} rad "
+                "(2 pi = 6.28318531); leave the repeated last point out"
+            )
+        for name, values in (("angle", angle), ("samples", samples)):
+            values.setflags(write=False)
+            object.__setattr__(self, name, values)
+        self._warn_if_coarse()
+
+    @classmethod
+    def from_csv(cls, path):
+        """Read a table with two columns headed like ``angle [deg], radius [mm]``; any unit of angle and length."""
+        from .tables import read_columns
+
+        return cls(*read_columns(path, {"angle": "rad", "radius": "m"}))
+
+    @cached_property
+    def _splines(self):
+        spline = _periodic_spline(self.angle, self.samples)
+        return spline, spline.derivative(), spline.derivative(2)
+
+    def polar(self, angle, ray):
+        turned = self.angle[0] + np.mod(angle - self.angle[0], 2 * np.pi)
+        return tuple(spline(turned) for spline in self._splines)
+
+    def _warn_if_coarse(self):
+        fine = self._splines[2](self.angle)
+        coarse = _periodic_spline(self.angle[::2], self.samples[::2]).derivative(2)(self.angle)
+        # a quintic spline's second derivative errs by step^4: halving the step leaves one part in 15 of the change
+        error = np.max(np.abs(fine - coarse)) / 15
+        scale = np.max(np.abs(self.samples) + np.abs(fine))
+        if error > 0.01 * scale:
+            warnings.warn(
+                f"sampled cam: {self.angle.size} points are too coarse: r'' is uncertain by about {error:.3g} m "
+                f"({error / scale:.1%} of its scale), and forces with it; measure more points or smooth the table",
+                stacklevel=4,
+            )
+
+
+def _periodic_spline(angle, radius):
+    from scipy.interpolate import make_interp_spline
+
+    return make_interp_spline(
+        np.append(angle, angle[0] + 2 * np.pi), np.append(radius, radius[0]), k=5, bc_type="periodic"
+    )

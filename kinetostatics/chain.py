@@ -1,0 +1,46 @@
+"""What travels along the chain of groups: placed joints and links outward, forces inward.
+
+A group is a frozen dataclass with five members; a new kind of group needs nothing else:
+
+    links                   name -> `Link` of the links it adds
+    place(placement)        read the joint it hangs on, add its own joints, links and details
+    closure(placement)      margin, negative where the group cannot be assembled, small near a limit position; None: always
+    condition(placement)    what must hold for it to be assembled, with its numbers, for the error message
+    resolve(placement, loads, pushes, forces)
+                            find the forces on its links, demand what they need of the joint it hangs on
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from .links import Wrench
+from .planar import added
+
+
+@dataclass
+class Placement:
+    """The mechanism at its crank angles: motion flows outward from the crank into these tables."""
+
+    angle: Any
+    ray: Any
+    joints: dict = field(default_factory=dict)
+    links: dict = field(default_factory=dict)
+    details: dict = field(default_factory=dict)
+
+
+@dataclass
+class Forces:
+    """Forces flow inward from the last group into these tables.
+
+    `demand` holds, by joint, the force its pin must supply to the groups hanging on it; `crank_demand` the wrench about
+    O that the crank must supply to the block in its slot; `reactions` (vectors) and `scalars` what the user asks for.
+    """
+
+    demand: dict = field(default_factory=dict)
+    crank_demand: Wrench = Wrench(None, None)
+    reactions: dict = field(default_factory=dict)
+    scalars: dict = field(default_factory=dict)
+
+    def require(self, joint, force):
+        """Add to the force that a joint must supply."""
+        self.demand[joint] = added(self.demand.get(joint), force)

@@ -1,0 +1,79 @@
+"""Checks of the values a user hands in. Kernels trust what has passed here.
+
+Only plain numbers and NumPy arrays of floats are looked at: a traced JAX number or an `arb` enclosure passes as it is.
+"""
+
+import math
+import numbers
+
+import numpy as np
+
+from .errors import ParameterError
+
+
+def known(value):
+    """Whether the values can be looked at now."""
+    if isinstance(value, np.ndarray):
+        return value.dtype != object
+    return value is None or isinstance(value, numbers.Real | str | list | tuple)
+
+
+def problem(name, value, *, low=None, strict=False):
+    """What is wrong with one value, as a sentence, or None."""
+    if isinstance(value, float | int) and math.isfinite(value) and low is None:
+        return None
+    if not known(value):
+        return None
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        return f"{name} must be a number or an array of numbers, got {value!r}"
+    if not np.all(np.isfinite(array)):
+        return f"{name} must be finite, got {value}"
+    if low is not None and np.any(array <= low if strict else array < low):
+        found = value if array.ndim == 0 else f"a smallest value of {array.min():g}"
+        return f"{name} must be {'greater than' if strict else 'at least'} {low:g}, got {found}"
+    return None
+
+
+def pair(name, value):
+    """What is wrong with a vector (x, y), or None."""
+    try:
+        x, y = value
+    except (TypeError, ValueError):
+        return f"{name} must be a pair (x, y), got {value!r}"
+    return problem(f"{name} x", x) or problem(f"{name} y", y)
+
+
+def require(owner, *problems):
+    """Raise one `ParameterError` that lists every problem found."""
+    found = [text for text in problems if text]
+    if found:
+        raise ParameterError(f"{owner}: " + "; ".join(found))
+
+
+def positive(name, value):
+    return problem(name, value, low=0.0, strict=True)
+
+
+def not_negative(name, value):
+    return problem(name, value, low=0.0)
+
+
+def finite(name, value):
+    return problem(name, value)
+
+
+def assembly_sign(value):
+    return None if value in (1, -1) else f"assembly must be +1 or -1, got {value!r}"
+
+
+def choice(name, value, allowed):
+    """What is wrong with a name that must be one of `allowed`; names the nearest."""
+    if value in allowed:
+        return None
+    import difflib
+
+    near = difflib.get_close_matches(str(value), list(allowed), n=1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    return f"{name} is {value!r}, allowed: {', '.join(map(repr, allowed))}{hint}"

@@ -1,0 +1,171 @@
+"""Dynamic coefficients: how much one mechanism's torque and forces exceed another's."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .errors import QuantityError
+from .extremes import extremes
+from .quantities import label, magnitude
+from .solution import Solution
+
+PANELS, NODES = 48, 16
+"""Gauss-Legendre panels over the turn and nodes in each, for integral means."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Dynamic coefficients of a reference mechanism against a balanced one; made by `compare`.
+
+    Every ratio is reference / balanced: above 1 the balanced mechanism is better.
+    """
+
+    reference: Solution
+    balanced: Solution
+    names: tuple[str, str] = ("reference", "balanced")
+
+    @cached_property
+    def torque_extremes(self):
+        """Extrema of the balancing torque of the reference, and the matching ones of the balanced mechanism, N m.
+
+        To each extremum of the reference belongs the balanced one of the same kind (maximum or minimum) nearest in
+        crank angle; NaN if there is none.
+        """
+        reference = extremes(self.reference, "balancing_torque")
+        balanced = extremes(self.balanced, "balancing_torque")
+        return reference, _matched(reference, balanced)
+
+    @cached_property
+    def torque_extremum_ratios(self):
+        """Ratio of the torques at each torque extremum, in order of crank angle (K,)."""
+        reference, matched = self.torque_extremes
+        with np.errstate(divide="ignore"):
+            return reference.value / matched
+
+    @cached_property
+    def mean_torques(self):
+        """Mean absolute balancing torque of reference and balanced mechanism, integral over the turn, N m."""
+        return mean_absolute_torque(self.reference), mean_absolute_torque(self.balanced)
+
+    @property
+    def mean_torque_ratio(self):
+        """Ratio of the mean absolute balancing torques."""
+        return _ratio(*self.mean_torques)
+
+    def peak_reactions(self, joint):
+        """Largest reaction at a joint in reference and balanced mechanism, N."""
+        return _peak(self.reference, joint), _peak(self.balanced, joint)
+
+    def peak_reaction_ratio(self, joint):
+        """Ratio of the largest reactions at a joint."""
+        return _ratio(*self.peak_reactions(joint))
+
+    def cam_force_range(self):
+        """Smallest and largest cam force of reference and balanced mechanism, N; NaN for one without a cam."""
+        return tuple(_range(solution, "cam_force") for solution in (self.reference, self.balanced))
+
+    def inertia_force_range(self, link="coupler"):
+        """Smallest and largest inertia force of a link in reference and balanced mechanism, N."""
+
+        def force(solution):
+            return magnitude(solution.inertia_force(link))
+
+        return tuple(_range(solution, force) for solution in (self.reference, self.balanced))
+
+    def frame(self):
+        """All coefficients as a pandas DataFrame: quantity, its value in each mechanism, and the ratio."""
+        import pandas as pd
+
+        rows = [("mean |balancing torque| [N m]", *self.mean_torques, self.mean_torque_ratio)]
+        reference, matched = self.torque_extremes
+        for number, row in enumerate(zip(reference.value, matched, self.torque_extremum_ratios, strict=True), 1):
+            rows.append((f"torque extremum {number} [N m]", *row))
+        for joint in self.reference.reactions:
+            if joint in self.balanced.reactions:
+                rows.append((f"largest {label(joint)} [N]", *self.peak_reactions(joint), self.peak_reaction_ratio(joint)))
+        ranges = [("coupler inertia force [N]", self.inertia_force_range()), ("cam force [N]", self.cam_force_range())]
+        for name, (of_reference, of_balanced) in ranges:
+            for end, which in enumerate(("smallest", "largest")):
+                rows.append((f"{which} {name}", of_reference[end], of_balanced[end], np.nan))
+        rows.append(("power residual", self.reference.power_residual, self.balanced.power_residual, np.nan))
+        return pd.DataFrame(rows, columns=["quantity", *self.names, "ratio"]).set_index("quantity")
+
+
+def compare(reference, balanced):
+    """Compare two solutions, by dynamic coefficients.
+
+    Parameters
+    ----------
+    reference, balanced : Solution
+        Of one design each; their own crank angles do not matter.
+
+    Returns
+    -------
+    Comparison
+        Ratios reference / balanced: `.torque_extremum_ratios`, `.mean_torque_ratio`, `.peak_reaction_ratio(joint)`,
+        ranges of cam and inertia force, `.frame()`.
+    """
+    return Comparison(reference, balanced)
+
+
+def mean_absolute_torque(solution):
+    """Integral mean of the absolute balancing torque over the turn, N m.
+
+    The integrand has kinks where the torque changes sign: those angles are found first and part the turn; Gauss-
+    Legendre quadrature on the pieces is then exact to rounding for a smooth torque.
+    """
+    from scipy.optimize import elementwise
+
+    def torque(angle):
+        return solution.at(angle).balancing_torque
+
+    grid = np.linspace(0.0, 2 * np.pi, 1441)
+    samples = torque(grid)
+    change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
+    kinks = elementwise.find_root(torque, (grid[change], grid[change + 1])).x if change.size else []
+    edges = np.unique(np.concatenate([np.linspace(0.0, 2 * np.pi, PANELS + 1), kinks]))
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    half = np.diff(edges)[:, None] / 2
+    angle = edges[:-1, None] + half * (1 + nodes)
+    return np.sum(half * weights * np.abs(torque(angle.ravel())).reshape(angle.shape)) / (2 * np.pi)
+
+
+def _matched(reference, balanced):
+    kinds = [_kinds(found) for found in (reference, balanced)]
+    distance = np.abs(np.exp(1j * reference.angle)[:, None] - np.exp(1j * balanced.angle))
+    distance = np.where(kinds[0][:, None] == kinds[1], distance, np.inf)
+    if not distance.size:
+        return np.full(len(reference), np.nan)
+    nearest = np.argmin(distance, axis=1)
+    return np.where(np.isfinite(distance.min(axis=1)), balanced.value[nearest], np.nan)
+
+
+def _kinds(found):
+    """Whether each extremum is a maximum: extrema alternate around the turn."""
+    return found.value > np.roll(found.value, 1)
+
+
+def _ratio(reference, balanced):
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.divide(reference, balanced)
+
+
+def _peak(solution, joint):
+    return np.max(_extreme_values(solution, joint))
+
+
+def _range(solution, quantity):
+    try:
+        found = _extreme_values(solution, quantity)
+    except QuantityError:
+        return np.nan, np.nan
+    return np.min(found), np.max(found)
+
+
+def _extreme_values(solution, quantity):
+    """Values at the extrema; of a constant, the constant."""
+    from .quantities import values
+
+    found = extremes(solution, quantity).value
+    return found if found.size else values(solution.at(np.zeros(1)), quantity)

@@ -1,0 +1,31 @@
+"""sin, cos and sqrt of whatever array, or number, the caller brought.
+
+The kernels take their elementary functions from here and from nowhere else, so one source of physics runs on NumPy,
+on JAX, on dask, on object arrays of `arb` numbers and, with these three overloaded, inside numba.
+"""
+
+import numpy
+
+_namespaces = {kind: numpy for kind in (numpy.ndarray, numpy.float64, float, int)}
+
+
+def namespace(x):
+    """Array namespace (array API standard) that `x` belongs to; NumPy for plain numbers."""
+    kind = type(x)
+    if kind not in _namespaces:
+        from array_api_compat import array_namespace, is_array_api_obj
+
+        _namespaces[kind] = array_namespace(x) if is_array_api_obj(x) else numpy
+    return _namespaces[kind]
+
+
+def sin(x):
+    return namespace(x).sin(x)
+
+
+def cos(x):
+    return namespace(x).cos(x)
+
+
+def sqrt(x):
+    return namespace(x).sqrt(x)

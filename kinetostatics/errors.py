@@ -1,0 +1,48 @@
+"""The errors a user may meet; all are `KinetostaticsError`."""
+
+
+class KinetostaticsError(Exception):
+    """Any fault the library reports on purpose."""
+
+
+class ParameterError(KinetostaticsError, ValueError):
+    """A length, mass, stiffness, angle ... that no machine can have; the message lists every one found."""
+
+
+class AssemblyError(KinetostaticsError, ValueError):
+    """The mechanism cannot be put together at some crank angles.
+
+    Attributes
+    ----------
+    intervals : tuple of (float, float)
+        Crank-angle intervals within one turn, in radians, where it does not close. The start lies in [0, 2 pi);
+        an interval that runs through 0 ends beyond 2 pi.
+    """
+
+    def __init__(self, message, intervals=()):
+        super().__init__(message)
+        self.intervals = tuple(intervals)
+
+
+class QuantityError(KinetostaticsError, AttributeError):
+    """The mechanism has no such joint, link or quantity; the message lists those it has."""
+
+
+class CaseError(KinetostaticsError, ValueError):
+    """A case file cannot be used; the message lists every problem with file and key.
+
+    Attributes
+    ----------
+    problems : tuple of str
+        One line for each problem.
+    """
+
+    def __init__(self, path, problems):
+        self.path = path
+        self.problems = tuple(problems)
+        count = "1 problem" if len(self.problems) == 1 else f"{len(self.problems)} problems"
+        super().__init__("\n".join([f"{path}: {count}", *(f"  {problem}" for problem in self.problems)]))
+
+
+class ConditionWarning(UserWarning):
+    """The result is right for the numbers given, but small changes of them change it much."""

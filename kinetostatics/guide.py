@@ -1,0 +1,48 @@
+"""The straight guide of a slider: a line of any inclination and offset."""
+
+import math
+from typing import Any, NamedTuple
+
+from . import checks
+from .elementary import cos, sin
+
+
+class Guide(NamedTuple):
+    """Guide line by its direction (unit vector) and its signed distance from O along its left normal, m.
+
+    Make one with `Guide.at` (angle and offset) or `Guide.through` (two points).
+    """
+
+    direction: Any
+    guide_offset: Any = 0.0
+
+    @classmethod
+    def at(cls, guide_angle=0.0, guide_offset=0.0):
+        """Guide at an angle (rad, counter-clockwise from +x) and offset (m)."""
+        checks.require(
+            "guide", checks.finite("guide_angle", guide_angle), checks.finite("guide_offset", guide_offset)
+        )
+        if isinstance(guide_angle, int | float) and guide_angle == 0:
+            return cls((1.0, 0.0), guide_offset)
+        return cls((cos(guide_angle), sin(guide_angle)), guide_offset)
+
+    @classmethod
+    def through(cls, W1, W2):
+        """Guide through two fixed points (x, y), m, directed from W1 to W2.
+
+        Raises
+        ------
+        ParameterError
+            The points coincide or are not finite pairs.
+        """
+        checks.require("guide", checks.pair("W1", W1), checks.pair("W2", W2))
+        x, y = W2[0] - W1[0], W2[1] - W1[1]
+        length = math.hypot(x, y)
+        checks.require("guide", None if length > 0 else f"W1 and W2 coincide at {tuple(W1)}")
+        direction = (x / length, y / length)
+        return cls(direction, direction[0] * W1[1] - direction[1] * W1[0])
+
+    @property
+    def guide_angle(self):
+        """Angle of the direction from +x, rad."""
+        return math.atan2(self.direction[1], self.direction[0])

@@ -1,0 +1,154 @@
+"""A mechanism: a crank and the chain of structural groups that hang on it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from . import checks
+from .cam_roller import CamRoller
+from .chain import Forces
+from .crank import Crank
+from .guide import Guide
+from .links import Link
+from .slider_group import SliderGroup
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """Crank and groups, in the order in which motion flows from one to the next.
+
+    Parameters
+    ----------
+    name : str
+        What messages and figures call it.
+    crank : Crank
+    groups : tuple
+        `CamRoller`, `SliderGroup` ...; each hangs on a joint that the crank or an earlier group has placed.
+    """
+
+    name: str
+    crank: Crank
+    groups: tuple[Any, ...]
+
+    @cached_property
+    def links(self):
+        """Link by name, from the crank outwards."""
+        links = dict(self.crank.links)
+        for group in self.groups:
+            links.update(group.links)
+        return links
+
+    def group(self, kind):
+        """First group of a kind, or None."""
+        return next((group for group in self.groups if isinstance(group, kind)), None)
+
+    def place(self, angle):
+        """Joints and links at the crank angles; NaN where the mechanism cannot be assembled."""
+        placement = self.crank.place(angle)
+        for group in self.groups:
+            group.place(placement)
+        return placement
+
+    def resolve(self, placement, loads, pushes):
+        """All forces, from the last group inwards, for given link loads and pushes on the sliders."""
+        forces = Forces()
+        for group in reversed(self.groups):
+            group.resolve(placement, loads, pushes, forces)
+        self.crank.resolve(placement, loads, forces)
+        return forces
+
+
+def crank_slider(
+    crank_length,
+    coupler_length,
+    *,
+    guide_angle=None,
+    guide_offset=None,
+    guide=None,
+    assembly=+1,
+    crank=Link(),
+    coupler=Link(),
+    slider=Link(),
+):
+    """Plain crank-slider: crank O-A, coupler A-B, slider B on a straight guide.
+
+    Parameters
+    ----------
+    crank_length, coupler_length : float or array
+        m; arrays of shape (designs, 1) make a batch.
+    guide_angle : float
+        Direction of the guide from +x, rad; 0 unless told.
+    guide_offset : float or array
+        Signed distance of the guide from O along the guide's left normal, m; 0 unless told.
+    guide : Guide
+        In place of the two, as from ``Guide.through(W1, W2)``.
+    assembly : +1 or -1
+        +1: slider ahead of A along the guide.
+    crank, coupler, slider : Link
+        Mass properties; a link left out has no mass and costs nothing.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, or both ways of giving the guide.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=100.0).balancing_torque), 6)
+    0.0
+    """
+    group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
+    return Mechanism("crank-slider", Crank(crank_length, crank), (group,))
+
+
+def cam_crank_slider(
+    cam,
+    coupler_length,
+    *,
+    guide_angle=None,
+    guide_offset=None,
+    guide=None,
+    assembly=+1,
+    crank=Link(),
+    block=Link(),
+    coupler=Link(),
+    slider=Link(),
+):
+    """Cam-balanced crank-slider: slotted crank, block with a roller on a fixed cam, coupler and slider.
+
+    Parameters
+    ----------
+    cam : cams.Circle, cams.CosineLaw or cams.Sampled
+        Fixed cam, by the pitch curve of the roller centre.
+    coupler_length, guide_angle, guide_offset, guide, assembly, crank, coupler, slider
+        As for `crank_slider`; the mass centre of the slotted crank lies on it at a constant distance from O.
+    block : Link
+        Block with roller; reference joint A, along the crank ray.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, or both ways of giving the guide.
+    """
+    group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
+    return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block), group))
+
+
+def _guide(guide, angle, offset):
+    if guide is None:
+        return Guide.at(0.0 if angle is None else angle, 0.0 if offset is None else offset)
+    checks.require(
+        "guide", None if angle is None and offset is None else "give either guide or guide_angle and guide_offset"
+    )
+    return guide
+

@@ -1,0 +1,135 @@
+"""Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from . import checks
+from .elementary import namespace
+from .errors import QuantityError
+from .links import accelerated, angular_acceleration, arm, first_at, second_at
+from .mechanism import Mechanism
+from .planar import added, number, product, stretched, vector
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What the mechanism does; made by `solve`.
+
+    Arrays end with the crank angle, batch axes of designs come before it; a vector has (x, y) as its first axis.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    crank_angle : array (..., N)
+        rad.
+    crank_speed, crank_acceleration : float or array
+        rad/s, rad/s2.
+    """
+
+    mechanism: Mechanism
+    crank_angle: Any
+    crank_speed: Any
+    crank_acceleration: Any
+
+    @cached_property
+    def placement(self):
+        """Joints and links by name, as kinematic coefficients."""
+        return self.mechanism.place(self.crank_angle)
+
+    def position(self, point):
+        """Position of a joint ("O", "A", "B" ...) or of a link's mass centre (its name), (2, ..., N), m."""
+        joint, to_point, _ = self._point(point)
+        return self._vector(added(joint.position, to_point))
+
+    def velocity(self, point):
+        """Velocity of a joint or of a link's mass centre, (2, ..., N), m/s."""
+        joint, to_point, link = self._point(point)
+        first = joint.first if link is None else first_at(link, to_point)
+        return self._vector(stretched(self.crank_speed, first))
+
+    def acceleration(self, point):
+        """Acceleration of a joint or of a link's mass centre, (2, ..., N), m/s2."""
+        joint, to_point, link = self._point(point)
+        first = joint.first if link is None else first_at(link, to_point)
+        second = joint.second if link is None else second_at(link, to_point)
+        return self._vector(accelerated(first, second, self._speed_squared, self._present_acceleration))
+
+    def rate(self, link):
+        """Angular velocity of a link, (..., N), rad/s."""
+        return self._scalar(product(self.crank_speed, self._link(link).ratio))
+
+    def angular_acceleration(self, link):
+        """Angular acceleration of a link, (..., N), rad/s2."""
+        found = self._link(link)
+        return self._scalar(
+            angular_acceleration(found.ratio, found.ratio_slope, self._speed_squared, self._present_acceleration)
+        )
+
+    def travel(self, slider="slider"):
+        """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m."""
+        return self._scalar(self._travel(slider).position)
+
+    @property
+    def slider_position(self):
+        """Coordinate of B along the guide, m."""
+        return self.travel()
+
+    @property
+    def slider_velocity(self):
+        """Velocity of the slider along the guide, m/s."""
+        return self._scalar(self.crank_speed * self._travel("slider").first)
+
+    @property
+    def slider_acceleration(self):
+        """Acceleration of the slider along the guide, m/s2."""
+        travel = self._travel("slider")
+        return self._scalar(
+            self._speed_squared * travel.second + number(product(self._present_acceleration, travel.first))
+        )
+
+    @cached_property
+    def _speed_squared(self):
+        return self.crank_speed * self.crank_speed
+
+    @cached_property
+    def _present_acceleration(self):
+        alpha = self.crank_acceleration
+        return None if isinstance(alpha, int | float) and alpha == 0 else alpha
+
+    def _link(self, name):
+        return self._look_up("link", name, self.placement.links)
+
+    def _travel(self, slider):
+        sliders = {key: found for key, found in self.placement.details.items() if hasattr(found, "travel")}
+        return self._look_up("slider", slider, sliders).travel
+
+    def _point(self, name):
+        """Reference joint, arm from it and link of a mass centre; joint, None, None of a joint."""
+        points = {**self.placement.joints, **self.placement.links}
+        found = self._look_up("joint or link", name, points)
+        if name in self.placement.joints:
+            return found, None, None
+        body = self.mechanism.links[name].body
+        return found.joint, arm(found.direction, body.along, body.across), found
+
+    def _look_up(self, kind, name, table):
+        if name not in table:
+            raise QuantityError(checks.choice(f"{self.mechanism.name}: {kind}", name, table))
+        return table[name]
+
+    def _vector(self, parts):
+        xp = namespace(self.crank_angle)
+        return xp.stack(self._full(*vector(parts)))
+
+    def _scalar(self, part):
+        return self._full(number(part))[0]
+
+    def _full(self, *parts):
+        """The parts with the shape of the crank angles at least, batch axes as they come."""
+        angle = self.crank_angle
+        xp = namespace(angle)
+        parts = [part if hasattr(part, "shape") else xp.full_like(angle, part) for part in parts]
+        if all(part.shape == angle.shape for part in parts):
+            return parts
+        return xp.broadcast_arrays(*parts, angle)[: len(parts)]

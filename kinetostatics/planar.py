@@ -1,0 +1,104 @@
+"""Planar vectors by components, and the rule that what is absent costs nothing.
+
+A vector is a pair (x, y) of numbers or arrays. `None` stands for what is absent: a vector or number that is zero and
+is left out of sums. All functions are kernels: no branching on values, no writing in place, no array library by name.
+"""
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1]
+
+
+def cross(a, b):
+    """Third component of a x b: the moment about the origin of force b acting at a."""
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def left(a):
+    """a turned by a quarter turn counter-clockwise."""
+    return (-a[1], a[0])
+
+
+def scaled(factor, a):
+    return (factor * a[0], factor * a[1])
+
+
+def stretched(factor, a):
+    """Vector times number, absent if either is."""
+    if factor is None or a is None:
+        return None
+    return scaled(factor, a)
+
+
+def plus(a, b):
+    """Sum of two numbers, either of which may be absent."""
+    if a is None:
+        return b
+    if b is None:
+        return a
+    return a + b
+
+
+def minus(a, b):
+    """Difference of two numbers, either or both of which may be absent."""
+    if b is None:
+        return a
+    if a is None:
+        return -b
+    return a - b
+
+
+def added(a, b):
+    """Sum of two vectors, either of which may be absent."""
+    if a is None:
+        return b
+    if b is None:
+        return a
+    return (a[0] + b[0], a[1] + b[1])
+
+
+def subtracted(a, b):
+    """Difference of two vectors, either of which may be absent."""
+    if b is None:
+        return a
+    if a is None:
+        return (-b[0], -b[1])
+    return (a[0] - b[0], a[1] - b[1])
+
+
+def product(a, b):
+    """Product of two numbers, absent if either is."""
+    if a is None or b is None:
+        return None
+    return a * b
+
+
+def quotient(a, b):
+    """Quotient of two numbers, absent if the first is."""
+    if a is None:
+        return None
+    return a / b
+
+
+def moment(arm, force):
+    """Moment of a force at the end of an arm, absent if either is."""
+    if arm is None or force is None:
+        return None
+    return cross(arm, force)
+
+
+def work(force, displacement):
+    """Work of a force on a displacement, absent if either is."""
+    if force is None or displacement is None:
+        return None
+    return dot(force, displacement)
+
+
+def number(a):
+    """An absent number as zero."""
+    return 0.0 if a is None else a
+
+
+def vector(a):
+    """An absent vector as zero."""
+    return (0.0, 0.0) if a is None else a

@@ -1,0 +1,49 @@
+"""Names and units of what a solution offers: one list for extremes, tables, plots and the command line."""
+
+from . import checks
+from .elementary import sqrt
+from .errors import QuantityError
+
+UNITS = {
+    "balancing_torque": "N m",
+    "balancing_torque_by_power": "N m",
+    "guide_force": "N",
+    "guide_moment": "N m",
+    "cam_force": "N",
+    "slot_force": "N",
+    "shaking_force": "N",
+    "shaking_moment": "N m",
+    "slider_position": "m",
+    "slider_velocity": "m/s",
+    "slider_acceleration": "m/s2",
+    "pressure_angle": "rad",
+}
+VECTORS = ("shaking_force",)
+
+
+def values(solution, quantity):
+    """Values of a quantity over the crank angles; of a joint's reaction or a vector attribute, the magnitude."""
+    if callable(quantity):
+        return quantity(solution)
+    if quantity in UNITS and quantity not in VECTORS:
+        return getattr(solution, quantity)
+    if quantity in VECTORS:
+        return magnitude(getattr(solution, quantity))
+    if quantity in solution.reactions:
+        return magnitude(solution.reaction(quantity))
+    raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", quantity, (*UNITS, *solution.reactions)))
+
+
+def unit(quantity):
+    """Unit of a quantity, SI; a joint's reaction is in N."""
+    return UNITS.get(quantity, "N")
+
+
+def label(quantity):
+    """What a table or an axis calls a quantity."""
+    return quantity.replace("_", " ") if quantity in UNITS else f"reaction {quantity}"
+
+
+def magnitude(vector):
+    """Length of a vector, first axis (x, y)."""
+    return sqrt(vector[0] * vector[0] + vector[1] * vector[1])

@@ -1,0 +1,172 @@
+"""Slider group (RRP): coupler from a pin to a slider on a straight guide, in either assembly.
+
+With the guide along the unit vector u, left normal n, at offset e, a coupler of length l from joint A stands at
+sine = (e - A.n) / l to the guide and cosine = +-sqrt((1 - sine)(1 + sine)); no angle is ever formed, so nothing
+happens at the dead centres, whatever the inclination of the guide.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import checks
+from .elementary import sqrt
+from .guide import Guide
+from .links import Joint, Link, LinkMotion
+from .planar import cross, dot, left, minus, moment, number, plus, quotient, scaled, subtracted, work
+
+
+class SliderMotion(NamedTuple):
+    """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint."""
+
+    coupler: LinkMotion
+    slider: LinkMotion
+    sine: Any
+    cosine: Any
+    closure: Any
+    travel: Joint
+
+
+class SliderForces(NamedTuple):
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide_*`: ground on slider."""
+
+    inner: Any
+    pin: Any
+    guide_force: Any
+    guide_moment: Any
+
+
+def place(joint, coupler_length, guide, assembly):
+    """Coupler and slider for a given inner joint (kernel)."""
+    ux, uy = guide.direction
+    sine = (guide.guide_offset + uy * joint.position[0] - ux * joint.position[1]) / coupler_length
+    closure = (1.0 - sine) * (1.0 + sine)
+    cosine = assembly * sqrt(closure)
+    direction = (cosine * ux - sine * uy, cosine * uy + sine * ux)
+
+    along, across = coupler_length * cosine, coupler_length * sine
+    ratio = cross(joint.first, guide.direction) / along
+    lag = ratio * ratio
+    ratio_slope = (lag * across + cross(joint.second, guide.direction)) / along
+
+    travel = Joint(
+        dot(guide.direction, joint.position) + along,
+        dot(guide.direction, joint.first) - ratio * across,
+        dot(guide.direction, joint.second) - ratio_slope * across - lag * along,
+    )
+    x, y = scaled(travel.position, guide.direction)
+    pin = Joint(
+        (x - guide.guide_offset * uy, y + guide.guide_offset * ux),
+        scaled(travel.first, guide.direction),
+        scaled(travel.second, guide.direction),
+    )
+    coupler = LinkMotion(joint, direction, ratio, ratio_slope)
+    slider = LinkMotion(pin, guide.direction, None, None)
+    return SliderMotion(coupler, slider, sine, cosine, closure, travel)
+
+
+def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, demand):
+    """Forces on slider and coupler, from the slider inwards (kernel).
+
+    `push` is the applied force along the guide, `demand` the force the slider pin must supply to further groups; loads
+    are wrenches about the links' reference joints. The slider's balance along the guide gives the pin force along it,
+    moments of the coupler about its inner joint the pin force across; the guide carries the rest.
+    """
+    ux, uy = guide.direction
+    on_slider = subtracted(slider_load.force, demand)
+    along = number(minus(None, plus(work(on_slider, guide.direction), push)))
+    sideways = (number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along) / motion.cosine
+    pin = (along * ux - sideways * uy, along * uy + sideways * ux)
+    return SliderForces(
+        inner=subtracted(pin, coupler_load.force),
+        pin=pin,
+        guide_force=minus(None, plus(moment(guide.direction, on_slider), sideways)),
+        guide_moment=number(minus(None, slider_load.moment)),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SliderGroup:
+    """Coupler from joint `on` to a slider at joint `pin` on `guide`.
+
+    Parameters
+    ----------
+    coupler_length : float or array
+        m.
+    guide : Guide
+    assembly : +1 or -1
+        +1: slider ahead of the inner joint along the guide.
+    coupler, slider : Link
+    on, pin : str
+        Names of the joint it hangs on and of the joint it adds.
+    label : str
+        Put behind the names of links and forces of a second slider group in one mechanism.
+    """
+
+    coupler_length: Any
+    guide: Guide = Guide((1.0, 0.0))
+    assembly: int = 1
+    coupler: Link = Link()
+    slider: Link = Link()
+    on: str = "A"
+    pin: str = "B"
+    label: str = ""
+
+    def __post_init__(self):
+        checks.require(
+            "slider group",
+            checks.positive("coupler length", self.coupler_length),
+            checks.assembly_sign(self.assembly),
+        )
+
+    @property
+    def links(self):
+        return {self._coupler: self.coupler, self._slider: self.slider}
+
+    @property
+    def _coupler(self):
+        return "coupler" + self.label
+
+    @property
+    def _slider(self):
+        return "slider" + self.label
+
+    def place(self, placement):
+        motion = place(placement.joints[self.on], self.coupler_length, self.guide, self.assembly)
+        placement.joints[self.pin] = motion.slider.joint
+        placement.links[self._coupler] = motion.coupler
+        placement.links[self._slider] = motion.slider
+        placement.details[self._slider] = motion
+
+    def closure(self, placement):
+        return placement.details[self._slider].closure
+
+    def condition(self, placement):
+        distance = abs(placement.details[self._slider].sine * self.coupler_length)
+        return (
+            f"the distance from {self.on} to the guide, up to {distance.max():.6g} m here, must not exceed the "
+            f"{self._coupler} length, {_span(self.coupler_length)} m"
+        )
+
+    def resolve(self, placement, loads, pushes, forces):
+        found = resolve(
+            placement.details[self._slider],
+            self.coupler_length,
+            self.guide,
+            loads[self._coupler],
+            loads[self._slider],
+            pushes.get(self._slider),
+            forces.demand.get(self.pin),
+        )
+        forces.reactions[self.on + self.label] = found.inner
+        forces.reactions[self.pin] = found.pin
+        forces.reactions["guide" + self.label] = scaled(found.guide_force, left(self.guide.direction))
+        forces.scalars["guide_force" + self.label] = found.guide_force
+        forces.scalars["guide_moment" + self.label] = found.guide_moment
+        forces.require(self.on, found.inner)
+
+
+def _span(length):
+    low, high = np.min(length), np.max(length)
+    return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"

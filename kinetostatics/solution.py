@@ -1,0 +1,249 @@
+"""Kinetostatics: joint reactions, guide, cam and slot forces, balancing torque, and its check by powers."""
+
+import warnings
+from dataclasses import dataclass, replace
+from functools import cached_property, reduce
+
+import numpy as np
+
+from . import assembly, checks
+from .errors import ParameterError, QuantityError
+from .links import load, virtual_work
+from .loads import Gravity
+from .motion import Motion
+from .planar import added, minus, moment, number, plus, product
+
+
+@dataclass(frozen=True, eq=False)
+class Solution(Motion):
+    """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
+
+    The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
+    """
+
+    loads: tuple = ()
+    on_gap: str = "raise"
+
+    def at(self, crank_angle):
+        """The same mechanism, speed and loads at other crank angles."""
+        varying = [
+            name
+            for name, value in [
+                ("crank_speed", self.crank_speed),
+                ("crank_acceleration", self.crank_acceleration),
+                *((type(item).__name__, getattr(item, "force", None)) for item in self.loads),
+            ]
+            if np.ndim(value) and np.shape(value)[-1] > 1 and not callable(value)
+        ]
+        if varying:
+            raise ParameterError(
+                f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
+                "(or, for a process force, a function of the motion) to evaluate at other angles"
+            )
+        return replace(self, crank_angle=_angles(crank_angle), on_gap="nan")
+
+    @property
+    def reactions(self):
+        """Names of the joint reactions."""
+        return tuple(self._forces.reactions)
+
+    def reaction(self, joint):
+        """Reaction at a joint, (2, ..., N), N.
+
+        "O": ground on crank; "A": on the coupler at A, from crank or block; "B": coupler on slider; "guide": ground
+        on slider.
+        """
+        return self._vector(self._look_up("reaction", joint, self._forces.reactions))
+
+    def scalar(self, name):
+        """A force or moment by name, (..., N): "guide_force", "guide_moment", "cam_force", "slot_force" ..."""
+        return self._scalar(self._look_up("quantity", name, self._forces.scalars))
+
+    @property
+    def guide_force(self):
+        """Force of the guide on the slider along the guide's left normal, N."""
+        return self.scalar("guide_force")
+
+    @property
+    def guide_moment(self):
+        """Moment of the guide on the slider about the slider pin, N m."""
+        return self.scalar("guide_moment")
+
+    @property
+    def cam_force(self):
+        """Force of the cam on the roller along the normal, positive toward the inside of the pitch curve, N."""
+        return self.scalar("cam_force")
+
+    @property
+    def slot_force(self):
+        """Force of the slotted crank on the block across the ray, positive with growing crank angle, N."""
+        return self.scalar("slot_force")
+
+    @cached_property
+    def balancing_torque(self):
+        """Torque on the crank that keeps the prescribed motion, from the crank's equilibrium, N m."""
+        return self.scalar("balancing_torque")
+
+    @cached_property
+    def balancing_torque_by_power(self):
+        """The same torque from the balance of powers, without any reaction, N m."""
+        total = reduce(plus, self._powers)
+        return self._scalar(minus(None, total) if total is not None else 0.0)
+
+    @cached_property
+    def power_residual(self):
+        """Largest difference of the two torques over the turn, relative to the largest single power that flows."""
+        scale = reduce(np.maximum, (_largest(part) for part in self._powers), 0.0)
+        difference = _largest(self.balancing_torque - self.balancing_torque_by_power)
+        return np.divide(difference, scale, out=np.zeros_like(scale + difference), where=scale > 0)[()]
+
+    @cached_property
+    def shaking_force(self):
+        """Force of the inertia of all moving masses on the frame, (2, ..., N), N."""
+        return self._vector(reduce(added, (wrench.force for wrench in self._inertia.values())))
+
+    @cached_property
+    def shaking_moment(self):
+        """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
+        moments = (
+            plus(moment(self._link(name).joint.position, wrench.force), wrench.moment)
+            for name, wrench in self._inertia.items()
+        )
+        return self._scalar(reduce(plus, moments))
+
+    def inertia_force(self, link):
+        """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""
+        return self._vector(self._look_up("link", link, self._inertia).force)
+
+    @property
+    def pressure_angle(self):
+        """Pressure angle of the cam pair, atan(r'/r), (..., N), rad."""
+        from .cam_roller import CamRoller
+
+        roller = self.mechanism.group(CamRoller)
+        if roller is None:
+            raise QuantityError(f"{self.mechanism.name} has no cam, so no pressure angle")
+        return self._scalar(roller.cam.pressure_angle(self.crank_angle))
+
+    def frame(self):
+        """All results as a pandas DataFrame, one row for each crank angle (and design), units in the column names."""
+        from .tables import solution_frame
+
+        return solution_frame(self)
+
+    @cached_property
+    def _forces(self):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.mechanism.resolve(self.placement, self._link_loads, self._pushes)
+
+    @cached_property
+    def _gravity(self):
+        return reduce(added, (item.vector for item in self.loads if isinstance(item, Gravity)), None)
+
+    @cached_property
+    def _inertia(self):
+        return self._mass_loads(None)
+
+    @cached_property
+    def _link_loads(self):
+        return self._mass_loads(self._gravity)
+
+    def _mass_loads(self, gravity):
+        links = self.placement.links
+        return {
+            name: load(links[name], link.body, self._speed_squared, self._present_acceleration, gravity)
+            for name, link in self.mechanism.links.items()
+        }
+
+    @cached_property
+    def _pushes(self):
+        pushes = {}
+        for item in self.loads:
+            if not isinstance(item, Gravity):
+                pushes[item.on] = plus(pushes.get(item.on), item.push(self))
+        return pushes
+
+    @cached_property
+    def _powers(self):
+        """Power of each load divided by the crank speed."""
+        links = self.placement.links
+        works = [virtual_work(links[name], wrench) for name, wrench in self._link_loads.items()]
+        return works + [product(push, self._travel(name).first) for name, push in self._pushes.items()]
+
+
+def _largest(part):
+    """Largest magnitude over the turn; angles where the mechanism does not close are left out."""
+    return np.nanmax(np.abs(number(part)), axis=-1) if np.ndim(part) else np.abs(number(part))
+
+
+def _angles(crank_angle):
+    if hasattr(crank_angle, "shape") and hasattr(crank_angle, "dtype"):
+        return crank_angle
+    return np.asarray(crank_angle, dtype=float)
+
+
+def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), on_gap="raise"):
+    """Motion and forces of a mechanism at prescribed crank motion.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        As made by `crank_slider`, `cam_crank_slider` or from a crank and groups of your own.
+    crank_angle : array (..., N)
+        rad, counter-clockwise from +x; the last axis is the turn, axes before it broadcast with designs.
+    crank_speed, crank_acceleration : float or array
+        rad/s and rad/s2, counter-clockwise positive.
+    loads : sequence
+        `Gravity`, `Spring`, `ProcessForce`; what is left out costs nothing.
+    on_gap : "raise" or "nan"
+        What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
+        give NaN there and exact values elsewhere (no check, as needed under ``jax.jit``).
+
+    Returns
+    -------
+    Solution
+        Lazy: results are computed when first read.
+
+    Raises
+    ------
+    AssemblyError
+        The mechanism does not close at some of the angles and ``on_gap="raise"``.
+    ParameterError
+        A value is not finite, or a load acts on a link that is not there.
+
+    Warns
+    -----
+    ConditionWarning
+        A crank angle lies so near a limit position that half the digits are lost.
+    UserWarning
+        The crank angles are in single precision.
+    """
+    angle = _angles(crank_angle)
+    loads = (loads,) if hasattr(loads, "push") or isinstance(loads, Gravity) else tuple(loads)
+    checks.require(
+        "solve",
+        checks.finite("crank_speed", crank_speed),
+        checks.finite("crank_acceleration", crank_acceleration),
+        checks.choice("on_gap", on_gap, ("raise", "nan")),
+        *(_load_problem(mechanism, item) for item in loads),
+    )
+    if str(angle.dtype) == "float32":
+        warnings.warn(
+            "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
+            'JAX switch jax.config.update("jax_enable_x64", True) on first',
+            stacklevel=2,
+        )
+    solution = Solution(mechanism, angle, crank_speed, crank_acceleration, loads, on_gap)
+    if on_gap == "raise":
+        with np.errstate(divide="ignore", invalid="ignore"):
+            assembly.check(mechanism, solution.placement)
+    return solution
+
+
+def _load_problem(mechanism, item):
+    if isinstance(item, Gravity):
+        return None
+    if not hasattr(item, "push"):
+        return f"loads must be Gravity, Spring or ProcessForce, got {item!r}"
+    sliders = [name for name in mechanism.links if name.startswith("slider")]
+    return checks.choice(f"{type(item).__name__} acts on", item.on, sliders)
