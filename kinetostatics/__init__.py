@@ -1,22 +1,23 @@
 """Kinetostatics of planar slider mechanisms: motion, joint forces, drive torque, and what balancing buys.
 
-    planar, elementary          vectors by components; sin, cos, sqrt of any array
-    links, guide, loads         what a mechanism is made of
-    crank                       the driver
-    cam_roller, cams            slotted crank, block and roller on a fixed cam
-    slider_group                coupler and slider on a guide
-    chain, mechanism            how groups hang together; the mechanisms made of them
-    motion, solution            what it does and what forces that takes
-    assembly                    where it can be put together
-    extremes, comparison        true extrema; dynamic coefficients
-    cases, units, tables        case files, units, tables
-    plots, cli                  figures; command line
+planar, elementary          vectors by components; sin, cos, sqrt of any array
+links, guide, loads         what a mechanism is made of
+crank                       the driver
+cam_roller, cams            slotted crank, block and roller on a fixed cam
+slider_group                coupler and slider on a guide
+chain, mechanism            how groups hang together; the mechanisms made of them
+motion, solution            what it does and what forces that takes
+assembly                    where it can be put together
+extremes, comparison        true extrema; dynamic coefficients
+case, schema, units         case files and what they may hold; text with units
+quantities, tables          names and units of results; DataFrames and CSV
+plots, cli                  figures; command line
 """
 
 from . import cams
-from .crank import Crank
 from .cam_roller import CamRoller
 from .comparison import compare
+from .crank import Crank
 from .errors import AssemblyError, CaseError, ConditionWarning, KinetostaticsError, ParameterError, QuantityError
 from .extremes import extremes
 from .guide import Guide
@@ -25,3 +26,43 @@ from .loads import Gravity, ProcessForce, Spring
 from .mechanism import Mechanism, cam_crank_slider, crank_slider
 from .slider_group import SliderGroup
 from .solution import Solution, solve
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "AssemblyError",
+    "CamRoller",
+    "CaseError",
+    "ConditionWarning",
+    "Crank",
+    "Gravity",
+    "Guide",
+    "KinetostaticsError",
+    "Link",
+    "Mechanism",
+    "ParameterError",
+    "ProcessForce",
+    "QuantityError",
+    "SliderGroup",
+    "Solution",
+    "Spring",
+    "cam_crank_slider",
+    "cams",
+    "compare",
+    "crank_slider",
+    "extremes",
+    "load_case",
+    "plots",
+    "solve",
+]
+
+
+def __getattr__(name):
+    """Load plots and case reading, and the libraries they need, only when used."""
+    import importlib
+
+    if name == "plots":
+        return importlib.import_module(".plots", __name__)
+    if name == "load_case":
+        return importlib.import_module(".case", __name__).load_case
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

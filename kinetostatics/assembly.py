@@ -42,7 +42,8 @@ def _warn_near_limit(mechanism, placement, margin, smallest):
 def _error(mechanism, group, placement, margin):
     open_ = margin < 0
     count = int(open_.sum())
-    design, where = "", ()
+    design = ""
+    where: tuple[int, ...] = ()
     if margin.ndim > 1:
         where = tuple(int(i) for i in np.argwhere(open_.any(axis=-1))[0])
         design = f" (first in design {where[0] if len(where) == 1 else where})"

@@ -68,6 +68,10 @@ class CamRoller:
     def links(self):
         return {"block": self.block}
 
+    @property
+    def bars(self):
+        return ()
+
     def place(self, placement):
         polar = self.cam.polar(placement.angle, placement.ray)
         joint = place(placement.ray, *polar)

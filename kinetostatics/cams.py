@@ -225,12 +225,12 @@ class Sampled(Cam):
         if np.any(step <= 0):
             row = int(np.argmax(step <= 0)) + 1
             raise ParameterError(
-                f"sampled cam: angles must rise, but row {row + 1} ({angle[row]:.6g} rad) follows {angle[row - 1]:.6g} rad"
+                f"sampled cam: angles must rise, but row {row + 1} ({angle[row]:.6g} rad) follows {angle[row - 1]:.6g}"
             )
         if angle[-1] - angle[0] >= 2 * np.pi * (1 - 1e-12):
             raise ParameterError(
-                f"sampled cam: angles must stay within one turn, end excluded; they span {angle[-1] - angle[0]:.9g} rad "
-                "(2 pi = 6.28318531); leave the repeated last point out"
+                "sampled cam: angles must stay within one turn, end excluded; they span "
+                f"{angle[-1] - angle[0]:.9g} rad (2 pi = 6.28318531); leave the repeated last point out"
             )
         for name, values in (("angle", angle), ("samples", samples)):
             values.setflags(write=False)

@@ -1,10 +1,11 @@
 """What travels along the chain of groups: placed joints and links outward, forces inward.
 
-A group is a frozen dataclass with five members; a new kind of group needs nothing else:
+A group is a frozen dataclass with six members; a new kind of group needs nothing else:
 
     links                   name -> `Link` of the links it adds
+    bars                    pairs of joints that its links connect, for drawing
     place(placement)        read the joint it hangs on, add its own joints, links and details
-    closure(placement)      margin, negative where the group cannot be assembled, small near a limit position; None: always
+    closure(placement)      margin: negative where the group cannot be assembled, small near a limit position
     condition(placement)    what must hold for it to be assembled, with its numbers, for the error message
     resolve(placement, loads, pushes, forces)
                             find the forces on its links, demand what they need of the joint it hangs on

@@ -72,8 +72,12 @@ def choice(name, value, allowed):
     """What is wrong with a name that must be one of `allowed`; names the nearest."""
     if value in allowed:
         return None
+    return f"{name} is {value!r}, allowed: {', '.join(map(repr, allowed))}{hint(value, allowed)}"
+
+
+def hint(value, allowed):
+    """Question that names the nearest allowed word, empty if none is near."""
     import difflib
 
     near = difflib.get_close_matches(str(value), list(allowed), n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
-    return f"{name} is {value!r}, allowed: {', '.join(map(repr, allowed))}{hint}"
+    return f"; did you mean {near[0]!r}?" if near else ""

@@ -74,22 +74,25 @@ class Comparison:
         return tuple(_range(solution, force) for solution in (self.reference, self.balanced))
 
     def frame(self):
-        """All coefficients as a pandas DataFrame: quantity, its value in each mechanism, and the ratio."""
+        """All coefficients as a pandas DataFrame: quantity, unit, its value in each mechanism, and the ratio."""
         import pandas as pd
 
-        rows = [("mean |balancing torque| [N m]", *self.mean_torques, self.mean_torque_ratio)]
+        rows = [("mean |balancing torque|", "N m", *self.mean_torques, self.mean_torque_ratio)]
         reference, matched = self.torque_extremes
         for number, row in enumerate(zip(reference.value, matched, self.torque_extremum_ratios, strict=True), 1):
-            rows.append((f"torque extremum {number} [N m]", *row))
+            rows.append((f"torque extremum {number}", "N m", *row))
         for joint in self.reference.reactions:
             if joint in self.balanced.reactions:
-                rows.append((f"largest {label(joint)} [N]", *self.peak_reactions(joint), self.peak_reaction_ratio(joint)))
-        ranges = [("coupler inertia force [N]", self.inertia_force_range()), ("cam force [N]", self.cam_force_range())]
-        for name, (of_reference, of_balanced) in ranges:
-            for end, which in enumerate(("smallest", "largest")):
-                rows.append((f"{which} {name}", of_reference[end], of_balanced[end], np.nan))
-        rows.append(("power residual", self.reference.power_residual, self.balanced.power_residual, np.nan))
-        return pd.DataFrame(rows, columns=["quantity", *self.names, "ratio"]).set_index("quantity")
+                row = *self.peak_reactions(joint), self.peak_reaction_ratio(joint)
+                rows.append((f"largest {label(joint)}", "N", *row))
+        for name, ranges in (
+            ("coupler inertia force", self.inertia_force_range()),
+            ("cam force", self.cam_force_range()),
+        ):
+            for which, of_each in zip(("smallest", "largest"), zip(*ranges, strict=True), strict=True):
+                rows.append((f"{which} {name}", "N", *of_each, np.nan))
+        rows.append(("power residual", "1", self.reference.power_residual, self.balanced.power_residual, np.nan))
+        return pd.DataFrame(rows, columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
 
 
 def compare(reference, balanced):

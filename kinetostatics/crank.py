@@ -50,6 +50,10 @@ class Crank:
     def links(self):
         return {"crank": self.link}
 
+    @property
+    def bars(self):
+        return () if self.length is None else (("O", "A"),)
+
     def place(self, angle) -> Placement:
         direction = ray(angle)
         placement = Placement(angle, direction, {"O": ORIGIN}, {"crank": LinkMotion(ORIGIN, direction, 1.0, None)})

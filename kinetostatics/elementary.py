@@ -4,9 +4,9 @@ The kernels take their elementary functions from here and from nowhere else, so 
 on JAX, on dask, on object arrays of `arb` numbers and, with these three overloaded, inside numba.
 """
 
-import numpy
+import numpy as np
 
-_namespaces = {kind: numpy for kind in (numpy.ndarray, numpy.float64, float, int)}
+_namespaces = dict.fromkeys((np.ndarray, np.float64, float, int), np)
 
 
 def namespace(x):
@@ -15,7 +15,7 @@ def namespace(x):
     if kind not in _namespaces:
         from array_api_compat import array_namespace, is_array_api_obj
 
-        _namespaces[kind] = array_namespace(x) if is_array_api_obj(x) else numpy
+        _namespaces[kind] = array_namespace(x) if is_array_api_obj(x) else np
     return _namespaces[kind]
 
 

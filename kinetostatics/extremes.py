@@ -11,6 +11,8 @@ SAMPLES = 1440
 """Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""
 FLAT = 1e-13
 """Variation, relative to the largest value, below which a quantity is constant but for rounding."""
+SAME = 1e-9
+"""An extremum found this little before the end of the turn (rad) is the one at its start."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +90,7 @@ def extremes(solution, quantity):
         if not sign.size:
             return Extremes(str(quantity), np.empty(0), np.empty(0))
         angle = _polished(evaluate, _minimised(evaluate, brackets, sign), sign)
-    angle = np.mod(angle, 2 * np.pi)
+    angle = np.maximum(np.mod(angle + SAME, 2 * np.pi) - SAME, 0.0)
     order = np.argsort(angle)
     return Extremes(str(quantity), angle[order], evaluate(angle[order]))
 

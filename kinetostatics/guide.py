@@ -19,9 +19,7 @@ class Guide(NamedTuple):
     @classmethod
     def at(cls, guide_angle=0.0, guide_offset=0.0):
         """Guide at an angle (rad, counter-clockwise from +x) and offset (m)."""
-        checks.require(
-            "guide", checks.finite("guide_angle", guide_angle), checks.finite("guide_offset", guide_offset)
-        )
+        checks.require("guide", checks.finite("guide_angle", guide_angle), checks.finite("guide_offset", guide_offset))
         if isinstance(guide_angle, int | float) and guide_angle == 0:
             return cls((1.0, 0.0), guide_offset)
         return cls((cos(guide_angle), sin(guide_angle)), guide_offset)

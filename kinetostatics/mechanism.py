@@ -38,6 +38,11 @@ class Mechanism:
             links.update(group.links)
         return links
 
+    @property
+    def bars(self):
+        """Pairs of joints that links connect, from the crank outwards."""
+        return sum((group.bars for group in self.groups), self.crank.bars)
+
     def group(self, kind):
         """First group of a kind, or None."""
         return next((group for group in self.groups if isinstance(group, kind)), None)
@@ -151,4 +156,3 @@ def _guide(guide, angle, offset):
         "guide", None if angle is None and offset is None else "give either guide or guide_angle and guide_offset"
     )
     return guide
-

@@ -129,7 +129,7 @@ class Motion:
         """The parts with the shape of the crank angles at least, batch axes as they come."""
         angle = self.crank_angle
         xp = namespace(angle)
-        parts = [part if hasattr(part, "shape") else xp.full_like(angle, part) for part in parts]
-        if all(part.shape == angle.shape for part in parts):
-            return parts
-        return xp.broadcast_arrays(*parts, angle)[: len(parts)]
+        full = [part if hasattr(part, "shape") else xp.full_like(angle, part) for part in parts]
+        if all(part.shape == angle.shape for part in full):
+            return full
+        return xp.broadcast_arrays(*full, angle)[: len(full)]

@@ -15,7 +15,7 @@ def cross(a, b):
 
 
 def left(a):
-    """a turned by a quarter turn counter-clockwise."""
+    """Vector a after a quarter turn counter-clockwise."""
     return (-a[1], a[0])
 
 

@@ -125,6 +125,10 @@ class SliderGroup:
         return {self._coupler: self.coupler, self._slider: self.slider}
 
     @property
+    def bars(self):
+        return ((self.on, self.pin),)
+
+    @property
     def _coupler(self):
         return "coupler" + self.label
 

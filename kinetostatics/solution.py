@@ -3,6 +3,7 @@
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
+from typing import Any
 
 import numpy as np
 
@@ -157,7 +158,7 @@ class Solution(Motion):
 
     @cached_property
     def _pushes(self):
-        pushes = {}
+        pushes: dict[str, Any] = {}
         for item in self.loads:
             if not isinstance(item, Gravity):
                 pushes[item.on] = plus(pushes.get(item.on), item.push(self))

@@ -1,0 +1,123 @@
+"""The command line: ``kinetostatics run | compare | plot CASE``."""
+
+import argparse
+import os
+import sys
+
+from .errors import KinetostaticsError
+
+
+def main(arguments=None):
+    """Run the command line; returns the exit status: 0, or 2 for input that cannot be used."""
+    options = _parser().parse_args(arguments)
+    try:
+        options.command(options)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (KinetostaticsError, OSError) as error:
+        print(f"kinetostatics: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _parser():
+    parser = argparse.ArgumentParser(
+        prog="kinetostatics", description="Forces and drive torque of planar slider mechanisms, from a case file."
+    )
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    run = _command(commands, "run", _run, "extremes of every force, with the power check")
+    run.add_argument("--variant", metavar="NAME", help="only this variant")
+    run.add_argument("--angles", type=_count, default=720, metavar="N", help="crank angles over the turn (720)")
+    run.add_argument("--csv", metavar="FILE", help="write all results, a row for each crank angle")
+
+    compare = _command(commands, "compare", _compare, "dynamic coefficients against the reference variant")
+    compare.add_argument("--variant", metavar="NAME", help="only this variant against the reference")
+
+    plot = _command(commands, "plot", _plot, "draw the figures of the case")
+    plot.add_argument("--out", required=True, metavar="DIR", help="folder for the figures")
+    plot.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")
+    plot.add_argument("--only", metavar="FIGURE", help="draw this figure only")
+    return parser
+
+
+def _command(commands, name, function, text):
+    command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+    command.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case: sawframe_2r63")
+    command.set_defaults(command=function)
+    return command
+
+
+def _count(text):
+    count = int(text)
+    if count < 1:
+        raise argparse.ArgumentTypeError(f"must be at least 1, got {count}")
+    return count
+
+
+def _run(options):
+    import pandas as pd
+
+    from .case import load_case
+    from .tables import extremes_frame, written_whole
+
+    case = load_case(options.case)
+    names = [options.variant] if options.variant else list(case.variants)
+    solutions = {name: case.solve(name, options.angles) for name in names}
+    print(case.title)
+    for name, solution in solutions.items():
+        print(f"\n{name}: {solution.mechanism.name}\n")
+        _print(extremes_frame(solution))
+        print(
+            f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
+            f"largest power that flows ({options.angles} angles)"
+        )
+    if options.csv:
+        frames = [solution.frame().assign(variant=name) for name, solution in solutions.items()]
+        table = pd.concat(frames)
+        table.insert(0, "variant", table.pop("variant"))
+        with written_whole(options.csv) as temporary:
+            table.to_csv(temporary, index=False)
+        print(f"\nwrote {options.csv}: {len(table)} rows")
+
+
+def _compare(options):
+    from .case import load_case
+
+    case = load_case(options.case)
+    names = [options.variant] if options.variant else [name for name in case.variants if name != case.reference]
+    tables = {name: case.comparison_table(name) for name in names}
+    print(case.title)
+    for name, table in tables.items():
+        print(f"\n{case.reference} / {name}\n")
+        _print(table)
+
+
+def _plot(options):
+    from .case import load_case
+    from .figures import draw_case
+
+    for path in draw_case(load_case(options.case), options.out, options.format, options.only):
+        print(path)
+
+
+def _print(table):
+    from tabulate import tabulate
+
+    cells = table.reset_index().map(_cell)
+    print(tabulate(cells, headers="keys", showindex=False, disable_numparse=True, colalign=_alignment(table)))
+
+
+def _alignment(table):
+    return ["left", *("left" if name in ("unit", "published") else "right" for name in table.columns)]
+
+
+def _cell(value):
+    if isinstance(value, str):
+        return value
+    return "" if value != value else f"{value:.6g}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

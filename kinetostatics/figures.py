@@ -1,0 +1,122 @@
+"""The figures of a case: which plots, of which variants, on which page. `kinetostatics plot` draws them to files."""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from . import checks, plots
+from .cam_roller import CamRoller
+from .errors import ParameterError
+from .tables import written_whole
+
+
+def draw_case(case, folder, file_format="png", only=None):
+    """Draw the figures of a case into a folder.
+
+    Parameters
+    ----------
+    case : Case
+    folder : path
+        Made if missing; each file is written whole or not at all.
+    file_format : "png" or "svg"
+    only : str, optional
+        Name of the one figure wanted.
+
+    Returns
+    -------
+    list of Path
+
+    Raises
+    ------
+    ParameterError
+        There is no figure of that name; the message lists them.
+    """
+    figures = {name: draw for name, draw in FIGURES.items() if name not in CAM_FIGURES or _with_cam(case)}
+    problem = checks.choice("figure", only, figures) if only else None
+    if problem:
+        raise ParameterError(problem)
+    solutions = {name: case.solve(name) for name in case.variants}
+    return [
+        _saved(figures[name], solutions, name, case, Path(folder), file_format)
+        for name in ([only] if only else figures)
+    ]
+
+
+def _saved(draw, solutions, name, case, folder, file_format):
+    path = folder / f"{case.path.stem}_{name}.{file_format}"
+    with rc_context({"svg.hashsalt": case.path.stem, "font.size": 9}):
+        figure = draw(solutions)
+        metadata = {"Date": None} if file_format == "svg" else {}
+        with written_whole(path) as temporary:
+            figure.savefig(temporary, format=file_format, dpi=150, metadata=metadata)
+    plt.close(figure)
+    return path
+
+
+def _with_cam(solutions_or_case):
+    variants = getattr(solutions_or_case, "variants", solutions_or_case)
+    return {name: item for name, item in variants.items() if item.mechanism.group(CamRoller) is not None}
+
+
+def _single(plot):
+    def draw(solutions) -> Figure:
+        figure, ax = plt.subplots(figsize=(6.4, 4), layout="constrained")
+        plot(solutions, ax=ax)
+        return figure
+
+    return draw
+
+
+def _of_cams(plot):
+    single = _single(plot)
+    return lambda solutions: single(_with_cam(solutions))
+
+
+def _one_each(plot, width, height, stacked=False):
+    """Axes for each variant, in a row or stacked."""
+
+    def draw(solutions) -> Figure:
+        count = len(solutions)
+        rows, columns = (count, 1) if stacked else (1, count)
+        figure, axes = plt.subplots(rows, columns, figsize=(width * columns, height * rows), layout="constrained")
+        for ax, (name, solution) in zip(np.atleast_1d(axes), solutions.items(), strict=True):
+            plot(solution, ax=ax)
+            ax.set_title(name)
+        return figure
+
+    return draw
+
+
+def _overview(solutions) -> Figure:
+    """The last variant, its torque against all others, and the support reaction before and after."""
+    figure, axes = plt.subplot_mosaic(
+        [["mechanism"] * 3, ["torque", "before", "after"]],
+        figsize=(11, 6.4),
+        height_ratios=[0.8, 1],
+        layout="constrained",
+    )
+    (first_name, first), *_, (name, last) = solutions.items()
+    plots.mechanism(last, ax=axes["mechanism"])
+    axes["mechanism"].set_title(f"{name}: {last.mechanism.name}")
+    plots.torque(solutions, ax=axes["torque"])
+    axes["torque"].set_title("torque the drive must give")
+    plots.hodograph(first, ax=axes["before"], marks=45)
+    axes["before"].set_title(f"support reaction, {first_name}")
+    plots.hodograph(last, ax=axes["after"], marks=45)
+    axes["after"].set_title(f"support reaction, {name}")
+    return figure
+
+
+FIGURES = {
+    "overview": _overview,
+    "mechanism": _one_each(plots.mechanism, 8, 2.6, stacked=True),
+    "torque": _single(plots.torque),
+    "acceleration_error": _single(plots.acceleration_error),
+    "hodograph": _one_each(plots.hodograph, 4.4, 4.2),
+    "pressure_angle": _of_cams(plots.pressure_angle),
+    "cam_force": _of_cams(plots.cam_force),
+}
+CAM_FIGURES = ("pressure_angle", "cam_force")

@@ -1,0 +1,161 @@
+"""What a case file may hold, as pydantic models: keys, units, allowed values. `case` turns them into mechanisms."""
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from .units import to_si
+
+
+def _reader(unit, *, low=None, strict=False):
+    """Function that reads text with a unit, within bounds."""
+
+    def read(text):
+        value = to_si(text, unit)
+        if low is not None and (value <= low if strict else value < low):
+            raise ValueError(f"must be {'greater than' if strict else 'at least'} {low:g} {unit}, found {text!r}")
+        return value
+
+    return read
+
+
+Length = Annotated[float, BeforeValidator(_reader("m", low=0.0, strict=True))]
+Coordinate = Annotated[float, BeforeValidator(_reader("m"))]
+Angle = Annotated[float, BeforeValidator(_reader("rad"))]
+Mass = Annotated[float, BeforeValidator(_reader("kg", low=0.0))]
+Inertia = Annotated[float, BeforeValidator(_reader("kg m^2", low=0.0))]
+Force = Annotated[float, BeforeValidator(_reader("N"))]
+Speed = Annotated[float, BeforeValidator(_reader("rad/s"))]
+AngularAcceleration = Annotated[float, BeforeValidator(_reader("rad/s^2"))]
+GravityAcceleration = Annotated[float, BeforeValidator(_reader("m/s^2", low=0.0))]
+
+_STIFFNESS = _reader("N/m", low=0.0)
+MID_LENGTH = "mid-length"
+BALANCE_THE_SLIDER = "balance the slider"
+
+
+def _stiffness(text):
+    return text if text == BALANCE_THE_SLIDER else _STIFFNESS(text)
+
+
+def _point(value):
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(f'must be a pair such as ["10 mm", "0 mm"], found {value!r}')
+    return tuple(to_si(part, "m") for part in value)
+
+
+def _centre(value):
+    if value == MID_LENGTH:
+        return value
+    return _point(value) if isinstance(value, list) else (to_si(value, "m"), 0.0)
+
+
+Point = Annotated[tuple[float, float], BeforeValidator(_point)]
+Centre = Annotated[tuple[float, float] | str, BeforeValidator(_centre)]
+
+
+class Table(BaseModel):
+    """A table of a case file: unknown keys are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class LinkTable(Table):
+    mass: Mass = 0.0
+    centre: Centre = (0.0, 0.0)
+    inertia: Inertia = 0.0
+
+
+class GravityTable(Table):
+    acceleration: GravityAcceleration = 9.81
+    direction: Angle = -math.pi / 2
+
+
+class SpringTable(Table):
+    stiffness: Annotated[float | str, BeforeValidator(_stiffness)]
+    free_position: Coordinate
+
+
+class ProcessForceTable(Table):
+    force: Force | None = None
+    table: str | None = None
+
+    @model_validator(mode="after")
+    def _one_of_two(self):
+        if (self.force is None) == (self.table is None):
+            raise ValueError('needs either force, such as "-2 kN", or table, a CSV file by crank angle')
+        return self
+
+
+class CircleTable(Table):
+    kind: Literal["circle"]
+    radius: Length
+    centre: Point = (0.0, 0.0)
+
+
+class CosineLawTable(Table):
+    kind: Literal["cosine-law"]
+    amplitude: Length
+    mean: Length
+
+
+class SampledTable(Table):
+    kind: Literal["sampled"]
+    table: str
+
+
+class SliderVariant(Table):
+    """Keys common to every mechanism that ends in a slider group."""
+
+    crank_speed: Speed
+    crank_acceleration: AngularAcceleration = 0.0
+    guide_angle: Angle = 0.0
+    guide_offset: Coordinate = 0.0
+    assembly: Literal[1, -1] = 1
+    crank: LinkTable = LinkTable()
+    coupler: LinkTable = LinkTable()
+    slider: LinkTable = LinkTable()
+    gravity: GravityTable | None = None
+    spring: SpringTable | None = None
+    process_force: ProcessForceTable | None = None
+
+
+class CrankSliderVariant(SliderVariant):
+    mechanism: Literal["crank-slider"]
+    crank_length: Length
+    coupler_length: Length
+
+
+CAM_KINDS = ("circle", "cosine-law", "sampled")
+
+
+class CamVariant(SliderVariant):
+    mechanism: Literal["cam-crank-slider"]
+    cam: Annotated[CircleTable | CosineLawTable | SampledTable, Field(discriminator="kind")]
+    coupler_length: Length | None = None
+    block: LinkTable = LinkTable()
+
+
+class PublishedTable(Table):
+    """Published figures as printed, by the row of the comparison table they belong beside.
+
+    `ratio` holds those of reference / balanced, `value` those of the balanced mechanism.
+    """
+
+    ratio: dict[str, str] = Field(default_factory=dict)
+    value: dict[str, str] = Field(default_factory=dict)
+
+
+class CaseTable(Table):
+    """The head of a case file; its variants are read one by one with what they have in common."""
+
+    title: str
+    source: str = ""
+    reference: str
+    common: dict = Field(default_factory=dict)
+    variants: dict[str, dict] = Field(min_length=1)
+    published: PublishedTable = PublishedTable()
+
+
+VARIANTS = {"crank-slider": CrankSliderVariant, "cam-crank-slider": CamVariant}
