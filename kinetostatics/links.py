@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from . import checks
-from .planar import added, left, minus, moment, plus, product, scaled, stretched, subtracted, work
+from .planar import added, left, minus, moment, plus, product, stretched, subtracted, work
 
 
 class Joint(NamedTuple):
@@ -92,10 +92,11 @@ class Link:
 
     @cached_property
     def body(self):
-        return Body(*map(_present, (self.mass, *self.centre, self.inertia)))
+        return Body(*map(present, (self.mass, *self.centre, self.inertia)))
 
 
-def _present(value):
+def present(value):
+    """The value, or None for a plain number that is zero."""
     return None if isinstance(value, int | float) and value == 0 else value
 
 
@@ -103,7 +104,7 @@ def arm(direction, along, across):
     """Vector from a link's reference joint to the point (along, across) of it; None for the joint itself."""
     if across is None:
         return stretched(along, direction)
-    return added(stretched(along, direction), scaled(across, left(direction)))
+    return added(stretched(along, direction), stretched(across, left(direction)))
 
 
 def first_at(link, arm):
@@ -137,8 +138,11 @@ def load(link, body, speed_squared, crank_acceleration, gravity):
     """Wrench of inertia (d'Alembert) and weight of a link about its reference joint; None for a massless link."""
     to_centre = arm(link.direction, body.along, body.across)
     force = _mass_force(link, to_centre, body.mass, speed_squared, crank_acceleration, gravity)
-    turning = angular_acceleration(link.ratio, link.ratio_slope, speed_squared, crank_acceleration)
-    return Wrench(force, minus(moment(to_centre, force), product(body.inertia, turning)))
+    inertia = body.inertia
+    turning = angular_acceleration(
+        link.ratio, link.ratio_slope, product(inertia, speed_squared), product(inertia, crank_acceleration)
+    )
+    return Wrench(force, minus(moment(to_centre, force), turning))
 
 
 def _mass_force(link, to_centre, mass, speed_squared, crank_acceleration, gravity):

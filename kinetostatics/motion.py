@@ -119,8 +119,7 @@ class Motion:
         return table[name]
 
     def _vector(self, parts):
-        xp = namespace(self.crank_angle)
-        return xp.stack(self._full(*vector(parts)))
+        return namespace(self.crank_angle).asarray(self._full(*vector(parts)))
 
     def _scalar(self, part):
         return self._full(number(part))[0]

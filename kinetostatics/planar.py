@@ -19,15 +19,25 @@ def left(a):
     return (-a[1], a[0])
 
 
-def scaled(factor, a):
-    return (factor * a[0], factor * a[1])
+def turned(a, direction):
+    """a turned by the angle of a unit vector; None turns nothing."""
+    if direction is None:
+        return a
+    return (direction[0] * a[0] - direction[1] * a[1], direction[1] * a[0] + direction[0] * a[1])
+
+
+def unturned(a, direction):
+    """Components of a along a unit vector and across it, to the left; None: a as it is."""
+    if direction is None:
+        return a
+    return (dot(direction, a), cross(direction, a))
 
 
 def stretched(factor, a):
     """Vector times number, absent if either is."""
     if factor is None or a is None:
         return None
-    return scaled(factor, a)
+    return (factor * a[0], factor * a[1])
 
 
 def plus(a, b):

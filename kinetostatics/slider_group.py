@@ -6,6 +6,7 @@ happens at the dead centres, whatever the inclination of the guide.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,8 +14,8 @@ import numpy as np
 from . import checks
 from .elementary import sqrt
 from .guide import Guide
-from .links import Joint, Link, LinkMotion
-from .planar import cross, dot, left, minus, moment, number, plus, quotient, scaled, subtracted, work
+from .links import Joint, Link, LinkMotion, present
+from .planar import minus, number, plus, quotient, subtracted, turned, unturned, vector
 
 
 class SliderMotion(NamedTuple):
@@ -38,31 +39,33 @@ class SliderForces(NamedTuple):
 
 
 def place(joint, coupler_length, guide, assembly):
-    """Coupler and slider for a given inner joint (kernel)."""
-    ux, uy = guide.direction
-    sine = (guide.guide_offset + uy * joint.position[0] - ux * joint.position[1]) / coupler_length
+    """Coupler and slider for a given inner joint (kernel); a guide direction of None is +x, an offset of None zero."""
+    position = unturned(joint.position, guide.direction)
+    first = unturned(joint.first, guide.direction)
+    second = unturned(joint.second, guide.direction)
+
+    across = minus(guide.guide_offset, position[1])
+    sine = across / coupler_length
     closure = (1.0 - sine) * (1.0 + sine)
     cosine = assembly * sqrt(closure)
-    direction = (cosine * ux - sine * uy, cosine * uy + sine * ux)
+    along = coupler_length * cosine
 
-    along, across = coupler_length * cosine, coupler_length * sine
-    ratio = cross(joint.first, guide.direction) / along
+    ratio = -first[1] / along
     lag = ratio * ratio
-    ratio_slope = (lag * across + cross(joint.second, guide.direction)) / along
+    ratio_slope = (lag * across - second[1]) / along
 
     travel = Joint(
-        dot(guide.direction, joint.position) + along,
-        dot(guide.direction, joint.first) - ratio * across,
-        dot(guide.direction, joint.second) - ratio_slope * across - lag * along,
+        position[0] + along,
+        first[0] - ratio * across,
+        second[0] - ratio_slope * across - lag * along,
     )
-    x, y = scaled(travel.position, guide.direction)
     pin = Joint(
-        (x - guide.guide_offset * uy, y + guide.guide_offset * ux),
-        scaled(travel.first, guide.direction),
-        scaled(travel.second, guide.direction),
+        turned((travel.position, number(guide.guide_offset)), guide.direction),
+        turned((travel.first, 0.0), guide.direction),
+        turned((travel.second, 0.0), guide.direction),
     )
-    coupler = LinkMotion(joint, direction, ratio, ratio_slope)
-    slider = LinkMotion(pin, guide.direction, None, None)
+    coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
+    slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
     return SliderMotion(coupler, slider, sine, cosine, closure, travel)
 
 
@@ -73,15 +76,14 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, dema
     are wrenches about the links' reference joints. The slider's balance along the guide gives the pin force along it,
     moments of the coupler about its inner joint the pin force across; the guide carries the rest.
     """
-    ux, uy = guide.direction
-    on_slider = subtracted(slider_load.force, demand)
-    along = number(minus(None, plus(work(on_slider, guide.direction), push)))
-    sideways = (number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along) / motion.cosine
-    pin = (along * ux - sideways * uy, along * uy + sideways * ux)
+    on_slider = unturned(vector(subtracted(slider_load.force, demand)), guide.direction)
+    along = -plus(on_slider[0], push)
+    across = (number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along) / motion.cosine
+    pin = turned((along, across), guide.direction)
     return SliderForces(
         inner=subtracted(pin, coupler_load.force),
         pin=pin,
-        guide_force=minus(None, plus(moment(guide.direction, on_slider), sideways)),
+        guide_force=-(on_slider[1] + across),
         guide_moment=number(minus(None, slider_load.moment)),
     )
 
@@ -136,8 +138,15 @@ class SliderGroup:
     def _slider(self):
         return "slider" + self.label
 
+    @cached_property
+    def _line(self):
+        """The guide as kernels take it: None for a direction along +x and for no offset."""
+        direction, offset = self.guide
+        level = present(direction[0] - 1.0) is None and present(direction[1]) is None
+        return Guide(None if level else direction, present(offset))
+
     def place(self, placement):
-        motion = place(placement.joints[self.on], self.coupler_length, self.guide, self.assembly)
+        motion = place(placement.joints[self.on], self.coupler_length, self._line, self.assembly)
         placement.joints[self.pin] = motion.slider.joint
         placement.links[self._coupler] = motion.coupler
         placement.links[self._slider] = motion.slider
@@ -157,7 +166,7 @@ class SliderGroup:
         found = resolve(
             placement.details[self._slider],
             self.coupler_length,
-            self.guide,
+            self._line,
             loads[self._coupler],
             loads[self._slider],
             pushes.get(self._slider),
@@ -165,7 +174,7 @@ class SliderGroup:
         )
         forces.reactions[self.on + self.label] = found.inner
         forces.reactions[self.pin] = found.pin
-        forces.reactions["guide" + self.label] = scaled(found.guide_force, left(self.guide.direction))
+        forces.reactions["guide" + self.label] = turned((0.0, found.guide_force), self._line.direction)
         forces.scalars["guide_force" + self.label] = found.guide_force
         forces.scalars["guide_moment" + self.label] = found.guide_moment
         forces.require(self.on, found.inner)

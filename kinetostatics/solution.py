@@ -228,7 +228,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         checks.choice("on_gap", on_gap, ("raise", "nan")),
         *(_load_problem(mechanism, item) for item in loads),
     )
-    if str(angle.dtype) == "float32":
+    if angle.dtype == "float32":
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
             'JAX switch jax.config.update("jax_enable_x64", True) on first',

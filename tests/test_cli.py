@@ -1,0 +1,116 @@
+"""The command line, as a user runs it."""
+
+import subprocess
+import sys
+
+import pandas as pd
+import pytest
+
+from kinetostatics.cli import main
+
+
+@pytest.fixture
+def broken(tmp_path):
+    path = tmp_path / "broken.toml"
+    path.write_text('title = "x"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\n')
+    return path
+
+
+def test_compare_prints_ours_and_the_published_figures(capsys):
+    assert main(["compare", "sawframe_2r63"]) == 0
+    printed = capsys.readouterr().out
+    row = next(line for line in printed.splitlines() if line.startswith("mean |balancing torque|") and "3426" in line)
+    assert "6.77829" in row
+    assert "6.77 (ratio)" in row
+    assert printed.count("power residual") == 2
+
+
+def test_run_prints_extremes_and_the_power_check(capsys):
+    assert main(["run", "sawframe_2r63", "--variant", "plain"]) == 0
+    printed = capsys.readouterr().out
+    assert "40578.9" in printed
+    assert "power balance: the torques by equilibrium and by powers differ by" in printed
+    assert "cam" not in printed.split("plain: crank-slider")[1]
+
+
+def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):
+    path = tmp_path / "new" / "saw.csv"
+    assert main(["run", "sawframe_2r63", "--angles", "36", "--csv", str(path)]) == 0
+    table = pd.read_csv(path)
+    assert len(table) == 3 * 36
+    assert {"variant", "crank_angle [deg]", "balancing_torque [N m]", "cam_force [N]", "B_x [m]"} <= set(table.columns)
+    assert table["cam_force [N]"].isna().sum() == 36
+    assert f"wrote {path}: 108 rows" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("file_format", ["png", "svg"])
+def test_plot_writes_each_figure_of_the_case(tmp_path, file_format, capsys):
+    assert main(["plot", "sawframe_2r63", "--out", str(tmp_path), "--format", file_format]) == 0
+    written = sorted(path.name for path in tmp_path.iterdir())
+    names = ["acceleration_error", "cam_force", "hodograph", "mechanism", "overview", "pressure_angle", "torque"]
+    assert written == [f"sawframe_2r63_{name}.{file_format}" for name in names]
+    assert len(capsys.readouterr().out.splitlines()) == len(names)
+    starts = b"\x89PNG" if file_format == "png" else b"<?xml"
+    assert all(path.read_bytes().startswith(starts) for path in tmp_path.iterdir())
+
+
+def test_same_figure_is_written_byte_for_byte_again(tmp_path):
+    for folder in ("a", "b"):
+        arguments = ["--out", str(tmp_path / folder), "--format", "svg", "--only", "torque"]
+        assert main(["plot", "sawframe_2r63", *arguments]) == 0
+    first, second = (tmp_path / folder / "sawframe_2r63_torque.svg" for folder in ("a", "b"))
+    assert first.read_bytes() == second.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "no_such_case"],
+        ["compare", "sawframe_2r63", "--variant", "cam"],
+        ["plot", "sawframe_2r63", "--out", "unused", "--only", "torqe"],
+    ],
+)
+def test_bad_input_ends_with_status_2_and_one_message(arguments, capsys):
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("kinetostatics: ")
+    assert len(captured.err.splitlines()) < 24
+
+
+def test_a_broken_case_writes_nothing(tmp_path, broken, capsys):
+    target = tmp_path / "out.csv"
+    assert main(["run", str(broken), "--csv", str(target)]) == 2
+    assert not target.exists()
+    assert "variants.a.crank_length is missing" in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(tmp_path, monkeypatch, capsys):
+    target = tmp_path / "saw.csv"
+    target.write_text("old")
+
+    def fails(self, path, **_):
+        with open(path, "w") as stream:  # noqa: PTH123
+            stream.write("half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(pd.DataFrame, "to_csv", fails)
+    assert main(["run", "sawframe_2r63", "--csv", str(target)]) == 2
+    assert target.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [target]
+    assert "disk full" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [["run", "sawframe_2r63", "--angles", "0"], ["runn", "sawframe_2r63"], []])
+def test_wrong_usage_ends_with_status_2(arguments):
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+
+
+def test_module_and_shell_agree_and_show_no_traceback(broken):
+    command = [sys.executable, "-m", "kinetostatics", "compare", str(broken)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert done.stderr.startswith(f"kinetostatics: {broken}: 3 problems")
