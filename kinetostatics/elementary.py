@@ -29,3 +29,9 @@ def cos(x):
 
 def sqrt(x):
     return namespace(x).sqrt(x)
+
+
+def stack(arrays):
+    """Arrays of one shape as one array, along a new first axis."""
+    xp = namespace(arrays[0])
+    return np.array(arrays) if xp is np else xp.stack(arrays)  # np.stack takes three times as long

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from . import checks
 from .cam_roller import CamRoller
 from .chain import Forces
@@ -50,8 +52,9 @@ class Mechanism:
     def place(self, angle):
         """Joints and links at the crank angles; NaN where the mechanism cannot be assembled."""
         placement = self.crank.place(angle)
-        for group in self.groups:
-            group.place(placement)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            for group in self.groups:
+                group.place(placement)
         return placement
 
     def resolve(self, placement, loads, pushes):

@@ -5,7 +5,7 @@ from functools import cached_property
 from typing import Any
 
 from . import checks
-from .elementary import namespace
+from .elementary import namespace, stack
 from .errors import QuantityError
 from .links import accelerated, angular_acceleration, arm, first_at, second_at
 from .mechanism import Mechanism
@@ -119,7 +119,12 @@ class Motion:
         return table[name]
 
     def _vector(self, parts):
-        return namespace(self.crank_angle).asarray(self._full(*vector(parts)))
+        x, y = vector(parts)
+        if not hasattr(x, "shape"):
+            x = x + 0.0 * y  # a constant component is NaN where the other one is
+        if not hasattr(y, "shape"):
+            y = y + 0.0 * x
+        return stack(self._full(x, y))
 
     def _scalar(self, part):
         return self._full(number(part))[0]

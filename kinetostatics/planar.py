@@ -20,14 +20,14 @@ def left(a):
 
 
 def turned(a, direction):
-    """a turned by the angle of a unit vector; None turns nothing."""
+    """Vector a turned by the angle of a unit vector; None turns nothing."""
     if direction is None:
         return a
     return (direction[0] * a[0] - direction[1] * a[1], direction[1] * a[0] + direction[0] * a[1])
 
 
 def unturned(a, direction):
-    """Components of a along a unit vector and across it, to the left; None: a as it is."""
+    """Components of a along a unit vector and across it, to the left; None: of a as it is."""
     if direction is None:
         return a
     return (dot(direction, a), cross(direction, a))

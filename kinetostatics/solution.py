@@ -174,7 +174,8 @@ class Solution(Motion):
 
 def _largest(part):
     """Largest magnitude over the turn; angles where the mechanism does not close are left out."""
-    return np.nanmax(np.abs(number(part)), axis=-1) if np.ndim(part) else np.abs(number(part))
+    found = np.abs(np.asarray(number(part)))
+    return np.fmax.reduce(found, axis=-1) if found.ndim else found
 
 
 def _angles(crank_angle):
@@ -195,7 +196,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`; what is left out costs nothing.
+        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
         give NaN there and exact values elsewhere (no check, as needed under ``jax.jit``).
@@ -236,8 +237,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         )
     solution = Solution(mechanism, angle, crank_speed, crank_acceleration, loads, on_gap)
     if on_gap == "raise":
-        with np.errstate(divide="ignore", invalid="ignore"):
-            assembly.check(mechanism, solution.placement)
+        assembly.check(mechanism, solution.placement)
     return solution
 
 

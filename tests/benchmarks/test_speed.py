@@ -1,0 +1,223 @@
+"""How fast: the plain sawframe, all reactions and torque, against rivals timed in the same process.
+
+Run by ``python -m pytest tests/benchmarks --benchmark-only``. Every ratio is of least times of several rounds in which
+the rivals take turns; limits are generous, the figures themselves are printed and kept in the benchmark's `extra_info`.
+"""
+
+import math
+import os
+import platform
+import subprocess
+import sys
+import timeit
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+
+CRANK, COUPLER, CENTRE = 0.3, 2.0, 1.0
+COUPLER_MASS, COUPLER_INERTIA, SLIDER_MASS = 150.0, 20.5, 600.0
+SPEED = 320 * 2 * math.pi / 60
+GRAVITY = 9.81
+PLAIN = ks.crank_slider(
+    CRANK, COUPLER, coupler=ks.Link(COUPLER_MASS, CENTRE, COUPLER_INERTIA), slider=ks.Link(SLIDER_MASS)
+)
+LOADS = (ks.Gravity(GRAVITY),)
+
+
+def turn(count):
+    return np.linspace(0, 2 * math.pi, count, endpoint=False)
+
+
+def results(mechanism, angles):
+    """O, A, B, guide force and moment, torque."""
+    s = ks.solve(mechanism, angles, crank_speed=SPEED, loads=LOADS)
+    return s.reaction("O"), s.reaction("A"), s.reaction("B"), s.guide_force, s.guide_moment, s.balancing_torque
+
+
+def flat(angles):
+    """The same by one script, specialised by hand: massless crank, level guide through O, coupler centre on A-B.
+
+    With c, s of the coupler, k its rate and e its angular acceleration by crank angle, the centre at the distance a
+    from A has the acceleration -(x + a p, y - a q) by crank angle, where p = e s + k^2 c and q = e c - k^2 s.
+    """
+    square = SPEED * SPEED
+    x, y = CRANK * np.cos(angles), CRANK * np.sin(angles)
+    s = y * (-1.0 / COUPLER)
+    c = np.sqrt((1.0 - s) * (1.0 + s))
+    along = COUPLER * c
+    k = x / along
+    k2 = k * k
+    e = (y - k2 * y) / along
+    p, q = e * s + k2 * c, e * c - k2 * s
+    mass_x = (COUPLER_MASS * square) * (x + CENTRE * p)
+    mass_y = (COUPLER_MASS * square) * (y - CENTRE * q) - COUPLER_MASS * GRAVITY
+    mass_moment = CENTRE * (c * mass_y - s * mass_x) - (COUPLER_INERTIA * square) * e
+    pin_x = (-SLIDER_MASS * square) * (x + COUPLER * p)
+    pin_y = (mass_moment / COUPLER + s * pin_x) / c
+    inner = np.array((pin_x - mass_x, pin_y - mass_y))
+    torque = x * inner[1] - y * inner[0]
+    return inner, inner, np.array((pin_x, pin_y)), SLIDER_MASS * GRAVITY - pin_y, np.zeros_like(x), torque
+
+
+def newton_euler(A, B, centre, centre_acceleration, angular_acceleration, slider_acceleration):
+    """The same by assembling and solving three equations of each of three bodies, all angles at once."""
+    O_, A_, B_ = slice(0, 2), slice(2, 4), slice(4, 6)
+    N, M, T = 6, 7, 8
+    constant = np.zeros((9, 9))
+    constant[0:2, O_], constant[0:2, A_] = np.eye(2), -np.eye(2)
+    constant[2, T] = 1.0
+    constant[3:5, A_], constant[3:5, B_] = np.eye(2), -np.eye(2)
+    constant[6:8, B_], constant[7, N] = np.eye(2), 1.0
+    constant[8, M] = 1.0
+
+    (x, y), (to_A_x, to_A_y), (to_B_x, to_B_y) = A, A - centre, B - centre
+    matrix = np.repeat(constant[None], x.size, axis=0)
+    matrix[:, 2, 2], matrix[:, 2, 3] = y, -x
+    matrix[:, 5, 2], matrix[:, 5, 3] = -to_A_y, to_A_x
+    matrix[:, 5, 4], matrix[:, 5, 5] = to_B_y, -to_B_x
+
+    right = np.zeros((x.size, 9))
+    right[:, 3:5] = COUPLER_MASS * centre_acceleration.T
+    right[:, 4] += COUPLER_MASS * GRAVITY
+    right[:, 5] = COUPLER_INERTIA * angular_acceleration
+    right[:, 6:8] = SLIDER_MASS * slider_acceleration.T
+    right[:, 7] += SLIDER_MASS * GRAVITY
+    found = np.linalg.solve(matrix, right[..., None])[..., 0].T
+    return found[O_], found[A_], found[B_], found[N], found[M], found[T]
+
+
+def motion(angles):
+    """What `newton_euler` needs to know."""
+    s = ks.solve(PLAIN, angles, crank_speed=SPEED)
+    positions = (s.position(point) for point in ("A", "B", "coupler"))
+    return *positions, s.acceleration("coupler"), s.angular_acceleration("coupler"), s.acceleration("B")
+
+
+def seconds(*rivals, rounds=12, spent=0.02):
+    """Least time of each rival, s; in each round each runs for about `spent` s."""
+    timers = [timeit.Timer(rival) for rival in rivals]
+    counts = [max(1, round(spent / min(timer.repeat(3, 1)))) for timer in timers]
+    times = [[timer.timeit(count) / count for timer, count in zip(timers, counts, strict=True)] for _ in range(rounds)]
+    return np.min(times, axis=0)
+
+
+@pytest.fixture(scope="session")
+def tell(request):
+    """Prints a line past pytest's capturing; first of all the machine and the versions."""
+    from cpuinfo import get_cpu_info
+
+    capturing = request.config.pluginmanager.getplugin("capturemanager")
+
+    def line(text):
+        with capturing.global_and_fixture_disabled():
+            print(f"\n{text}", end="")
+
+    line(f"{get_cpu_info().get('brand_raw', platform.machine())}, {platform.system()}")
+    line(f"Python {platform.python_version()}, NumPy {np.__version__}, SciPy {version('scipy')}")
+    return line
+
+
+def assert_same(found, expected):
+    for values, right in zip(found, expected, strict=True):
+        np.testing.assert_allclose(values, right, rtol=0, atol=1e-12 * np.max(np.abs(right)))
+
+
+def test_one_turn_takes_less_than_half_the_time_of_newton_euler(benchmark, tell):
+    """Newton-Euler gets the motion for nothing."""
+    angles = turn(360)
+    known = motion(angles)
+    assert_same(benchmark(results, PLAIN, angles), newton_euler(*known))
+    ours, theirs = seconds(lambda: results(PLAIN, angles), lambda: newton_euler(*known))
+    benchmark.extra_info["times faster than Newton-Euler"] = theirs / ours
+    tell(f"360 angles: {ours * 1e6:.0f} us; 9x9 Newton-Euler {theirs * 1e6:.0f} us, {theirs / ours:.1f} times as long")
+    assert theirs >= 2 * ours
+
+
+def test_one_turn_takes_at_most_three_times_as_long_as_a_flat_script(benchmark, tell):
+    angles = turn(360)
+    assert_same(benchmark(results, PLAIN, angles), flat(angles))
+    ours, theirs = seconds(lambda: results(PLAIN, angles), lambda: flat(angles))
+    benchmark.extra_info["times slower than flat script"] = ours / theirs
+    tell(f"360 angles: {ours * 1e6:.0f} us, {ours / theirs:.2f} times as long as a flat script, {theirs * 1e6:.0f} us")
+    assert ours <= 3 * theirs
+
+
+def test_time_is_linear_in_the_number_of_angles(benchmark, tell):
+    """In a fresh process for each number, as past allocations of other sizes change the price of memory by glibc.
+
+    By default it gives freed memory back at once, and the page faults cost more than the arithmetic; told to keep it
+    (second figure) it leaves the arithmetic alone.
+    """
+    counts = (360, 3600, 36000, 1_000_000)
+    keep = {"MALLOC_TRIM_THRESHOLD_": "9999999999", "MALLOC_MMAP_THRESHOLD_": "9999999999"}
+    benchmark.pedantic(results, (PLAIN, turn(counts[-1])), rounds=3)
+    each = {count: nanoseconds_an_angle(count, {}) for count in counts}
+    for count, (ours, theirs) in each.items():
+        kept = nanoseconds_an_angle(count, keep)
+        benchmark.extra_info[f"{count} angles, ns an angle"] = ours
+        tell(
+            f"{count:8d} angles: {ours:4.0f} ns an angle, flat script {theirs:4.0f};"
+            f" memory kept: {kept[0]:4.0f} and {kept[1]:4.0f}"
+        )
+    assert each[1_000_000][0] <= 1.5 * each[36000][0]
+
+
+def nanoseconds_an_angle(count, environment):
+    """Of `results` and of `flat`, in a process of its own."""
+    code = (
+        f"from test_speed import *; angles = turn({count});"
+        f" print(*seconds(lambda: results(PLAIN, angles), lambda: flat(angles), rounds=6) / {count} * 1e9)"
+    )
+    return [float(text) for text in run(code, environment).split()]
+
+
+def run(code, environment):
+    """What Python prints in a fresh process that finds this file and the package."""
+    here = Path(__file__).parent
+    path = {"PYTHONPATH": os.pathsep.join((str(here), str(Path(ks.__file__).parents[1])))}
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(
+        command, env={**os.environ, **path, **environment}, check=True, capture_output=True, text=True
+    )
+    return done.stdout
+
+
+def test_many_designs_in_one_call(benchmark, tell):
+    designs = 1000
+    angles = turn(360)
+    lengths = np.linspace(1.5, 2.5, designs)[:, None]
+    masses = np.linspace(100.0, 200.0, designs)[:, None]
+
+    def variant(length, mass):
+        coupler = ks.Link(mass, length / 2, COUPLER_INERTIA)
+        return ks.crank_slider(CRANK, length, coupler=coupler, slider=ks.Link(SLIDER_MASS))
+
+    def at_once():
+        return results(variant(lengths, masses), angles)
+
+    def one_by_one():
+        pairs = zip(lengths.flat, masses.flat, strict=True)
+        return [results(variant(float(length), float(mass)), angles) for length, mass in pairs]
+
+    together, apart = benchmark.pedantic(at_once, rounds=5), one_by_one()
+    assert_same([together[0][:, 700], together[-1][700]], [apart[700][0], apart[700][-1]])
+    ours, theirs = seconds(at_once, one_by_one, rounds=5) / (designs * angles.size)
+    benchmark.extra_info["ns a design and angle"] = ours * 1e9
+    benchmark.extra_info["times faster than a loop over designs"] = theirs / ours
+    tell(f"1000 designs x 360 angles: {ours * 1e9:.0f} ns each; loop over designs {theirs * 1e9:.0f} ns")
+
+
+def test_import_takes_little_longer_than_that_of_numpy(benchmark, tell):
+    def seconds_to_import(name):
+        return float(run(f"from time import perf_counter as now; t = now(); import {name}; print(now() - t)", {}))
+
+    benchmark.pedantic(seconds_to_import, ("kinetostatics",), rounds=3, warmup_rounds=1)
+    times = [[seconds_to_import(name) for name in ("kinetostatics", "numpy")] for _ in range(10)]
+    ours, theirs = np.min(times, axis=0)
+    benchmark.extra_info["times as long as NumPy"] = ours / theirs
+    tell(f"import: {ours * 1e3:.0f} ms, {ours / theirs:.2f} times as long as that of NumPy, {theirs * 1e3:.0f} ms")
+    assert ours <= 1.6 * theirs
