@@ -1,0 +1,184 @@
+"""Cams: exact at the singular angle, derivatives by other formulas, tables by their convergence."""
+
+from itertools import pairwise
+
+import mpmath as mp
+import numpy as np
+import pytest
+from machines import ANGLES, assert_close, assert_equal, largest, planar, results
+from newton_euler import (
+    DIGITS,
+    Body,
+    Scene,
+    critical_cosine,
+    critical_length,
+    path,
+    pin_by_cosine_law,
+    pin_on_circle,
+    solve,
+)
+from numpy.testing import assert_allclose
+
+import kinetostatics as ks
+
+ROUNDING = 4e-15
+"""A score of operations, none of which cancels, whatever the ratio of mean and amplitude."""
+LAWS = [(0.3, 2.0), (0.3, 0.31), (0.3, 0.6), (0.01, 5.0)]
+"""Amplitude and mean: the sawframe; a slider that nearly reaches O; between; a short stroke far away."""
+
+
+OFFSETS = [0.0] + [sign * 10.0**-power for power in range(1, 17) for sign in (1, -1)]
+
+
+def near_singular(amplitude, mean):
+    """Crank angles at and around both singular angles; the exact singular angle lies between two floats."""
+    with mp.workdps(30):
+        singular = float(mp.acos(critical_cosine(amplitude, mean)))
+    return np.concatenate([singular + np.array(OFFSETS), 2 * np.pi - singular + np.array(OFFSETS)])
+
+
+def polar(pin, angles):
+    """r, r', r'' of a path at each angle, from its derivatives as a curve, with its radius of curvature."""
+    rows = []
+    for angle in angles:
+        place, slope, bend = (part * np.exp(-1j * angle) for part in path(pin, angle))
+        rows.append((place.real, slope.real, bend.real + place.real, abs(slope) ** 3 / (np.conj(slope) * bend).imag))
+    return np.array(rows).T
+
+
+@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
+def test_cosine_law_derivatives_at_and_near_the_singular_angle(amplitude, mean):
+    """Against the naive radicand with its signed root, with 80 digits; r' and r'' relative to r."""
+    cam = ks.cams.CosineLaw(amplitude, mean)
+    angles = np.concatenate([near_singular(amplitude, mean), ANGLES])
+    *expected, curvature = polar(pin_by_cosine_law(amplitude, mean), angles)
+    for found, value in zip(cam.radius(angles), expected, strict=True):
+        assert largest(found - value) < ROUNDING * largest(expected[0])
+    assert_allclose(cam.pressure_angle(angles), np.arctan2(expected[1], expected[0]), rtol=0, atol=ROUNDING)
+    assert_close(1 / cam.curvature_radius(angles), 1 / curvature, 10 * ROUNDING)
+
+
+@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
+def test_cosine_law_coupler_length_and_singular_angle(amplitude, mean):
+    cam = ks.cams.CosineLaw(amplitude, mean)
+    with mp.workdps(DIGITS):
+        length, cosine = critical_length(amplitude, mean), critical_cosine(amplitude, mean)
+        assert abs(cam.coupler_length / length - 1) < 4e-16
+        assert abs(cam.singular_angle - mp.acos(cosine)) < 4e-16
+        for other in (cosine + mp.mpf("1e-20"), cosine - mp.mpf("1e-20")):
+            assert (mean + amplitude * other) * mp.sqrt(1 - other**2) < length
+
+
+@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
+@pytest.mark.parametrize("guide_angle", [0.0, 0.8])
+def test_slider_follows_the_cosine_law_exactly(amplitude, mean, guide_angle):
+    """Position, velocity and acceleration, at the singular angles too."""
+    cam = ks.cams.CosineLaw(amplitude, mean, guide_angle)
+    angles = np.concatenate([near_singular(amplitude, mean), ANGLES])
+    mechanism = ks.cam_crank_slider(cam, cam.coupler_length, guide_angle=guide_angle)
+    s = ks.solve(mechanism, angles + guide_angle, crank_speed=2.0, crank_acceleration=3.0)
+    assert_allclose(s.slider_position, mean + amplitude * np.cos(angles), rtol=0, atol=1e-15 * mean)
+    assert_close(s.slider_velocity, -2.0 * amplitude * np.sin(angles), ROUNDING)
+    acceleration = -amplitude * (4.0 * np.cos(angles) + 3.0 * np.sin(angles))
+    assert_close(s.slider_acceleration, acceleration, ROUNDING)
+
+
+def test_torque_and_cam_force_of_the_sawframe_at_and_near_the_singular_angle():
+    """Against the Newton-Euler reference with 80 digits of motion."""
+    amplitude, mean, speed = 0.3, 2.0, 33.5
+    cam = ks.cams.CosineLaw(amplitude, mean)
+    with mp.workdps(DIGITS):
+        length = critical_length(amplitude, mean)
+    stiffness = 600 * speed**2
+    scene = Scene(
+        pin=pin_by_cosine_law(amplitude, mean),
+        has_cam=True,
+        coupler_length=length,
+        bodies={"coupler": Body(150.0, (1.0, 0.0), 20.5), "slider": Body(600.0)},
+        speed=speed,
+        gravity=(9.81, -1.2),
+        push=lambda coordinate: -stiffness * (coordinate - mean),
+    )
+    mechanism = ks.cam_crank_slider(cam, cam.coupler_length, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
+    angles = near_singular(amplitude, mean)
+    s = ks.solve(mechanism, angles, crank_speed=speed, loads=[ks.Gravity(9.81, -1.2), ks.Spring(stiffness, mean)])
+    expected = [solve(scene, angle) for angle in angles]
+    for name in ("balancing_torque", "cam_force", "slot_force"):
+        assert_close(getattr(s, name), [found[name] for found in expected], tolerance=1e-12)
+    assert_close(planar(s.reaction("O")), [found["O"] for found in expected], tolerance=1e-12)
+
+
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (-0.0219, 0.0), (0.1, -0.2), (0.0, 0.29)])
+def test_circle_derivatives_equal_those_of_the_sine_rule(centre):
+    """The nearer O lies to the circle, the more digits of r are lost: by radius / (radius - distance) squared."""
+    cam = ks.cams.Circle(0.3, centre)
+    loss = (0.3 / (0.3 - np.hypot(*centre))) ** 2
+    *expected, _ = polar(pin_on_circle(0.3, centre), ANGLES)
+    for found, value in zip(cam.radius(ANGLES), expected, strict=True):
+        assert largest(found - value) < 1e-15 * loss
+    assert_allclose(cam.pressure_angle(ANGLES), np.arctan2(expected[1], expected[0]), rtol=0, atol=1e-15 * loss)
+    assert_allclose(cam.curvature_radius(ANGLES), 0.3, rtol=1e-14 * loss)
+
+
+def circle_table(count, start=0.3):
+    """An eccentric circle as unevenly measured points."""
+    circle = ks.cams.Circle(0.3, (0.05, -0.04))
+    even = 2 * np.pi * np.arange(count) / count
+    angle = start + even + 0.1 * np.sin(even)
+    return circle, angle, circle.radius(angle)[0]
+
+
+@pytest.mark.parametrize("start", [-4.0, 0.3])
+def test_sampled_cam_converges_to_the_circle_by_the_order_of_its_spline(start):
+    """Twice the points: a quintic spline errs 2^6 less in r, 2^5 in r', 2^4 in r''."""
+    phi = np.linspace(-7.0, 7.0, 400)
+    errors = []
+    for count in (32, 64, 128):
+        circle, angle, radius = circle_table(count, start)
+        sampled = ks.cams.Sampled(angle, radius)
+        errors.append([largest(a - b) for a, b in zip(sampled.radius(phi), circle.radius(phi), strict=True)])
+    for coarse, fine in pairwise(errors):
+        assert_allclose(np.log2(np.divide(coarse, fine)), [6, 5, 4], atol=0.7)
+
+
+def test_sampled_cam_passes_through_its_points_and_repeats_after_a_turn():
+    _, angle, radius = circle_table(40)
+    cam = ks.cams.Sampled(angle, radius)
+    assert_allclose(cam.radius(angle)[0], radius, rtol=1e-15)
+    for near, far in zip(cam.radius(ANGLES), cam.radius(ANGLES - 4 * np.pi), strict=True):
+        assert_allclose(far, near, rtol=0, atol=1e-13)
+
+
+def test_sampled_cam_has_a_continuous_second_derivative_at_its_points_and_across_the_seam():
+    """The step across a point vanishes in proportion to its width, also where the table ends and begins again."""
+    _, angle, radius = circle_table(24)
+    cam = ks.cams.Sampled(angle, radius)
+    third = largest(np.diff(cam.radius(np.linspace(0, 7, 7001))[2])) / 1e-3
+    for width in (1e-4, 1e-7):
+        ahead, behind = cam.radius(angle + width)[2], cam.radius(angle - width)[2]
+        assert largest(ahead - behind) < 2 * width * third * 1.01
+
+
+def test_sampled_cam_drives_a_mechanism_like_the_circle_it_was_taken_from():
+    circle, angle, radius = circle_table(360)
+    machines = [
+        ks.cam_crank_slider(cam, 1.1, coupler=ks.Link(7.0, 0.5, 0.9), slider=ks.Link(11.0))
+        for cam in (circle, ks.cams.Sampled(angle, radius))
+    ]
+    exact, sampled = (results(ks.solve(machine, ANGLES, crank_speed=9.0)) for machine in machines)
+    names = [name for name in exact if name != "guide_moment"]
+    assert_equal({name: sampled[name] for name in names}, {name: exact[name] for name in names}, tolerance=1e-9)
+
+
+@pytest.mark.parametrize("digits", [4, 5])
+def test_sampled_cam_warns_of_a_table_whose_rounding_shows_in_the_second_derivative(digits):
+    """A radius read to 0.1 or 0.01 mm at every degree: the error over the step squared is of the size of r."""
+    _, angle, radius = circle_table(360)
+    with pytest.warns(UserWarning, match=r"360 points are too coarse: r'' is uncertain by about"):
+        ks.cams.Sampled(angle, np.round(radius, digits))
+
+
+def test_sampled_cam_warns_of_too_few_points_for_its_harmonics():
+    angle = 2 * np.pi * np.arange(12) / 12
+    with pytest.warns(UserWarning, match="12 points are too coarse"):
+        ks.cams.Sampled(angle, 0.3 + 0.05 * np.cos(4 * angle))

@@ -1,0 +1,139 @@
+"""Extremes: where they must lie, that all are found, and what is refused."""
+
+import numpy as np
+import pytest
+from machines import ANGLES, KINDS, Machine, largest
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.optimize import brentq
+
+import kinetostatics as ks
+
+
+def turn_distance(found, expected):
+    """Distance of angles around the turn."""
+    return np.abs(np.angle(np.exp(1j * (np.asarray(found) - np.asarray(expected)))))
+
+
+@pytest.mark.parametrize("guide_angle", [0.0, 0.3, np.pi, -2.2])
+@pytest.mark.parametrize("offset", [0.0, 0.13, -0.4])
+@pytest.mark.parametrize("assembly", [1, -1])
+def test_slider_turns_back_where_crank_and_coupler_lie_in_line(guide_angle, offset, assembly):
+    """At sine = offset / (l + r), stretched, and offset / (l - r), folded, of the angle of the line to the guide.
+
+    Centred: at 0 and 180 degrees exactly. The place of an extremum is fixed by its slope, to 1e-12.
+    """
+    r, length = 0.3, 1.1
+    mechanism = ks.crank_slider(r, length, guide_angle=guide_angle, guide_offset=offset, assembly=assembly)
+    s = ks.solve(mechanism, 0.0, crank_speed=3.0)
+    found = ks.extremes(s, "slider_position")
+    stretched, folded = np.arcsin(offset / (length + r)), np.pi + np.arcsin(offset / (length - r))
+    places = np.array([stretched, folded]) if assembly == 1 else np.pi - np.array([stretched, folded])
+    positions = assembly * np.sqrt([(length + r) ** 2 - offset**2, (length - r) ** 2 - offset**2])
+    assert len(found) == 2
+    order = np.argsort(turn_distance(found.angle, guide_angle + places[0]))
+    assert np.max(turn_distance(found.angle[order], guide_angle + places)) < 1e-12
+    assert_allclose(found.value[order], positions, rtol=1e-15)
+    assert largest(s.at(found.angle).slider_velocity) < 1e-12 * largest(s.at(ANGLES).slider_velocity)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_extremes_of_speed_lie_where_the_acceleration_vanishes(kind):
+    machine = Machine(kind)
+    s = machine.solve(0.0, loads=(), crank_acceleration=0.0)
+    found = ks.extremes(s, "slider_velocity")
+    assert len(found) == 2
+    for angle, value in zip(found.angle, found.value, strict=True):
+        root = brentq(lambda a: s.at(a).slider_acceleration, angle - 0.01, angle + 0.01, xtol=1e-15)
+        assert angle == pytest.approx(root, abs=1e-12)
+        assert value == pytest.approx(float(s.at(root).slider_velocity), rel=1e-15)
+
+
+@pytest.mark.parametrize("order", [1, 2, 5, 12])
+def test_extremes_of_a_harmonic_are_found_all_and_at_their_places(order):
+    s = Machine("plain").solve()
+    found = ks.extremes(s, lambda s: 3.0 + 0.5 * np.cos(order * s.crank_angle - 0.4))
+    places = (0.4 + np.pi * np.arange(2 * order)) / order
+    assert_allclose(found.angle, places, rtol=0, atol=1e-12)
+    assert_allclose(found.value, 3.0 + 0.5 * np.cos(np.pi * np.arange(2 * order)), rtol=1e-15)
+
+
+def test_extremes_of_a_mixed_harmonic_equal_the_roots_of_its_slope():
+    """Slope of cos + 0.8 sin 2 + 1.5 cos 3 as a polynomial in exp(i angle)."""
+    s = Machine("plain").solve()
+    found = ks.extremes(
+        s, lambda s: np.cos(s.crank_angle) + 0.8 * np.sin(2 * s.crank_angle) + 1.5 * np.cos(3 * s.crank_angle)
+    )
+    roots = np.roots([2.25j, 0.8, 0.5j, 0.0, -0.5j, 0.8, -2.25j])
+    places = np.sort(np.mod(np.angle(roots[np.abs(np.abs(roots) - 1) < 1e-9]), 2 * np.pi))
+    assert len(places) == 6
+    assert_allclose(found.angle, places, rtol=0, atol=1e-12)
+    assert found.largest == found.value[np.argmax(np.abs(found.value))]
+
+
+def test_extremes_are_in_order_of_angle_and_alternate():
+    found = ks.extremes(Machine("circle").solve(0.0), "O")
+    assert np.all(np.diff(found.angle) > 0)
+    assert np.all((found.angle >= 0) & (found.angle < 2 * np.pi))
+    assert np.all(np.diff(found.value)[:-1] * np.diff(found.value)[1:] < 0)
+
+
+def test_extremes_do_not_depend_on_the_crank_angles_solved_for():
+    few, many = (ks.extremes(Machine("plain").solve(angle), "balancing_torque") for angle in (0.0, ANGLES))
+    assert_array_equal(few.angle, many.angle)
+    assert_array_equal(few.value, many.value)
+
+
+@pytest.mark.parametrize(
+    "quantity", ["guide_moment", "shaking_force", "O", lambda s: np.full(s.crank_angle.shape, 2.5)]
+)
+def test_a_constant_has_no_extremes(quantity):
+    s = ks.solve(ks.crank_slider(0.3, 1.1, crank=ks.Link(3.0, 0.2)), 0.0, crank_speed=5.0)
+    assert len(ks.extremes(s, quantity)) == 0
+
+
+def test_extremes_in_a_mechanism_that_does_not_close_everywhere_lie_where_it_does():
+    """Crank 1 m, coupler 0.8 m: both dead centres are there, and nothing is reported at the ends of the gaps."""
+    s = ks.solve(ks.crank_slider(1.0, 0.8), 0.0, crank_speed=1.0)
+    found = ks.extremes(s, "slider_position")
+    assert_allclose(np.sort(found.value), [-0.2, 1.8], rtol=1e-15)
+    assert np.max(np.min(turn_distance(found.angle[:, None], [0.0, np.pi]), axis=1)) < 1e-12
+
+
+def test_extremes_refuse_a_batch_of_designs():
+    s = ks.solve(ks.crank_slider(np.array([[0.2], [0.3]]), 1.1), ANGLES, crank_speed=1.0)
+    with pytest.raises(ks.ParameterError, match=r"one design at a time.*slider_position.*\(2, 1440\)"):
+        ks.extremes(s, "slider_position")
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("crank_speed", {"crank_speed": np.ones(ANGLES.size)}),
+        ("crank_acceleration", {"crank_acceleration": np.ones(ANGLES.size)}),
+        ("ProcessForce", {"loads": [ks.ProcessForce(np.ones(ANGLES.size))]}),
+    ],
+)
+def test_extremes_refuse_tables_over_the_crank_angles(name, change):
+    s = Machine("plain").solve(**change)
+    with pytest.raises(ks.ParameterError, match=f"{name} is a table over the crank angles"):
+        ks.extremes(s, "balancing_torque")
+
+
+def test_compared_torque_extrema_are_of_one_kind():
+    """By the cosine law the torque is (stiffness - mass speed^2) amplitude^2 sin cos up to sign: exactly reversed here.
+
+    The maximum of one stands where the other has its minimum, but is compared with the maximum.
+    """
+    cam, speed = ks.cams.CosineLaw(0.3, 2.0), 5.0
+    mechanism = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(4.0))
+    solutions = [
+        ks.solve(mechanism, 0.0, crank_speed=speed, loads=ks.Spring(stiffness, 2.0)) for stiffness in (0.0, 300.0)
+    ]
+    assert_allclose(ks.compare(*solutions).torque_extremum_ratios, 4 * [0.5], rtol=1e-14)
+
+
+def test_extremes_name_the_quantities_there_are():
+    with pytest.raises(ks.QuantityError, match=r"'balancing_torqe', allowed: .*did you mean 'balancing_torque'"):
+        ks.extremes(Machine("plain").solve(), "balancing_torqe")
+    with pytest.raises(ks.QuantityError, match="'cam_force'"):
+        ks.extremes(Machine("plain").solve(), "cam_force")
