@@ -8,6 +8,8 @@ from .errors import AssemblyError, ConditionWarning, ParameterError
 
 NEAR_LIMIT = 1e-8
 """Closure margin below which half the digits of velocities and forces are gone."""
+ROUNDING = 1e-15
+"""Closure margin below zero that is but rounding at the limit position itself."""
 
 
 def check(mechanism, placement):
@@ -21,7 +23,7 @@ def check(mechanism, placement):
             continue
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
-        if smallest >= 0:
+        if smallest >= -ROUNDING:
             _warn_near_limit(mechanism, placement, margin, smallest)
         else:
             raise _error(mechanism, group, placement, margin)
@@ -29,11 +31,12 @@ def check(mechanism, placement):
 
 def _warn_near_limit(mechanism, placement, margin, smallest):
     angle = np.broadcast_to(placement.angle, margin.shape).flat[int(np.argmin(margin))]
+    smallest = max(smallest, 0.0)
     lost = np.inf if smallest == 0 else -np.log10(smallest)
     warnings.warn(
-        f"{mechanism.name}: at crank angle {np.degrees(angle):.9g} deg the coupler stands {smallest:.3g} (cosine "
-        f"squared) from its limit position; velocities and forces there have about {max(0.0, 16 - lost):.0f} correct "
-        "digits and grow without bound",
+        f"{mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position: the sine "
+        f"or cosine that divides rates and forces is {np.sqrt(smallest):.3g} (squared {smallest:.3g}); they have about "
+        f"{max(0.0, 16 - lost):.0f} correct digits there, grow without bound, and are infinite or NaN at the limit",
         ConditionWarning,
         stacklevel=4,
     )
@@ -76,6 +79,8 @@ def intervals(mechanism, group, design=(), angles=()):
             return ((0.0, turn),)
         ends = np.append(grid, grid[0] + turn)
         change = np.flatnonzero(gap != np.roll(gap, -1))
+        if not change.size:
+            return tuple((float(angle), float(angle)) for angle in angles[margin(angles) < 0])
         root = elementwise.find_root(margin, (ends[change], ends[change + 1]))
     edges = root.x
     starts, stops = edges[~gap[change]], edges[gap[change]]

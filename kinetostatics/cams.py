@@ -114,7 +114,11 @@ class CosineLaw(Cam):
 
         w = (c - c*) sqrt(a^2 c^2 + p c + q),   p = 2 a (b + a c*),   q = b^2 - a^2 + 2 c* p - c*^2 a^2
 
-    in which nothing cancels (law: Ukrainian study of sawframe 2R63; factored form: ours).
+    Nor do x_B cos(phi) and w, both much larger than r, have to be subtracted: with b c* = a - 2 a c*^2
+
+        r = c* root - c d,   d = root - x_B = a^2 (2 c* c + 3 - 5 c*^2) / (root + x_B)
+
+    in which nothing cancels (law: Ukrainian study of sawframe 2R63; factored forms: ours).
 
     Parameters
     ----------
@@ -178,10 +182,12 @@ class CosineLaw(Cam):
         square, p, q = self._quadratic
         root = sqrt((square * c + p) * c + q)
         bend = (square * c + 0.5 * p) / root
-        offset = c - self._cosine
-        by_c = b + 2.0 * a * c - root - offset * bend
+        singular = self._cosine
+        offset = c - singular
+        excess = square * (2.0 * singular * c + 3.0 - 5.0 * singular * singular) / (root + b + a * c)
+        by_c = a * c - excess - offset * bend
         by_c_twice = 2.0 * a - 2.0 * bend - offset * (square - bend * bend) / root
-        return (b + a * c) * c - offset * root, -s * by_c, s * s * by_c_twice - c * by_c
+        return singular * root - c * excess, -s * by_c, s * s * by_c_twice - c * by_c
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -213,13 +219,12 @@ class Sampled(Cam):
     samples: Any
 
     def __init__(self, angle, radius):
+        checks.require("sampled cam", checks.finite("angle", angle), checks.positive("radius", radius))
         angle, samples = (np.array(values, dtype=float) for values in (angle, radius))
         checks.require(
             "sampled cam",
             None if angle.ndim == 1 and angle.shape == samples.shape else "angle and radius must be 1-D, of one length",
             None if angle.size >= 8 else f"at least 8 points are needed, got {angle.size}",
-            checks.finite("angle", angle),
-            checks.positive("radius", samples),
         )
         step = np.diff(angle)
         if np.any(step <= 0):
@@ -231,6 +236,12 @@ class Sampled(Cam):
             raise ParameterError(
                 "sampled cam: angles must stay within one turn, end excluded; they span "
                 f"{angle[-1] - angle[0]:.9g} rad (2 pi = 6.28318531); leave the repeated last point out"
+            )
+        gap = max(step.max(), angle[0] + 2 * np.pi - angle[-1])
+        if gap > np.pi / 4:
+            raise ParameterError(
+                f"sampled cam: the table must cover the turn, but leaves a gap of {np.degrees(gap):.4g} deg between "
+                "neighbouring angles (45 at most)"
             )
         for name, values in (("angle", angle), ("samples", samples)):
             values.setflags(write=False)
@@ -250,8 +261,7 @@ class Sampled(Cam):
         return spline, spline.derivative(), spline.derivative(2)
 
     def polar(self, angle, ray):
-        turned = self.angle[0] + np.mod(angle - self.angle[0], 2 * np.pi)
-        return tuple(spline(turned) for spline in self._splines)
+        return tuple(spline(angle) for spline in self._splines)
 
     def _warn_if_coarse(self):
         fine = self._splines[2](self.angle)
@@ -263,7 +273,7 @@ class Sampled(Cam):
             warnings.warn(
                 f"sampled cam: {self.angle.size} points are too coarse: r'' is uncertain by about {error:.3g} m "
                 f"({error / scale:.1%} of its scale), and forces with it; measure more points or smooth the table",
-                stacklevel=4,
+                stacklevel=3,
             )
 
 

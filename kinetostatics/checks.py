@@ -52,6 +52,20 @@ def require(owner, *problems):
         raise ParameterError(f"{owner}: " + "; ".join(found))
 
 
+def fitting(**values):
+    """What is wrong with shapes that do not broadcast together, or None; lists of values are looked at one by one."""
+    shapes = {}
+    for name, value in values.items():
+        for number, item in enumerate(value if isinstance(value, list) else [value], 1):
+            shapes[f"{name} {number}" if number > 1 else name] = np.shape(item)
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        text = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+        return f"these shapes do not fit together: {text}; the last axis is the crank angle, designs come before it"
+    return None
+
+
 def positive(name, value):
     return problem(name, value, low=0.0, strict=True)
 
@@ -62,6 +76,11 @@ def not_negative(name, value):
 
 def finite(name, value):
     return problem(name, value)
+
+
+def links(table):
+    """What is wrong with the links of a group: they must be made by `Link`."""
+    return [f"{name} must be a Link, got {link!r}" for name, link in table.items() if not hasattr(link, "body")]
 
 
 def assembly_sign(value):
