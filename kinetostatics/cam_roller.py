@@ -8,6 +8,7 @@ pushes across the ray. Equilibrium of the block gives both, and what the slot gi
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from . import checks
 from .elementary import sqrt
 from .links import Joint, Link, LinkMotion, Wrench
 from .planar import cross, dot, minus, subtracted, vector
@@ -64,9 +65,20 @@ class CamRoller:
     cam: Any
     block: Link = Link()
 
+    def __post_init__(self):
+        checks.require(
+            "cam roller",
+            *checks.links(self.links),
+            None if hasattr(self.cam, "polar") else f"cam must be one of ks.cams or alike, got {self.cam!r}",
+        )
+
     @property
     def links(self):
         return {"block": self.block}
+
+    @property
+    def references(self):
+        return {"block": "A"}
 
     @property
     def bars(self):

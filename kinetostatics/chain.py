@@ -1,9 +1,10 @@
 """What travels along the chain of groups: placed joints and links outward, forces inward.
 
-A group is a frozen dataclass with six members; a new kind of group needs nothing else:
+A group is a frozen dataclass with seven members; a new kind of group needs nothing else:
 
     links                   name -> `Link` of the links it adds
-    bars                    pairs of joints that its links connect, for drawing
+    references              name -> reference joint of these links
+    bars                    `Bar` for each link that keeps two joints at a distance
     place(placement)        read the joint it hangs on, add its own joints, links and details
     closure(placement)      margin: negative where the group cannot be assembled, small near a limit position
     condition(placement)    what must hold for it to be assembled, with its numbers, for the error message
@@ -12,10 +13,19 @@ A group is a frozen dataclass with six members; a new kind of group needs nothin
 """
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from .links import Wrench
 from .planar import added
+
+
+class Bar(NamedTuple):
+    """A link that keeps joint `end` at a constant distance from joint `start`, its reference joint."""
+
+    start: str
+    end: str
+    link: str
+    length: Any
 
 
 @dataclass

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import checks
-from .chain import Forces, Placement
+from .chain import Bar, Forces, Placement
 from .elementary import cos, sin
 from .links import Joint, Link, LinkMotion, Wrench
 from .planar import minus, moment, number, subtracted, vector
@@ -43,16 +43,20 @@ class Crank:
     link: Link = Link()
 
     def __post_init__(self):
-        if self.length is not None:
-            checks.require("crank", checks.positive("crank length", self.length))
+        length = None if self.length is None else checks.positive("crank length", self.length)
+        checks.require("crank", length, *checks.links(self.links))
 
     @property
     def links(self):
         return {"crank": self.link}
 
     @property
+    def references(self):
+        return {"crank": "O"}
+
+    @property
     def bars(self):
-        return () if self.length is None else (("O", "A"),)
+        return () if self.length is None else (Bar("O", "A", "crank", self.length),)
 
     def place(self, angle) -> Placement:
         direction = ray(angle)

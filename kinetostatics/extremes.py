@@ -26,16 +26,24 @@ class Extremes:
         Crank angles in [0, 2 pi), rad.
     value : array (K,)
         Values of the quantity, SI.
+    constant : float
+        The value of a quantity that has no extremum because it does not change; NaN otherwise.
     """
 
     quantity: str
     angle: np.ndarray
     value: np.ndarray
+    constant: float = np.nan
+
+    @property
+    def range(self):
+        """Smallest and largest value over the turn; both are the constant if it has no extremum."""
+        return (self.value.min(), self.value.max()) if len(self) else (self.constant, self.constant)
 
     @property
     def largest(self):
-        """Extremum of largest magnitude, with its sign."""
-        return self.value[np.argmax(np.abs(self.value))]
+        """Value of largest magnitude over the turn, with its sign."""
+        return max(self.range, key=abs)
 
     def __len__(self):
         return len(self.angle)
@@ -88,7 +96,7 @@ def extremes(solution, quantity):
             )
         brackets, sign = _brackets(grid, samples)
         if not sign.size:
-            return Extremes(str(quantity), np.empty(0), np.empty(0))
+            return Extremes(str(quantity), np.empty(0), np.empty(0), float(np.fmax.reduce(samples)))
         angle = _polished(evaluate, _minimised(evaluate, brackets, sign), sign)
     angle = np.maximum(np.mod(angle + SAME, 2 * np.pi) - SAME, 0.0)
     order = np.argsort(angle)

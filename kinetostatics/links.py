@@ -90,6 +90,15 @@ class Link:
         )
         object.__setattr__(self, "centre", tuple(centre))
 
+    def joined(self, mass, place):
+        """The link with a point mass (kg) fixed to it at place (along, across), m."""
+        if mass == 0:
+            return self
+        whole = self.mass + mass
+        x, y = ((self.mass * own + mass * new) / whole for own, new in zip(self.centre, place, strict=True))
+        apart = (place[0] - self.centre[0]) ** 2 + (place[1] - self.centre[1]) ** 2
+        return Link(whole, (x, y), self.inertia + self.mass * mass / whole * apart)
+
     @cached_property
     def body(self):
         return Body(*map(present, (self.mass, *self.centre, self.inertia)))

@@ -1,6 +1,6 @@
 """A mechanism: a crank and the chain of structural groups that hang on it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,6 +12,7 @@ from .chain import Forces
 from .crank import Crank
 from .guide import Guide
 from .links import Link
+from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
 
 
@@ -40,14 +41,32 @@ class Mechanism:
             links.update(group.links)
         return links
 
+    @cached_property
+    def references(self):
+        """Reference joint by link, from the crank outwards."""
+        references = dict(self.crank.references)
+        for group in self.groups:
+            references.update(group.references)
+        return references
+
     @property
     def bars(self):
-        """Pairs of joints that links connect, from the crank outwards."""
+        """Links that keep two joints at a distance, from the crank outwards."""
         return sum((group.bars for group in self.groups), self.crank.bars)
 
     def group(self, kind):
         """First group of a kind, or None."""
         return next((group for group in self.groups if isinstance(group, kind)), None)
+
+    def with_link(self, name, link):
+        """The same mechanism with other mass properties of one link."""
+        if name == "crank":
+            return replace(self, crank=replace(self.crank, link=link))
+        groups = (
+            replace(group, **{name.removesuffix(getattr(group, "label", "")): link}) if name in group.links else group
+            for group in self.groups
+        )
+        return replace(self, groups=tuple(groups))
 
     def place(self, angle):
         """Joints and links at the crank angles; NaN where the mechanism cannot be assembled."""
@@ -150,6 +169,43 @@ def cam_crank_slider(
     """
     group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
     return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block), group))
+
+
+def four_bar(
+    crank_length,
+    coupler_length,
+    rocker_length,
+    *,
+    rocker_pivot,
+    assembly=+1,
+    crank=Link(),
+    coupler=Link(),
+    rocker=Link(),
+):
+    """Four-bar: crank O-A, coupler A-B, rocker O2-B.
+
+    Parameters
+    ----------
+    crank_length, coupler_length, rocker_length : float or array
+        m; arrays of shape (designs, 1) make a batch.
+    rocker_pivot : (x, y)
+        Fixed pivot O2 of the rocker, m.
+    assembly : +1 or -1
+        +1: B to the left of the direction from A to O2.
+    crank, coupler, rocker : Link
+        Mass properties; a link left out has no mass and costs nothing.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have.
+    """
+    group = RockerGroup(coupler_length, rocker_length, rocker_pivot, assembly, coupler, rocker)
+    return Mechanism("four-bar", Crank(crank_length, crank), (group,))
 
 
 def _guide(guide, angle, offset):

@@ -7,9 +7,9 @@ from typing import Any
 from . import checks
 from .elementary import namespace, stack
 from .errors import QuantityError
-from .links import accelerated, angular_acceleration, arm, first_at, second_at
+from .links import accelerated, angular_acceleration, arm, first_at, present, second_at
 from .mechanism import Mechanism
-from .planar import added, number, product, stretched, vector
+from .planar import added, number, plus, product, stretched, vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,20 +40,20 @@ class Motion:
     def position(self, point):
         """Position of a joint ("O", "A", "B" ...) or of a link's mass centre (its name), (2, ..., N), m."""
         joint, to_point, _ = self._point(point)
-        return self._vector(added(joint.position, to_point))
+        return self.as_vector(added(joint.position, to_point))
 
     def velocity(self, point):
         """Velocity of a joint or of a link's mass centre, (2, ..., N), m/s."""
         joint, to_point, link = self._point(point)
         first = joint.first if link is None else first_at(link, to_point)
-        return self._vector(stretched(self.crank_speed, first))
+        return self.as_vector(stretched(self.crank_speed, first))
 
     def acceleration(self, point):
         """Acceleration of a joint or of a link's mass centre, (2, ..., N), m/s2."""
         joint, to_point, link = self._point(point)
         first = joint.first if link is None else first_at(link, to_point)
         second = joint.second if link is None else second_at(link, to_point)
-        return self._vector(accelerated(first, second, self._speed_squared, self._present_acceleration))
+        return self.as_vector(accelerated(first, second, *self.accelerating))
 
     def rate(self, link):
         """Angular velocity of a link, (..., N), rad/s."""
@@ -62,9 +62,7 @@ class Motion:
     def angular_acceleration(self, link):
         """Angular acceleration of a link, (..., N), rad/s2."""
         found = self._link(link)
-        return self._scalar(
-            angular_acceleration(found.ratio, found.ratio_slope, self._speed_squared, self._present_acceleration)
-        )
+        return self._scalar(angular_acceleration(found.ratio, found.ratio_slope, *self.accelerating))
 
     def travel(self, slider="slider"):
         """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m."""
@@ -84,18 +82,13 @@ class Motion:
     def slider_acceleration(self):
         """Acceleration of the slider along the guide, m/s2."""
         travel = self._travel("slider")
-        return self._scalar(
-            self._speed_squared * travel.second + number(product(self._present_acceleration, travel.first))
-        )
+        square, alpha = self.accelerating
+        return self._scalar(plus(square * travel.second, product(alpha, travel.first)))
 
     @cached_property
-    def _speed_squared(self):
-        return self.crank_speed * self.crank_speed
-
-    @cached_property
-    def _present_acceleration(self):
-        alpha = self.crank_acceleration
-        return None if isinstance(alpha, int | float) and alpha == 0 else alpha
+    def accelerating(self) -> tuple[Any, Any]:
+        """Crank speed squared, and the crank acceleration or None: what kinematic coefficients are multiplied by."""
+        return self.crank_speed * self.crank_speed, present(self.crank_acceleration)
 
     def _link(self, name):
         return self._look_up("link", name, self.placement.links)
@@ -118,7 +111,8 @@ class Motion:
             raise QuantityError(checks.choice(f"{self.mechanism.name}: {kind}", name, table))
         return table[name]
 
-    def _vector(self, parts):
+    def as_vector(self, parts):
+        """Components as one array (2, ..., N); None is the zero vector."""
         x, y = vector(parts)
         if not hasattr(x, "shape"):
             x = x + 0.0 * y  # a constant component is NaN where the other one is

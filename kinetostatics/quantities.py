@@ -19,6 +19,8 @@ UNITS = {
     "pressure_angle": "rad",
 }
 VECTORS = ("shaking_force",)
+RATES = {"_rate": "rad/s", "_angular_acceleration": "rad/s2"}
+"""Endings that make a quantity of a link's name: "coupler_rate", "rocker_angular_acceleration"."""
 
 
 def values(solution, quantity):
@@ -29,6 +31,9 @@ def values(solution, quantity):
         return getattr(solution, quantity)
     if quantity in VECTORS:
         return magnitude(getattr(solution, quantity))
+    link, ending = _of_link(quantity)
+    if link in solution.mechanism.links:
+        return solution.rate(link) if ending == "_rate" else solution.angular_acceleration(link)
     if quantity in solution.reactions:
         return magnitude(solution.reaction(quantity))
     raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", quantity, (*UNITS, *solution.reactions)))
@@ -36,12 +41,19 @@ def values(solution, quantity):
 
 def unit(quantity):
     """Unit of a quantity, SI; a joint's reaction is in N."""
-    return UNITS.get(quantity, "N")
+    return RATES.get(_of_link(quantity)[1]) or UNITS.get(quantity, "N")
 
 
 def label(quantity):
     """What a table or an axis calls a quantity."""
-    return quantity.replace("_", " ") if quantity in UNITS else f"reaction {quantity}"
+    named = quantity in UNITS or _of_link(quantity)[0]
+    return quantity.replace("_", " ") if named else f"reaction {quantity}"
+
+
+def _of_link(quantity):
+    """Link and ending of a rate's name; two empty texts for any other quantity."""
+    found = next((ending for ending in RATES if quantity.endswith(ending)), "")
+    return quantity.removesuffix(found) if found else "", found
 
 
 def magnitude(vector):

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import checks
+from .chain import Bar
 from .elementary import sqrt
 from .guide import Guide
 from .links import Joint, Link, LinkMotion, present
@@ -118,6 +119,10 @@ class SliderGroup:
     def __post_init__(self):
         checks.require(
             "slider group",
+            *checks.links(self.links),
+            None
+            if isinstance(self.guide, Guide)
+            else f"guide must be made by Guide.at or .through, got {self.guide!r}",
             checks.positive("coupler length", self.coupler_length),
             checks.assembly_sign(self.assembly),
         )
@@ -127,8 +132,12 @@ class SliderGroup:
         return {self._coupler: self.coupler, self._slider: self.slider}
 
     @property
+    def references(self):
+        return {self._coupler: self.on, self._slider: self.pin}
+
+    @property
     def bars(self):
-        return ((self.on, self.pin),)
+        return (Bar(self.on, self.pin, self._coupler, self.coupler_length),)
 
     @property
     def _coupler(self):

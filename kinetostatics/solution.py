@@ -1,5 +1,6 @@
 """Kinetostatics: joint reactions, guide, cam and slot forces, balancing torque, and its check by powers."""
 
+import math
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
@@ -10,9 +11,10 @@ import numpy as np
 from . import assembly, checks
 from .errors import ParameterError, QuantityError
 from .links import load, virtual_work
-from .loads import Gravity
+from .loads import Gravity, ProcessForce
 from .motion import Motion
 from .planar import added, minus, moment, number, plus, product
+from .principal_points import principal_points
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,11 +56,14 @@ class Solution(Motion):
         "O": ground on crank; "A": on the coupler at A, from crank or block; "B": coupler on slider; "guide": ground
         on slider.
         """
-        return self._vector(self._look_up("reaction", joint, self._forces.reactions))
+        return self.as_vector(self._look_up("reaction", joint, self._forces.reactions))
 
     def scalar(self, name):
         """A force or moment by name, (..., N): "guide_force", "guide_moment", "cam_force", "slot_force" ..."""
-        return self._scalar(self._look_up("quantity", name, self._forces.scalars))
+        found = self._look_up("quantity", name, self._forces.scalars)
+        if not hasattr(found, "shape"):  # a constant has the shape of the others, and their gaps
+            found = found + 0.0 * self._forces.scalars["balancing_torque"]
+        return self._scalar(found)
 
     @property
     def guide_force(self):
@@ -96,12 +101,12 @@ class Solution(Motion):
         """Largest difference of the two torques over the turn, relative to the largest single power that flows."""
         scale = reduce(np.maximum, (_largest(part) for part in self._powers), 0.0)
         difference = _largest(self.balancing_torque - self.balancing_torque_by_power)
-        return np.divide(difference, scale, out=np.zeros_like(scale + difference), where=scale > 0)[()]
+        return np.where(scale > 0, difference / np.where(scale > 0, scale, 1.0), 0.0 * difference)[()]
 
     @cached_property
     def shaking_force(self):
         """Force of the inertia of all moving masses on the frame, (2, ..., N), N."""
-        return self._vector(reduce(added, (wrench.force for wrench in self._inertia.values())))
+        return principal_points(self.mechanism).shaking_force(self)
 
     @cached_property
     def shaking_moment(self):
@@ -114,7 +119,7 @@ class Solution(Motion):
 
     def inertia_force(self, link):
         """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""
-        return self._vector(self._look_up("link", link, self._inertia).force)
+        return self.as_vector(self._look_up("link", link, self._inertia).force)
 
     @property
     def pressure_angle(self):
@@ -152,7 +157,7 @@ class Solution(Motion):
     def _mass_loads(self, gravity):
         links = self.placement.links
         return {
-            name: load(links[name], link.body, self._speed_squared, self._present_acceleration, gravity)
+            name: load(links[name], link.body, *self.accelerating, gravity)
             for name, link in self.mechanism.links.items()
         }
 
@@ -181,7 +186,12 @@ def _largest(part):
 def _angles(crank_angle):
     if hasattr(crank_angle, "shape") and hasattr(crank_angle, "dtype"):
         return crank_angle
+    checks.require("solve", checks.problem("crank_angle", crank_angle))
     return np.asarray(crank_angle, dtype=float)
+
+
+def _array_if_list(value):
+    return np.asarray(value) if isinstance(value, list | tuple) else value
 
 
 def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), on_gap="raise"):
@@ -221,13 +231,21 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         The crank angles are in single precision.
     """
     angle = _angles(crank_angle)
-    loads = (loads,) if hasattr(loads, "push") or isinstance(loads, Gravity) else tuple(loads)
+    crank_speed, crank_acceleration = map(_array_if_list, (crank_speed, crank_acceleration))
+    loads = tuple(loads) if isinstance(loads, list | tuple) else (loads,)
     checks.require(
         "solve",
+        None if math.prod(angle.shape) else "there are no crank angles",
         checks.finite("crank_speed", crank_speed),
         checks.finite("crank_acceleration", crank_acceleration),
         checks.choice("on_gap", on_gap, ("raise", "nan")),
         *(_load_problem(mechanism, item) for item in loads),
+        checks.fitting(
+            crank_angle=angle,
+            crank_speed=crank_speed,
+            crank_acceleration=crank_acceleration,
+            process_force=[item.force for item in loads if isinstance(item, ProcessForce) and not callable(item.force)],
+        ),
     )
     if angle.dtype == "float32":
         warnings.warn(
@@ -247,4 +265,4 @@ def _load_problem(mechanism, item):
     if not hasattr(item, "push"):
         return f"loads must be Gravity, Spring or ProcessForce, got {item!r}"
     sliders = [name for name in mechanism.links if name.startswith("slider")]
-    return checks.choice(f"{type(item).__name__} acts on", item.on, sliders)
+    return checks.choice(f"{type(item).__name__}: on", item.on, sliders)

@@ -1,0 +1,186 @@
+"""Rocker group (RRR): coupler from a pin to a rocker about a fixed pivot, in either assembly.
+
+With d the vector from joint A to the pivot O2, a = |d|, coupler length c and rocker length h, joint B stands from A at
+(a^2 + c^2 - h^2) / (2 a^2) d +- area / (2 a^2) left(d), where area = sqrt((a+c+h)(a+c-h)(a-c+h)(c+h-a)) is four times
+that of the triangle A B O2 (Heron). The sine of the transmission angle, which divides all rates and forces, is
+area / (2 c h): a product of lengths, so no digit is lost near a toggle, where it vanishes.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import checks
+from .chain import Bar
+from .elementary import sqrt
+from .links import Joint, Link, LinkMotion
+from .planar import added, dot, left, minus, moment, number, quotient, stretched, subtracted
+
+
+class RockerMotion(NamedTuple):
+    """A placed rocker group, with sine and cosine of the transmission angle; `closure` is sine squared."""
+
+    coupler: LinkMotion
+    rocker: LinkMotion
+    pin: Joint
+    sine: Any
+    cosine: Any
+    closure: Any
+
+
+class RockerForces(NamedTuple):
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the rocker; `pivot`: ground on rocker."""
+
+    inner: Any
+    pin: Any
+    pivot: Any
+
+
+def place(joint, coupler_length, rocker_length, pivot, assembly):
+    """Coupler and rocker for a given inner joint (kernel)."""
+    c, h = coupler_length, rocker_length
+    d = (pivot[0] - joint.position[0], pivot[1] - joint.position[1])
+    square = dot(d, d)
+    a = sqrt(square)
+    heron = (a + c + h) * (a + c - h) * (a - c + h) * (c + h - a)
+    area = assembly * sqrt(heron)
+    along, across = (square + (c - h) * (c + h)) / (2.0 * square), area / (2.0 * square)
+    reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
+    q = (reach[0] / c, reach[1] / c)
+    p = ((reach[0] - d[0]) / h, (reach[1] - d[1]) / h)
+    sine = area / (2.0 * c * h)
+    cosine = (c * c + h * h - square) / (2.0 * c * h)
+
+    ratio = -dot(joint.first, p) / (c * sine)
+    swing = -dot(joint.first, q) / (h * sine)
+    lag, swing_lag = c * ratio * ratio, h * swing * swing
+    ratio_slope = (lag * cosine - swing_lag - dot(joint.second, p)) / (c * sine)
+    swing_slope = (lag - swing_lag * cosine - dot(joint.second, q)) / (h * sine)
+
+    arm = stretched(h, p)
+    aside = left(arm)
+    pin = Joint(
+        added(pivot, arm),
+        stretched(swing, aside),
+        subtracted(stretched(swing_slope, aside), stretched(swing * swing, arm)),
+    )
+    coupler = LinkMotion(joint, q, ratio, ratio_slope)
+    rocker = LinkMotion(Joint(pivot, None, None), p, swing, swing_slope)
+    return RockerMotion(coupler, rocker, pin, sine, cosine, heron / (2.0 * c * h) ** 2)
+
+
+def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load, demand):
+    """Forces on rocker and coupler (kernel).
+
+    `demand` is the force the pin B must supply to further groups; loads are wrenches about the links' reference
+    joints. Moments of the coupler about A and of the rocker about O2 give the pin force by its parts along both links.
+    """
+    q, p = motion.coupler.direction, motion.rocker.direction
+    on_rocker = minus(quotient(rocker_load.moment, rocker_length), moment(p, demand))
+    along_coupler = number(on_rocker) / motion.sine
+    along_rocker = number(quotient(coupler_load.moment, coupler_length)) / motion.sine
+    pin = added(stretched(along_coupler, q), stretched(along_rocker, p))
+    pivot = subtracted(subtracted(demand, pin), rocker_load.force)
+    return RockerForces(subtracted(pin, coupler_load.force), pin, pivot)
+
+
+@dataclass(frozen=True, eq=False)
+class RockerGroup:
+    """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
+
+    Parameters
+    ----------
+    coupler_length, rocker_length : float or array
+        m.
+    pivot : (x, y)
+        Fixed pivot O2, m.
+    assembly : +1 or -1
+        +1: the pin to the left of the direction from the inner joint to the pivot.
+    coupler, rocker : Link
+    on, pin, pivot_name : str
+        Names of the joint it hangs on and of the joints it adds.
+    label : str
+        Put behind the names of links and forces of a second rocker group in one mechanism.
+    """
+
+    coupler_length: Any
+    rocker_length: Any
+    pivot: Any
+    assembly: int = 1
+    coupler: Link = Link()
+    rocker: Link = Link()
+    on: str = "A"
+    pin: str = "B"
+    pivot_name: str = "O2"
+    label: str = ""
+
+    def __post_init__(self):
+        checks.require(
+            "rocker group",
+            *checks.links(self.links),
+            checks.positive("coupler length", self.coupler_length),
+            checks.positive("rocker length", self.rocker_length),
+            checks.pair("rocker pivot", self.pivot),
+            checks.assembly_sign(self.assembly),
+        )
+
+    @property
+    def links(self):
+        return {self._coupler: self.coupler, self._rocker: self.rocker}
+
+    @property
+    def references(self):
+        return {self._coupler: self.on, self._rocker: self.pivot_name}
+
+    @property
+    def bars(self):
+        return (
+            Bar(self.on, self.pin, self._coupler, self.coupler_length),
+            Bar(self.pivot_name, self.pin, self._rocker, self.rocker_length),
+        )
+
+    @property
+    def _coupler(self):
+        return "coupler" + self.label
+
+    @property
+    def _rocker(self):
+        return "rocker" + self.label
+
+    def place(self, placement):
+        motion = place(
+            placement.joints[self.on], self.coupler_length, self.rocker_length, tuple(self.pivot), self.assembly
+        )
+        placement.joints[self.pin] = motion.pin
+        placement.joints[self.pivot_name] = motion.rocker.joint
+        placement.links[self._coupler] = motion.coupler
+        placement.links[self._rocker] = motion.rocker
+        placement.details[self._rocker] = motion
+
+    def closure(self, placement):
+        return placement.details[self._rocker].closure
+
+    def condition(self, placement):
+        x, y = (end - start for end, start in zip(self.pivot, placement.joints[self.on].position, strict=True))
+        distance = np.hypot(x, y)
+        low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
+        return (
+            f"the distance from {self.on} to {self.pivot_name}, {distance.min():.6g} to {distance.max():.6g} m here, "
+            f"must lie between the difference and the sum of coupler and rocker lengths, {np.min(low):.6g} and "
+            f"{np.max(high):.6g} m"
+        )
+
+    def resolve(self, placement, loads, pushes, forces):
+        found = resolve(
+            placement.details[self._rocker],
+            self.coupler_length,
+            self.rocker_length,
+            loads[self._coupler],
+            loads[self._rocker],
+            forces.demand.get(self.pin),
+        )
+        forces.reactions[self.on + self.label] = found.inner
+        forces.reactions[self.pin] = found.pin
+        forces.reactions[self.pivot_name] = found.pivot
+        forces.require(self.on, found.inner)
