@@ -4,9 +4,11 @@ planar, elementary          vectors by components; sin, cos, sqrt of any array
 links, guide, loads         what a mechanism is made of
 crank                       the driver
 cam_roller, cams            slotted crank, block and roller on a fixed cam
-slider_group                coupler and slider on a guide
+slider_group, rocker_group  coupler and slider on a guide; coupler and rocker
 chain, mechanism            how groups hang together; the mechanisms made of them
 motion, solution            what it does and what forces that takes
+balancing, linkage          counterweights; swing and class of four-bars
+principal_points            common mass centre and shaking force from the link masses
 assembly                    where it can be put together
 extremes, comparison        true extrema; dynamic coefficients
 case, schema, units         case files and what they may hold; text with units
@@ -14,7 +16,7 @@ quantities, tables          names and units of results; DataFrames and CSV
 plots, cli                  figures; command line
 """
 
-from . import cams
+from . import balancing, cams, linkage
 from .cam_roller import CamRoller
 from .comparison import compare
 from .crank import Crank
@@ -23,7 +25,9 @@ from .extremes import extremes
 from .guide import Guide
 from .links import Link
 from .loads import Gravity, ProcessForce, Spring
-from .mechanism import Mechanism, cam_crank_slider, crank_slider
+from .mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
+from .principal_points import principal_points
+from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
 from .solution import Solution, solve
 
@@ -43,16 +47,21 @@ __all__ = [
     "ParameterError",
     "ProcessForce",
     "QuantityError",
+    "RockerGroup",
     "SliderGroup",
     "Solution",
     "Spring",
+    "balancing",
     "cam_crank_slider",
     "cams",
     "compare",
     "crank_slider",
     "extremes",
+    "four_bar",
+    "linkage",
     "load_case",
     "plots",
+    "principal_points",
     "solve",
 ]
 

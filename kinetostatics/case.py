@@ -9,24 +9,26 @@ from types import MappingProxyType
 import numpy as np
 import pydantic
 
-from . import cams, checks, schema
+from . import balancing, cams, checks, linkage, schema
 from .comparison import Comparison
 from .errors import CaseError, KinetostaticsError
+from .guide import Guide
 from .links import Link
 from .loads import Gravity, ProcessForce, Spring
-from .mechanism import Mechanism, cam_crank_slider, crank_slider
+from .mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
 from .solution import Solution, solve
-from .tables import read_columns
+from .tables import balancing_table, read_columns
 
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """One mechanism of a case with its drive and loads."""
+    """One mechanism of a case with its drive and loads, and how it was balanced if it was."""
 
     mechanism: Mechanism
     crank_speed: float
     crank_acceleration: float
     loads: tuple
+    balanced: balancing.Balanced | None = None
 
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over one turn from 0, end excluded."""
@@ -77,11 +79,27 @@ class Case:
     def comparison_table(self, balanced, reference=None):
         """Table of dynamic coefficients with the published figures beside ours, as a pandas DataFrame."""
         table = self.compare(reference or self.reference, balanced).frame()
-        table["published"] = ""
-        for column in ("ratio", "value"):
-            for quantity, printed in getattr(self.published, column).items():
-                table.loc[table.index == quantity, "published"] = f"{printed} ({column})"
-        return table
+        printed = {
+            quantity: f"{text} ({column})"
+            for column in ("ratio", "value")
+            for quantity, text in getattr(self.published, column).items()
+        }
+        return table.assign(published=[printed.get(quantity, "") for quantity in table.index]) if printed else table
+
+    def balancing_table(self):
+        """Table of counterweights and shaking force of the balanced variants, a pandas DataFrame; None without any."""
+        found = {
+            name: (variant.balanced, variant.solve())
+            for name, variant in self.variants.items()
+            if variant.balanced is not None
+        }
+        return balancing_table(self.solve(self.reference), found, self.published.sampling) if found else None
+
+    def linkage_table(self):
+        """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are four-bars."""
+        if any("rocker" not in variant.mechanism.links for variant in self.variants.values()):
+            return None
+        return linkage.characteristics({name: self.solve(name) for name in self.variants}, self.reference)
 
 
 def shipped_cases():
@@ -249,32 +267,61 @@ def _tables(annotation):
 
 def _built(table, folder):
     """Mechanism, drive and loads of a validated variant."""
-    shared = {
-        "guide_angle": table.guide_angle,
-        "guide_offset": table.guide_offset,
-        "assembly": table.assembly,
-        "slider": _link(table.slider),
-    }
+    mechanism = _mechanism(table, folder)
+    loads = tuple(_loads(table, folder))
+    balanced = _balanced(mechanism, table.balancing) if table.balancing else None
+    if balanced is not None:
+        mechanism = balanced.mechanism
+    return Variant(mechanism, table.crank_speed, table.crank_acceleration, loads, balanced)
+
+
+def _mechanism(table, folder):
+    if isinstance(table, schema.FourBarVariant | schema.ChainUnitVariant):
+        lengths = table.crank_length, table.coupler_length, table.rocker_length
+        links = {
+            name: _link(getattr(table, name), length)
+            for name, length in zip(("crank", "coupler", "rocker"), lengths, strict=True)
+        }
+        if isinstance(table, schema.ChainUnitVariant):
+            return linkage.chain_unit(*lengths, pivot_x=table.pivot_x, assembly=table.assembly, **links)
+        return four_bar(*lengths, rocker_pivot=table.rocker_pivot, assembly=table.assembly, **links)
+    guide = _guide(table)
+    shared = {"guide": guide, "assembly": table.assembly, "slider": _link(table.slider)}
     if isinstance(table, schema.CrankSliderVariant):
-        mechanism = crank_slider(
+        return crank_slider(
             table.crank_length,
             table.coupler_length,
             crank=_link(table.crank, table.crank_length),
             coupler=_link(table.coupler, table.coupler_length),
             **shared,
         )
-    else:
-        cam = _cam(table.cam, table.guide_angle, folder)
-        length = _cam_coupler_length(table, cam)
-        mechanism = cam_crank_slider(
-            cam,
-            length,
-            crank=_link(table.crank),
-            block=_link(table.block),
-            coupler=_link(table.coupler, length),
-            **shared,
-        )
-    return Variant(mechanism, table.crank_speed, table.crank_acceleration, tuple(_loads(table, folder)))
+    cam = _cam(table.cam, guide.guide_angle, folder)
+    length = _cam_coupler_length(table, cam)
+    coupler = _link(table.coupler, length)
+    return cam_crank_slider(cam, length, crank=_link(table.crank), block=_link(table.block), coupler=coupler, **shared)
+
+
+def _guide(table):
+    if table.guide_through is None:
+        return Guide.at(table.guide_angle or 0.0, table.guide_offset or 0.0)
+    if table.guide_angle is not None or table.guide_offset is not None:
+        raise KinetostaticsError("give either guide_through or guide_angle and guide_offset")
+    return Guide.through(*table.guide_through)
+
+
+def _balanced(mechanism, table):
+    weights = {
+        name: balancing.Counterweight(**getattr(table, name).model_dump())
+        for name in ("crank", "coupler", "rocker")
+        if getattr(table, name) is not None
+    }
+    if table.method == "optimal":
+        return balancing.optimal(mechanism, table.norm, phase=table.phase, **weights)
+    if "crank" not in weights:
+        raise KinetostaticsError(f"{table.method} balancing needs a counterweight on the crank: balancing.crank")
+    if table.method == "full":
+        return balancing.full(mechanism, **weights)
+    return balancing.partial(mechanism, table.ratio, **weights)
 
 
 def _link(table, length=None):
@@ -305,14 +352,13 @@ def _cam_coupler_length(table, cam):
 def _loads(table, folder):
     if table.gravity is not None:
         yield Gravity(table.gravity.acceleration, table.gravity.direction)
-    if table.spring is not None:
-        spring = table.spring
+    spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)
+    if spring is not None:
         if spring.stiffness == schema.BALANCE_THE_SLIDER:
             yield Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position)
         else:
             yield Spring(spring.stiffness, spring.free_position)
-    if table.process_force is not None:
-        force = table.process_force
+    if force is not None:
         yield ProcessForce(force.force if force.table is None else _tabulated_force(folder / force.table))
 
 

@@ -88,7 +88,15 @@ def _compare(options):
     case = load_case(options.case)
     names = [options.variant] if options.variant else [name for name in case.variants if name != case.reference]
     tables = {name: case.comparison_table(name) for name in names}
+    special = [
+        ("counterweights and shaking force", case.balancing_table(), case.published.balancing),
+        ("swing and transmission", case.linkage_table(), case.published.linkage),
+    ]
     print(case.title)
+    for heading, table, published in special:
+        if table is not None:
+            print(f"\n{heading}; published figures in brackets\n")
+            _print(_with_published(table, published))
     for name, table in tables.items():
         print(f"\n{case.reference} / {name}\n")
         _print(table)
@@ -107,6 +115,15 @@ def _print(table):
 
     cells = table.reset_index().map(_cell)
     print(tabulate(cells, headers="keys", showindex=False, disable_numparse=True, colalign=_alignment(table)))
+
+
+def _with_published(table, published):
+    """Cells as text, the published figure behind ours in brackets."""
+    cells = table.map(_cell).astype(object)
+    for quantity, entries in published.items():
+        for column, printed in entries.items():
+            cells.loc[quantity, column] += f" ({printed})"
+    return cells
 
 
 def _alignment(table):

@@ -7,7 +7,7 @@ import numpy as np
 
 from .errors import QuantityError
 from .extremes import extremes
-from .quantities import label, magnitude
+from .quantities import label, magnitude, unit
 from .solution import Solution
 
 PANELS, NODES = 48, 16
@@ -85,6 +85,9 @@ class Comparison:
             if joint in self.balanced.reactions:
                 row = *self.peak_reactions(joint), self.peak_reaction_ratio(joint)
                 rows.append((f"largest {label(joint)}", "N", *row))
+        for name in ("shaking_force", "shaking_moment"):
+            peaks = [abs(extremes(solution, name).largest) for solution in (self.reference, self.balanced)]
+            rows.append((f"largest {label(name)}", unit(name), *peaks, _ratio(*peaks)))
         for name, ranges in (
             ("coupler inertia force", self.inertia_force_range()),
             ("cam force", self.cam_force_range()),
@@ -92,7 +95,8 @@ class Comparison:
             for which, of_each in zip(("smallest", "largest"), zip(*ranges, strict=True), strict=True):
                 rows.append((f"{which} {name}", "N", *of_each, np.nan))
         rows.append(("power residual", "1", self.reference.power_residual, self.balanced.power_residual, np.nan))
-        return pd.DataFrame(rows, columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
+        table = pd.DataFrame(rows, columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
+        return table.dropna(how="all", subset=list(self.names))
 
 
 def compare(reference, balanced):
@@ -150,25 +154,18 @@ def _kinds(found):
 
 
 def _ratio(reference, balanced):
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.divide(reference, balanced)
+    """Ratio of two peaks; infinite where the balanced one is zero but for rounding."""
+    if abs(balanced) <= 1e-12 * abs(reference):
+        return np.inf
+    return reference / balanced if balanced else np.nan
 
 
 def _peak(solution, joint):
-    return np.max(_extreme_values(solution, joint))
+    return extremes(solution, joint).range[1]
 
 
 def _range(solution, quantity):
     try:
-        found = _extreme_values(solution, quantity)
+        return extremes(solution, quantity).range
     except QuantityError:
         return np.nan, np.nan
-    return np.min(found), np.max(found)
-
-
-def _extreme_values(solution, quantity):
-    """Values at the extrema; of a constant, the constant."""
-    from .quantities import values
-
-    found = extremes(solution, quantity).value
-    return found if found.size else values(solution.at(np.zeros(1)), quantity)

@@ -1,15 +1,17 @@
 """The figures of a case: which plots, of which variants, on which page. `kinetostatics plot` draws them to files."""
 
+from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
-import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from . import checks, plots
 from .cam_roller import CamRoller
 from .errors import ParameterError
+from .rocker_group import RockerGroup
+from .slider_group import SliderGroup
 from .tables import written_whole
 
 
@@ -34,7 +36,7 @@ def draw_case(case, folder, file_format="png", only=None):
     ParameterError
         There is no figure of that name; the message lists them.
     """
-    figures = {name: draw for name, draw in FIGURES.items() if name not in CAM_FIGURES or _with_cam(case)}
+    figures = {name: draw for name, (draw, applies) in FIGURES.items() if applies(case)}
     problem = checks.choice("figure", only, figures) if only else None
     if problem:
         raise ParameterError(problem)
@@ -56,14 +58,33 @@ def _saved(draw, solutions, name, case, folder, file_format):
     return path
 
 
-def _with_cam(solutions_or_case):
-    variants = getattr(solutions_or_case, "variants", solutions_or_case)
-    return {name: item for name, item in variants.items() if item.mechanism.group(CamRoller) is not None}
+def _with_cam(items):
+    return {name: item for name, item in items.items() if item.mechanism.group(CamRoller) is not None}
 
 
-def _single(plot):
+def _always(case):
+    return True
+
+
+def _has_cam(case):
+    return bool(_with_cam(case.variants))
+
+
+def _has_slider(case):
+    return all(item.mechanism.group(SliderGroup) is not None for item in case.variants.values())
+
+
+def _is_four_bar(case):
+    return all(item.mechanism.group(RockerGroup) is not None for item in case.variants.values())
+
+
+def _is_balanced(case):
+    return any(item.balanced is not None for item in case.variants.values())
+
+
+def _single(plot, width=6.4, height=4.0, **axes):
     def draw(solutions) -> Figure:
-        figure, ax = plt.subplots(figsize=(6.4, 4), layout="constrained")
+        figure, ax = plt.subplots(figsize=(width, height), layout="constrained", subplot_kw=axes)
         plot(solutions, ax=ax)
         return figure
 
@@ -76,15 +97,19 @@ def _of_cams(plot):
 
 
 def _one_each(plot, width, height, stacked=False):
-    """Axes for each variant, in a row or stacked."""
+    """Axes for each variant, three in a row or stacked."""
 
     def draw(solutions) -> Figure:
-        count = len(solutions)
-        rows, columns = (count, 1) if stacked else (1, count)
-        figure, axes = plt.subplots(rows, columns, figsize=(width * columns, height * rows), layout="constrained")
-        for ax, (name, solution) in zip(np.atleast_1d(axes), solutions.items(), strict=True):
+        columns = 1 if stacked else min(3, len(solutions))
+        rows = -(-len(solutions) // columns)
+        figure, axes = plt.subplots(
+            rows, columns, figsize=(width * columns, height * rows), layout="constrained", squeeze=False
+        )
+        for ax, (name, solution) in zip(axes.flat, solutions.items(), strict=False):
             plot(solution, ax=ax)
             ax.set_title(name)
+        for ax in axes.flat[len(solutions) :]:
+            ax.remove()
         return figure
 
     return draw
@@ -111,12 +136,23 @@ def _overview(solutions) -> Figure:
 
 
 FIGURES = {
-    "overview": _overview,
-    "mechanism": _one_each(plots.mechanism, 8, 2.6, stacked=True),
-    "torque": _single(plots.torque),
-    "acceleration_error": _single(plots.acceleration_error),
-    "hodograph": _one_each(plots.hodograph, 4.4, 4.2),
-    "pressure_angle": _of_cams(plots.pressure_angle),
-    "cam_force": _of_cams(plots.cam_force),
+    "overview": (_overview, _always),
+    "mechanism": (_one_each(plots.mechanism, 8, 2.6, stacked=True), _always),
+    "torque": (_single(plots.torque), _always),
+    "acceleration_error": (_single(plots.acceleration_error), _has_slider),
+    "hodograph": (_one_each(plots.hodograph, 4.4, 4.2), _always),
+    "pressure_angle": (_of_cams(plots.pressure_angle), _has_cam),
+    "cam_force": (_of_cams(plots.cam_force), _has_cam),
+    "mass_centres": (_single(plots.mass_centres, 9.0, 3.6), _is_balanced),
+    "shaking_by_direction": (_single(plots.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
+    "shaking_by_crank_angle": (
+        _single(partial(plots.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
+        _is_balanced,
+    ),
+    **{
+        f"{link}_{kind}": (_single(partial(plots.chain_unit_motion, link=link, order=order)), _is_four_bar)
+        for link in ("coupler", "rocker")
+        for order, kind in enumerate(("velocity", "acceleration"), 1)
+    },
 }
-CAM_FIGURES = ("pressure_angle", "cam_force")
+"""Figure by name: how it is drawn, and the cases it applies to."""

@@ -11,11 +11,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .cam_roller import CamRoller
+from .checks import choice, require
 from .extremes import extremes
+from .linkage import chain_unit_angle
+from .principal_points import principal_points
 from .quantities import label, magnitude, unit, values
 from .slider_group import SliderGroup
 
-INK, STEEL, ACCENT = "0.15", "tab:blue", "tab:red"
+INK, STEEL, ACCENT = "0.15", "slategray", "tab:red"
 
 
 def over_turn(solutions, quantity, ax=None):
@@ -104,6 +107,96 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     ax.set_ylabel(f"{name}, y [{shown}]")
     if len(labelled) > 1 or isinstance(solutions, Mapping):
         ax.legend(frameon=False)
+    return ax
+
+
+def chain_unit_motion(solutions, link, order=1, ax=None):
+    """Relative angular velocity or acceleration of a link of the chain unit (Belarusian study, figures 5-12).
+
+    Both are counted in the crank's sense of turning and divided by crank speed, or its square; the crank angle from
+    +y, clockwise.
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    link : "coupler" or "rocker"
+    order : 1 or 2
+        Velocity or acceleration.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    ax = _axes(ax)
+    labelled = _labelled(solutions, f"{link}_rate")
+    for name, solution in labelled.items():
+        angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
+        rows = np.argsort(angle)
+        speed = solution.crank_speed
+        relative = (
+            solution.rate(link) / speed if order == 1 else solution.angular_acceleration(link) / (speed * abs(speed))
+        )
+        ax.plot(angle[rows], relative[rows], label=name)
+    kind = "velocity" if order == 1 else "acceleration"
+    _finished(ax, f"relative angular {kind} of the {link} [1]", len(labelled) > 1)
+    ax.set_xlabel("crank angle from +y, clockwise [deg]")
+    return ax
+
+
+def mass_centres(solutions, angle=60, ax=None):
+    """Paths of the common mass centre, to one scale with the mechanism (mower study, figures 5a, 5b).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        Mechanisms of one geometry, with different masses; the first is drawn.
+    angle : float
+        Crank angle of the drawing, degrees, marked on every path.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+        With equal scales on both axes.
+    """
+    labelled = _labelled(solutions, "common mass centre")
+    ax = mechanism(next(iter(labelled.values())), angles=(angle,), ax=ax)
+    for name, solution in labelled.items():
+        points = principal_points(solution.mechanism)
+        (line,) = ax.plot(*_closed(points.mass_centre(solution)), label=name, zorder=5)
+        ax.plot(*points.mass_centre(solution.at(np.radians([angle]))), "o", ms=4, color=line.get_color(), zorder=6)
+    ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
+    return ax
+
+
+def shaking_force(solutions, by="direction", ax=None):
+    """Polar hodograph of the shaking force, by its own direction or by crank angle (mower study, figures 6a, 6b).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    by : "direction" or "crank angle"
+        What the polar angle is.
+    ax : polar Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    require("shaking_force", choice("by", by, ("direction", "crank angle")))
+    if ax is None:
+        ax = plt.subplots(subplot_kw={"projection": "polar"}, layout="constrained")[1]
+    labelled = _labelled(solutions, "shaking_force")
+    sizes = {name: magnitude(solution.shaking_force) for name, solution in labelled.items()}
+    factor, shown = _display("N", sizes.values())
+    for name, solution in labelled.items():
+        x, y = solution.shaking_force
+        angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
+        ax.plot(*_closed(np.array([angle, factor * sizes[name]])), label=name)
+    ax.set_title(f"shaking force [{shown}] by {by}", fontsize="medium")
+    if len(labelled) > 1:
+        ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
     return ax
 
 
@@ -294,8 +387,8 @@ def _bar_lines(pose):
     if pose.mechanism.crank.length is None:
         tip = 1.15 * pose.position("A")
         yield _ends(pose.position("O"), tip)
-    for start, end in pose.mechanism.bars:
-        yield _ends(pose.position(start), pose.position(end))
+    for bar in pose.mechanism.bars:
+        yield _ends(pose.position(bar.start), pose.position(bar.end))
 
 
 def _ends(start, end):

@@ -51,7 +51,14 @@ def _centre(value):
     return _point(value) if isinstance(value, list) else (to_si(value, "m"), 0.0)
 
 
+def _two_points(value):
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(f'must be two points such as [["0 m", "0 m"], ["1 m", "0 m"]], found {value!r}')
+    return tuple(_point(part) for part in value)
+
+
 Point = Annotated[tuple[float, float], BeforeValidator(_point)]
+GuidePoints = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_two_points)]
 Centre = Annotated[tuple[float, float] | str, BeforeValidator(_centre)]
 
 
@@ -105,18 +112,44 @@ class SampledTable(Table):
     table: str
 
 
-class SliderVariant(Table):
-    """Keys common to every mechanism that ends in a slider group."""
+class CounterweightTable(Table):
+    mass: Mass | None = None
+    arm: Coordinate | None = None
+    whole_link: bool = False
+    largest_mass: Mass | None = None
+    largest_arm: Length | None = None
+    keep_out: Length | None = None
+
+
+class BalancingTable(Table):
+    method: Literal["full", "partial", "optimal"]
+    ratio: float | Literal["across", "along", "overall"] = "overall"
+    norm: Literal["largest", "mean", "along", "across"] = "largest"
+    phase: bool = False
+    crank: CounterweightTable | None = None
+    coupler: CounterweightTable | None = None
+    rocker: CounterweightTable | None = None
+
+
+class MechanismVariant(Table):
+    """Keys common to every mechanism."""
 
     crank_speed: Speed
     crank_acceleration: AngularAcceleration = 0.0
-    guide_angle: Angle = 0.0
-    guide_offset: Coordinate = 0.0
     assembly: Literal[1, -1] = 1
     crank: LinkTable = LinkTable()
     coupler: LinkTable = LinkTable()
-    slider: LinkTable = LinkTable()
     gravity: GravityTable | None = None
+    balancing: BalancingTable | None = None
+
+
+class SliderVariant(MechanismVariant):
+    """Keys common to every mechanism that ends in a slider group."""
+
+    guide_angle: Angle | None = None
+    guide_offset: Coordinate | None = None
+    guide_through: GuidePoints | None = None
+    slider: LinkTable = LinkTable()
     spring: SpringTable | None = None
     process_force: ProcessForceTable | None = None
 
@@ -125,6 +158,24 @@ class CrankSliderVariant(SliderVariant):
     mechanism: Literal["crank-slider"]
     crank_length: Length
     coupler_length: Length
+
+
+class FourBarVariant(MechanismVariant):
+    mechanism: Literal["four-bar"]
+    crank_length: Length
+    coupler_length: Length
+    rocker_length: Length
+    rocker_pivot: Point
+    rocker: LinkTable = LinkTable()
+
+
+class ChainUnitVariant(MechanismVariant):
+    mechanism: Literal["chain-unit"]
+    crank_length: Length
+    coupler_length: Length
+    rocker_length: Length
+    pivot_x: Length | None = None
+    rocker: LinkTable = LinkTable()
 
 
 CAM_KINDS = ("circle", "cosine-law", "sampled")
@@ -140,11 +191,16 @@ class CamVariant(SliderVariant):
 class PublishedTable(Table):
     """Published figures as printed, by the row of the comparison table they belong beside.
 
-    `ratio` holds those of reference / balanced, `value` those of the balanced mechanism.
+    `ratio` holds those of reference / balanced, `value` those of the balanced mechanism; `balancing` those of the
+    balancing table, for every variant and link, taken at a crank-angle step of `sampling`; `linkage` those of the
+    four-bar table, for every variant.
     """
 
     ratio: dict[str, str] = Field(default_factory=dict)
     value: dict[str, str] = Field(default_factory=dict)
+    sampling: Angle | None = None
+    balancing: dict[str, dict[str, str]] = Field(default_factory=dict)
+    linkage: dict[str, dict[str, str]] = Field(default_factory=dict)
 
 
 class CaseTable(Table):
@@ -158,4 +214,9 @@ class CaseTable(Table):
     published: PublishedTable = PublishedTable()
 
 
-VARIANTS = {"crank-slider": CrankSliderVariant, "cam-crank-slider": CamVariant}
+VARIANTS = {
+    "crank-slider": CrankSliderVariant,
+    "cam-crank-slider": CamVariant,
+    "four-bar": FourBarVariant,
+    "chain-unit": ChainUnitVariant,
+}

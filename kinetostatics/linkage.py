@@ -1,0 +1,257 @@
+"""Characteristics of the four-bar: where it closes, which joints turn fully, how far and how evenly it swings.
+
+The chain unit of the Belarusian study counts its crank angle from +y, clockwise, and starts with the rocker at rest
+angle zero; `chain_unit` builds it and `chain_unit_angle` turns its crank angle into the library's.
+"""
+
+from dataclasses import dataclass
+from math import asin, atan2, hypot, pi, sqrt
+
+import numpy as np
+
+from .errors import ParameterError
+from .extremes import extremes
+from .mechanism import four_bar
+from .rocker_group import RockerGroup
+
+QUARTER = pi / 2
+CHANGE_POINT = 1e-12
+"""Difference of the sums of lengths, relative to them, below which a four-bar can reach a change point."""
+
+
+def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **links):
+    """Four-bar of the chain unit, with the crank's pivot at O and the rocker's at (pivot_x, -rocker_length).
+
+    Parameters
+    ----------
+    crank_length, coupler_length, rocker_length : float or array
+        m; in the relative form rho, 1, lambda.
+    pivot_x : float or array, optional
+        Free start (the study's variant 2). Without it parallel start (variant 1): crank and rocker are parallel when
+        the crank points along +y, so pivot_x = sqrt(coupler_length^2 - crank_length^2).
+    **links
+        Links crank, coupler, rocker, and assembly, as for `four_bar`.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        The coupler is shorter than the crank, so the parallel start is not possible.
+    """
+    if pivot_x is None:
+        square = (coupler_length - crank_length) * (coupler_length + crank_length)
+        if np.any(square <= 0):
+            raise ParameterError(
+                f"chain unit: parallel start needs a coupler longer than the crank, got {coupler_length} m and "
+                f"{crank_length} m; give pivot_x for a free start"
+            )
+        pivot_x = np.sqrt(square)
+    return four_bar(crank_length, coupler_length, rocker_length, rocker_pivot=(pivot_x, -rocker_length), **links)
+
+
+def chain_unit_angle(angle):
+    """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad."""
+    return QUARTER - np.asarray(angle)
+
+
+def rocker_angle(solution, start=QUARTER):
+    """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad."""
+    x, y = _rocker(solution)
+    x0, y0 = _rocker(solution.at(np.array([start])))
+    return np.arctan2(x * y0 - y * x0, x * x0 + y * y0)
+
+
+def _rocker(solution):
+    return solution.placement.links["rocker"].direction
+
+
+def transmission_angle(solution):
+    """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi."""
+    motion = solution.placement.details["rocker"]
+    return np.arctan2(abs(motion.sine), motion.cosine)
+
+
+@dataclass(frozen=True)
+class Swing:
+    """Swing of the rocker over a turn, clockwise from its start.
+
+    Attributes
+    ----------
+    largest, smallest : float
+        Extreme rocker angles psi, rad.
+    largest_at, smallest_at : float
+        Crank angles where they are reached, rad, as the library counts them.
+    """
+
+    largest: float
+    smallest: float
+    largest_at: float
+    smallest_at: float
+
+    @property
+    def range(self):
+        """Whole angle swept, rad."""
+        return self.largest - self.smallest
+
+    @property
+    def asymmetry(self):
+        """Asymmetry coefficient eta = |psi_min| / psi_max of the study."""
+        return abs(self.smallest) / self.largest
+
+
+def swing(solution, start=QUARTER):
+    """Swing of the rocker, from the true extremes of its angle.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of a four-bar whose crank turns fully.
+    start : float
+        Crank angle at which the rocker angle is zero, rad; +y as in the study.
+
+    Returns
+    -------
+    Swing
+    """
+    found = extremes(solution, lambda at: rocker_angle(at, start))
+    high, low = int(np.argmax(found.value)), int(np.argmin(found.value))
+    return Swing(*map(float, (found.value[high], found.value[low], found.angle[high], found.angle[low])))
+
+
+@dataclass(frozen=True)
+class Grashof:
+    """Class of a four-bar by Grashof's rule.
+
+    Attributes
+    ----------
+    kind : str
+        "crank-rocker", "double-crank", "double-rocker", "rocker-crank" (Grashof linkages, by the shortest link),
+        "change-point", or "triple-rocker".
+    turning_joints : tuple of str
+        Joints whose two links turn fully against each other.
+    intervals : tuple of (float, float)
+        Crank-angle intervals in which it closes, rad, start in [0, 2 pi); one whole turn if the crank turns fully.
+    """
+
+    kind: str
+    turning_joints: tuple[str, ...]
+    intervals: tuple[tuple[float, float], ...]
+
+
+KINDS = {
+    "crank": ("crank-rocker", ("O", "A")),
+    "coupler": ("double-rocker", ("A", "B")),
+    "rocker": ("rocker-crank", ("B", "O2")),
+    "frame": ("double-crank", ("O2", "O")),
+}
+"""Kind of a Grashof linkage and the joints that turn fully, by its shortest link."""
+
+
+def grashof(mechanism):
+    """Grashof class of a four-bar, the joints that turn fully, and the crank angles at which it closes.
+
+    The shortest link turns fully against its neighbours if it and the longest are together shorter than the other two
+    (Grashof's rule, as in Uicker, Pennock and Shigley). Equality makes a change-point linkage: there the links come to
+    lie in one line, velocities at that angle are undefined, and on both sides of it the assembly is the chosen one.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        A four-bar of one design.
+
+    Returns
+    -------
+    Grashof
+    """
+    group = mechanism.group(RockerGroup)
+    if group is None or mechanism.crank.length is None:
+        raise ParameterError(f"Grashof's rule is for four-bars, not for a {mechanism.name}")
+    frame = hypot(*group.pivot)
+    lengths = {
+        "crank": mechanism.crank.length,
+        "coupler": group.coupler_length,
+        "rocker": group.rocker_length,
+        "frame": frame,
+    }
+    if any(np.ndim(length) for length in lengths.values()):
+        raise ParameterError("Grashof's rule is for one design at a time, got a batch of lengths")
+    ordered = sorted(lengths, key=lambda name: lengths[name])
+    outer = lengths[ordered[0]] + lengths[ordered[3]]
+    inner = lengths[ordered[1]] + lengths[ordered[2]]
+    kind: str
+    joints: tuple[str, ...]
+    kind, joints = KINDS[ordered[0]]
+    if abs(outer - inner) <= CHANGE_POINT * inner:
+        kind = "change-point"
+    elif outer > inner:
+        kind, joints = "triple-rocker", ()
+    return Grashof(kind, joints, _closed_intervals(lengths, atan2(group.pivot[1], group.pivot[0])))
+
+
+def _closed_intervals(lengths, frame_angle):
+    """Crank angles at which A is no nearer to O2 than the difference of coupler and rocker and no farther than the sum.
+
+    At the distance D the crank stands at theta from the frame line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b).
+    """
+    r, b = lengths["crank"], lengths["frame"]
+
+    def at_distance(distance):
+        square = (distance - (r - b)) * (distance + (r - b)) / (4 * r * b)
+        return 2 * asin(sqrt(min(1.0, max(0.0, square))))
+
+    near = at_distance(abs(lengths["coupler"] - lengths["rocker"]))
+    far = at_distance(lengths["coupler"] + lengths["rocker"])
+    turn = 2 * pi
+    if far <= near:
+        return ()
+    if near == 0 and far == pi:
+        return ((0.0, turn),)
+    if near == 0:
+        pieces = [(frame_angle - far, frame_angle + far)]
+    elif far == pi:
+        pieces = [(frame_angle + near, frame_angle + turn - near)]
+    else:
+        pieces = [(frame_angle + near, frame_angle + far), (frame_angle - far, frame_angle - near)]
+    return tuple(sorted((start % turn, start % turn + end - start) for start, end in pieces))
+
+
+def characteristics(solutions, reference):
+    """Swing, unevenness and transmission of four-bars, side by side as a pandas DataFrame.
+
+    Parameters
+    ----------
+    solutions : dict of name to Solution
+        Four-bars whose crank turns fully.
+    reference : str
+        Name of the one that amplitudes and speeds are compared with.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column for each mechanism; speeds relative to the crank's.
+    """
+    import pandas as pd
+
+    columns = {}
+    for name, solution in solutions.items():
+        found = swing(solution)
+        fastest = abs(extremes(solution, "rocker_rate").largest / solution.crank_speed)
+        transmission = np.degrees(extremes(solution, transmission_angle).range)
+        columns[name] = {
+            "largest rocker angle psi [deg]": np.degrees(found.largest),
+            "smallest rocker angle psi [deg]": np.degrees(found.smallest),
+            "asymmetry |psi_min| / psi_max": found.asymmetry,
+            "largest relative rocker speed": fastest,
+            "smallest transmission angle [deg]": transmission[0],
+            "largest transmission angle [deg]": transmission[1],
+        }
+    table = pd.DataFrame(columns).rename_axis("quantity")
+    for ratio, quantity in [
+        ("amplitude ratio", "largest rocker angle psi [deg]"),
+        ("speed ratio", "largest relative rocker speed"),
+    ]:
+        table.loc[f"{ratio} to {reference}"] = table.loc[quantity] / table.loc[quantity, reference]
+    return table
