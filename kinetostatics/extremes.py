@@ -125,7 +125,7 @@ def _minimised(evaluate, brackets, sign):
         args=(sign,),
         tolerances={"xatol": 0.0, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
     )
-    return found.x
+    return np.where(np.isfinite(found.x), found.x, brackets[1])  # a bracket in rounding noise may not hold twice
 
 
 def _polished(evaluate, angle, sign, half_width=0.01, degree=8):
