@@ -7,18 +7,19 @@ cam_roller, cams            slotted crank, block and roller on a fixed cam
 slider_group, rocker_group  coupler and slider on a guide; coupler and rocker
 chain, mechanism            how groups hang together; the mechanisms made of them
 motion, solution            what it does and what forces that takes
-balancing, linkage          counterweights; swing and class of four-bars
+balancing, counterweights   static balancing, the counterweights it takes, and their price
+linkage                     swing and class of four-bars
 principal_points            common mass centre and shaking force from the link masses
 assembly                    where it can be put together
 extremes, comparison        true extrema; dynamic coefficients
 case, schema, units         case files and what they may hold; text with units
 quantities, tables          names and units of results; DataFrames and CSV
-plots, cli                  figures; command line
+plots, drawings, canvas     figures: curves, the mechanism itself, what they share
+figures, cli                figures of a case; command line
 """
 
-from . import balancing, cams, linkage
+from . import cams
 from .cam_roller import CamRoller
-from .comparison import compare
 from .crank import Crank
 from .errors import AssemblyError, CaseError, ConditionWarning, KinetostaticsError, ParameterError, QuantityError
 from .extremes import extremes
@@ -66,12 +67,14 @@ __all__ = [
 ]
 
 
+_LATER = {"balancing": None, "linkage": None, "plots": None, "compare": "comparison", "load_case": "case"}
+"""Names loaded, with the libraries they need, only when used: modules, and functions with the module they are in."""
+
+
 def __getattr__(name):
-    """Load plots and case reading, and the libraries they need, only when used."""
     import importlib
 
-    if name == "plots":
-        return importlib.import_module(".plots", __name__)
-    if name == "load_case":
-        return importlib.import_module(".case", __name__).load_case
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = importlib.import_module(f".{_LATER[name] or name}", __name__)
+    return getattr(module, name) if _LATER[name] else module

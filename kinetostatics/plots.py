@@ -10,15 +10,26 @@ from collections.abc import Mapping
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .cam_roller import CamRoller
+from .canvas import INK, axes, closed, display, labelled
 from .checks import choice, require
+from .drawings import animation, mass_centres, mechanism
 from .extremes import extremes
 from .linkage import chain_unit_angle
-from .principal_points import principal_points
 from .quantities import label, magnitude, unit, values
-from .slider_group import SliderGroup
 
-INK, STEEL, ACCENT = "0.15", "slategray", "tab:red"
+__all__ = [
+    "acceleration_error",
+    "animation",
+    "cam_force",
+    "chain_unit_motion",
+    "hodograph",
+    "mass_centres",
+    "mechanism",
+    "over_turn",
+    "pressure_angle",
+    "shaking_force",
+    "torque",
+]
 
 
 def over_turn(solutions, quantity, ax=None):
@@ -35,12 +46,12 @@ def over_turn(solutions, quantity, ax=None):
     -------
     Axes
     """
-    ax = _axes(ax)
+    ax = axes(ax)
     curves = {
         name: (_degrees(solution), values(solution, quantity))
-        for name, solution in _labelled(solutions, quantity).items()
+        for name, solution in labelled(solutions, quantity).items()
     }
-    factor, shown = _display(unit(quantity), [value for _, value in curves.values()])
+    factor, shown = display(unit(quantity), [value for _, value in curves.values()])
     for name, (angle, value) in curves.items():
         ax.plot(angle, factor * value, label=name)
     return _finished(ax, f"{label(quantity)} [{shown}]", len(curves) > 1)
@@ -66,13 +77,13 @@ def acceleration_error(solutions, ax=None):
 
     With the stroke S from the true extremes of the slider position, the law is -S/2 omega^2 cos(phi).
     """
-    ax = _axes(ax)
-    labelled = _labelled(solutions, "slider_acceleration")
-    for name, solution in labelled.items():
+    ax = axes(ax)
+    named = labelled(solutions, "slider_acceleration")
+    for name, solution in named.items():
         amplitude = np.ptp(extremes(solution, "slider_position").value) / 2 * solution.crank_speed**2
         error = solution.slider_acceleration / amplitude + np.cos(solution.crank_angle)
         ax.plot(_degrees(solution), 100 * error, label=name)
-    return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(labelled) > 1)
+    return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1)
 
 
 def hodograph(solutions, joint="O", ax=None, marks=30):
@@ -92,12 +103,12 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     Axes
         With equal scales on both axes.
     """
-    ax = _axes(ax)
-    labelled = _labelled(solutions, joint)
-    curves = {name: _vector(solution, joint) for name, solution in labelled.items()}
-    factor, shown = _display("N", curves.values())
-    for name, solution in labelled.items():
-        (line,) = ax.plot(*_closed(factor * curves[name]), label=name)
+    ax = axes(ax)
+    named = labelled(solutions, joint)
+    curves = {name: _vector(solution, joint) for name, solution in named.items()}
+    factor, shown = display("N", curves.values())
+    for name, solution in named.items():
+        (line,) = ax.plot(*closed(factor * curves[name]), label=name)
         _mark_angles(ax, solution, joint, factor, np.arange(0, 360, marks), line.get_color())
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
@@ -105,7 +116,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     name = label(joint)
     ax.set_xlabel(f"{name}, x [{shown}]")
     ax.set_ylabel(f"{name}, y [{shown}]")
-    if len(labelled) > 1 or isinstance(solutions, Mapping):
+    if len(named) > 1 or isinstance(solutions, Mapping):
         ax.legend(frameon=False)
     return ax
 
@@ -128,9 +139,9 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     -------
     Axes
     """
-    ax = _axes(ax)
-    labelled = _labelled(solutions, f"{link}_rate")
-    for name, solution in labelled.items():
+    ax = axes(ax)
+    named = labelled(solutions, f"{link}_rate")
+    for name, solution in named.items():
         angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
         rows = np.argsort(angle)
         speed = solution.crank_speed
@@ -139,34 +150,8 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
         )
         ax.plot(angle[rows], relative[rows], label=name)
     kind = "velocity" if order == 1 else "acceleration"
-    _finished(ax, f"relative angular {kind} of the {link} [1]", len(labelled) > 1)
+    _finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
     ax.set_xlabel("crank angle from +y, clockwise [deg]")
-    return ax
-
-
-def mass_centres(solutions, angle=60, ax=None):
-    """Paths of the common mass centre, to one scale with the mechanism (mower study, figures 5a, 5b).
-
-    Parameters
-    ----------
-    solutions : Solution or mapping of label to Solution
-        Mechanisms of one geometry, with different masses; the first is drawn.
-    angle : float
-        Crank angle of the drawing, degrees, marked on every path.
-    ax : Axes, optional
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
-    """
-    labelled = _labelled(solutions, "common mass centre")
-    ax = mechanism(next(iter(labelled.values())), angles=(angle,), ax=ax)
-    for name, solution in labelled.items():
-        points = principal_points(solution.mechanism)
-        (line,) = ax.plot(*_closed(points.mass_centre(solution)), label=name, zorder=5)
-        ax.plot(*points.mass_centre(solution.at(np.radians([angle]))), "o", ms=4, color=line.get_color(), zorder=6)
-    ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
     return ax
 
 
@@ -187,137 +172,21 @@ def shaking_force(solutions, by="direction", ax=None):
     require("shaking_force", choice("by", by, ("direction", "crank angle")))
     if ax is None:
         ax = plt.subplots(subplot_kw={"projection": "polar"}, layout="constrained")[1]
-    labelled = _labelled(solutions, "shaking_force")
-    sizes = {name: magnitude(solution.shaking_force) for name, solution in labelled.items()}
-    factor, shown = _display("N", sizes.values())
-    for name, solution in labelled.items():
+    named = labelled(solutions, "shaking_force")
+    sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
+    factor, shown = display("N", sizes.values())
+    for name, solution in named.items():
         x, y = solution.shaking_force
         angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
-        ax.plot(*_closed(np.array([angle, factor * sizes[name]])), label=name)
+        ax.plot(*closed(np.array([angle, factor * sizes[name]])), label=name)
     ax.set_title(f"shaking force [{shown}] by {by}", fontsize="medium")
-    if len(labelled) > 1:
+    if len(named) > 1:
         ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
     return ax
 
 
-def mechanism(solution, angles=(40, 160, 280), ax=None):
-    """The mechanism at given crank angles, with its hinges, guide, and cam (pitch curve).
-
-    Parameters
-    ----------
-    solution : Solution
-    angles : sequence of float
-        Crank angles, degrees; the first is drawn strongest.
-    ax : Axes, optional
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
-    """
-    ax = _axes(ax)
-    _frame(ax, solution)
-    shades = np.linspace(1.0, 0.3, len(angles))
-    for angle, shade in zip(angles, shades, strict=True):
-        pose = solution.at(np.radians([angle]))
-        for bar, (x, y) in zip(_bars(ax, pose, shade), _bar_lines(pose), strict=True):
-            bar.set_data(x, y)
-        for group in _slider_groups(pose):
-            ax.plot(*pose.position(group.pin), "s", ms=13, mfc=STEEL, mec="none", alpha=shade, zorder=3)
-        for joint in pose.placement.joints:
-            ax.plot(*pose.position(joint), "o", ms=5, mfc="white", mec=INK, alpha=shade, zorder=4)
-        ax.annotate(
-            f"{angle:g}°",
-            pose.position("A")[:, 0],
-            xytext=(5, 5),
-            textcoords="offset points",
-            fontsize="x-small",
-            alpha=shade,
-        )
-    _equal(ax)
-    return ax
-
-
-def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None):
-    """Animation of the mechanism over one turn, with arrows for the joint reactions.
-
-    Show it in a notebook by ``HTML(animation.to_jshtml())``, or save it by ``animation.save("saw.gif")``.
-
-    Parameters
-    ----------
-    solution : Solution
-    joints : sequence of str
-        Reactions drawn as arrows from their joints ("guide" starts at B); the largest of all is half the
-        mechanism's crank circle long.
-    frames : int
-        Poses in the turn.
-    interval : float
-        Time between them, ms.
-    ax : Axes, optional
-
-    Returns
-    -------
-    matplotlib.animation.FuncAnimation
-    """
-    from matplotlib.animation import FuncAnimation
-
-    ax = _axes(ax)
-    turn = solution.at(np.linspace(0, 2 * np.pi, frames, endpoint=False))
-    _frame(ax, solution)
-    bars = _bars(ax, turn, 1.0)
-    lines = list(_bar_lines(turn))
-    pins = [ax.plot([], [], "o", ms=6, mfc="white", mec=INK, zorder=4)[0] for _ in turn.placement.joints]
-    positions = [turn.position(joint) for joint in turn.placement.joints]
-    forces = [turn.reaction(joint) for joint in joints]
-    largest = max(float(np.max(magnitude(force))) for force in forces)
-    length = float(np.max(magnitude(turn.position("A"))))
-    starts = [turn.position("B" if joint == "guide" else joint) for joint in joints]
-    arrows = ax.quiver(
-        *np.zeros((2, len(joints))),
-        *np.zeros((2, len(joints))),
-        angles="xy",
-        scale_units="xy",
-        scale=largest / length,
-        color=ACCENT,
-        width=0.005,
-        zorder=5,
-    )
-    factor, shown = _display("N", [largest])
-    ax.set_title(f"reactions at {', '.join(joints)}; longest arrow {factor * largest:.4g} {shown}", fontsize="small")
-    caption = ax.text(0.02, 0.94, "", transform=ax.transAxes, fontsize="small")
-    _equal(ax)
-
-    def draw(step):
-        for bar, (x, y) in zip(bars, lines, strict=True):
-            bar.set_data(x[..., step], y[..., step])
-        for pin, position in zip(pins, positions, strict=True):
-            pin.set_data(position[:, [step]])
-        arrows.set_offsets(np.array([start[:, step] for start in starts]))
-        arrows.set_UVC(*np.array([force[:, step] for force in forces]).T)
-        caption.set_text(f"crank angle {np.degrees(turn.crank_angle[step]):.0f}°")
-        return [*bars, *pins, arrows, caption]
-
-    return FuncAnimation(ax.figure, draw, frames=frames, interval=interval)
-
-
-def _axes(ax):
-    return plt.subplots(layout="constrained")[1] if ax is None else ax
-
-
-def _labelled(solutions, name):
-    return dict(solutions) if isinstance(solutions, Mapping) else {label(name): solutions}
-
-
 def _degrees(solution):
     return np.degrees(solution.crank_angle)
-
-
-def _display(name, arrays):
-    """Factor and unit in which numbers of this size read well."""
-    if name == "rad":
-        return 180 / np.pi, "deg"
-    largest = max(float(np.nanmax(np.abs(array))) for array in arrays)
-    return (1e-3, f"k{name}") if name in ("N", "N m") and largest >= 1e4 else (1.0, name)
 
 
 def _finished(ax, ylabel, legend):
@@ -350,53 +219,3 @@ def _mark_angles(ax, solution, joint, factor, angles, color):
         ax.annotate(
             ", ".join(names), points[:, row], xytext=(3, 3), textcoords="offset points", fontsize="x-small", color=INK
         )
-
-
-def _closed(curve):
-    return np.concatenate([curve, curve[:, :1]], axis=1)
-
-
-def _frame(ax, solution):
-    """What does not move: the support, the guide over the stroke, the pitch curve of the cam or the crank circle."""
-    turn = solution.at(np.linspace(0, 2 * np.pi, 721))
-    if solution.mechanism.group(CamRoller) is not None:
-        ax.plot(*turn.position("A"), color=ACCENT, lw=1, ls="--", label="pitch curve of the cam")
-    else:
-        ax.plot(*turn.position("A"), color=INK, lw=0.5, ls=":")
-    ax.plot(0, 0, "o", ms=14, mfc="0.8", mec="none")
-    for group in _slider_groups(solution):
-        path = turn.position(group.pin)
-        along = path.T @ group.guide.direction
-        start, end = path[:, np.nanargmin(along)], path[:, np.nanargmax(along)]
-        reach = 0.15 * (end - start)
-        ax.plot(*np.column_stack([start - reach, end + reach]), color=INK, lw=6, alpha=0.15)
-
-
-def _slider_groups(solution):
-    return [group for group in solution.mechanism.groups if isinstance(group, SliderGroup)]
-
-
-def _bars(ax, pose, shade):
-    """One empty line for each bar, and one for the slotted crank."""
-    count = len(list(_bar_lines(pose)))
-    return [ax.plot([], [], color=STEEL, lw=2.5, alpha=shade, solid_capstyle="round")[0] for _ in range(count)]
-
-
-def _bar_lines(pose):
-    """Ends, x and y, of every bar, (2, N) each; the slotted crank reaches a little beyond the block."""
-    if pose.mechanism.crank.length is None:
-        tip = 1.15 * pose.position("A")
-        yield _ends(pose.position("O"), tip)
-    for bar in pose.mechanism.bars:
-        yield _ends(pose.position(bar.start), pose.position(bar.end))
-
-
-def _ends(start, end):
-    return np.array([start[0], end[0]]), np.array([start[1], end[1]])
-
-
-def _equal(ax):
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.margins(0.08)
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("y [m]")
