@@ -5,7 +5,7 @@ links, guide, loads         what a mechanism is made of
 crank                       the driver
 cam_roller, cams            slotted crank, block and roller on a fixed cam
 slider_group, rocker_group  coupler and slider on a guide; coupler and rocker
-chain, mechanism            how groups hang together; the mechanisms made of them
+chain, batch, mechanism     how groups hang together; the mechanisms made of them
 motion, solution            what it does and what forces that takes
 balancing, counterweights   static balancing, the counterweights it takes, and their price
 linkage                     swing and class of four-bars

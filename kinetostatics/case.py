@@ -135,7 +135,7 @@ def load_case(path) -> Case:
         if isinstance(own, dict) and isinstance(common, dict):
             variants[name] = _variant(name, own, common, path.parent, problems)
     reference = raw.get("reference")
-    if reference is not None and variants and reference not in variants:
+    if isinstance(reference, str) and variants and reference not in variants:
         problems.append(checks.choice("reference", reference, tuple(variants)))
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
@@ -145,10 +145,10 @@ def load_case(path) -> Case:
 def _read(path):
     shipped = shipped_cases()
     found = Path(path)
-    if not found.exists() and str(path) in shipped:
+    if not found.is_file() and str(path) in shipped:
         found = shipped[str(path)]
     try:
-        return found, tomllib.loads(found.read_text(encoding="utf-8"))
+        return found, tomllib.loads(found.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         problem = (
             f"no such file, and no shipped case of that name ({', '.join(shipped)}){checks.hint(found.stem, shipped)}"
@@ -171,7 +171,7 @@ def _variant(name, own, common, folder, problems):
         return ("common", *keys) if inherited else ("variants", name, *keys)
 
     kind = merged.get("mechanism")
-    if kind not in schema.VARIANTS:
+    if not isinstance(kind, str) or kind not in schema.VARIANTS:
         path = _path(place(("mechanism",)))
         problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS)))
         return None
@@ -328,7 +328,10 @@ def _link(table, length=None):
     centre = table.centre
     if centre == schema.MID_LENGTH:
         if length is None:
-            raise KinetostaticsError('centre "mid-length" needs a link of fixed length; give a distance')
+            raise KinetostaticsError(
+                'centre "mid-length" is for links between two joints, not for slider, block or slotted crank; give a '
+                "distance there"
+            )
         centre = (length / 2, 0.0)
     return Link(table.mass, centre, table.inertia)
 

@@ -4,7 +4,7 @@ import argparse
 import os
 import sys
 
-from .errors import KinetostaticsError
+from .errors import CaseError, KinetostaticsError
 
 
 def main(arguments=None):
@@ -87,6 +87,8 @@ def _compare(options):
 
     case = load_case(options.case)
     names = [options.variant] if options.variant else [name for name in case.variants if name != case.reference]
+    if not names:
+        raise CaseError(case.path, [f"has one variant only, {case.reference}: nothing to compare; use run"])
     tables = {name: case.comparison_table(name) for name in names}
     special = [
         ("counterweights and shaking force", case.balancing_table(), case.published.balancing),

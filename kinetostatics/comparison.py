@@ -2,16 +2,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
-from .errors import QuantityError
+from .errors import ParameterError, QuantityError
 from .extremes import extremes
 from .quantities import label, magnitude, unit
 from .solution import Solution
-
-PANELS, NODES = 48, 16
-"""Gauss-Legendre panels over the turn and nodes in each, for integral means."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,38 +117,43 @@ def compare(reference, balanced):
 def mean_absolute_torque(solution):
     """Integral mean of the absolute balancing torque over the turn, N m.
 
-    The integrand has kinks where the torque changes sign: those angles are found first and part the turn; Gauss-
-    Legendre quadrature on the pieces is then exact to rounding for a smooth torque.
+    Adaptive quadrature (scipy.integrate.cubature) between the angles where the torque changes sign: the pieces of a
+    smooth torque come out to rounding, and it closes in on the jumps of a process force.
     """
+    from scipy.integrate import cubature
     from scipy.optimize import elementwise
 
     def torque(angle):
         return solution.at(angle).balancing_torque
 
-    grid = np.linspace(0.0, 2 * np.pi, 1441)
+    turn = 2 * np.pi
+    grid = np.linspace(0.0, turn, 721)
     samples = torque(grid)
+    if samples.ndim > 1:
+        raise ParameterError("mean torque works on one design at a time; solve a single design of the batch")
     change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
     kinks = elementwise.find_root(torque, (grid[change], grid[change + 1])).x if change.size else []
-    edges = np.unique(np.concatenate([np.linspace(0.0, 2 * np.pi, PANELS + 1), kinks]))
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    half = np.diff(edges)[:, None] / 2
-    angle = edges[:-1, None] + half * (1 + nodes)
-    return np.sum(half * weights * np.abs(torque(angle.ravel())).reshape(angle.shape)) / (2 * np.pi)
+    edges = np.unique([0.0, *kinks, turn])
+    floor = 1e-14 * turn * solution.at(grid).largest_torque_term
+    pieces = [
+        cubature(lambda angle: np.abs(torque(angle[:, 0])), [start], [end], rtol=1e-12, atol=floor)
+        for start, end in pairwise(edges)
+    ]
+    if any(piece.status != "converged" for piece in pieces):
+        raise ParameterError(
+            "mean torque: the integral over the turn did not converge; does the mechanism close everywhere, and are "
+            "the loads finite?"
+        )
+    return float(sum(piece.estimate for piece in pieces)) / turn
 
 
 def _matched(reference, balanced):
-    kinds = [_kinds(found) for found in (reference, balanced)]
     distance = np.abs(np.exp(1j * reference.angle)[:, None] - np.exp(1j * balanced.angle))
-    distance = np.where(kinds[0][:, None] == kinds[1], distance, np.inf)
+    distance = np.where(reference.maximum[:, None] == balanced.maximum, distance, np.inf)
     if not distance.size:
         return np.full(len(reference), np.nan)
     nearest = np.argmin(distance, axis=1)
     return np.where(np.isfinite(distance.min(axis=1)), balanced.value[nearest], np.nan)
-
-
-def _kinds(found):
-    """Whether each extremum is a maximum: extrema alternate around the turn."""
-    return found.value > np.roll(found.value, 1)
 
 
 def _ratio(reference, balanced):

@@ -19,6 +19,15 @@ def namespace(x):
     return _namespaces[kind]
 
 
+def is_foreign_array(x):
+    """Whether `x` is an array of a library other than NumPy: JAX, dask, PyTorch ..."""
+    if isinstance(x, np.ndarray | np.generic | float | int | list | tuple):
+        return False
+    from array_api_compat import is_array_api_obj
+
+    return is_array_api_obj(x)
+
+
 def sin(x):
     return namespace(x).sin(x)
 

@@ -5,14 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from .errors import ParameterError
-from .quantities import values
+from .quantities import scale, values
 
 SAMPLES = 1440
 """Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""
-FLAT = 1e-13
-"""Variation, relative to the largest value, below which a quantity is constant but for rounding."""
+ROUNDING = 1e-13
+"""Rise and fall, relative to the terms a quantity is made of, below which it is rounding and no extremum."""
 SAME = 1e-9
 """An extremum found this little before the end of the turn (rad) is the one at its start."""
+TURN = 2 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +27,8 @@ class Extremes:
         Crank angles in [0, 2 pi), rad.
     value : array (K,)
         Values of the quantity, SI.
+    maximum : array (K,) of bool
+        Whether each is a maximum.
     constant : float
         The value of a quantity that has no extremum because it does not change; NaN otherwise.
     """
@@ -33,6 +36,7 @@ class Extremes:
     quantity: str
     angle: np.ndarray
     value: np.ndarray
+    maximum: np.ndarray
     constant: float = np.nan
 
     @property
@@ -59,7 +63,7 @@ def extremes(solution, quantity):
     Brackets come from samples a quarter of a degree apart; each extremum is then found by minimisation
     (scipy.optimize.elementwise) of the quantity evaluated by the mechanism itself. As a minimum fixes its place only
     to half the digits, the angle is last read from the slope of a Chebyshev fit through nearby evaluations, and kept
-    if the value there is as good.
+    if the value there is as good. Where a load jumps, the extremum is that of the samples.
 
     Parameters
     ----------
@@ -72,8 +76,8 @@ def extremes(solution, quantity):
     Returns
     -------
     Extremes
-        `.angle` and `.value` in order of angle; empty for a constant. Where the mechanism does not close, only extrema
-        inside the closed intervals are reported.
+        `.angle` and `.value` in order of angle; empty for a constant, or what is constant but for rounding. Where the
+        mechanism does not close, only extrema inside the closed intervals are reported.
 
     Raises
     ------
@@ -84,36 +88,50 @@ def extremes(solution, quantity):
     """
 
     def evaluate(angle):
-        return values(solution.at(angle), quantity)
+        return values(solution.at(np.mod(angle, TURN)), quantity)
 
-    grid = np.linspace(0.0, 2 * np.pi, SAMPLES + 1)[:-1]
+    grid = np.linspace(0.0, TURN, SAMPLES + 1)[:-1]
     with np.errstate(invalid="ignore", divide="ignore"):
-        samples = evaluate(grid)
-        if samples.ndim != 1:
+        turn = solution.at(grid)
+        samples = values(turn, quantity)
+        if np.ndim(samples) != 1:
             raise ParameterError(
-                f"extremes works on one design at a time, but {quantity!r} has shape {samples.shape}; solve a single "
-                "design of the batch"
+                f"extremes works on one design at a time, but {quantity!r} has shape {np.shape(samples)}; solve a "
+                "single design of the batch"
             )
-        brackets, sign = _brackets(grid, samples)
-        if not sign.size:
-            return Extremes(str(quantity), np.empty(0), np.empty(0), float(np.fmax.reduce(samples)))
-        angle = _polished(evaluate, _minimised(evaluate, brackets, sign), sign)
-    angle = np.maximum(np.mod(angle + SAME, 2 * np.pi) - SAME, 0.0)
+        floor = ROUNDING * max(scale(turn, quantity), float(np.fmax.reduce(np.abs(samples), initial=0.0)))
+        steps, maximum = _turning_points(samples, floor)
+        if not maximum.size:
+            nothing = np.empty(0)
+            return Extremes(str(quantity), nothing, nothing, nothing.astype(bool), float(np.fmax.reduce(samples)))
+        sign = np.where(maximum, -1.0, 1.0)
+        angle = _polished(evaluate, _minimised(evaluate, steps * (TURN / SAMPLES), sign), sign, floor)
+    angle = np.maximum(np.mod(angle + SAME, TURN) - SAME, 0.0)
     order = np.argsort(angle)
-    return Extremes(str(quantity), angle[order], evaluate(angle[order]))
+    return Extremes(str(quantity), angle[order], evaluate(angle[order]), maximum[order])
 
 
-def _brackets(grid, samples):
-    """Three neighbouring angles around every extremum of the samples, and +1 for a minimum, -1 for a maximum."""
-    finite = samples[np.isfinite(samples)]
-    if not finite.size or np.ptp(finite) <= FLAT * np.max(np.abs(finite)):
-        return np.empty((3, 0)), np.empty(0)
-    step = grid[1] - grid[0]
-    before, after = np.roll(samples, 1), np.roll(samples, -1)
-    minimum = (samples < before) & (samples <= after)
-    maximum = (samples > before) & (samples >= after)
-    middle = grid[minimum | maximum]
-    return np.array([middle - step, middle, middle + step]), np.where(minimum[minimum | maximum], 1.0, -1.0)
+def _turning_points(samples, floor):
+    """Three steps of the grid around each extremum of periodic samples (3, K), and whether it is a maximum.
+
+    The middle of a level stretch counts once. Rises and falls of no more than `floor` are taken out, least first.
+    """
+    direction = np.sign(np.roll(samples, -1) - samples)
+    moving = np.flatnonzero(direction != 0)
+    following = np.append(moving[1:], moving[:1] + samples.size)
+    turning = direction[moving] * direction[following % samples.size] == -1
+    before, after = moving[turning], following[turning]
+    maximum = direction[before] > 0
+    middle = (before + after + 1) // 2
+    while middle.size and np.all(maximum != np.roll(maximum, 1)):
+        height = samples[middle % samples.size]
+        change = np.abs(np.roll(height, -1) - height)
+        least = int(np.argmin(change))
+        if change[least] > floor:
+            break
+        kept = np.delete(np.arange(middle.size), [least, (least + 1) % middle.size])
+        before, after, middle, maximum = before[kept], after[kept], middle[kept], maximum[kept]
+    return np.array([before, middle, after + 1], dtype=float), maximum
 
 
 def _minimised(evaluate, brackets, sign):
@@ -125,23 +143,23 @@ def _minimised(evaluate, brackets, sign):
         args=(sign,),
         tolerances={"xatol": 0.0, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
     )
-    return np.where(np.isfinite(found.x), found.x, brackets[1])  # a bracket in rounding noise may not hold twice
+    better = sign * evaluate(found.x) <= sign * evaluate(brackets[1])  # False where no bracket held, as at a jump
+    return np.where(better, found.x, brackets[1])
 
 
-def _polished(evaluate, angle, sign, half_width=0.01, degree=8):
+def _polished(evaluate, angle, sign, floor, half_width=0.01, degree=8):
     """Zero of the slope of a local Chebyshev fit, where its value is as good as the one it replaces."""
     from numpy.polynomial import chebyshev
 
     nodes = chebyshev.chebpts1(degree + 1)
     samples = evaluate((angle[:, None] + half_width * nodes).ravel()).reshape(angle.size, -1)
-    series = chebyshev.chebfit(nodes, samples.T, degree)
+    series = chebyshev.chebfit(nodes, np.nan_to_num(samples).T, degree)
     slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
     place = np.zeros_like(angle)
     for _ in range(3):
         place -= _series(place, slope) / _series(place, bend)
     refined = np.where(np.abs(place) < 1e-3, angle + half_width * place, angle)
-    rounding = 8 * np.finfo(float).eps * np.max(np.abs(samples), axis=1)
-    return np.where(sign * evaluate(refined) <= sign * evaluate(angle) + rounding, refined, angle)
+    return np.where(sign * evaluate(refined) <= sign * evaluate(angle) + 0.1 * floor, refined, angle)
 
 
 def _series(place, coefficients):

@@ -40,7 +40,8 @@ def draw_case(case, folder, file_format="png", only=None):
     problem = checks.choice("figure", only, figures) if only else None
     if problem:
         raise ParameterError(problem)
-    solutions = {name: case.solve(name) for name in case.variants}
+    names = [case.reference, *(name for name in case.variants if name != case.reference)]
+    solutions = {name: case.solve(name) for name in names}
     return [
         _saved(figures[name], solutions, name, case, Path(folder), file_format)
         for name in ([only] if only else figures)
@@ -116,22 +117,22 @@ def _one_each(plot, width, height, stacked=False):
 
 
 def _overview(solutions) -> Figure:
-    """The last variant, its torque against all others, and the support reaction before and after."""
+    """The last variant, its torque against all others, and the support reaction of the first and the last."""
+    shown = list(dict.fromkeys([next(iter(solutions)), next(reversed(solutions))]))
     figure, axes = plt.subplot_mosaic(
-        [["mechanism"] * 3, ["torque", "before", "after"]],
+        [["mechanism"] * (1 + len(shown)), ["torque", *shown]],
         figsize=(11, 6.4),
         height_ratios=[0.8, 1],
         layout="constrained",
     )
-    (first_name, first), *_, (name, last) = solutions.items()
+    last = solutions[shown[-1]]
     plots.mechanism(last, ax=axes["mechanism"])
-    axes["mechanism"].set_title(f"{name}: {last.mechanism.name}")
+    axes["mechanism"].set_title(f"{shown[-1]}: {last.mechanism.name}")
     plots.torque(solutions, ax=axes["torque"])
     axes["torque"].set_title("torque the drive must give")
-    plots.hodograph(first, ax=axes["before"], marks=45)
-    axes["before"].set_title(f"support reaction, {first_name}")
-    plots.hodograph(last, ax=axes["after"], marks=45)
-    axes["after"].set_title(f"support reaction, {name}")
+    for name in shown:
+        plots.hodograph(solutions[name], ax=axes[name], marks=45)
+        axes[name].set_title(f"support reaction, {name}")
     return figure
 
 

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from . import checks
+from .batch import batch_shape
 from .cam_roller import CamRoller
 from .chain import Forces
 from .crank import Crank
 from .guide import Guide
-from .links import Link
+from .links import Link, present
 from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
 
@@ -48,6 +49,11 @@ class Mechanism:
         for group in self.groups:
             references.update(group.references)
         return references
+
+    @cached_property
+    def batch(self):
+        """Shape that arrays of designs among the parameters have in common; () for a single design."""
+        return batch_shape((self.crank, self.groups))
 
     @property
     def bars(self):
@@ -89,8 +95,8 @@ def crank_slider(
     crank_length,
     coupler_length,
     *,
-    guide_angle=None,
-    guide_offset=None,
+    guide_angle=0.0,
+    guide_offset=0.0,
     guide=None,
     assembly=+1,
     crank=Link(),
@@ -104,9 +110,9 @@ def crank_slider(
     crank_length, coupler_length : float or array
         m; arrays of shape (designs, 1) make a batch.
     guide_angle : float
-        Direction of the guide from +x, rad; 0 unless told.
+        Direction of the guide from +x, rad.
     guide_offset : float or array
-        Signed distance of the guide from O along the guide's left normal, m; 0 unless told.
+        Signed distance of the guide from O along the guide's left normal, m.
     guide : Guide
         In place of the two, as from ``Guide.through(W1, W2)``.
     assembly : +1 or -1
@@ -138,8 +144,8 @@ def cam_crank_slider(
     cam,
     coupler_length,
     *,
-    guide_angle=None,
-    guide_offset=None,
+    guide_angle=0.0,
+    guide_offset=0.0,
     guide=None,
     assembly=+1,
     crank=Link(),
@@ -210,8 +216,7 @@ def four_bar(
 
 def _guide(guide, angle, offset):
     if guide is None:
-        return Guide.at(0.0 if angle is None else angle, 0.0 if offset is None else offset)
-    checks.require(
-        "guide", None if angle is None and offset is None else "give either guide or guide_angle and guide_offset"
-    )
+        return Guide.at(angle, offset)
+    free = present(angle) is None and present(offset) is None
+    checks.require("guide", None if free else "give either guide or guide_angle and guide_offset")
     return guide

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from . import checks
 from .elementary import namespace, stack
 from .errors import QuantityError
@@ -31,6 +33,13 @@ class Motion:
     crank_angle: Any
     crank_speed: Any
     crank_acceleration: Any
+
+    @cached_property
+    def shape(self):
+        """Shape (..., N) of a scalar result: batch axes of the designs, then the crank angles."""
+        return np.broadcast_shapes(
+            self.crank_angle.shape, self.mechanism.batch, np.shape(self.crank_speed), np.shape(self.crank_acceleration)
+        )
 
     @cached_property
     def placement(self):
@@ -124,10 +133,7 @@ class Motion:
         return self._full(number(part))[0]
 
     def _full(self, *parts):
-        """The parts with the shape of the crank angles at least, batch axes as they come."""
-        angle = self.crank_angle
-        xp = namespace(angle)
-        full = [part if hasattr(part, "shape") else xp.full_like(angle, part) for part in parts]
-        if all(part.shape == angle.shape for part in full):
-            return full
-        return xp.broadcast_arrays(*full, angle)[: len(full)]
+        """The parts with the shape of crank angles and designs together."""
+        xp = namespace(self.crank_angle)
+        full = [part if hasattr(part, "shape") else xp.full_like(self.crank_angle, part) for part in parts]
+        return [part if part.shape == self.shape else xp.broadcast_to(part, self.shape) for part in full]

@@ -16,6 +16,7 @@ from .drawings import animation, mass_centres, mechanism
 from .extremes import extremes
 from .linkage import chain_unit_angle
 from .quantities import label, magnitude, unit, values
+from .slider_group import SliderGroup
 
 __all__ = [
     "acceleration_error",
@@ -75,13 +76,17 @@ def pressure_angle(solutions, ax=None):
 def acceleration_error(solutions, ax=None):
     """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
 
-    With the stroke S from the true extremes of the slider position, the law is -S/2 omega^2 cos(phi).
+    With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
+    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2.
     """
     ax = axes(ax)
     named = labelled(solutions, "slider_acceleration")
     for name, solution in named.items():
-        amplitude = np.ptp(extremes(solution, "slider_position").value) / 2 * solution.crank_speed**2
-        error = solution.slider_acceleration / amplitude + np.cos(solution.crank_angle)
+        half_stroke = np.ptp(extremes(solution, "slider_position").value) / 2
+        square, alpha = solution.crank_speed**2, solution.crank_acceleration
+        psi = solution.crank_angle - solution.mechanism.group(SliderGroup).guide.guide_angle
+        law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
+        error = (solution.slider_acceleration - law) / (half_stroke * square)
         ax.plot(_degrees(solution), 100 * error, label=name)
     return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1)
 

@@ -36,7 +36,20 @@ def values(solution, quantity):
         return solution.rate(link) if ending == "_rate" else solution.angular_acceleration(link)
     if quantity in solution.reactions:
         return magnitude(solution.reaction(quantity))
-    raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", quantity, (*UNITS, *solution.reactions)))
+    if quantity in solution.scalars:
+        return solution.scalar(quantity)
+    known = (*UNITS, *solution.scalars, *solution.reactions)
+    raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", quantity, tuple(dict.fromkeys(known))))
+
+
+def scale(solution, quantity):
+    """Largest of the terms that a force, moment or torque is the sum of; 0 for a motion or a function of the user's.
+
+    What is small beside it may be rounding of terms that cancel.
+    """
+    if callable(quantity) or _of_link(quantity)[0] or unit(quantity) not in ("N", "N m"):
+        return 0.0
+    return solution.largest_torque_term if unit(quantity) == "N m" else solution.largest_force_term
 
 
 def unit(quantity):

@@ -31,12 +31,20 @@ AngularAcceleration = Annotated[float, BeforeValidator(_reader("rad/s^2"))]
 GravityAcceleration = Annotated[float, BeforeValidator(_reader("m/s^2", low=0.0))]
 
 _STIFFNESS = _reader("N/m", low=0.0)
+_COORDINATE = _reader("m")
 MID_LENGTH = "mid-length"
 BALANCE_THE_SLIDER = "balance the slider"
 
 
+def _or_words(words, read, text):
+    try:
+        return read(text)
+    except ValueError as error:
+        raise ValueError(f'{error}; or write "{words}"') from None
+
+
 def _stiffness(text):
-    return text if text == BALANCE_THE_SLIDER else _STIFFNESS(text)
+    return text if text == BALANCE_THE_SLIDER else _or_words(BALANCE_THE_SLIDER, _STIFFNESS, text)
 
 
 def _point(value):
@@ -48,7 +56,7 @@ def _point(value):
 def _centre(value):
     if value == MID_LENGTH:
         return value
-    return _point(value) if isinstance(value, list) else (to_si(value, "m"), 0.0)
+    return _point(value) if isinstance(value, list) else (_or_words(MID_LENGTH, _COORDINATE, value), 0.0)
 
 
 def _two_points(value):

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from . import assembly, checks
+from .batch import batch_shape
+from .elementary import is_foreign_array
 from .errors import ParameterError, QuantityError
 from .links import load, virtual_work
 from .loads import Gravity, ProcessForce
@@ -25,7 +27,6 @@ class Solution(Motion):
     """
 
     loads: tuple = ()
-    on_gap: str = "raise"
 
     def at(self, crank_angle):
         """The same mechanism, speed and loads at other crank angles."""
@@ -43,7 +44,12 @@ class Solution(Motion):
                 f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
                 "(or, for a process force, a function of the motion) to evaluate at other angles"
             )
-        return replace(self, crank_angle=_angles(crank_angle), on_gap="nan")
+        return replace(self, crank_angle=_angles(crank_angle))
+
+    @cached_property
+    def shape(self):
+        """Shape (..., N) of a scalar result: batch axes of designs and loads, then the crank angles."""
+        return np.broadcast_shapes(super().shape, batch_shape(self.loads))
 
     @property
     def reactions(self):
@@ -58,10 +64,15 @@ class Solution(Motion):
         """
         return self.as_vector(self._look_up("reaction", joint, self._forces.reactions))
 
+    @property
+    def scalars(self):
+        """Names of the forces and moments that `scalar` gives."""
+        return tuple(self._forces.scalars)
+
     def scalar(self, name):
         """A force or moment by name, (..., N): "guide_force", "guide_moment", "cam_force", "slot_force" ..."""
         found = self._look_up("quantity", name, self._forces.scalars)
-        if not hasattr(found, "shape"):  # a constant has the shape of the others, and their gaps
+        if not hasattr(found, "shape"):  # a constant has the gaps of the others
             found = found + 0.0 * self._forces.scalars["balancing_torque"]
         return self._scalar(found)
 
@@ -99,9 +110,20 @@ class Solution(Motion):
     @cached_property
     def power_residual(self):
         """Largest difference of the two torques over the turn, relative to the largest single power that flows."""
-        scale = reduce(np.maximum, (_largest(part) for part in self._powers), 0.0)
-        difference = _largest(self.balancing_torque - self.balancing_torque_by_power)
+        scale = self.largest_torque_term
+        difference = self._largest(self.balancing_torque - self.balancing_torque_by_power)
         return np.where(scale > 0, difference / np.where(scale > 0, scale, 1.0), 0.0 * difference)[()]
+
+    @cached_property
+    def largest_torque_term(self):
+        """Largest torque that one load alone would take, N m: what the balancing torque is a sum of."""
+        return reduce(np.maximum, (self._largest(part) for part in self._powers), 0.0)
+
+    @cached_property
+    def largest_force_term(self):
+        """Largest load on one link, weight, inertia or applied, N: what a reaction is a sum of."""
+        forces = [part for wrench in self._link_loads.values() if wrench.force is not None for part in wrench.force]
+        return reduce(np.maximum, map(self._largest, [*forces, *self._pushes.values()]), 0.0)
 
     @cached_property
     def shaking_force(self):
@@ -170,6 +192,19 @@ class Solution(Motion):
         return pushes
 
     @cached_property
+    def _closed(self):
+        """Whether the mechanism closes at each angle."""
+        parts = [part for joint in self.placement.joints.values() for part in joint.position]
+        return np.isfinite(reduce(plus, (np.asarray(part, dtype=float) for part in parts)))
+
+    def _largest(self, part):
+        """Largest magnitude over the angles at which the mechanism closes; NaN if there is none."""
+        size, closed = np.broadcast_arrays(np.abs(np.asarray(number(part), dtype=float)), self._closed)
+        if not size.ndim:
+            return size if closed else size * np.nan
+        return np.where(closed.any(axis=-1), np.max(np.where(closed, size, 0.0), axis=-1), np.nan)
+
+    @cached_property
     def _powers(self):
         """Power of each load divided by the crank speed."""
         links = self.placement.links
@@ -177,17 +212,18 @@ class Solution(Motion):
         return works + [product(push, self._travel(name).first) for name, push in self._pushes.items()]
 
 
-def _largest(part):
-    """Largest magnitude over the turn; angles where the mechanism does not close are left out."""
-    found = np.abs(np.asarray(number(part)))
-    return np.fmax.reduce(found, axis=-1) if found.ndim else found
-
-
 def _angles(crank_angle):
-    if hasattr(crank_angle, "shape") and hasattr(crank_angle, "dtype"):
+    if isinstance(crank_angle, np.ndarray) and crank_angle.dtype.kind in "fcO":
+        return _read_only(crank_angle.copy())
+    if is_foreign_array(crank_angle):
         return crank_angle
     checks.require("solve", checks.problem("crank_angle", crank_angle))
-    return np.asarray(crank_angle, dtype=float)
+    return _read_only(np.array(crank_angle, dtype=float))
+
+
+def _read_only(array):
+    array.setflags(write=False)
+    return array
 
 
 def _array_if_list(value):
@@ -253,7 +289,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
             stacklevel=2,
         )
-    solution = Solution(mechanism, angle, crank_speed, crank_acceleration, loads, on_gap)
+    solution = Solution(mechanism, angle, crank_speed, crank_acceleration, loads)
     if on_gap == "raise":
         assembly.check(mechanism, solution.placement)
     return solution

@@ -2,6 +2,7 @@
 
 import math
 import re
+import tokenize
 from functools import cache
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
@@ -53,7 +54,7 @@ def _factor(given, unit):
     registry = _registry()
     try:
         factor, base = registry.get_base_units(registry.parse_units(given))
-    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError):
+    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError, tokenize.TokenError):
         raise ValueError(f'unit "{given}" is not known; give one that converts to "{unit}"') from None
     if base != registry.get_base_units(registry.parse_units(unit))[1]:
         raise ValueError(f'"{given}" does not measure the same as "{unit}"; give a unit that converts to it')
