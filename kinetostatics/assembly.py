@@ -15,8 +15,8 @@ ROUNDING = 1e-15
 def check(mechanism, placement):
     """Raise `AssemblyError` if the mechanism does not close at some angle; warn if it nearly does not."""
     for group in mechanism.groups:
-        margin = group.closure(placement)
-        if not isinstance(margin, np.ndarray | np.float64) or margin.dtype == object:
+        margin = _looked_at(group.closure(placement))
+        if margin is None:
             continue
         smallest = margin.min()
         if smallest >= NEAR_LIMIT:
@@ -27,6 +27,16 @@ def check(mechanism, placement):
             _warn_near_limit(mechanism, placement, margin, smallest)
         else:
             raise _error(mechanism, group, placement, margin)
+
+
+def _looked_at(margin):
+    """The margin as a NumPy array; None where it has no value yet, as under ``jax.jit``."""
+    if isinstance(margin, np.ndarray) and margin.dtype == float:
+        return margin
+    try:
+        return np.asarray(margin, dtype=float)
+    except (TypeError, ValueError):
+        return None
 
 
 def _warn_near_limit(mechanism, placement, margin, smallest):

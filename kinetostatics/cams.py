@@ -5,7 +5,6 @@ and the curvature radius of the pitch curve. Each r is a smooth closed form or s
 the turn.
 """
 
-import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
@@ -176,7 +175,7 @@ class CosineLaw(Cam):
         return (self.mean + self.amplitude * c) * sqrt((1.0 - c) * (1.0 + c))
 
     def polar(self, angle, ray):
-        ux, uy = math.cos(self.guide_angle), math.sin(self.guide_angle)
+        ux, uy = ray_at(self.guide_angle)
         c, s = ray[0] * ux + ray[1] * uy, ray[1] * ux - ray[0] * uy
         a, b = self.amplitude, self.mean
         square, p, q = self._quadratic
@@ -211,19 +210,20 @@ class Sampled(Cam):
     Warns
     -----
     UserWarning
-        The table is too coarse: the second derivative changes by more than one per cent of the largest curvature
-        term when every other point is left out (scaled to the full table by the order of the spline).
+        The table is too coarse or too noisy: the second derivative changes by more than three per cent of the largest
+        curvature term when every other point is left out.
     """
 
     angle: Any
     samples: Any
 
     def __init__(self, angle, radius):
-        checks.require("sampled cam", checks.finite("angle", angle), checks.positive("radius", radius))
+        checks.require("sampled cam", checks.table("angle", angle), checks.table("radius", radius))
         angle, samples = (np.array(values, dtype=float) for values in (angle, radius))
         checks.require(
             "sampled cam",
             None if angle.ndim == 1 and angle.shape == samples.shape else "angle and radius must be 1-D, of one length",
+            None if samples.min(initial=np.inf) > 0 else f"radius must be greater than 0, got {samples.min():g}",
             None if angle.size >= 8 else f"at least 8 points are needed, got {angle.size}",
         )
         step = np.diff(angle)
@@ -266,13 +266,14 @@ class Sampled(Cam):
     def _warn_if_coarse(self):
         fine = self._splines[2](self.angle)
         coarse = _periodic_spline(self.angle[::2], self.samples[::2]).derivative(2)(self.angle)
-        # a quintic spline's second derivative errs by step^4: halving the step leaves one part in 15 of the change
-        error = np.max(np.abs(fine - coarse)) / 15
+        # bounds truncation, a fifteenth of it for a quintic spline, and noise of the table, which is of its size
+        error = np.max(np.abs(fine - coarse))
         scale = np.max(np.abs(self.samples) + np.abs(fine))
-        if error > 0.01 * scale:
+        if error > 0.03 * scale:
             warnings.warn(
-                f"sampled cam: {self.angle.size} points are too coarse: r'' is uncertain by about {error:.3g} m "
-                f"({error / scale:.1%} of its scale), and forces with it; measure more points or smooth the table",
+                f"sampled cam: {self.angle.size} points are too coarse or too noisy: r'' is uncertain by up to "
+                f"{error:.3g} m ({error / scale:.1%} of its scale), and forces with it; measure more points or smooth "
+                "the table",
                 stacklevel=3,
             )
 

@@ -5,9 +5,12 @@ from collections.abc import Mapping
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .errors import ParameterError
 from .quantities import label
 
 INK, STEEL, ACCENT = "0.15", "slategray", "tab:red"
+STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
+"""Line styles, so that curves differ in print too."""
 
 
 def axes(ax):
@@ -17,7 +20,19 @@ def axes(ax):
 
 def labelled(solutions, name):
     """Solutions by label; a single one is labelled by the quantity shown."""
-    return dict(solutions) if isinstance(solutions, Mapping) else {label(name): solutions}
+    named = dict(solutions) if isinstance(solutions, Mapping) else {label(name): solutions}
+    for name, solution in named.items():
+        if len(solution.shape) != 1:
+            raise ParameterError(
+                f"plots show one design over its crank angles, but {name!r} has shape {solution.shape}; solve a single "
+                "design of the batch"
+            )
+    return named
+
+
+def styled(named):
+    """Name, solution and line style of each."""
+    return [(name, solution, STYLES[row % len(STYLES)]) for row, (name, solution) in enumerate(named.items())]
 
 
 def display(name, arrays):

@@ -18,16 +18,19 @@ def known(value):
     return value is None or isinstance(value, numbers.Real | str | list | tuple)
 
 
-def problem(name, value, *, low=None, strict=False):
-    """What is wrong with one value, as a sentence, or None."""
+def problem(name, value, *, low=None, strict=False, table=False):
+    """What is wrong with one value, as a sentence, or None; a `table` has a value for each crank angle."""
     if isinstance(value, float | int) and math.isfinite(value) and low is None:
         return None
     if not known(value):
         return None
+    kind = "an array of numbers" if table else "an array of shape (designs, 1)"
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
-        return f"{name} must be a number or an array of numbers, got {value!r}"
+        return f"{name} must be a number or {kind}, got {value!r}"
+    if isinstance(value, str) or (not table and (isinstance(value, list | tuple) or array.ndim == 1 < array.size)):
+        return f"{name} must be a number or {kind}, got {value!r}"
     if not np.all(np.isfinite(array)):
         return f"{name} must be finite, got {value}"
     if low is not None and np.any(array <= low if strict else array < low):
@@ -76,6 +79,16 @@ def not_negative(name, value):
 
 def finite(name, value):
     return problem(name, value)
+
+
+def table(name, value):
+    return problem(name, value, table=True)
+
+
+def unit_vector(name, value):
+    """What is wrong with a direction, or None."""
+    length = np.hypot(*value) if all(known(part) for part in value) else 1.0
+    return None if np.all(np.abs(length - 1.0) < 1e-9) else f"{name} must have length 1, got {length}; use Guide.at"
 
 
 def links(table):

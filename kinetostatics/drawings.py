@@ -3,7 +3,8 @@
 import numpy as np
 
 from .cam_roller import CamRoller
-from .canvas import ACCENT, INK, STEEL, axes, closed, display, labelled
+from .canvas import ACCENT, INK, STEEL, axes, closed, display, labelled, styled
+from .motion import Motion
 from .principal_points import principal_points
 from .quantities import magnitude
 from .slider_group import SliderGroup
@@ -27,10 +28,10 @@ def mass_centres(solutions, angle=60, ax=None):
     """
     named = labelled(solutions, "common mass centre")
     ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
-    for name, solution in named.items():
+    for name, solution, style in styled(named):
         points = principal_points(solution.mechanism)
-        (line,) = ax.plot(*closed(points.mass_centre(solution)), label=name, zorder=5)
-        ax.plot(*points.mass_centre(solution.at(np.radians([angle]))), "o", ms=4, color=line.get_color(), zorder=6)
+        (line,) = ax.plot(*closed(points.mass_centre(solution)), style, label=name, zorder=5)
+        ax.plot(*points.mass_centre(_posed(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
     ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
     return ax
 
@@ -54,7 +55,7 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     _frame(ax, solution)
     shades = np.linspace(1.0, 0.3, len(angles))
     for angle, shade in zip(angles, shades, strict=True):
-        pose = solution.at(np.radians([angle]))
+        pose = _posed(solution, [angle])
         for bar, (x, y) in zip(_bars(ax, pose, shade), _bar_lines(pose), strict=True):
             bar.set_data(x, y)
         for group in _slider_groups(pose):
@@ -83,9 +84,9 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     solution : Solution
     joints : sequence of str
         Reactions drawn as arrows from their joints ("guide" starts at B); the largest of all is half the
-        mechanism's crank circle long.
+        mechanism's crank circle long. NaN where the mechanism does not close draws nothing.
     frames : int
-        Poses in the turn.
+        Poses shown, of the solution's crank angles.
     interval : float
         Time between them, ms.
     ax : Axes, optional
@@ -97,22 +98,26 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     from matplotlib.animation import FuncAnimation
 
     ax = axes(ax)
-    turn = solution.at(np.linspace(0, 2 * np.pi, frames, endpoint=False))
+    angles = solution.crank_angle
+    steps = np.linspace(0, angles.size, min(frames, angles.size), endpoint=False).astype(int)
+    turn = solution
     _frame(ax, solution)
     bars = _bars(ax, turn, 1.0)
     lines = list(_bar_lines(turn))
+    blocks = [turn.position(group.pin) for group in _slider_groups(turn)]
+    sliders = [ax.plot([], [], "s", ms=13, mfc=STEEL, mec="none", zorder=3)[0] for _ in blocks]
     pins = [ax.plot([], [], "o", ms=6, mfc="white", mec=INK, zorder=4)[0] for _ in turn.placement.joints]
     positions = [turn.position(joint) for joint in turn.placement.joints]
     forces = [turn.reaction(joint) for joint in joints]
-    largest = max(float(np.max(magnitude(force))) for force in forces)
-    length = float(np.max(magnitude(turn.position("A"))))
+    largest = max(float(np.nanmax(magnitude(force))) for force in forces)
+    length = float(np.nanmax(magnitude(turn.position("A"))))
     starts = [turn.position("B" if joint == "guide" else joint) for joint in joints]
     arrows = ax.quiver(
         *np.zeros((2, len(joints))),
         *np.zeros((2, len(joints))),
         angles="xy",
         scale_units="xy",
-        scale=largest / length,
+        scale=(largest or 1.0) / length,
         color=ACCENT,
         width=0.005,
         zorder=5,
@@ -125,19 +130,19 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     def draw(step):
         for bar, (x, y) in zip(bars, lines, strict=True):
             bar.set_data(x[..., step], y[..., step])
-        for pin, position in zip(pins, positions, strict=True):
-            pin.set_data(position[:, [step]])
+        for marker, position in zip([*sliders, *pins], [*blocks, *positions], strict=True):
+            marker.set_data(position[:, [step]])
         arrows.set_offsets(np.array([start[:, step] for start in starts]))
         arrows.set_UVC(*np.array([force[:, step] for force in forces]).T)
         caption.set_text(f"crank angle {np.degrees(turn.crank_angle[step]):.0f}°")
-        return [*bars, *pins, arrows, caption]
+        return [*bars, *sliders, *pins, arrows, caption]
 
-    return FuncAnimation(ax.figure, draw, frames=frames, interval=interval)
+    return FuncAnimation(ax.figure, draw, frames=steps, interval=interval)
 
 
 def _frame(ax, solution):
     """What does not move: the support, the guide over the stroke, the pitch curve of the cam or the crank circle."""
-    turn = solution.at(np.linspace(0, 2 * np.pi, 721))
+    turn = _posed(solution, np.linspace(0, 360, 721))
     if solution.mechanism.group(CamRoller) is not None:
         ax.plot(*turn.position("A"), color=ACCENT, lw=1, ls="--", label="pitch curve of the cam")
     else:
@@ -149,6 +154,11 @@ def _frame(ax, solution):
         start, end = path[:, np.nanargmin(along)], path[:, np.nanargmax(along)]
         reach = 0.15 * (end - start)
         ax.plot(*np.column_stack([start - reach, end + reach]), color=INK, lw=6, alpha=0.15)
+
+
+def _posed(solution, degrees):
+    """The mechanism at other crank angles, whatever its speed and loads."""
+    return Motion(solution.mechanism, np.radians(degrees), 0.0, 0.0)
 
 
 def _slider_groups(solution):
@@ -175,6 +185,7 @@ def _ends(start, end):
 
 
 def _equal(ax):
+    ax.relim()
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
     ax.set_xlabel("x [m]")

@@ -3,6 +3,8 @@
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from . import checks
 from .elementary import cos, sin
 
@@ -43,4 +45,4 @@ class Guide(NamedTuple):
     @property
     def guide_angle(self):
         """Angle of the direction from +x, rad."""
-        return math.atan2(self.direction[1], self.direction[0])
+        return np.arctan2(self.direction[1], self.direction[0])[()]

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from . import checks
 from .planar import added, left, minus, moment, plus, product, stretched, subtracted, work
 
@@ -80,7 +82,8 @@ class Link:
     inertia: Any = 0.0
 
     def __post_init__(self):
-        centre = self.centre if isinstance(self.centre, tuple | list) else (self.centre, 0.0)
+        pair = isinstance(self.centre, tuple | list) or np.shape(self.centre) == (2,)
+        centre = self.centre if pair else (self.centre, 0.0)
         checks.require(
             "Link",
             checks.not_negative("mass", self.mass),

@@ -94,7 +94,7 @@ class ProcessForce:
 
     def __post_init__(self):
         if not callable(self.force):
-            checks.require("process force", checks.finite("force", self.force))
+            checks.require("process force", checks.table("force", self.force))
 
     def push(self, motion):
         """Force on the slider along the guide, N."""

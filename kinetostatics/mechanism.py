@@ -1,5 +1,6 @@
 """A mechanism: a crank and the chain of structural groups that hang on it."""
 
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 from . import checks
 from .batch import batch_shape
 from .cam_roller import CamRoller
+from .cams import CosineLaw
 from .chain import Forces
 from .crank import Crank
 from .guide import Guide
@@ -33,6 +35,20 @@ class Mechanism:
     name: str
     crank: Crank
     groups: tuple[Any, ...]
+
+    def __post_init__(self):
+        joints: set[str] = {"O"}
+        links: set[str] = set()
+        problems: list[str] = []
+        for part in (self.crank, *self.groups):
+            on = getattr(part, "on", "O")
+            if on not in joints:
+                problems.append(f"{type(part).__name__} hangs on joint {on!r}, which no part before it places")
+            added = {*part.references.values(), *(bar.end for bar in part.bars)} - {on, "O"}
+            for kind, known, new in (("joint", joints, added), ("link", links, set(part.links))):
+                problems += [f"{type(part).__name__} adds {kind} {name!r} a second time" for name in known & new]
+                known |= new
+        checks.require(self.name, *problems)
 
     @cached_property
     def links(self):
@@ -174,6 +190,8 @@ def cam_crank_slider(
         A value no machine can have, or both ways of giving the guide.
     """
     group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
+    if isinstance(cam, CosineLaw):
+        _warn_off_law(cam, group)
     return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block), group))
 
 
@@ -212,6 +230,23 @@ def four_bar(
     """
     group = RockerGroup(coupler_length, rocker_length, rocker_pivot, assembly, coupler, rocker)
     return Mechanism("four-bar", Crank(crank_length, crank), (group,))
+
+
+def _warn_off_law(cam, group):
+    """Warn if the slider will not follow the law that the cam is cut for."""
+    angle, length = group.guide.guide_angle, group.coupler_length
+    wrong = [
+        text
+        for text, value, wanted in [
+            (f"guide_offset {group.guide.guide_offset} m is not 0", group.guide.guide_offset, 0.0),
+            (f"assembly {group.assembly} is not +1", group.assembly, 1.0),
+            (f"guide_angle {angle} is not the cam's {cam.guide_angle}", np.cos(angle - cam.guide_angle), 1.0),
+            (f"coupler_length {length} m is not the cam's {cam.coupler_length} m", length, cam.coupler_length),
+        ]
+        if checks.known(value) and checks.known(wanted) and np.any(np.abs(value - wanted) > 1e-9)
+    ]
+    if wrong:
+        warnings.warn(f"the slider will not follow the cosine law of its cam: {'; '.join(wrong)}", stacklevel=3)
 
 
 def _guide(guide, angle, offset):

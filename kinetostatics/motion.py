@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from . import checks
-from .elementary import namespace, stack
+from .elementary import namespace, read_only, stack
 from .errors import QuantityError
 from .links import accelerated, angular_acceleration, arm, first_at, present, second_at
 from .mechanism import Mechanism
@@ -127,10 +127,10 @@ class Motion:
             x = x + 0.0 * y  # a constant component is NaN where the other one is
         if not hasattr(y, "shape"):
             y = y + 0.0 * x
-        return stack(self._full(x, y))
+        return read_only(stack(self._full(x, y)))
 
     def _scalar(self, part):
-        return self._full(number(part))[0]
+        return read_only(self._full(number(part))[0])
 
     def _full(self, *parts):
         """The parts with the shape of crank angles and designs together."""

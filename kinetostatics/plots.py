@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .canvas import INK, axes, closed, display, labelled
+from .canvas import INK, axes, closed, display, labelled, styled
 from .checks import choice, require
 from .drawings import animation, mass_centres, mechanism
 from .extremes import extremes
@@ -53,8 +53,8 @@ def over_turn(solutions, quantity, ax=None):
         for name, solution in labelled(solutions, quantity).items()
     }
     factor, shown = display(unit(quantity), [value for _, value in curves.values()])
-    for name, (angle, value) in curves.items():
-        ax.plot(angle, factor * value, label=name)
+    for name, (angle, value), style in styled(curves):
+        ax.plot(angle, factor * value, style, label=name)
     return _finished(ax, f"{label(quantity)} [{shown}]", len(curves) > 1)
 
 
@@ -81,13 +81,13 @@ def acceleration_error(solutions, ax=None):
     """
     ax = axes(ax)
     named = labelled(solutions, "slider_acceleration")
-    for name, solution in named.items():
+    for name, solution, style in styled(named):
         half_stroke = np.ptp(extremes(solution, "slider_position").value) / 2
         square, alpha = solution.crank_speed**2, solution.crank_acceleration
         psi = solution.crank_angle - solution.mechanism.group(SliderGroup).guide.guide_angle
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.slider_acceleration - law) / (half_stroke * square)
-        ax.plot(_degrees(solution), 100 * error, label=name)
+        ax.plot(_degrees(solution), 100 * error, style, label=name)
     return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1)
 
 
@@ -101,7 +101,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
         Joint, or the vector attribute "shaking_force".
     ax : Axes, optional
     marks : float
-        Step of the crank-angle marks, degrees.
+        Step of the crank-angle marks, degrees; marks stand where the solution has that angle, to half a degree.
 
     Returns
     -------
@@ -112,8 +112,8 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     named = labelled(solutions, joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
     factor, shown = display("N", curves.values())
-    for name, solution in named.items():
-        (line,) = ax.plot(*closed(factor * curves[name]), label=name)
+    for name, solution, style in styled(named):
+        (line,) = ax.plot(*closed(factor * curves[name]), style, label=name)
         _mark_angles(ax, solution, joint, factor, np.arange(0, 360, marks), line.get_color())
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
@@ -146,14 +146,14 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     """
     ax = axes(ax)
     named = labelled(solutions, f"{link}_rate")
-    for name, solution in named.items():
+    for name, solution, style in styled(named):
         angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
         rows = np.argsort(angle)
         speed = solution.crank_speed
         relative = (
             solution.rate(link) / speed if order == 1 else solution.angular_acceleration(link) / (speed * abs(speed))
         )
-        ax.plot(angle[rows], relative[rows], label=name)
+        ax.plot(angle[rows], relative[rows], style, label=name)
     kind = "velocity" if order == 1 else "acceleration"
     _finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
     ax.set_xlabel("crank angle from +y, clockwise [deg]")
@@ -180,10 +180,10 @@ def shaking_force(solutions, by="direction", ax=None):
     named = labelled(solutions, "shaking_force")
     sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
     factor, shown = display("N", sizes.values())
-    for name, solution in named.items():
+    for name, solution, style in styled(named):
         x, y = solution.shaking_force
         angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
-        ax.plot(*closed(np.array([angle, factor * sizes[name]])), label=name)
+        ax.plot(*closed(np.array([angle, factor * sizes[name]])), style, label=name)
     ax.set_title(f"shaking force [{shown}] by {by}", fontsize="medium")
     if len(named) > 1:
         ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
@@ -197,8 +197,10 @@ def _degrees(solution):
 def _finished(ax, ylabel, legend):
     ax.set_xlabel("crank angle [deg]")
     ax.set_ylabel(ylabel)
-    ax.set_xlim(0, 360)
-    ax.set_xticks(range(0, 361, 60))
+    low, high = ax.dataLim.intervalx
+    if low >= 0 and high <= 360:
+        ax.set_xlim(0, 360)
+        ax.set_xticks(range(0, 361, 60))
     ax.axhline(0, color=INK, lw=0.5)
     ax.grid(alpha=0.3)
     if legend:
@@ -212,10 +214,15 @@ def _vector(solution, joint):
 
 
 def _mark_angles(ax, solution, joint, factor, angles, color):
-    """Crank-angle marks on a hodograph; marks that fall together share one label."""
-    points = factor * _vector(solution.at(np.radians(angles)), joint)
+    """Marks at the crank angles that the solution has; marks that fall together share one label."""
+    apart = np.abs(np.mod(_degrees(solution) - angles[:, None] + 180, 360) - 180)
+    rows = np.argmin(apart, axis=1)
+    met = apart.min(axis=1) < 0.5
+    angles, points = angles[met], factor * _vector(solution, joint)[:, rows[met]]
+    if not angles.size:
+        return
     ax.plot(*points, "o", ms=3, color=color)
-    near = 0.03 * np.max(np.ptp(points, axis=1))
+    near = 0.06 * np.max(np.ptp(points, axis=1))
     labels: dict[int, list[str]] = {}
     for row, point in enumerate(points.T):
         first = next((other for other in labels if np.hypot(*(points[:, other] - point)) < near), row)

@@ -123,6 +123,7 @@ class SliderGroup:
             None
             if isinstance(self.guide, Guide)
             else f"guide must be made by Guide.at or .through, got {self.guide!r}",
+            checks.unit_vector("guide direction", self.guide.direction) if isinstance(self.guide, Guide) else None,
             checks.positive("coupler length", self.coupler_length),
             checks.assembly_sign(self.assembly),
         )

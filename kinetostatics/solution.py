@@ -10,7 +10,7 @@ import numpy as np
 
 from . import assembly, checks
 from .batch import batch_shape
-from .elementary import is_foreign_array
+from .elementary import is_foreign_array, read_only
 from .errors import ParameterError, QuantityError
 from .links import load, virtual_work
 from .loads import Gravity, ProcessForce
@@ -214,16 +214,11 @@ class Solution(Motion):
 
 def _angles(crank_angle):
     if isinstance(crank_angle, np.ndarray) and crank_angle.dtype.kind in "fcO":
-        return _read_only(crank_angle.copy())
+        return read_only(crank_angle.copy())
     if is_foreign_array(crank_angle):
         return crank_angle
-    checks.require("solve", checks.problem("crank_angle", crank_angle))
-    return _read_only(np.array(crank_angle, dtype=float))
-
-
-def _read_only(array):
-    array.setflags(write=False)
-    return array
+    checks.require("solve", checks.table("crank_angle", crank_angle))
+    return read_only(np.array(crank_angle, dtype=float))
 
 
 def _array_if_list(value):
@@ -250,7 +245,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     Returns
     -------
     Solution
-        Lazy: results are computed when first read.
+        Lazy: results are computed when first read, and kept; they cannot be written to.
 
     Raises
     ------
@@ -272,8 +267,8 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     checks.require(
         "solve",
         None if math.prod(angle.shape) else "there are no crank angles",
-        checks.finite("crank_speed", crank_speed),
-        checks.finite("crank_acceleration", crank_acceleration),
+        checks.table("crank_speed", crank_speed),
+        checks.table("crank_acceleration", crank_acceleration),
         checks.choice("on_gap", on_gap, ("raise", "nan")),
         *(_load_problem(mechanism, item) for item in loads),
         checks.fitting(

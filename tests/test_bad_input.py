@@ -29,8 +29,8 @@ def solve(mechanism, angle=TURN, **changes):
     [
         ({"mass": -1.0}, "Link: mass must be at least 0, got -1.0"),
         ({"mass": float("nan")}, "Link: mass must be finite, got nan"),
-        ({"mass": np.array([2.0, -3.0])}, "Link: mass must be at least 0, got a smallest value of -3"),
-        ({"mass": "heavy"}, "Link: mass must be a number or an array of numbers, got 'heavy'"),
+        ({"mass": np.array([[2.0], [-3.0]])}, "Link: mass must be at least 0, got a smallest value of -3"),
+        ({"mass": "heavy"}, r"Link: mass must be a number or an array of shape \(designs, 1\), got 'heavy'"),
         ({"inertia": -2.0}, "Link: inertia must be at least 0, got -2.0"),
         ({"inertia": np.inf}, "Link: inertia must be finite, got inf"),
         ({"centre": (1.0, 2.0, 3.0)}, r"Link: centre must be \(along, across\) or a number, got \(1.0, 2.0, 3.0\)"),
@@ -60,7 +60,7 @@ def test_message_lists_every_fault_at_once():
         ({"guide_angle": np.inf}, "guide_angle must be finite, got inf"),
         ({"guide_offset": np.nan}, "guide_offset must be finite, got nan"),
         ({"guide": ks.Guide.at(0.1), "guide_angle": 0.2}, "give either guide or guide_angle and guide_offset"),
-        ({"guide": ks.Guide.at(0.1), "guide_offset": 0.0}, "give either guide or guide_angle and guide_offset"),
+        ({"guide": ks.Guide.at(0.1), "guide_offset": 0.1}, "give either guide or guide_angle and guide_offset"),
     ],
 )
 def test_crank_slider_refuses(changes, message):

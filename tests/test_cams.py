@@ -174,7 +174,7 @@ def test_sampled_cam_drives_a_mechanism_like_the_circle_it_was_taken_from():
 def test_sampled_cam_warns_of_a_table_whose_rounding_shows_in_the_second_derivative(digits):
     """A radius read to 0.1 or 0.01 mm at every degree: the error over the step squared is of the size of r."""
     _, angle, radius = circle_table(360)
-    with pytest.warns(UserWarning, match=r"360 points are too coarse: r'' is uncertain by about"):
+    with pytest.warns(UserWarning, match=r"360 points are too coarse or too noisy: r'' is uncertain by up to"):
         ks.cams.Sampled(angle, np.round(radius, digits))
 
 
