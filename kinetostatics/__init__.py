@@ -13,7 +13,9 @@ principal_points            common mass centre and shaking force from the link m
 assembly                    where it can be put together
 extremes, comparison        true extrema; dynamic coefficients
 case, schema, units         case files and what they may hold; text with units
-quantities, tables          names and units of results; DataFrames and CSV
+files                       CSV tables in, results out
+quantities, tables          names and units of results; DataFrames
+checks, errors              what is refused at the door, and how it is said
 plots, drawings, canvas     figures: curves, the mechanism itself, what they share
 figures, cli                figures of a case; command line
 """

@@ -251,7 +251,7 @@ class Sampled(Cam):
     @classmethod
     def from_csv(cls, path):
         """Read a table with two columns headed like ``angle [deg], radius [mm]``; any unit of angle and length."""
-        from .tables import read_columns
+        from .files import read_columns
 
         return cls(*read_columns(path, {"angle": "rad", "radius": "m"}))
 

@@ -12,12 +12,13 @@ import pydantic
 from . import balancing, cams, checks, linkage, schema
 from .comparison import Comparison
 from .errors import CaseError, KinetostaticsError
+from .files import read_columns
 from .guide import Guide
 from .links import Link
 from .loads import Gravity, ProcessForce, Spring
 from .mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
 from .solution import Solution, solve
-from .tables import balancing_table, read_columns
+from .tables import balancing_table
 
 
 @dataclass(frozen=True, eq=False)

@@ -60,7 +60,8 @@ def _run(options):
     import pandas as pd
 
     from .case import load_case
-    from .tables import extremes_frame, written_whole
+    from .files import written_whole
+    from .tables import extremes_frame
 
     case = load_case(options.case)
     names = [options.variant] if options.variant else list(case.variants)

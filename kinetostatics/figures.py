@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from . import checks, plots
 from .cam_roller import CamRoller
 from .errors import ParameterError
+from .files import written_whole
 from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
-from .tables import written_whole
 
 
 def draw_case(case, folder, file_format="png", only=None):

@@ -28,6 +28,11 @@ class Solution(Motion):
 
     loads: tuple = ()
 
+    def __repr__(self):
+        drive = f"crank_speed={self.crank_speed}, crank_acceleration={self.crank_acceleration}"
+        loads = ", ".join(type(item).__name__ for item in self.loads) or "no loads"
+        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive}, {loads}>"
+
     def at(self, crank_angle):
         """The same mechanism, speed and loads at other crank angles."""
         varying = [
