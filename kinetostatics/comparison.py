@@ -117,8 +117,8 @@ def compare(reference, balanced):
 def mean_absolute_torque(solution):
     """Integral mean of the absolute balancing torque over the turn, N m.
 
-    Adaptive quadrature (scipy.integrate.cubature) between the angles where the torque changes sign: the pieces of a
-    smooth torque come out to rounding, and it closes in on the jumps of a process force.
+    Adaptive quadrature (scipy.integrate.cubature) between the angles where the torque changes sign or jumps, as with a
+    process force: on each of the pieces it is smooth.
     """
     from scipy.integrate import cubature
     from scipy.optimize import elementwise
@@ -133,8 +133,8 @@ def mean_absolute_torque(solution):
         raise ParameterError("mean torque works on one design at a time; solve a single design of the batch")
     change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
     kinks = elementwise.find_root(torque, (grid[change], grid[change + 1])).x if change.size else []
-    edges = np.unique([0.0, *kinks, turn])
     floor = 1e-14 * turn * solution.at(grid).largest_torque_term
+    edges = np.unique([0.0, *kinks, *_jumps(torque, grid, samples, floor), turn])
     pieces = [
         cubature(lambda angle: np.abs(torque(angle[:, 0])), [start], [end], rtol=1e-12, atol=floor)
         for start, end in pairwise(edges)
@@ -145,6 +145,23 @@ def mean_absolute_torque(solution):
             "the loads finite?"
         )
     return float(sum(piece.estimate for piece in pieces)) / turn
+
+
+def _jumps(function, grid, samples, floor):
+    """Angles on both sides of each jump, by bisection where a step of the grid rises far more than its neighbours."""
+    rise = np.abs(np.diff(samples))
+    around = np.maximum(np.append(rise[1:], 0.0), np.append(0.0, rise[:-1]))
+    found = np.flatnonzero(rise > 4 * around + floor)
+    if not found.size:
+        return ()
+    low, high, below, above = grid[found], grid[found + 1], samples[found], samples[found + 1]
+    for _ in range(50):
+        middle = (low + high) / 2
+        value = function(middle)
+        left = np.abs(value - below) <= np.abs(value - above)
+        low, below = np.where(left, middle, low), np.where(left, value, below)
+        high, above = np.where(left, high, middle), np.where(left, above, value)
+    return (*low, *high)
 
 
 def _matched(reference, balanced):

@@ -114,3 +114,37 @@ def test_module_and_shell_agree_and_show_no_traceback(broken):
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
     assert done.stderr.startswith(f"kinetostatics: {broken}: 3 problems")
+
+
+def test_run_puts_each_extremum_beside_its_own_angle(capsys):
+    main(["run", "sawframe_2r63", "--variant", "plain"])
+    row = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("balancing torque  "))
+    assert row.split()[-4:] == ["-40237.5", "320.632", "40578.9", "39.2885"]
+
+
+def test_a_case_of_one_variant_is_run_and_plotted_and_has_nothing_to_compare(tmp_path, capsys):
+    case = tmp_path / "one.toml"
+    case.write_text(
+        'title = "one"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\ncrank_speed = "60 rpm"\n'
+        'crank_length = "0.1 m"\ncoupler_length = "0.4 m"\nslider = { mass = "1 kg" }\n'
+    )
+    assert main(["run", str(case)]) == 0
+    assert main(["plot", str(case), "--out", str(tmp_path)]) == 0
+    assert main(["compare", str(case)]) == 2
+    assert "nothing to compare" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'title = "x"\nreference = ["a"]\n[variants.a]\nmechanism = "crank-slider"\n',
+        'title = "x"\nreference = "a"\n[variants.a]\nmechanism = ["crank-slider"]\n',
+        'title = "x"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\ncoupler_length = "2 (m"\n',
+        'title = "x"\nreference = "a"\nvariants = 3\n',
+        'title = "x"\nreference = "a"\ncommon = 3\n[variants.a]\nmechanism = "crank-slider"\n',
+    ],
+)
+def test_values_of_the_wrong_kind_are_problems_not_tracebacks(tmp_path, text, capsys):
+    (tmp_path / "odd.toml").write_text(text)
+    assert main(["run", str(tmp_path / "odd.toml")]) == 2
+    assert capsys.readouterr().err.startswith("kinetostatics: ")

@@ -137,3 +137,60 @@ def test_extremes_name_the_quantities_there_are():
         ks.extremes(Machine("plain").solve(), "balancing_torqe")
     with pytest.raises(ks.QuantityError, match="'cam_force'"):
         ks.extremes(Machine("plain").solve(), "cam_force")
+
+
+SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+
+
+def loaded(force):
+    return ks.solve(SAW, [0.0], crank_speed=33.5, loads=[ks.ProcessForce(force)])
+
+
+def test_extremes_at_a_jump_and_at_the_seam_of_the_turn_are_those_of_the_samples():
+    ramp = ks.extremes(loaded(lambda motion: -3e4 * motion.crank_angle / (2 * np.pi)), "B")
+    assert np.all(np.isfinite(ramp.value))
+    assert ramp.range[1] == pytest.approx(600 * 33.5**2 * 0.3 * 1.15, rel=1e-12)
+    step = ks.extremes(loaded(lambda motion: np.where(motion.crank_angle < np.pi, -3e4, 0.0)), "B")
+    assert np.all(np.isfinite(step.angle))
+    assert np.all(np.isfinite(step.value))
+
+
+def test_rounding_of_terms_that_cancel_is_no_extremum():
+    law = ks.cams.CosineLaw(0.3, 2.0)
+    balanced = ks.solve(
+        ks.cam_crank_slider(law, law.coupler_length, slider=ks.Link(600)),
+        [0.0],
+        crank_speed=33.5,
+        loads=[ks.Spring.balancing(600, 33.5, 2.0)],
+    )
+    assert len(ks.extremes(balanced, "balancing_torque")) == 0
+    assert np.all(np.isnan(ks.compare(loaded(0.0), balanced).torque_extremum_ratios))
+
+
+@pytest.mark.parametrize(
+    "wave", [lambda s: 1 + 1e-12 * np.cos(s.crank_angle), lambda s: np.round(10 * np.cos(s.crank_angle))]
+)
+def test_ripples_and_treads_are_no_extrema(wave):
+    assert list(ks.extremes(loaded(0.0), wave).maximum) in ([True, False], [False, True])
+
+
+def test_torque_extrema_are_matched_by_kind_where_their_numbers_differ():
+    """A cut on the way back adds extrema to the second; each ratio is still of two maxima or two minima."""
+    compared = ks.compare(loaded(0.0), loaded(lambda m: 6e4 * np.sin(5 * m.crank_angle)))
+    reference, matched = compared.torque_extremes
+    other = ks.extremes(compared.balanced, "balancing_torque")
+    assert len(other) != len(reference)
+    for value, maximum in zip(matched, reference.maximum, strict=True):
+        assert maximum == other.maximum[np.flatnonzero(other.value == value)[0]]
+
+
+def test_mean_torque_closes_in_on_the_jumps_of_a_load():
+    """Against the same integral parted at the jumps, each piece smooth."""
+    solution = loaded(lambda m: np.where((m.crank_angle > 0.5) & (m.crank_angle < 2.0), -3e4, 0.0))
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    edges = np.sort(np.concatenate([np.linspace(0, 2 * np.pi, 2001), [0.5, 2.0]]))
+    half = np.diff(edges)[:, None] / 2
+    inner = edges[:-1, None] + half * (1 + nodes)
+    torque = np.abs(solution.at(inner.ravel()).balancing_torque).reshape(inner.shape)
+    expected = np.sum(half * weights * torque) / (2 * np.pi)
+    assert ks.compare(solution, solution).mean_torques[0] == pytest.approx(expected, rel=1e-7)

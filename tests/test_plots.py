@@ -81,3 +81,58 @@ def test_animation_moves_bars_and_force_arrows_and_saves_as_gif(saw, axes, tmp_p
 def test_a_quantity_the_mechanism_lacks_is_refused_by_name(saw, axes):
     with pytest.raises(ks.QuantityError, match="cam_force"):
         ks.plots.cam_force(saw["plain"], ax=axes)
+
+
+def test_hodograph_marks_stand_at_the_reactions_of_their_crank_angles(saw, axes):
+    ks.plots.hodograph(saw["plain"], "O", ax=axes, marks=90)
+    marks = np.array(axes.lines[1].get_data())
+    expected = saw["plain"].at(np.radians([0, 90, 180, 270])).reaction("O") / 1000
+    np.testing.assert_allclose(marks, expected, rtol=1e-12)
+
+
+def test_pressure_angle_is_drawn_in_degrees(saw, axes):
+    ks.plots.pressure_angle(saw["cam-circle"], ax=axes)
+    np.testing.assert_allclose(axes.lines[0].get_ydata(), np.degrees(saw["cam-circle"].pressure_angle))
+    assert "[deg]" in axes.get_ylabel()
+
+
+def test_slotted_crank_is_drawn_from_its_pivot_through_the_block(saw, axes):
+    ks.plots.mechanism(saw["cam-circle"], angles=(50,), ax=axes)
+    pin = saw["cam-circle"].at(np.radians([50.0])).position("A")[:, 0]
+    crank = next(
+        line.get_xydata() for line in axes.lines if np.allclose(line.get_xydata()[0], 0) and len(line.get_xdata()) == 2
+    )
+    assert np.allclose(crank[1] / np.hypot(*crank[1]), pin / np.hypot(*pin))
+    assert np.hypot(*crank[1]) > np.hypot(*pin)
+
+
+def test_force_arrows_start_at_their_joints_and_point_along_the_reactions(saw, axes):
+    film = ks.plots.animation(saw["plain"], joints=("A", "guide"), frames=4, ax=axes)
+    film._draw_frame(90)  # drawing one pose is what saving does for each
+    arrows = next(item for item in axes.collections if hasattr(item, "U"))
+    pose = saw["plain"]
+    np.testing.assert_allclose(arrows.get_offsets(), [pose.position("A")[:, 90], pose.position("B")[:, 90]])
+    np.testing.assert_allclose(np.array([arrows.U, arrows.V]).T, [pose.reaction(j)[:, 90] for j in ("A", "guide")])
+    film._draw_was_started = True
+
+
+def test_acceleration_error_of_an_inclined_cosine_law_is_nil(axes):
+    law = ks.cams.CosineLaw(0.3, 2.0, 0.5)
+    turn = np.linspace(0, 2 * np.pi, 90)
+    machine = ks.cam_crank_slider(law, law.coupler_length, guide_angle=0.5)
+    ks.plots.acceleration_error(ks.solve(machine, turn, crank_speed=9.0, crank_acceleration=20.0), ax=axes)
+    assert np.max(np.abs(axes.lines[0].get_ydata())) < 1e-11
+
+
+def test_a_table_of_forces_does_not_hinder_drawing_the_mechanism(axes):
+    turn = np.linspace(0, 2 * np.pi, 36, endpoint=False)
+    machine = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
+    solution = ks.solve(machine, turn, crank_speed=9.0, loads=[ks.ProcessForce(np.sin(turn))])
+    ks.plots.mechanism(solution, ax=axes)
+    ks.plots.hodograph(solution, ax=axes)
+
+
+def test_a_batch_is_refused_with_its_shape(axes):
+    batch = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), [0.0, 1.0], crank_speed=1.0)
+    with pytest.raises(ks.ParameterError, match=r"shape \(2, 2\)"):
+        ks.plots.torque(batch, ax=axes)

@@ -87,3 +87,52 @@ def test_a_standing_mechanism_is_held_by_the_statics_of_its_loads():
     slope = np.fft.irfft(1j * np.arange(TURN.size // 2 + 1) * np.fft.rfft(work), TURN.size)
     np.testing.assert_allclose(standing.balancing_torque, slope, atol=1e-6)
     assert standing.power_residual < 1e-14
+
+
+def test_power_residual_shows_a_torque_that_is_wrong():
+    solution = solved()
+    vars(solution)["balancing_torque"] = solution.balancing_torque + 1.0
+    assert solution.power_residual == pytest.approx(1.0 / solution.largest_torque_term, rel=1e-9)
+    assert 1e-5 < solution.power_residual < 1e-4
+
+
+def test_power_residual_of_an_unknown_load_is_unknown():
+    assert np.isnan(solved(loads=[ks.ProcessForce(lambda motion: motion.crank_angle * np.nan)]).power_residual)
+
+
+def test_results_cannot_be_written_to_and_follow_no_later_change_of_the_angles():
+    turn = TURN.copy()
+    solution = solved(turn)
+    before = solution.guide_force.copy()
+    turn[:] = 0.0
+    np.testing.assert_array_equal(solution.at(TURN).guide_force, before)
+    with pytest.raises(ValueError, match="read-only"):
+        solution.guide_force[0] = 0.0
+
+
+def test_whole_numbers_as_crank_angles_do_not_cut_results_off():
+    np.testing.assert_array_equal(solved(np.arange(4)).rate("crank"), np.full(4, 33.5))
+
+
+def test_spring_acts_on_the_slider_it_names():
+    spring = ks.Spring.balancing(10.0, 3.0, 0.5, on="slider2")
+    assert (spring.stiffness, spring.free_position, spring.on) == (90.0, 0.5, "slider2")
+
+
+def test_groups_that_do_not_hang_together_are_refused():
+    with pytest.raises(ks.ParameterError, match="SliderGroup hangs on joint 'D'"):
+        ks.Mechanism("loose", ks.Crank(0.1), (ks.SliderGroup(0.5, on="D"),))
+    with pytest.raises(ks.ParameterError, match="adds joint 'B' a second time"):
+        ks.Mechanism("twice", ks.Crank(0.1), (ks.SliderGroup(0.5), ks.SliderGroup(0.5, label="2")))
+    with pytest.raises(ks.ParameterError, match="adds joint 'A' a second time"):
+        ks.Mechanism("both", ks.Crank(0.1), (ks.CamRoller(ks.cams.Circle(0.1)), ks.SliderGroup(0.5)))
+    with pytest.raises(ks.ParameterError, match="direction must have length 1"):
+        ks.SliderGroup(0.5, ks.Guide((2.0, 0.0)))
+
+
+def test_cosine_law_cam_warns_of_a_mechanism_that_breaks_the_law():
+    law = ks.cams.CosineLaw(0.3, 2.0)
+    with pytest.warns(UserWarning, match=r"coupler_length 2.0 m is not the cam's 2.02"):
+        ks.cam_crank_slider(law, 2.0)
+    with pytest.warns(UserWarning, match="guide_offset 0.1 m is not 0"):
+        ks.cam_crank_slider(law, law.coupler_length, guide_offset=0.1)
