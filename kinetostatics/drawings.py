@@ -30,7 +30,7 @@ def mass_centres(solutions, angle=60, ax=None):
     ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
     for name, solution, style in styled(named):
         points = principal_points(solution.mechanism)
-        (line,) = ax.plot(*closed(points.mass_centre(solution)), style, label=name, zorder=5)
+        (line,) = ax.plot(*closed(points.mass_centre(solution)), linestyle=style, label=name, zorder=5)
         ax.plot(*points.mass_centre(_posed(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
     ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
     return ax

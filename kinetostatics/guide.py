@@ -1,6 +1,5 @@
 """The straight guide of a slider: a line of any inclination and offset."""
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,7 +27,7 @@ class Guide(NamedTuple):
 
     @classmethod
     def through(cls, W1, W2):
-        """Guide through two fixed points (x, y), m, directed from W1 to W2.
+        """Guide through two fixed points (x, y), m, directed from W1 to W2; numbers, not batches.
 
         Raises
         ------
@@ -36,11 +35,14 @@ class Guide(NamedTuple):
             The points coincide or are not finite pairs.
         """
         checks.require("guide", checks.pair("W1", W1), checks.pair("W2", W2))
-        x, y = W2[0] - W1[0], W2[1] - W1[1]
-        length = math.hypot(x, y)
-        checks.require("guide", None if length > 0 else f"W1 and W2 coincide at {tuple(W1)}")
-        direction = (x / length, y / length)
-        return cls(direction, direction[0] * W1[1] - direction[1] * W1[0])
+        from decimal import Decimal, localcontext
+
+        with localcontext(prec=50):  # direction and offset are rounded once: what they lose, every position loses
+            (x1, y1), (x2, y2) = ([Decimal(float(part)) for part in point] for point in (W1, W2))
+            x, y = x2 - x1, y2 - y1
+            length = (x * x + y * y).sqrt()
+            checks.require("guide", None if length else f"W1 and W2 coincide at {tuple(W1)}")
+            return cls((float(x / length), float(y / length)), float((x * y1 - y * x1) / length))
 
     @property
     def guide_angle(self):

@@ -54,7 +54,7 @@ def over_turn(solutions, quantity, ax=None):
     }
     factor, shown = display(unit(quantity), [value for _, value in curves.values()])
     for name, (angle, value), style in styled(curves):
-        ax.plot(angle, factor * value, style, label=name)
+        ax.plot(angle, factor * value, linestyle=style, label=name)
     return _finished(ax, f"{label(quantity)} [{shown}]", len(curves) > 1)
 
 
@@ -87,7 +87,7 @@ def acceleration_error(solutions, ax=None):
         psi = solution.crank_angle - solution.mechanism.group(SliderGroup).guide.guide_angle
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.slider_acceleration - law) / (half_stroke * square)
-        ax.plot(_degrees(solution), 100 * error, style, label=name)
+        ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
     return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1)
 
 
@@ -113,7 +113,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
     factor, shown = display("N", curves.values())
     for name, solution, style in styled(named):
-        (line,) = ax.plot(*closed(factor * curves[name]), style, label=name)
+        (line,) = ax.plot(*closed(factor * curves[name]), linestyle=style, label=name)
         _mark_angles(ax, solution, joint, factor, np.arange(0, 360, marks), line.get_color())
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
@@ -153,7 +153,7 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
         relative = (
             solution.rate(link) / speed if order == 1 else solution.angular_acceleration(link) / (speed * abs(speed))
         )
-        ax.plot(angle[rows], relative[rows], style, label=name)
+        ax.plot(angle[rows], relative[rows], linestyle=style, label=name)
     kind = "velocity" if order == 1 else "acceleration"
     _finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
     ax.set_xlabel("crank angle from +y, clockwise [deg]")
@@ -183,7 +183,7 @@ def shaking_force(solutions, by="direction", ax=None):
     for name, solution, style in styled(named):
         x, y = solution.shaking_force
         angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
-        ax.plot(*closed(np.array([angle, factor * sizes[name]])), style, label=name)
+        ax.plot(*closed(np.array([angle, factor * sizes[name]])), linestyle=style, label=name)
     ax.set_title(f"shaking force [{shown}] by {by}", fontsize="medium")
     if len(named) > 1:
         ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))

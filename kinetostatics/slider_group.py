@@ -1,8 +1,8 @@
 """Slider group (RRP): coupler from a pin to a slider on a straight guide, in either assembly.
 
-With the guide along the unit vector u, left normal n, at offset e, a coupler of length l from joint A stands at
-sine = (e - A.n) / l to the guide and cosine = +-sqrt((1 - sine)(1 + sine)); no angle is ever formed, so nothing
-happens at the dead centres, whatever the inclination of the guide.
+With the guide along the unit vector u, left normal n, at offset e, a coupler of length l from joint A reaches
+d = e - A.n across the guide and +-sqrt((l - d)(l + d)) along it; no angle is ever formed, so nothing happens at the
+dead centres, whatever the inclination of the guide.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from .chain import Bar
 from .elementary import sqrt
 from .guide import Guide
 from .links import Joint, Link, LinkMotion, present
-from .planar import minus, number, plus, quotient, subtracted, turned, unturned, vector
+from .planar import added, minus, number, plus, quotient, subtracted, turned, unturned, vector
 
 
 class SliderMotion(NamedTuple):
@@ -46,10 +46,9 @@ def place(joint, coupler_length, guide, assembly):
     second = unturned(joint.second, guide.direction)
 
     across = minus(guide.guide_offset, position[1])
-    sine = across / coupler_length
-    closure = (1.0 - sine) * (1.0 + sine)
-    cosine = assembly * sqrt(closure)
-    along = coupler_length * cosine
+    square = (coupler_length - across) * (coupler_length + across)
+    along = assembly * sqrt(square)
+    sine, cosine = across / coupler_length, along / coupler_length
 
     ratio = -first[1] / along
     lag = ratio * ratio
@@ -61,13 +60,20 @@ def place(joint, coupler_length, guide, assembly):
         second[0] - ratio_slope * across - lag * along,
     )
     pin = Joint(
-        turned((travel.position, number(guide.guide_offset)), guide.direction),
+        _on_guide(joint.position, travel.position, (along, across), guide),
         turned((travel.first, 0.0), guide.direction),
         turned((travel.second, 0.0), guide.direction),
     )
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
-    return SliderMotion(coupler, slider, sine, cosine, closure, travel)
+    return SliderMotion(coupler, slider, sine, cosine, square / (coupler_length * coupler_length), travel)
+
+
+def _on_guide(position, travel, reach, guide):
+    """Slider pin, by the shorter sum: along a level guide from O, else from the inner joint."""
+    if guide.direction is None:
+        return (travel, number(guide.guide_offset))
+    return added(position, turned(reach, guide.direction))
 
 
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, demand):

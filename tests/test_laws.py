@@ -266,12 +266,15 @@ def test_long_coupler_makes_a_scotch_yoke(ratio):
 
 
 def test_equal_crank_and_coupler_give_a_double_stroke():
-    """Cardan: x_B = 2 r cos exactly while the slider is ahead of A."""
+    """Cardan: x_B = 2 r cos exactly while the slider is ahead of A.
+
+    At 1.5 rad the coupler is 4 degrees from its limit position; rounding grows by 1 / cos^2 = 200 for each derivative.
+    """
     angle = np.linspace(-1.5, 1.5, 13)
     s = ks.solve(ks.crank_slider(0.3, 0.3), angle, crank_speed=2.0)
     assert_allclose(s.slider_position, 0.6 * np.cos(angle), rtol=1e-14)
     assert_allclose(s.slider_velocity, -1.2 * np.sin(angle), rtol=1e-13, atol=1e-15)
-    assert_allclose(s.slider_acceleration, -2.4 * np.cos(angle), rtol=1e-12)
+    assert_allclose(s.slider_acceleration, -2.4 * np.cos(angle), rtol=1e-11)
 
 
 # Batches and sweeps
