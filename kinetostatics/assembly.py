@@ -8,7 +8,7 @@ from .errors import AssemblyError, ConditionWarning, ParameterError
 
 NEAR_LIMIT = 1e-8
 """Closure margin below which half the digits of velocities and forces are gone."""
-ROUNDING = 1e-15
+ROUNDING = 4e-15
 """Closure margin below zero that is but rounding at the limit position itself."""
 
 
@@ -64,8 +64,7 @@ def _error(mechanism, group, placement, margin):
     text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(end):.6g} deg" for start, end in gaps)
     return AssemblyError(
         f"{mechanism.name} cannot be assembled at {count} of {margin.size} crank angles{design}: "
-        f"{group.condition(placement)}. It does not close for crank angles {text}. Change the lengths, or pass "
-        'on_gap="nan" to get NaN there and the rest exact',
+        f"{group.condition(placement)}. It does not close for crank angles {text}",
         gaps,
     )
 

@@ -45,8 +45,7 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
     """
     given = {name: item for name, item in [("coupler", coupler), ("rocker", rocker)] if item is not None}
     outer = "rocker" if mechanism.group(RockerGroup) else "coupler"
-    _refuse_cam(mechanism)
-    _refuse_massless(mechanism)
+    _refuse(mechanism)
     if set(given) != {outer}:
         raise ParameterError(
             f"full balancing of a {mechanism.name} takes a counterweight on crank and {outer}, got crank"
@@ -79,14 +78,13 @@ def partial(mechanism, ratio="overall", *, crank):
         counterweight on the crank, or the counterweight breaks its limits.
     """
     value = _ratio(ratio)
-    _refuse_cam(mechanism)
-    _refuse_massless(mechanism)
+    _refuse(mechanism)
     if mechanism.group(SliderGroup) is None:
         raise ParameterError(f"partial balancing by ratio is for crank-sliders, not for a {mechanism.name}")
     lengths = {bar.link: bar.length for bar in mechanism.bars}
     moments = principal_points(mechanism).static_moments
     along, across = moments["coupler"]
-    if value == 1 and across != 0:
+    if value == 1 and abs(across) > 1e-12 * abs(along):
         raise ParameterError(
             f"partial balancing: the coupler's mass centre lies {mechanism.links['coupler'].centre[1]:g} m off the "
             "line A-B, so no counterweight on the crank takes the force across the guide away; balance the coupler too"
@@ -125,12 +123,11 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     ParameterError
         An unknown norm, a link that does not exist, no counterweight at all, or limits that cannot be kept.
     """
-    from scipy.optimize import minimize
-
     _refuse_massless(mechanism)
     checks.require(
         "optimal balancing",
         checks.choice("norm", norm, NORMS),
+        checks.pair("weights", weights),
         None if counterweights else "give at least one counterweight, such as crank=Counterweight(arm=0.03)",
         *(checks.choice("link", name, tuple(mechanism.links)) for name in counterweights),
     )
@@ -144,37 +141,71 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
             result = Balanced(mechanism, step.mechanism, {**result.counterweights, **step.counterweights})
         return result
 
+    def solved(unknowns):
+        return solve(balanced(unknowns * scale).mechanism, turn, crank_speed=1.0, on_gap="nan")
+
+    def sizes(unknowns):
+        return _sizes(solved(unknowns), norm)
+
     def objective(unknowns):
-        solution = solve(balanced(unknowns * scale).mechanism, turn, crank_speed=1.0, on_gap="nan")
-        return _norm(solution, norm, weights) / reference
+        if norm == "weighted":
+            return _weighted(solved(unknowns), weights) / reference
+        return (np.mean if norm == "mean" else np.max)(sizes(unknowns)) / reference
 
     scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
     reference = 1.0
-    start = np.zeros(size * len(counterweights))
-    reference = objective(start) or 1.0
-    for _ in range(3):
-        start = minimize(
-            objective, start, method="Nelder-Mead", options={"xatol": 1e-12, "fatol": 1e-14, "maxiter": 4000}
-        ).x
-    return balanced(start * scale)
+    zero = np.zeros(size * len(counterweights))
+    reference = objective(zero) or 1.0
+    kept_out = any(weight.keep_out for weight in counterweights.values())  # two sides of a hole to search
+    starts = (zero - 0.5, zero + 0.5) if kept_out else (zero,)
+    best = min((_searched(objective, start) for start in starts), key=objective)
+    if norm in ("largest", "along", "across"):
+        best = min(best, _levelled(lambda unknowns: sizes(unknowns) / reference, best), key=objective)
+    return balanced(best * scale)
 
 
-def _norm(solution, norm, weights):
-    force = solution.shaking_force
-    if norm == "largest":
-        return np.max(magnitude(force))
-    if norm == "mean":
-        return np.mean(magnitude(force))
-    if norm == "weighted":
-        return np.sqrt(np.mean((weights[0] * magnitude(force)) ** 2 + (weights[1] * solution.shaking_moment) ** 2))
-    return np.max(np.abs((along_guide if norm == "along" else across_guide)(solution)))
+def _searched(objective, start):
+    """Minimum by Nelder and Mead, begun anew where it stops."""
+    from scipy.optimize import minimize
+
+    options = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000}
+    for _ in range(2):
+        start = minimize(objective, start, method="Nelder-Mead", options=options).x
+    return start
+
+
+def _levelled(sizes, start):
+    """Minimum of the largest of many sizes: of a level that none of them exceeds (SLSQP)."""
+    from scipy.optimize import minimize
+
+    found = minimize(
+        lambda unknowns: unknowns[-1],
+        np.append(start, np.max(sizes(start))),
+        jac=lambda unknowns: np.append(np.zeros(start.size), 1.0),
+        constraints={"type": "ineq", "fun": lambda unknowns: unknowns[-1] - sizes(unknowns[:-1])},
+        method="SLSQP",
+        options={"ftol": 1e-15, "maxiter": 200},
+    )
+    return found.x[:-1]
+
+
+def _sizes(solution, norm):
+    """What the norm looks at, at each crank angle: the shaking force or a component of it."""
+    if norm in ("along", "across"):
+        return np.abs((along_guide if norm == "along" else across_guide)(solution))
+    return magnitude(solution.shaking_force)
+
+
+def _weighted(solution, weights):
+    force, moment = weights[0] * magnitude(solution.shaking_force), weights[1] * solution.shaking_moment
+    return np.sqrt(np.mean(force * force + moment * moment))
 
 
 def _added(mechanism, link, unbalance, weight):
     """A counterweight of that unbalance, on whichever side, reduced to its limits."""
     size = float(np.hypot(*unbalance))
-    limit = weight.largest_unbalance()
-    kept = unbalance if size <= limit else unbalance * (limit / size)
+    smallest, largest = weight.unbalances()
+    kept = unbalance * (min(max(size, smallest), largest) / size) if size else np.array([-smallest, 0.0])
     sided = weight if weight.arm is None else replace(weight, arm=float(np.copysign(weight.arm, kept[0])))
     return counterweight(mechanism, link, kept, sided)
 
@@ -210,7 +241,14 @@ def _ratio(ratio):
     return float(ratio)
 
 
-def _refuse_cam(mechanism):
+def _refuse(mechanism):
+    """Refuse what full and partial balancing cannot do."""
+    _refuse_massless(mechanism)
+    if len(mechanism.groups) > 1 and mechanism.crank.length is not None:
+        raise ParameterError(
+            f"full and partial balancing are for a crank with one group; the {mechanism.name} has "
+            f"{len(mechanism.groups)}: use `optimal` or `counterweight`"
+        )
     if mechanism.crank.length is None:
         carried = principal_points(mechanism).carried.get("A", 0.0)
         raise ParameterError(

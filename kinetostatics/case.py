@@ -11,7 +11,7 @@ import pydantic
 
 from . import balancing, cams, checks, linkage, schema
 from .comparison import Comparison
-from .errors import CaseError, KinetostaticsError
+from .errors import AssemblyError, CaseError, KinetostaticsError
 from .files import read_columns
 from .guide import Guide
 from .links import Link
@@ -185,6 +185,8 @@ def _variant(name, own, common, folder, problems):
         variant.solve(angles=720)
     except CaseError as error:
         problems += [f"variants.{name}: {error.path}: {problem}" for problem in error.problems]
+    except AssemblyError as error:
+        problems.append(f"variants.{name}: {error.condition}; change the lengths")
     except KinetostaticsError as error:
         problems.append(f"variants.{name}: {error}")
     else:
@@ -318,6 +320,10 @@ def _balanced(mechanism, table):
     }
     if table.method == "optimal":
         return balancing.optimal(mechanism, table.norm, phase=table.phase, **weights)
+    if table.method == "partial" and set(weights) != {"crank"}:
+        raise KinetostaticsError(
+            f"balancing: partial balancing takes one counterweight, on the crank, got {', '.join(weights) or 'none'}"
+        )
     if "crank" not in weights:
         raise KinetostaticsError(f"{table.method} balancing needs a counterweight on the crank: balancing.crank")
     if table.method == "full":

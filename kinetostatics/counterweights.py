@@ -73,21 +73,22 @@ class Counterweight:
         reach = abs(self.arm) / size
         return 1.0 / reach, (reach * unbalance[0], reach * unbalance[1])
 
-    def largest_unbalance(self):
-        """Largest unbalance within the limits, kg m; infinite without limits."""
+    def unbalances(self):
+        """Smallest and largest unbalance within the limits, kg m."""
         mass, arm = (self.largest_mass, self.arm) if self.mass is None else (self.mass, self.largest_arm)
-        return np.inf if mass is None or arm is None else mass * abs(arm)
+        largest = np.inf if mass is None or arm is None else mass * abs(arm)
+        return (self.mass or 0.0) * (self.keep_out or 0.0), largest
 
     def problems(self, link, mass, arm):
-        """How a counterweight found breaks its limits."""
-        limits = [
-            ("largest_mass", mass, "kg", np.greater, "exceeds the largest mass"),
-            ("largest_arm", arm, "m", np.greater, "exceeds the largest arm"),
-            ("keep_out", arm, "m", np.less, "lies inside the keep-out radius"),
-        ]
-        for name, found, unit, breaks, words in limits:
-            limit = getattr(self, name)
-            if limit is not None and mass > 0 and breaks(found, limit * (1 + np.sign(found - limit) * 1e-12)):
+        """How a counterweight found breaks its limits, beyond rounding."""
+        if mass == 0:
+            return
+        for limit, found, unit, sign, words in [
+            (self.largest_mass, mass, "kg", 1, "exceeds the largest mass"),
+            (self.largest_arm, arm, "m", 1, "exceeds the largest arm"),
+            (self.keep_out, arm, "m", -1, "lies inside the keep-out radius"),
+        ]:
+            if limit is not None and sign * (found - limit) > 1e-12 * limit:
                 yield f"{link}: the counterweight needed, {found:.6g} {unit}, {words} {limit:g} {unit}"
 
 
@@ -186,7 +187,11 @@ def counterweight(mechanism, link, unbalance, weight):
     ParameterError
         No such link, or the counterweight needed breaks its limits; with the numbers.
     """
-    checks.require("counterweight", checks.choice("link", link, tuple(mechanism.links)))
+    checks.require(
+        "counterweight",
+        checks.choice("link", link, tuple(mechanism.links)),
+        checks.pair("unbalance", unbalance) if np.ndim(unbalance) else checks.finite("unbalance", unbalance),
+    )
     bare = mechanism.links[link]
     wanted = np.array(unbalance if np.ndim(unbalance) else (unbalance, 0.0), dtype=float)
     own = bare.mass * np.array(bare.centre)

@@ -17,10 +17,13 @@ class AssemblyError(KinetostaticsError, ValueError):
     intervals : tuple of (float, float)
         Crank-angle intervals within one turn, in radians, where it does not close. The start lies in [0, 2 pi);
         an interval that runs through 0 ends beyond 2 pi.
+    condition : str
+        What does not hold, without the advice.
     """
 
-    def __init__(self, message, intervals=()):
-        super().__init__(message)
+    def __init__(self, condition, intervals=()):
+        super().__init__(f'{condition}. Change the lengths, or pass on_gap="nan" to get NaN there and the rest exact')
+        self.condition = condition
         self.intervals = tuple(intervals)
 
 

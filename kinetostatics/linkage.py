@@ -5,10 +5,11 @@ angle zero; `chain_unit` builds it and `chain_unit_angle` turns its crank angle 
 """
 
 from dataclasses import dataclass
-from math import asin, atan2, hypot, pi, sqrt
+from math import asin, atan2, pi, sqrt
 
 import numpy as np
 
+from . import checks
 from .errors import ParameterError
 from .extremes import extremes
 from .mechanism import four_bar
@@ -41,12 +42,19 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     ParameterError
         The coupler is shorter than the crank, so the parallel start is not possible.
     """
+    checks.require(
+        "chain unit",
+        checks.positive("crank length", crank_length),
+        checks.positive("coupler length", coupler_length),
+        checks.positive("rocker length", rocker_length),
+        None if pivot_x is None else checks.finite("pivot_x", pivot_x),
+    )
     if pivot_x is None:
         square = (coupler_length - crank_length) * (coupler_length + crank_length)
         if np.any(square <= 0):
             raise ParameterError(
-                f"chain unit: parallel start needs a coupler longer than the crank, got {coupler_length} m and "
-                f"{crank_length} m; give pivot_x for a free start"
+                f"chain unit: parallel start needs a coupler longer than the crank, got {np.min(coupler_length)} m and "
+                f"{np.max(crank_length)} m; give pivot_x for a free start"
             )
         pivot_x = np.sqrt(square)
     return four_bar(crank_length, coupler_length, rocker_length, rocker_pivot=(pivot_x, -rocker_length), **links)
@@ -59,8 +67,9 @@ def chain_unit_angle(angle):
 
 def rocker_angle(solution, start=QUARTER):
     """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad."""
+    _four_bar(solution.mechanism)
     x, y = _rocker(solution)
-    x0, y0 = _rocker(solution.at(np.array([start])))
+    x0, y0 = _rocker(solution.at(start))
     return np.arctan2(x * y0 - y * x0, x * x0 + y * y0)
 
 
@@ -70,6 +79,7 @@ def _rocker(solution):
 
 def transmission_angle(solution):
     """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi."""
+    _four_bar(solution.mechanism)
     motion = solution.placement.details["rocker"]
     return np.arctan2(abs(motion.sine), motion.cosine)
 
@@ -116,6 +126,13 @@ def swing(solution, start=QUARTER):
     -------
     Swing
     """
+    found_class = grashof(solution.mechanism)
+    whole = found_class.intervals == ((0.0, 2 * pi),)
+    if not whole or found_class.kind == "double-crank":
+        raise ParameterError(
+            "swing is for four-bars whose crank turns fully and whose rocker does not; this one is a "
+            f"{found_class.kind}{'' if whole else ' that does not close all round'}"
+        )
     found = extremes(solution, lambda at: rocker_angle(at, start))
     high, low = int(np.argmax(found.value)), int(np.argmin(found.value))
     return Swing(*map(float, (found.value[high], found.value[low], found.angle[high], found.angle[low])))
@@ -166,10 +183,8 @@ def grashof(mechanism):
     -------
     Grashof
     """
-    group = mechanism.group(RockerGroup)
-    if group is None or mechanism.crank.length is None:
-        raise ParameterError(f"Grashof's rule is for four-bars, not for a {mechanism.name}")
-    frame = hypot(*group.pivot)
+    group = _four_bar(mechanism)
+    frame = np.hypot(*group.pivot)
     lengths = {
         "crank": mechanism.crank.length,
         "coupler": group.coupler_length,
@@ -178,29 +193,44 @@ def grashof(mechanism):
     }
     if any(np.ndim(length) for length in lengths.values()):
         raise ParameterError("Grashof's rule is for one design at a time, got a batch of lengths")
+    if frame == 0:
+        raise ParameterError("Grashof's rule needs a frame: the rocker's pivot lies at O")
     ordered = sorted(lengths, key=lambda name: lengths[name])
     outer = lengths[ordered[0]] + lengths[ordered[3]]
     inner = lengths[ordered[1]] + lengths[ordered[2]]
     kind: str
     joints: tuple[str, ...]
     kind, joints = KINDS[ordered[0]]
-    if abs(outer - inner) <= CHANGE_POINT * inner:
+    change_point = abs(outer - inner) <= CHANGE_POINT * inner
+    if change_point:
         kind = "change-point"
+        shortest = (name for name in ordered if lengths[name] <= lengths[ordered[0]] * (1 + CHANGE_POINT))
+        joints = tuple(dict.fromkeys(joint for name in shortest for joint in KINDS[name][1]))
     elif outer > inner:
         kind, joints = "triple-rocker", ()
-    return Grashof(kind, joints, _closed_intervals(lengths, atan2(group.pivot[1], group.pivot[0])))
+    slack = 8 * CHANGE_POINT if change_point else 0.0
+    return Grashof(kind, joints, _closed_intervals(lengths, atan2(group.pivot[1], group.pivot[0]), slack))
 
 
-def _closed_intervals(lengths, frame_angle):
+def _four_bar(mechanism):
+    """The rocker group of a four-bar; an error for any other mechanism."""
+    group = mechanism.groups[0]
+    if len(mechanism.groups) > 1 or not isinstance(group, RockerGroup) or mechanism.crank.length is None:
+        raise ParameterError(f"this is for four-bars, not for a {mechanism.name}")
+    return group
+
+
+def _closed_intervals(lengths, frame_angle, slack):
     """Crank angles at which A is no nearer to O2 than the difference of coupler and rocker and no farther than the sum.
 
-    At the distance D the crank stands at theta from the frame line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b).
+    At the distance D the crank stands at theta from the frame line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b);
+    within `slack` of 0 or 1, as rounding of the lengths of a change-point linkage makes it, it is 0 or 1.
     """
     r, b = lengths["crank"], lengths["frame"]
 
     def at_distance(distance):
         square = (distance - (r - b)) * (distance + (r - b)) / (4 * r * b)
-        return 2 * asin(sqrt(min(1.0, max(0.0, square))))
+        return 2 * asin(sqrt(0.0 if square <= slack else 1.0 if square >= 1 - slack else square))
 
     near = at_distance(abs(lengths["coupler"] - lengths["rocker"]))
     far = at_distance(lengths["coupler"] + lengths["rocker"])

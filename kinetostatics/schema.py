@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from .balancing import RATIOS
+from .checks import choice
 from .units import to_si
 
 
@@ -120,6 +122,14 @@ class SampledTable(Table):
     table: str
 
 
+def _ratio(value):
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    problem = None if number else choice("ratio", value, tuple(RATIOS))
+    if problem:
+        raise ValueError(f"must be a number or a name: {problem}")
+    return value
+
+
 class CounterweightTable(Table):
     mass: Mass | None = None
     arm: Coordinate | None = None
@@ -131,7 +141,7 @@ class CounterweightTable(Table):
 
 class BalancingTable(Table):
     method: Literal["full", "partial", "optimal"]
-    ratio: float | Literal["across", "along", "overall"] = "overall"
+    ratio: Annotated[float | str, BeforeValidator(_ratio)] = "overall"
     norm: Literal["largest", "mean", "along", "across"] = "largest"
     phase: bool = False
     crank: CounterweightTable | None = None

@@ -1,0 +1,397 @@
+"""Static balancing: what each kind promises, what it costs, and what is refused."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+import kinetostatics as ks
+from kinetostatics.balancing import Counterweight, counterweight, full, optimal, partial
+
+TURN = np.linspace(0.0, 2 * np.pi, 360, endpoint=False)
+ROUNDING = 1e-13
+CRANK, COUPLER = ks.Link(3.0, (0.1, 0.04), 0.2), ks.Link(7.0, (0.4, -0.06), 0.9)
+SKEW_LINKS = {"crank": CRANK, "coupler": COUPLER, "slider": ks.Link(11.0, (-0.05, 0.08), 0.3)}
+LINKS = SKEW_LINKS | {"coupler": ks.Link(7.0, 0.4, 0.9)}
+GUIDE = {"guide_angle": 0.4, "guide_offset": 0.07}
+SKEW = ks.crank_slider(0.3, 0.8, **GUIDE, **SKEW_LINKS)
+INCLINED, BEHIND = (ks.crank_slider(0.3, 0.8, assembly=sign, **GUIDE, **LINKS) for sign in (1, -1))
+ROCKER = ks.Link(5.0, (0.2, 0.1), 0.4)
+FOUR_BAR = ks.four_bar(0.3, 0.8, 0.6, rocker_pivot=(0.7, 0.1), crank=CRANK, coupler=COUPLER, rocker=ROCKER)
+CAM = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.05, 0.03)), 0.8, **SKEW_LINKS)
+SECOND = ks.SliderGroup(2.0, ks.Guide.at(0.0, 0.2), 1, ks.Link(1.0, 0.3), ks.Link(2.0), on="B", pin="C", label="2")
+SIX_BAR = ks.Mechanism("six-bar", FOUR_BAR.crank, (*FOUR_BAR.groups, SECOND))
+STRAIGHT = INCLINED.with_link("crank", ks.Link(3.0, 0.1))
+MASSLESS = ks.crank_slider(0.3, 0.8)
+HEAVY = Counterweight(mass=5.0)
+
+
+def mower(offset=-0.02):
+    links = {"crank": ks.Link(1.0, 0.019), "coupler": ks.Link(2.0, 0.1), "slider": ks.Link(5.0)}
+    return ks.crank_slider(0.038, 0.3, guide_offset=offset, **links)
+
+
+def solved(mechanism, speed=10.0, acceleration=0.0):
+    return ks.solve(mechanism, TURN, crank_speed=speed, crank_acceleration=acceleration)
+
+
+def largest(values):
+    return np.max(np.abs(values))
+
+
+def along_and_across(s):
+    """Parts of the shaking force along the guide and to its left."""
+    x, y = next((g.guide.direction for g in s.mechanism.groups if isinstance(g, ks.SliderGroup)), (1.0, 0.0))
+    force = s.shaking_force
+    return x * force[0] + y * force[1], x * force[1] - y * force[0]
+
+
+def unbalance(balanced, link="crank"):
+    mass, place = balanced.counterweights[link]
+    return mass * np.array(place)
+
+
+# Full
+
+
+@pytest.mark.parametrize(("speed", "acceleration"), [(10.0, 0.0), (0.0, 30.0), (-7.0, 50.0)])
+@pytest.mark.parametrize(
+    ("mechanism", "weights"),
+    [
+        (SKEW, {"crank": Counterweight(arm=-0.2), "coupler": Counterweight(arm=-0.3)}),
+        (SKEW, {"crank": Counterweight(mass=20.0), "coupler": Counterweight(mass=30.0)}),
+        (SKEW, {"crank": Counterweight(mass=90.0, whole_link=True), "coupler": Counterweight(mass=30.0)}),
+        (BEHIND, {"crank": Counterweight(arm=-0.2), "coupler": Counterweight(mass=30.0)}),
+        (FOUR_BAR, {"crank": HEAVY, "rocker": Counterweight(mass=7.0)}),
+        (FOUR_BAR, {"crank": Counterweight(arm=-0.1), "rocker": Counterweight(arm=-0.2)}),
+    ],
+)
+def test_full_balancing_leaves_no_shaking_force_at_any_speed(mechanism, weights, speed, acceleration):
+    """Mass centres off the lines, the four-bar's coupler too; the common mass centre stands still."""
+    balanced = full(mechanism, **weights).mechanism
+    s = solved(balanced, speed, acceleration)
+    parts = max(largest(s.inertia_force(name)) for name in balanced.links)
+    assert largest(s.shaking_force) < ROUNDING * parts
+    assert largest(np.ptp(ks.principal_points(balanced).mass_centre(s), axis=1)) < 1e-14
+    assert largest(solved(mechanism, speed, acceleration).shaking_force) > 0.1 * speed**2
+
+
+# Partial
+
+
+@pytest.mark.parametrize(
+    ("ratio", "value"), [("across", 1.0), ("along", 0.0), ("overall", 0.5), (0.3, 0.3), (-1.7, -1.7)]
+)
+@pytest.mark.parametrize("mechanism", [mower(), mower(0.0), INCLINED, BEHIND])
+def test_partial_balancing_reaches_the_ratio(mechanism, ratio, value):
+    found = partial(mechanism, ratio, crank=HEAVY)
+    assert found.ratio == pytest.approx(value, rel=1e-13, abs=1e-14)
+    moduli = ks.principal_points(found.mechanism).moduli
+    lengths = {bar.link: bar.length for bar in found.mechanism.bars}
+    of_moduli = moduli["crank"] / lengths["crank"] / (moduli["coupler"] / lengths["coupler"])
+    assert of_moduli == pytest.approx(value, rel=1e-13, abs=1e-14)
+
+
+@pytest.mark.parametrize("mechanism", [mower(), INCLINED, BEHIND])
+def test_across_leaves_no_force_across_an_inclined_offset_guide(mechanism):
+    """At any speed and crank acceleration."""
+    found = partial(mechanism, "across", crank=HEAVY).mechanism
+    along, across = along_and_across(solved(found, -7.0, 50.0))
+    assert largest(across) < ROUNDING * largest(along)
+    assert largest(along_and_across(solved(mechanism, -7.0, 50.0))[1]) > 0.1 * largest(along)
+
+
+@pytest.mark.parametrize("mechanism", [mower(0.0), mower(), INCLINED])
+def test_along_keeps_the_mass_centre_on_an_arc_and_leaves_least_force_along(mechanism):
+    """With h1 = 0 it keeps the distance h2 from O, or from the tip of the slider's vector, which does not turn."""
+    found = partial(mechanism, "along", crank=HEAVY).mechanism
+    s, points = solved(found), ks.principal_points(found)
+    distance = np.hypot(*(points.mass_centre(s) - points.vectors(s).get("slider", 0.0)))
+    assert np.ptp(distance) < 1e-14
+    assert distance[0] == pytest.approx(points.moduli["coupler"], rel=1e-14)
+    assert largest(along_and_across(s)[0]) < 0.6 * largest(along_and_across(solved(mechanism))[0])
+
+
+def test_across_is_reached_with_an_off_line_coupler_once_the_coupler_is_balanced_across():
+    """The remedy the message names; rounding of the balanced coupler must not refuse it again."""
+    for weight in (Counterweight(mass=1.3), Counterweight(arm=0.13), Counterweight(arm=0.17)):
+        step = counterweight(SKEW, "coupler", (0.0, 7.0 * 0.06), weight).mechanism
+        along, across = along_and_across(solved(partial(step, "across", crank=HEAVY).mechanism))
+        assert largest(across) < ROUNDING * largest(along)
+
+
+# Counterweights
+
+
+def test_counterweight_by_mass_and_by_arm_give_the_same_unbalance_and_shaking_force():
+    by_mass = partial(INCLINED, "overall", crank=Counterweight(mass=6.0))
+    by_arm = partial(INCLINED, "overall", crank=Counterweight(arm=-0.11))
+    np.testing.assert_allclose(unbalance(by_mass), unbalance(by_arm), rtol=1e-14)
+    assert by_mass.counterweights["crank"][0] == 6.0
+    assert np.hypot(*by_arm.counterweights["crank"][1]) == pytest.approx(0.11, rel=1e-14)
+    forces = [solved(item.mechanism).shaking_force for item in (by_mass, by_arm)]
+    np.testing.assert_allclose(*forces, rtol=0, atol=ROUNDING * largest(forces[0]))
+
+
+@pytest.mark.parametrize("given", [{"arm": -0.09}, {"mass": 40.0}])
+def test_a_whole_link_and_the_counterweight_it_needs_agree(given):
+    """Designing the link anew with its total mass or centre, or adding to it what is missing."""
+    whole = partial(INCLINED, "overall", crank=Counterweight(**given, whole_link=True))
+    link = whole.mechanism.links["crank"]
+    assert link.mass == pytest.approx(given.get("mass", link.mass), rel=1e-15)
+    assert np.hypot(*link.centre) == pytest.approx(abs(given.get("arm", np.hypot(*link.centre))), rel=1e-14)
+    added = partial(INCLINED, "overall", crank=Counterweight(mass=link.mass - 3.0)).mechanism.links["crank"]
+    assert (added.mass, added.inertia) == pytest.approx((link.mass, link.inertia), rel=1e-13)
+    assert added.centre == pytest.approx(link.centre, rel=1e-13)
+
+
+@pytest.mark.parametrize(("mechanism", "link"), [(SKEW, "coupler"), (FOUR_BAR, "rocker"), (CAM, "block")])
+def test_link_with_its_counterweight_moves_as_two_bodies(mechanism, link):
+    """Inertia by parallel axes: torque and shaking moment are those of the bare mechanism and of a point mass alone."""
+    whole = counterweight(mechanism, link, (-0.4, 0.3), Counterweight(mass=2.5))
+    alone = mechanism
+    for name in mechanism.links:
+        alone = alone.with_link(name, ks.Link(2.5, (-0.16, 0.12)) if name == link else ks.Link())
+    together, *apart = (solved(item, 9.0, -40.0) for item in (whole.mechanism, mechanism, alone))
+    for name in ("balancing_torque", "balancing_torque_by_power", "shaking_moment", "shaking_force"):
+        expected = sum(getattr(s, name) for s in apart)
+        assert largest(getattr(together, name) - expected) < ROUNDING * largest(expected), name
+        assert largest(getattr(apart[1], name)) > 1e-3 * largest(expected)
+
+
+def test_nothing_is_added_where_nothing_is_needed():
+    once = partial(mower(), 0.5, crank=Counterweight(arm=-0.035)).mechanism
+    assert largest(unbalance(partial(once, 0.5, crank=HEAVY))) < 1e-16
+
+
+# Report and effect
+
+
+def test_report_tells_masses_arms_and_unbalances_with_units():
+    found = full(SKEW, crank=Counterweight(mass=20.0), coupler=Counterweight(mass=30.0))
+    report = found.report()
+    assert list(report.index) == ["crank", "coupler"]
+    assert all(re.search(r"\[(m|kg|kg m|deg)\]$", name) for name in report.columns)
+    assert np.all(np.isfinite(report))
+    masses = [ks.principal_points(item).mass for item in (found.bare, found.mechanism)]
+    assert found.added_mass == pytest.approx(masses[1] - masses[0]) == report["counterweight mass [kg]"].sum()
+    for name, row in report.iterrows():
+        bare, new, change = SKEW.links[name], found.mechanism.links[name], unbalance(found, name)
+        np.testing.assert_allclose(new.mass * np.array(new.centre), bare.mass * np.array(bare.centre) + change)
+        assert row["counterweight unbalance [kg m]"] == pytest.approx(np.hypot(*change))
+        assert row["counterweight mass [kg]"] * row["counterweight arm [m]"] == pytest.approx(-np.hypot(*change))
+        assert row["counterweight phase [deg]"] == pytest.approx(np.degrees(np.arctan2(*change[::-1])))
+        assert row["link mass after [kg]"] - row["link mass before [kg]"] == row["counterweight mass [kg]"]
+        assert row["link unbalance after [kg m]"] == pytest.approx(new.mass * np.hypot(*new.centre))
+        assert row["link centre after [m]"] == pytest.approx(-np.hypot(*new.centre))
+        assert row["modulus h [m]"] == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("found", [partial(SKEW, crank=HEAVY), full(FOUR_BAR, crank=HEAVY, rocker=HEAVY)])
+def test_effect_gives_true_extremes_of_forces_moments_and_torque_before_and_after(found):
+    drive = {"crank_speed": 10.0, "crank_acceleration": 20.0, "loads": ks.Gravity()}
+    effect = found.effect(**drive)
+    assert np.all(np.isfinite(effect))
+    assert list(effect.columns) == ["before", "after", "change [%]"]
+    for column, mechanism in (("before", found.bare), ("after", found.mechanism)):
+        s = ks.solve(mechanism, 0.0, **drive)
+        expected = {
+            "mass of links [kg]": sum(link.mass for link in mechanism.links.values()),
+            "largest shaking force [N]": ks.extremes(s, "shaking_force").range[1],
+            "largest shaking force along guide [N]": abs(ks.extremes(s, lambda s: along_and_across(s)[0]).largest),
+            "largest shaking force across guide [N]": abs(ks.extremes(s, lambda s: along_and_across(s)[1]).largest),
+            "largest shaking moment [N m]": abs(ks.extremes(s, "shaking_moment").largest),
+            "largest balancing torque [N m]": abs(ks.extremes(s, "balancing_torque").largest),
+        } | {f"largest reaction {joint} [N]": ks.extremes(s, joint).largest for joint in s.reactions}
+        assert dict(effect[column]) == pytest.approx(expected, rel=1e-12, abs=1e-11)
+    np.testing.assert_allclose(1 + effect["change [%]"] / 100, effect["after"] / effect["before"], atol=1e-12)
+
+
+# Limits
+
+NEEDED = 0.209 / 3
+"""Unbalance, kg m, of the counterweight on the mower's crank that leaves no force across the guide."""
+
+
+@pytest.mark.parametrize(
+    ("weight", "message"),
+    [
+        ({"arm": -0.035, "largest_mass": 1.5}, "crank: the counterweight needed, 1.99048 kg, exceeds .* mass 1.5 kg"),
+        ({"mass": 1.0, "largest_arm": 0.05}, "crank: the counterweight needed, 0.0696667 m, exceeds .* arm 0.05 m"),
+        ({"mass": 1.0, "keep_out": 0.08}, "crank: the counterweight needed, 0.0696667 m, lies inside .* 0.08 m"),
+        ({"arm": -0.02, "whole_link": True, "largest_mass": 1.5}, "needed, 1.53333 kg, exceeds .* mass 1.5 kg"),
+        ({"arm": -0.06, "whole_link": True}, "would weigh 0.844444 kg, less than the 1 kg .* choose a shorter arm"),
+        ({"mass": 1.0, "whole_link": True}, "would weigh 1 kg, less than the 1 kg .* or a larger mass"),
+    ],
+)
+def test_a_limit_that_cannot_be_kept_is_refused_with_the_numbers(weight, message):
+    with pytest.raises(ks.ParameterError, match=message):
+        partial(mower(), "across", crank=Counterweight(**weight))
+
+
+@pytest.mark.parametrize("slack", [-1e-15, 0.0, 1e-15, 1e-13])
+def test_a_limit_just_met_is_kept(slack):
+    """Rounding decides on neither side of it."""
+    for weight in (
+        Counterweight(arm=-0.035, largest_mass=NEEDED / 0.035 * (1 + slack)),
+        Counterweight(mass=1.0, largest_arm=NEEDED * (1 + slack)),
+        Counterweight(mass=1.0, keep_out=NEEDED * (1 + slack)),
+    ):
+        assert unbalance(partial(mower(), "across", crank=weight))[0] == pytest.approx(-NEEDED, rel=1e-14)
+
+
+@pytest.mark.parametrize("whole_link", [False, True])
+def test_arm_on_the_wrong_side_is_refused_and_the_arm_it_names_works(whole_link):
+    with pytest.raises(ks.ParameterError, match=r"other side of the joint: arm -0.035 m$") as caught:
+        partial(mower(), "overall", crank=Counterweight(arm=0.035, whole_link=whole_link))
+    remedy = Counterweight(arm=float(re.findall(r"arm (\S+) m$", str(caught.value))[0]), whole_link=whole_link)
+    assert partial(mower(), "overall", crank=remedy).ratio == pytest.approx(0.5)
+
+
+# Optimal
+
+NORMS = {
+    "largest": lambda force: np.max(np.abs(force), axis=-1),
+    "mean": lambda force: np.mean(np.abs(force), axis=-1),
+    "along": lambda force: np.max(np.abs(force.real), axis=-1),
+    "across": lambda force: np.max(np.abs(force.imag), axis=-1),
+    "weighted": lambda force: np.sqrt(np.mean(np.abs(force) ** 2, axis=-1)),
+}
+
+
+def shaking(mechanism):
+    """Shaking force over the turn, along the guide + i across it."""
+    along, across = along_and_across(solved(mechanism))
+    return along + 1j * across
+
+
+def norm_of(balanced, norm):
+    return NORMS[norm](shaking(balanced.mechanism))
+
+
+def scan(mechanism, norm, *, largest_unbalance=np.inf, phase=False):
+    """Least norm over a grid of unbalances on the crank, in which the force is linear."""
+    units = [shaking(counterweight(mechanism, "crank", unit, HEAVY).mechanism) for unit in ((1.0, 0.0), (0.0, 1.0))]
+    reach = max(np.hypot(*pair) for pair in ks.principal_points(mechanism).static_moments.values())
+    along = min(1.5 * reach, largest_unbalance) * np.linspace(-1, 1, 301)
+    across = 0.1 * reach * np.linspace(-1, 1, 41) if phase else np.zeros(1)
+    bare = shaking(mechanism)
+    by_along = along[:, None] * (units[0] - bare)
+    return min(np.min(NORMS[norm](bare + by_along + part * (units[1] - bare))) for part in across)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "norm"), [(mower(), norm) for norm in NORMS] + [(STRAIGHT, "largest"), (STRAIGHT, "along")]
+)
+def test_optimum_is_no_worse_than_the_classical_cases_and_a_scan_and_the_phase_helps(mechanism, norm):
+    classical = min(norm_of(partial(mechanism, ratio, crank=HEAVY), norm) for ratio in ("across", "along", "overall"))
+    plain, turned = (norm_of(optimal(mechanism, norm, phase=phase, crank=HEAVY), norm) for phase in (False, True))
+    rounding = 1e-7 * NORMS[norm](shaking(mechanism))
+    assert plain <= min(classical, scan(mechanism, norm)) + rounding
+    assert turned <= min(plain, scan(mechanism, norm, phase=True)) + rounding
+
+
+@pytest.mark.parametrize("norm", ["largest", "weighted"])
+def test_optimum_of_a_centred_mower_has_no_phase(norm):
+    """By symmetry about the guide, and as the norms are convex."""
+    plain, turned = (unbalance(optimal(mower(0.0), norm, phase=phase, crank=HEAVY)) for phase in (False, True))
+    assert plain[1] == 0
+    assert abs(turned[1]) < 1e-6 * abs(turned[0])
+
+
+def test_overall_ratio_of_the_study_is_the_least_mean_square_but_not_the_least_largest_force():
+    """Ratio 1/2 minimises the root mean square; the largest force is least near 0.465 on the line, 0.450 with phase."""
+    assert optimal(mower(), "weighted", crank=HEAVY).ratio == pytest.approx(0.5, abs=1e-6)
+    assert optimal(mower(), crank=HEAVY).ratio == pytest.approx(0.4652, abs=5e-4)
+    assert optimal(mower(), phase=True, crank=HEAVY).ratio == pytest.approx(0.4499, abs=5e-4)
+
+
+@pytest.mark.parametrize("norm", ["largest", "weighted"])
+@pytest.mark.parametrize(
+    ("mechanism", "limits", "most"),
+    [(mower(), {"arm": 0.035, "largest_mass": 1.0}, 0.035), (INCLINED, {"mass": 5.0, "largest_arm": 0.01}, 0.05)],
+)
+def test_optimum_keeps_its_limits_and_is_the_best_within_them(mechanism, limits, most, norm):
+    found = optimal(mechanism, norm, crank=Counterweight(**limits))
+    assert np.hypot(*unbalance(found)) <= most * (1 + 1e-12)
+    assert norm_of(found, norm) <= scan(mechanism, norm, largest_unbalance=most) * (1 + 1e-9)
+
+
+def test_keep_out_radius_does_not_stand_in_the_way_of_an_optimum_outside_it():
+    """The best counterweight of 5 kg on the mower's crank lies 37 mm from O."""
+    free = optimal(mower(), crank=HEAVY)
+    kept = optimal(mower(), crank=Counterweight(mass=5.0, keep_out=0.02))
+    np.testing.assert_allclose(unbalance(kept), unbalance(free), rtol=1e-5)
+    with pytest.raises(ks.ParameterError, match=r"0\.035 m, lies inside the keep-out radius 0\.04 m"):
+        optimal(mower(), crank=Counterweight(arm=0.035, keep_out=0.04))
+
+
+def test_two_counterweights_with_phase_reach_the_optimum_of_a_linear_programme():
+    """Least largest force along the guide of a cam mechanism, by four unbalances at given masses."""
+    ready = counterweight(counterweight(CAM, "crank", 0.0, HEAVY).mechanism, "coupler", 0.0, HEAVY).mechanism
+    bare, light = shaking(ready).real, Counterweight(mass=1e-9)
+    steps = [(link, part) for link in ("crank", "coupler") for part in ((1.0, 0.0), (0.0, 1.0))]
+    columns = [shaking(counterweight(ready, *step, light).mechanism).real - bare for step in steps]
+    level, columns = -np.ones(bare.size), np.array(columns).T
+    rows = np.block([[columns, level[:, None]], [-columns, level[:, None]]])
+    best = linprog([0, 0, 0, 0, 1], rows, np.append(-bare, bare), bounds=[(None, None)] * 4 + [(0, None)]).fun
+    found = norm_of(optimal(CAM, "along", phase=True, crank=HEAVY, coupler=HEAVY), "along")
+    assert 0 < best < 0.2 * largest(bare)
+    assert found <= best + 1e-4 * largest(bare)
+
+
+def test_weight_on_the_moment_lowers_it_at_the_price_of_force():
+    """A counterweight on the crank alone leaves the moment about O as it is."""
+
+    def sizes(mechanism):
+        s = solved(mechanism)
+        return np.sqrt([np.mean(np.sum(s.shaking_force**2, axis=0)), np.mean(s.shaking_moment**2)])
+
+    bare, weights = sizes(mower()), {"crank": Counterweight(arm=0.035), "coupler": Counterweight(arm=0.055)}
+    force, both, moment = (
+        sizes(optimal(mower(), "weighted", weights=(first, second) / bare, **weights).mechanism)
+        for first, second in ((1, 0), (1, 1), (0, 1))
+    )
+    assert force[0] < 1e-9 * bare[0] < both[0] < moment[0]
+    assert moment[1] <= both[1] * (1 + 1e-9) < bare[1] < force[1]
+    assert np.hypot(*(both / bare)) < np.hypot(*(moment / bare))
+    assert sizes(optimal(mower(), crank=HEAVY).mechanism)[1] == pytest.approx(bare[1], rel=1e-12)
+
+
+# Bad input
+
+BOTH = {"crank": HEAVY, "coupler": HEAVY}
+
+
+@pytest.mark.parametrize(
+    ("balance", "message"),
+    [
+        (lambda: Counterweight(), "counterweight: give either mass or arm, not neither"),
+        (lambda: Counterweight(mass=1.0, arm=0.1), "counterweight: give either mass or arm, not both"),
+        (lambda: Counterweight(mass=0.0), "mass must be greater than 0, got 0.0"),
+        (lambda: Counterweight(arm=np.nan), "arm must be finite, got nan"),
+        (lambda: Counterweight(arm=0.0), "arm must not be 0"),
+        (lambda: counterweight(mower(), "cranc", 0.1, HEAVY), "link is 'cranc', allowed: .* did you mean 'crank'"),
+        (lambda: counterweight(mower(), "crank", np.nan, HEAVY), "must be finite, got nan"),
+        (lambda: partial(MASSLESS, crank=HEAVY), "crank-slider has no mass: there is nothing to balance"),
+        (lambda: optimal(MASSLESS, crank=HEAVY), "crank-slider has no mass: there is nothing to balance"),
+        (lambda: partial(SKEW, "across", crank=HEAVY), "lies -0.06 m off the line A-B, .* balance the coupler too"),
+        (lambda: partial(CAM, crank=HEAVY), "pin A of a cam-balanced .* varying distance from O with 18 kg on it"),
+        (lambda: full(CAM, **BOTH), "varying distance from O .* use `optimal`, or a plain crank-slider"),
+        (lambda: partial(FOUR_BAR, crank=HEAVY), "for crank-sliders, not for a four-bar"),
+        (lambda: partial(SIX_BAR, crank=HEAVY), "six-bar"),
+        (lambda: full(SIX_BAR, crank=HEAVY, rocker=HEAVY), "six-bar"),
+        (lambda: full(mower(), crank=HEAVY, rocker=HEAVY), "crank and coupler, got crank and rocker"),
+        (lambda: full(FOUR_BAR, **BOTH), "takes a counterweight on crank and rocker, got crank and coupler"),
+        (lambda: partial(mower(), "acros", crank=HEAVY), "ratio is 'acros', allowed: .* did you mean 'across'"),
+        (lambda: partial(mower(), np.nan, crank=HEAVY), "ratio must be finite, got nan"),
+        (lambda: optimal(mower(), "larges", crank=HEAVY), "norm is 'larges', allowed: .* did you mean 'largest'"),
+        (lambda: optimal(mower(), crnk=HEAVY), "link is 'crnk', allowed: .* did you mean 'crank'"),
+        (lambda: optimal(mower()), "give at least one counterweight"),
+        (lambda: optimal(mower(), "weighted", weights=(np.nan, 1.0), crank=HEAVY), "must be finite"),
+    ],
+)
+def test_what_cannot_be_balanced_is_refused_with_the_reason(balance, message):
+    with pytest.raises(ks.ParameterError, match=message):
+        balance()
