@@ -320,12 +320,12 @@ def _balanced(mechanism, table):
     }
     if table.method == "optimal":
         return balancing.optimal(mechanism, table.norm, phase=table.phase, **weights)
-    if table.method == "partial" and set(weights) != {"crank"}:
-        raise KinetostaticsError(
-            f"balancing: partial balancing takes one counterweight, on the crank, got {', '.join(weights) or 'none'}"
-        )
     if "crank" not in weights:
         raise KinetostaticsError(f"{table.method} balancing needs a counterweight on the crank: balancing.crank")
+    if table.method == "partial" and set(weights) != {"crank"}:
+        raise KinetostaticsError(
+            f"balancing: partial balancing takes one counterweight, on the crank, got {', '.join(weights)}"
+        )
     if table.method == "full":
         return balancing.full(mechanism, **weights)
     return balancing.partial(mechanism, table.ratio, **weights)
