@@ -149,6 +149,7 @@ class RockerGroup:
         return "rocker" + self.label
 
     def place(self, placement):
+        """Add joints B and O2, coupler and rocker."""
         motion = place(
             placement.joints[self.on], self.coupler_length, self.rocker_length, tuple(self.pivot), self.assembly
         )
@@ -162,6 +163,7 @@ class RockerGroup:
         return placement.details[self._rocker].closure
 
     def condition(self, placement):
+        """Say what distances must hold for B to be reached, with their numbers."""
         x, y = (end - start for end, start in zip(self.pivot, placement.joints[self.on].position, strict=True))
         distance = np.hypot(x, y)
         low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
@@ -172,6 +174,7 @@ class RockerGroup:
         )
 
     def resolve(self, placement, loads, pushes, forces):
+        """Add the reactions at A, B and O2, and demand the inner one of the joint it hangs on."""
         found = resolve(
             placement.details[self._rocker],
             self.coupler_length,

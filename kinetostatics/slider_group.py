@@ -179,6 +179,7 @@ class SliderGroup:
         )
 
     def resolve(self, placement, loads, pushes, forces):
+        """Add pin reactions, guide force and moment, and demand the inner reaction of the joint it hangs on."""
         found = resolve(
             placement.details[self._slider],
             self.coupler_length,
