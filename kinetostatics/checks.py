@@ -60,7 +60,10 @@ def fitting(**values):
     shapes = {}
     for name, value in values.items():
         for number, item in enumerate(value if isinstance(value, list) else [value], 1):
-            shapes[f"{name} {number}" if number > 1 else name] = np.shape(item)
+            if not isinstance(item, float | int):
+                shapes[f"{name} {number}" if number > 1 else name] = np.shape(item)
+    if len(shapes) < 2:
+        return None
     try:
         np.broadcast_shapes(*shapes.values())
     except ValueError:

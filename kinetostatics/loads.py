@@ -6,11 +6,12 @@ from functools import cached_property
 from typing import Any
 
 from . import checks
+from .batch import Batched
 from .crank import ray
 
 
 @dataclass(frozen=True, eq=False)
-class Gravity:
+class Gravity(Batched):
     """Weight of every link.
 
     Parameters
@@ -39,7 +40,7 @@ class Gravity:
 
 
 @dataclass(frozen=True, eq=False)
-class Spring:
+class Spring(Batched):
     """Linear spring along the guide, acting at the slider pin.
 
     Parameters
@@ -77,7 +78,7 @@ class Spring:
 
 
 @dataclass(frozen=True, eq=False)
-class ProcessForce:
+class ProcessForce(Batched):
     """Cutting, gas or other force on the slider along the guide, positive in the guide direction.
 
     Parameters

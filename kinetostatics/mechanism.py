@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import checks
-from .batch import batch_shape
+from .batch import Batched
 from .cam_roller import CamRoller
 from .cams import CosineLaw
 from .chain import Forces
@@ -20,7 +20,7 @@ from .slider_group import SliderGroup
 
 
 @dataclass(frozen=True, eq=False)
-class Mechanism:
+class Mechanism(Batched):
     """Crank and groups, in the order in which motion flows from one to the next.
 
     Parameters
@@ -65,11 +65,6 @@ class Mechanism:
         for group in self.groups:
             references.update(group.references)
         return references
-
-    @cached_property
-    def batch(self):
-        """Shape that arrays of designs among the parameters have in common; () for a single design."""
-        return batch_shape((self.crank, self.groups))
 
     @property
     def bars(self):

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from . import checks
+from .batch import wider
 from .elementary import namespace, read_only, stack
 from .errors import QuantityError
 from .links import accelerated, angular_acceleration, arm, first_at, present, second_at
@@ -37,9 +36,8 @@ class Motion:
     @cached_property
     def shape(self):
         """Shape (..., N) of a scalar result: batch axes of the designs, then the crank angles."""
-        return np.broadcast_shapes(
-            self.crank_angle.shape, self.mechanism.batch, np.shape(self.crank_speed), np.shape(self.crank_acceleration)
-        )
+        parts = (self.mechanism, self.crank_speed, self.crank_acceleration)
+        return wider(self.crank_angle.shape, *parts)
 
     @cached_property
     def placement(self):
@@ -134,6 +132,9 @@ class Motion:
 
     def _full(self, *parts):
         """The parts with the shape of crank angles and designs together."""
+        shape = self.shape
+        return [part if getattr(part, "shape", None) == shape else self._spread(part) for part in parts]
+
+    def _spread(self, part):
         xp = namespace(self.crank_angle)
-        full = [part if hasattr(part, "shape") else xp.full_like(self.crank_angle, part) for part in parts]
-        return [part if part.shape == self.shape else xp.broadcast_to(part, self.shape) for part in full]
+        return xp.broadcast_to(part if hasattr(part, "shape") else xp.full_like(self.crank_angle, part), self.shape)

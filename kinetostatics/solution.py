@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import assembly, checks
-from .batch import batch_shape
+from .batch import wider
 from .elementary import is_foreign_array, read_only
 from .errors import ParameterError, QuantityError
 from .links import load, virtual_work
@@ -54,7 +54,7 @@ class Solution(Motion):
     @cached_property
     def shape(self):
         """Shape (..., N) of a scalar result: batch axes of designs and loads, then the crank angles."""
-        return np.broadcast_shapes(super().shape, batch_shape(self.loads))
+        return wider(super().shape, *self.loads)
 
     @property
     def reactions(self):
