@@ -14,6 +14,7 @@ import numpy as np
 from . import checks
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight
 from .errors import ParameterError
+from .extremes import extremes
 from .principal_points import principal_points
 from .quantities import magnitude
 from .rocker_group import RockerGroup
@@ -109,7 +110,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     weights : (force, moment)
         For "weighted": 1/N and 1/(N m). A counterweight on the crank alone does not change the shaking moment.
     angles : int
-        Crank angles at which the norm is taken.
+        Crank angles at which the norm is taken; for the largest of a force, its true extremes join them.
     **counterweights : Counterweight
         By link, as ``crank=Counterweight(arm=0.03)``; the side they lie on is found, the sign of the arm does not
         matter. Limits are kept.
@@ -130,6 +131,13 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         checks.pair("weights", weights),
         None if counterweights else "give at least one counterweight, such as crank=Counterweight(arm=0.03)",
         *(checks.choice("link", name, tuple(mechanism.links)) for name in counterweights),
+        *(_weight_problem(name, weight) for name, weight in counterweights.items()),
+        *(
+            f"{name}: optimal balancing adds counterweights to links; with the ratio or unbalance found, use partial "
+            "or counterweight for a whole link"
+            for name, weight in counterweights.items()
+            if getattr(weight, "whole_link", False)
+        ),
     )
     turn = np.linspace(0, 2 * np.pi, angles, endpoint=False)
     size = 2 if phase else 1
@@ -159,8 +167,11 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     kept_out = any(weight.keep_out for weight in counterweights.values())  # two sides of a hole to search
     starts = (zero - 0.5, zero + 0.5) if kept_out else (zero,)
     best = min((_searched(objective, start) for start in starts), key=objective)
-    if norm in ("largest", "along", "across"):
+    if norm not in ("largest", "along", "across"):
+        return balanced(best * scale)
+    for _ in range(8):  # what is largest between the angles joins them
         best = min(best, _levelled(lambda unknowns: sizes(unknowns) / reference, best), key=objective)
+        turn = np.append(turn, extremes(solved(best), lambda solution: _sizes(solution, norm)).angle)
     return balanced(best * scale)
 
 
@@ -170,8 +181,13 @@ def _searched(objective, start):
 
     options = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000}
     for _ in range(2):
-        start = minimize(objective, start, method="Nelder-Mead", options=options).x
+        start = minimize(objective, start, method="Nelder-Mead", options=options, callback=_stop_at_zero).x
     return start
+
+
+def _stop_at_zero(intermediate_result):
+    if intermediate_result.fun < 1e-11:
+        raise StopIteration
 
 
 def _levelled(sizes, start):
@@ -210,8 +226,13 @@ def _added(mechanism, link, unbalance, weight):
     return counterweight(mechanism, link, kept, sided)
 
 
+def _weight_problem(name, weight):
+    return None if isinstance(weight, Counterweight) else f"{name} must be a Counterweight, got {weight!r}"
+
+
 def _set(mechanism, link, moment, weight):
     """Counterweight that gives a link this static moment."""
+    checks.require("balancing", _weight_problem(link, weight))
     change = complex(*moment) - _static_moment(mechanism, link)
     own = mechanism.links[link]
     target = change + (complex(*own.centre) * own.mass if weight.whole_link else 0.0)
@@ -258,5 +279,7 @@ def _refuse(mechanism):
 
 
 def _refuse_massless(mechanism):
+    if mechanism.batch:
+        raise ParameterError(f"balancing works on one design at a time, got a batch of shape {mechanism.batch}")
     if not np.any(principal_points(mechanism).mass):
         raise ParameterError(f"the {mechanism.name} has no mass: there is nothing to balance")

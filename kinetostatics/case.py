@@ -319,7 +319,7 @@ def _balanced(mechanism, table):
         if getattr(table, name) is not None
     }
     if table.method == "optimal":
-        return balancing.optimal(mechanism, table.norm, phase=table.phase, **weights)
+        return balancing.optimal(mechanism, table.norm, phase=table.phase, weights=table.weights, **weights)
     if "crank" not in weights:
         raise KinetostaticsError(f"{table.method} balancing needs a counterweight on the crank: balancing.crank")
     if table.method == "partial" and set(weights) != {"crank"}:

@@ -113,7 +113,10 @@ class Balanced:
         """Ratio (h1 / L_OA) / (h2 / L_AB) reached; NaN where it has no meaning, as after full balancing."""
         found = principal_points(self.mechanism).static_moments
         lengths = {bar.link: bar.length for bar in self.mechanism.bars}
-        if "crank" not in lengths or found["coupler"][0] == 0:
+        slider = self.mechanism.group(SliderGroup)
+        if slider is None or "crank" not in lengths:
+            return np.nan
+        if abs(found["coupler"][0]) <= 1e-12 * principal_points(self.mechanism).mass * lengths["coupler"]:
             return np.nan
         return (found["crank"][0] / lengths["crank"]) / (found["coupler"][0] / lengths["coupler"])
 

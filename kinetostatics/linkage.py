@@ -128,7 +128,7 @@ def swing(solution, start=QUARTER):
     """
     found_class = grashof(solution.mechanism)
     whole = found_class.intervals == ((0.0, 2 * pi),)
-    if not whole or found_class.kind == "double-crank":
+    if not whole or "O2" in found_class.turning_joints:
         raise ParameterError(
             "swing is for four-bars whose crank turns fully and whose rocker does not; this one is a "
             f"{found_class.kind}{'' if whole else ' that does not close all round'}"

@@ -58,8 +58,9 @@ def slider_by_double_cross(A, coupler_length, W1, W2, W):
 def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x, angle):
     """Coupler and rocker angle of the chain unit by atan and acos, and their rates by the two-component formulas.
 
-    As in the Belarusian study of the chain unit, with phi = angle - phi_0 counted from the frame line O-O2, clockwise.
-    The atan forms hold only while A is left of O2 and b - r cos(phi) > 0, the acos forms lose digits near a toggle.
+    As in the Belarusian study of the chain unit, with phi = angle - phi_0 counted from the frame line O-O2, clockwise,
+    and B to the left of A-O2. The coupler angle holds only while A is left of O2, the rocker angle only while
+    b - r cos(phi) > 0: beyond, atan is off by half a turn.
 
     Parameters
     ----------

@@ -142,7 +142,8 @@ class CounterweightTable(Table):
 class BalancingTable(Table):
     method: Literal["full", "partial", "optimal"]
     ratio: Annotated[float | str, BeforeValidator(_ratio)] = "overall"
-    norm: Literal["largest", "mean", "along", "across"] = "largest"
+    norm: Literal["largest", "mean", "along", "across", "weighted"] = "largest"
+    weights: tuple[float, float] = (1.0, 0.0)
     phase: bool = False
     crank: CounterweightTable | None = None
     coupler: CounterweightTable | None = None

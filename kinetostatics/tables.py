@@ -105,7 +105,7 @@ def balancing_table(reference, variants, sampling=None):
                 **forces,
             }
             forces = {}
-    return pd.DataFrame(columns).rename_axis("quantity").round(9)
+    return pd.DataFrame(columns).rename_axis("quantity").round(9) + 0.0
 
 
 def _farthest(values):

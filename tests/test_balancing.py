@@ -287,11 +287,12 @@ def scan(mechanism, norm, *, largest_unbalance=np.inf, phase=False):
     ("mechanism", "norm"), [(mower(), norm) for norm in NORMS] + [(STRAIGHT, "largest"), (STRAIGHT, "along")]
 )
 def test_optimum_is_no_worse_than_the_classical_cases_and_a_scan_and_the_phase_helps(mechanism, norm):
+    """Up to what a grid hides of a peak between its angles, some 4e-5 of it: the optimum is that of the true peak."""
     classical = min(norm_of(partial(mechanism, ratio, crank=HEAVY), norm) for ratio in ("across", "along", "overall"))
     plain, turned = (norm_of(optimal(mechanism, norm, phase=phase, crank=HEAVY), norm) for phase in (False, True))
-    rounding = 1e-7 * NORMS[norm](shaking(mechanism))
-    assert plain <= min(classical, scan(mechanism, norm)) + rounding
-    assert turned <= min(plain, scan(mechanism, norm, phase=True)) + rounding
+    hidden = 2e-5 * NORMS[norm](shaking(mechanism))
+    assert plain <= min(classical, scan(mechanism, norm)) + hidden
+    assert turned <= min(plain, scan(mechanism, norm, phase=True)) + hidden
 
 
 @pytest.mark.parametrize("norm", ["largest", "weighted"])
@@ -397,3 +398,31 @@ BOTH = {"crank": HEAVY, "coupler": HEAVY}
 def test_what_cannot_be_balanced_is_refused_with_the_reason(balance, message):
     with pytest.raises(ks.ParameterError, match=message):
         balance()
+
+
+@pytest.mark.parametrize("norm", ["largest", "along"])
+def test_optimum_is_that_of_the_true_extreme_not_of_a_grid(norm):
+    """A finer grid to begin with changes nothing, and no classical ratio is better."""
+    found = [optimal(mower(), norm, angles=angles, crank=Counterweight(arm=0.035)) for angles in (72, 720)]
+
+    def peak(balanced):
+        s = ks.solve(balanced.mechanism, [0.0], crank_speed=1.0)
+        return abs(ks.extremes(s, "shaking_force" if norm == "largest" else lambda s: s.shaking_force[0]).largest)
+
+    coarse, fine = map(peak, found)
+    assert coarse == pytest.approx(fine, rel=1e-7)
+    for ratio in ("across", "along", "overall"):
+        assert fine <= peak(partial(mower(), ratio, crank=Counterweight(mass=5.0))) * (1 + 1e-9)
+
+
+def test_what_is_no_counterweight_or_no_single_design_is_refused():
+    batch = ks.crank_slider(np.array([[0.03], [0.04]]), 0.3, slider=ks.Link(1.0))
+    for ask in (
+        lambda: partial(mower(), 0.5, crank=3.0),
+        lambda: full(mower(), crank=None, coupler=Counterweight(arm=-0.1)),
+        lambda: optimal(mower(), crank=0.05),
+        lambda: optimal(mower(), crank=Counterweight(arm=0.03, whole_link=True)),
+        lambda: partial(batch, 0.5, crank=Counterweight(arm=-0.03)),
+    ):
+        with pytest.raises(ks.ParameterError):
+            ask()
