@@ -129,15 +129,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         "optimal balancing",
         checks.choice("norm", norm, NORMS),
         checks.pair("weights", weights),
-        None if counterweights else "give at least one counterweight, such as crank=Counterweight(arm=0.03)",
-        *(checks.choice("link", name, tuple(mechanism.links)) for name in counterweights),
-        *(_weight_problem(name, weight) for name, weight in counterweights.items()),
-        *(
-            f"{name}: optimal balancing adds counterweights to links; with the ratio or unbalance found, use partial "
-            "or counterweight for a whole link"
-            for name, weight in counterweights.items()
-            if getattr(weight, "whole_link", False)
-        ),
+        *_search_problems(mechanism, counterweights),
     )
     turn = np.linspace(0, 2 * np.pi, angles, endpoint=False)
     size = 2 if phase else 1
@@ -155,15 +147,17 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     def sizes(unknowns):
         return _sizes(solved(unknowns), norm)
 
-    def objective(unknowns):
+    def value(unknowns):
         if norm == "weighted":
-            return _weighted(solved(unknowns), weights) / reference
-        return (np.mean if norm == "mean" else np.max)(sizes(unknowns)) / reference
+            return _weighted(solved(unknowns), weights)
+        return (np.mean if norm == "mean" else np.max)(sizes(unknowns))
+
+    def objective(unknowns):
+        return value(unknowns) / reference
 
     scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
-    reference = 1.0
     zero = np.zeros(size * len(counterweights))
-    reference = objective(zero) or 1.0
+    reference = value(zero) or 1.0
     kept_out = any(weight.keep_out for weight in counterweights.values())  # two sides of a hole to search
     starts = (zero - 0.5, zero + 0.5) if kept_out else (zero,)
     best = min((_searched(objective, start) for start in starts), key=objective)
@@ -173,6 +167,20 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         best = min(best, _levelled(lambda unknowns: sizes(unknowns) / reference, best), key=objective)
         turn = np.append(turn, extremes(solved(best), lambda solution: _sizes(solution, norm)).angle)
     return balanced(best * scale)
+
+
+def _search_problems(mechanism, counterweights):
+    """What is wrong with the counterweights to be found."""
+    if not counterweights:
+        yield "give at least one counterweight, such as crank=Counterweight(arm=0.03)"
+    for name, weight in counterweights.items():
+        yield checks.choice("link", name, tuple(mechanism.links))
+        yield _weight_problem(name, weight)
+        if getattr(weight, "whole_link", False):
+            yield (
+                f"{name}: optimal balancing adds counterweights to links; with the ratio or unbalance found, use "
+                "partial or counterweight for a whole link"
+            )
 
 
 def _searched(objective, start):

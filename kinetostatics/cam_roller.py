@@ -92,7 +92,9 @@ class CamRoller:
         placement.details["cam"] = polar
 
     def closure(self, placement):
-        return placement.details["cam"][0]
+        """Squared cosine of the pressure angle, negative where the radius is."""
+        radius, slope, _ = placement.details["cam"]
+        return radius * abs(radius) / (radius * radius + slope * slope)
 
     def condition(self, placement):
         return f"the pitch curve must go around O, but its radius falls to {placement.details['cam'][0].min():.6g} m"

@@ -83,8 +83,8 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     ----------
     solution : Solution
     joints : sequence of str
-        Reactions drawn as arrows from their joints ("guide" starts at B); the largest of all is half the
-        mechanism's crank circle long. NaN where the mechanism does not close draws nothing.
+        Reactions drawn as arrows from their joints ("guide" starts at B); the largest of all is as long as
+        the crank. NaN where the mechanism does not close draws nothing.
     frames : int
         Poses shown, of the solution's crank angles.
     interval : float
@@ -98,20 +98,19 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     from matplotlib.animation import FuncAnimation
 
     ax = axes(ax)
-    angles = solution.crank_angle
-    steps = np.linspace(0, angles.size, min(frames, angles.size), endpoint=False).astype(int)
-    turn = solution
+    count = solution.crank_angle.size
+    steps = np.linspace(0, count, min(frames, count), endpoint=False).astype(int)
     _frame(ax, solution)
-    bars = _bars(ax, turn, 1.0)
-    lines = list(_bar_lines(turn))
-    blocks = [turn.position(group.pin) for group in _slider_groups(turn)]
+    bars = _bars(ax, solution, 1.0)
+    lines = list(_bar_lines(solution))
+    blocks = [solution.position(group.pin) for group in _slider_groups(solution)]
     sliders = [ax.plot([], [], "s", ms=13, mfc=STEEL, mec="none", zorder=3)[0] for _ in blocks]
-    pins = [ax.plot([], [], "o", ms=6, mfc="white", mec=INK, zorder=4)[0] for _ in turn.placement.joints]
-    positions = [turn.position(joint) for joint in turn.placement.joints]
-    forces = [turn.reaction(joint) for joint in joints]
+    pins = [ax.plot([], [], "o", ms=6, mfc="white", mec=INK, zorder=4)[0] for _ in solution.placement.joints]
+    positions = [solution.position(joint) for joint in solution.placement.joints]
+    forces = [solution.reaction(joint) for joint in joints]
     largest = max(float(np.nanmax(magnitude(force))) for force in forces)
-    length = float(np.nanmax(magnitude(turn.position("A"))))
-    starts = [turn.position("B" if joint == "guide" else joint) for joint in joints]
+    length = float(np.nanmax(magnitude(solution.position("A"))))
+    starts = [solution.position("B" if joint == "guide" else joint) for joint in joints]
     arrows = ax.quiver(
         *np.zeros((2, len(joints))),
         *np.zeros((2, len(joints))),
@@ -134,7 +133,7 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
             marker.set_data(position[:, [step]])
         arrows.set_offsets(np.array([start[:, step] for start in starts]))
         arrows.set_UVC(*np.array([force[:, step] for force in forces]).T)
-        caption.set_text(f"crank angle {np.degrees(turn.crank_angle[step]):.0f}°")
+        caption.set_text(f"crank angle {np.degrees(solution.crank_angle[step]):.0f}°")
         return [*bars, *sliders, *pins, arrows, caption]
 
     return FuncAnimation(ax.figure, draw, frames=steps, interval=interval)

@@ -53,18 +53,15 @@ class Mechanism(Batched):
     @cached_property
     def links(self):
         """Link by name, from the crank outwards."""
-        links = dict(self.crank.links)
-        for group in self.groups:
-            links.update(group.links)
-        return links
+        return self._collected("links")
 
     @cached_property
     def references(self):
         """Reference joint by link, from the crank outwards."""
-        references = dict(self.crank.references)
-        for group in self.groups:
-            references.update(group.references)
-        return references
+        return self._collected("references")
+
+    def _collected(self, table):
+        return {name: item for part in (self.crank, *self.groups) for name, item in getattr(part, table).items()}
 
     @property
     def bars(self):
