@@ -165,7 +165,10 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         return balanced(best * scale)
     for _ in range(8):  # what is largest between the angles joins them
         best = min(best, _levelled(lambda unknowns: sizes(unknowns) / reference, best), key=objective)
-        turn = np.append(turn, extremes(solved(best), lambda solution: _sizes(solution, norm)).angle)
+        peaks = extremes(solved(best), lambda solution: _sizes(solution, norm))
+        if peaks.range[1] <= value(best) + 1e-10 * reference:
+            break
+        turn = np.append(turn, peaks.angle)
     return balanced(best * scale)
 
 
