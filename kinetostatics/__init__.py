@@ -63,13 +63,25 @@ __all__ = [
     "four_bar",
     "linkage",
     "load_case",
+    "needs",
     "plots",
+    "precision",
     "principal_points",
     "solve",
+    "stability",
 ]
 
 
-_LATER = {"balancing": None, "linkage": None, "plots": None, "compare": "comparison", "load_case": "case"}
+_LATER = {
+    "balancing": None,
+    "compare": "comparison",
+    "linkage": None,
+    "load_case": "case",
+    "needs": "ingredients",
+    "plots": None,
+    "precision": None,
+    "stability": None,
+}
 """Names loaded, with the libraries they need, only when used: modules, and functions with the module they are in."""
 
 

@@ -4,12 +4,11 @@ import warnings
 
 import numpy as np
 
+from .elementary import ROUNDING
 from .errors import AssemblyError, ConditionWarning, ParameterError
 
 NEAR_LIMIT = 1e-8
 """Closure margin below which half the digits of velocities and forces are gone."""
-ROUNDING = 4e-15
-"""Closure margin below zero that is but rounding at the limit position itself."""
 
 
 def check(mechanism, placement):
@@ -46,7 +45,8 @@ def _warn_near_limit(mechanism, placement, margin, smallest):
     warnings.warn(
         f"{mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position: the sine "
         f"or cosine that divides rates and forces is {np.sqrt(smallest):.3g} (squared {smallest:.3g}); they have about "
-        f"{max(0.0, 16 - lost):.0f} correct digits there, grow without bound, and are infinite or NaN at the limit",
+        f"{max(0.0, 16 - lost):.0f} correct digits there and grow without bound (solution.condition says how many "
+        "times errors are magnified, angle by angle)",
         ConditionWarning,
         stacklevel=4,
     )
@@ -64,7 +64,7 @@ def _error(mechanism, group, placement, margin):
     text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(end):.6g} deg" for start, end in gaps)
     return AssemblyError(
         f"{mechanism.name} cannot be assembled at {count} of {margin.size} crank angles{design}: "
-        f"{group.condition(placement)}. It does not close for crank angles {text}",
+        f"{group.requirement(placement)}. It does not close for crank angles {text}",
         gaps,
     )
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from . import checks
-from .elementary import sqrt
+from .elementary import condition, sqrt
 from .links import Joint, Link, LinkMotion, Wrench
 from .planar import cross, dot, minus, subtracted, vector
 
@@ -96,8 +96,11 @@ class CamRoller:
         radius, slope, _ = placement.details["cam"]
         return radius * abs(radius) / (radius * radius + slope * slope)
 
-    def condition(self, placement):
+    def requirement(self, placement):
         return f"the pitch curve must go around O, but its radius falls to {placement.details['cam'][0].min():.6g} m"
+
+    def condition(self, placement):
+        return condition(self.closure(placement))
 
     def resolve(self, placement, loads, pushes, forces):
         radius, slope, _ = placement.details["cam"]

@@ -117,7 +117,11 @@ class CosineLaw(Cam):
 
         r = c* root - c d,   d = root - x_B = a^2 (2 c* c + 3 - 5 c*^2) / (root + x_B)
 
-    in which nothing cancels (law: Ukrainian study of sawframe 2R63; factored forms: ours).
+    in which nothing cancels. So do the derivatives by c, with g = d - a c*, k = a / root and w = k (c - c*):
+
+        dr/dc = (w - 1) g,   d2r/dc2 = k g (2 - w (2 - g / root))
+
+    (law: Ukrainian study of sawframe 2R63; factored forms: ours).
 
     Parameters
     ----------
@@ -180,12 +184,12 @@ class CosineLaw(Cam):
         a, b = self.amplitude, self.mean
         square, p, q = self._quadratic
         root = sqrt((square * c + p) * c + q)
-        bend = (square * c + 0.5 * p) / root
         singular = self._cosine
-        offset = c - singular
         excess = square * (2.0 * singular * c + 3.0 - 5.0 * singular * singular) / (root + b + a * c)
-        by_c = a * c - excess - offset * bend
-        by_c_twice = 2.0 * a - 2.0 * bend - offset * (square - bend * bend) / root
+        g, k = excess - a * singular, a / root
+        w = k * (c - singular)
+        by_c = (w - 1.0) * g
+        by_c_twice = k * g * (2.0 - w * (2.0 - g / root))
         return singular * root - c * excess, -s * by_c, s * s * by_c_twice - c * by_c
 
 

@@ -1,4 +1,4 @@
-"""The command line: ``kinetostatics run | compare | plot CASE``."""
+"""The command line: ``kinetostatics run | compare | plot | precision CASE``, ``kinetostatics stability``."""
 
 import argparse
 import os
@@ -39,12 +39,26 @@ def _parser():
     plot.add_argument("--out", required=True, metavar="DIR", help="folder for the figures")
     plot.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")
     plot.add_argument("--only", metavar="FIGURE", help="draw this figure only")
+
+    precision = _command(
+        commands, "precision", _precision, "every method's time and error against a certified reference"
+    )
+    precision.add_argument("--out", required=True, metavar="DIR", help="folder for the CSV and the chart")
+    precision.add_argument("--variant", action="append", metavar="NAME", help="only these (one of each kind)")
+    precision.add_argument("--quantity", action="append", metavar="NAME", help="of these (balancing_torque)")
+    precision.add_argument("--angles", type=_count, default=360, metavar="N", help="crank angles over the turn (360)")
+
+    stability = _command(
+        commands, "stability", _stability, "every method's error near the places where it hurts", False
+    )
+    stability.add_argument("--out", required=True, metavar="DIR", help="folder for the CSVs and the chart")
     return parser
 
 
-def _command(commands, name, function, text):
+def _command(commands, name, function, text, of_case=True):
     command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-    command.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case: sawframe_2r63")
+    if of_case:
+        command.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case: sawframe_2r63")
     command.set_defaults(command=function)
     return command
 
@@ -111,6 +125,39 @@ def _plot(options):
 
     for path in draw_case(load_case(options.case), options.out, options.format, options.only):
         print(path)
+
+
+def _precision(options):
+    import pandas as pd
+
+    from . import precision
+    from .case import load_case
+
+    case = load_case(options.case)
+    quantities = options.quantity or [precision.QUANTITY]
+    paths = precision.case_study(
+        case, options.out, variants=options.variant, quantities=quantities, angles=options.angles, progress=_tell
+    )
+    print(f"{case.title}\n\nno other method is both faster and nearer than these:\n")
+    table = pd.read_csv(paths[0])
+    fronts = [precision.front(part) for _, part in table.groupby(["variant", "quantity"], sort=False)]
+    shown = ["variant", "quantity", "method", "setting", "value", "time [ns/angle]", "error"]
+    _print(pd.concat(fronts)[shown].set_index("variant").fillna(""))
+    print(*paths, sep="\n")
+
+
+def _stability(options):
+    import pandas as pd
+
+    from . import stability
+
+    paths = stability.write(options.out, progress=_tell)
+    _print(pd.read_csv(paths[1]).drop(columns=["machine", "versions"]).set_index("place"))
+    print(*paths, sep="\n")
+
+
+def _tell(text):
+    print(text, file=sys.stderr)
 
 
 def _print(table):

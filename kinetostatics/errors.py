@@ -31,6 +31,14 @@ class QuantityError(KinetostaticsError, AttributeError):
     """The mechanism has no such joint, link or quantity; the message lists those it has."""
 
 
+class NotGivenError(KinetostaticsError):
+    """A method cannot give this quantity of this mechanism; the message says why."""
+
+
+class MissingLibraryError(KinetostaticsError, ImportError):
+    """A library of an extra is not installed; the message says how to install it."""
+
+
 class CaseError(KinetostaticsError, ValueError):
     """A case file cannot be used; the message lists every problem with file and key.
 

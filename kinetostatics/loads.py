@@ -74,7 +74,7 @@ class Spring(Batched):
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
-        return -self.stiffness * (motion.travel(self.on) - self.free_position)
+        return -self.stiffness * motion.elongation(self.free_position, self.on)
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,17 +27,22 @@ def values(solution, quantity):
     """Values of a quantity over the crank angles; of a joint's reaction or a vector attribute, the magnitude."""
     if callable(quantity):
         return quantity(solution)
-    if quantity in UNITS and quantity not in VECTORS:
-        return getattr(solution, quantity)
-    if quantity in VECTORS:
-        return magnitude(getattr(solution, quantity))
+    parts = components(solution, quantity)
+    return parts[0] if len(parts) == 1 else magnitude(parts)
+
+
+def components(solution, quantity):
+    """Values of a scalar quantity over the crank angles, or both components of a joint's reaction or a vector."""
+    if quantity in UNITS:
+        found = getattr(solution, quantity)
+        return tuple(found) if quantity in VECTORS else (found,)
     link, ending = _of_link(quantity)
     if link in solution.mechanism.links:
-        return solution.rate(link) if ending == "_rate" else solution.angular_acceleration(link)
+        return (solution.rate(link) if ending == "_rate" else solution.angular_acceleration(link),)
     if quantity in solution.reactions:
-        return magnitude(solution.reaction(quantity))
+        return tuple(solution.reaction(quantity))
     if quantity in solution.scalars:
-        return solution.scalar(quantity)
+        return (solution.scalar(quantity),)
     known = (*UNITS, *solution.scalars, *solution.reactions)
     raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", quantity, tuple(dict.fromkeys(known))))
 

@@ -13,9 +13,14 @@ import numpy as np
 
 from . import checks
 from .chain import Bar
-from .elementary import sqrt
+from .elementary import condition, root, sqrt
 from .links import Joint, Link, LinkMotion
 from .planar import added, dot, left, minus, moment, number, quotient, stretched, subtracted
+
+APART = 2.0**-90
+"""Where A meets O2 it counts as this far to the left, in coupler and rocker lengths: B could be anywhere, but is not
+nowhere. Far below rounding elsewhere.
+"""
 
 
 class RockerMotion(NamedTuple):
@@ -40,11 +45,12 @@ class RockerForces(NamedTuple):
 def place(joint, coupler_length, rocker_length, pivot, assembly):
     """Coupler and rocker for a given inner joint (kernel)."""
     c, h = coupler_length, rocker_length
-    d = (pivot[0] - joint.position[0], pivot[1] - joint.position[1])
+    d = (pivot[0] - joint.position[0] + APART * (c + h), pivot[1] - joint.position[1])
     square = dot(d, d)
     a = sqrt(square)
     heron = (a + c + h) * (a + c - h) * (a - c + h) * (c + h - a)
-    area = assembly * sqrt(heron)
+    unit = (2.0 * c * h) ** 2
+    area = assembly * root(heron, unit)
     along, across = (square + (c - h) * (c + h)) / (2.0 * square), area / (2.0 * square)
     reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
     q = (reach[0] / c, reach[1] / c)
@@ -67,7 +73,7 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     )
     coupler = LinkMotion(joint, q, ratio, ratio_slope)
     rocker = LinkMotion(Joint(pivot, None, None), p, swing, swing_slope)
-    return RockerMotion(coupler, rocker, pin, sine, cosine, heron / (2.0 * c * h) ** 2)
+    return RockerMotion(coupler, rocker, pin, sine, cosine, heron / unit)
 
 
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load, demand):
@@ -162,7 +168,7 @@ class RockerGroup:
     def closure(self, placement):
         return placement.details[self._rocker].closure
 
-    def condition(self, placement):
+    def requirement(self, placement):
         """Say what distances must hold for B to be reached, with their numbers."""
         x, y = (end - start for end, start in zip(self.pivot, placement.joints[self.on].position, strict=True))
         distance = np.hypot(x, y)
@@ -172,6 +178,13 @@ class RockerGroup:
             f"must lie between the difference and the sum of coupler and rocker lengths, {np.min(low):.6g} and "
             f"{np.max(high):.6g} m"
         )
+
+    def condition(self, placement):
+        motion = placement.details[self._rocker]
+        c, h = self.coupler_length, self.rocker_length
+        lag, swing_lag = c * motion.coupler.ratio**2, h * motion.rocker.ratio**2
+        result = motion.sine * abs(c * motion.coupler.ratio_slope) + motion.sine * abs(h * motion.rocker.ratio_slope)
+        return condition(motion.closure, lag + swing_lag + abs(result), result)
 
     def resolve(self, placement, loads, pushes, forces):
         """Add the reactions at A, B and O2, and demand the inner one of the joint it hangs on."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from . import checks
 from .chain import Bar
-from .elementary import sqrt
+from .elementary import condition, root
 from .guide import Guide
 from .links import Joint, Link, LinkMotion, present
 from .planar import added, minus, number, plus, quotient, subtracted, turned, unturned, vector
@@ -46,8 +46,8 @@ def place(joint, coupler_length, guide, assembly):
     second = unturned(joint.second, guide.direction)
 
     across = minus(guide.guide_offset, position[1])
-    square = (coupler_length - across) * (coupler_length + across)
-    along = assembly * sqrt(square)
+    square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
+    along = assembly * root(square, unit)
     sine, cosine = across / coupler_length, along / coupler_length
 
     ratio = -first[1] / along
@@ -66,7 +66,7 @@ def place(joint, coupler_length, guide, assembly):
     )
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
-    return SliderMotion(coupler, slider, sine, cosine, square / (coupler_length * coupler_length), travel)
+    return SliderMotion(coupler, slider, sine, cosine, square / unit, travel)
 
 
 def _on_guide(position, travel, reach, guide):
@@ -171,12 +171,28 @@ class SliderGroup:
     def closure(self, placement):
         return placement.details[self._slider].closure
 
-    def condition(self, placement):
+    def elongation(self, placement, free_position):
+        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate.
+
+        The coupler reaches its length along the guide less l (1 - cos) = l sin^2 / (1 + cos), all small beside it.
+        """
+        motion = placement.details[self._slider]
+        along = unturned(placement.joints[self.on].position, self._line.direction)[0]
+        shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
+        return along + (self.assembly * self.coupler_length - free_position) - self.assembly * shortfall
+
+    def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)
         return (
             f"the distance from {self.on} to the guide, up to {distance.max():.6g} m here, must not exceed the "
             f"{self._coupler} length, {_span(self.coupler_length)} m"
         )
+
+    def condition(self, placement):
+        motion = placement.details[self._slider]
+        lag = motion.coupler.ratio * motion.coupler.ratio * motion.sine
+        result = motion.coupler.ratio_slope * motion.cosine
+        return condition(motion.closure, abs(lag) + abs(lag - result), result)
 
     def resolve(self, placement, loads, pushes, forces):
         """Add pin reactions, guide force and moment, and demand the inner reaction of the joint it hangs on."""

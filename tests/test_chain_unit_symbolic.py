@@ -14,7 +14,8 @@ from sympy import QQ
 from sympy.polys.fields import field
 from sympy.polys.orderings import lex
 
-from kinetostatics import methods, rocker_group
+from kinetostatics import rocker_group
+from kinetostatics.methods import papers
 from kinetostatics.links import Joint
 
 FIELD, S, a, s, k, r, c, h, b = field("S, a, s, k, r, c, h, b", QQ, lex)
@@ -56,6 +57,8 @@ def placed(request):
     joint = Joint(A, (-slope(A[0]), -slope(A[1])), (-A[0], -A[1]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rocker_group, "sqrt", root)
+        patch.setattr(rocker_group, "root", lambda square, unit: root(square))
+        patch.setattr(rocker_group, "APART", 0)
         return joint, rocker_group.place(joint, c, h, (b, FIELD.zero), request.param), request.param
 
 
@@ -72,8 +75,8 @@ def study_rates():
         "arccos": lambda ratio: 0,
     }
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(methods, "np", SimpleNamespace(**functions))
-        return dict(zip(("coupler", "rocker"), methods.chain_unit_by_atan_acos(r, c, h, b, 0)[2:], strict=True))
+        patch.setattr(papers, "np", SimpleNamespace(**functions))
+        return dict(zip(("coupler", "rocker"), papers.chain_unit_by_atan_acos(r, c, h, b, 0)[2:], strict=True))
 
 
 def test_directions_are_unit_vectors_that_close_the_loop(placed):

@@ -1,22 +1,28 @@
-"""One source of physics on every engine: the kernels of the package, as they are, in numba, JAX, arb and dask."""
+"""One source of physics on every engine: JAX, arb, dask, and programs recorded from the kernels, compiled by numba."""
 
-import ast
-import functools
-import inspect
+import importlib.util
 import json
 import math
+import subprocess
+import sys
+from dataclasses import dataclass, replace
+from importlib.machinery import ModuleSpec
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from four_bars import FourBar
+from test_six_bar import six_bar
 
 import kinetostatics as ks
-from kinetostatics import cam_roller, crank, elementary, links, planar, slider_group
+from kinetostatics import compiled, elementary, tracing
+from kinetostatics.links import LinkMotion
+from kinetostatics.quantities import components
 
 SPEED = 320 * 2 * math.pi / 60
 ANGLES = np.linspace(0, 2 * math.pi, 360, endpoint=False)
-KERNEL_MODULES = (planar, links, crank, cam_roller, slider_group)
 
 
 class Scene(NamedTuple):
@@ -27,6 +33,7 @@ class Scene(NamedTuple):
     spring: ks.Spring | None = None
     push: float | None = None
     acceleration: float | None = None
+    on: str = "slider"
 
 
 LIGHT = {"coupler": ks.Link(150.0, 1.0, 20.5), "slider": ks.Link(600.0)}
@@ -61,32 +68,23 @@ SCENES = {
         2500.0,
         40.0,
     ),
+    "four-bar": Scene(FourBar(assembly=-1).solve().mechanism, ks.Gravity(9.81, -1.2), acceleration=40.0),
+    "six-bar": Scene(six_bar(), ks.Gravity(), ks.Spring(100.0, 0.5, on="slider2"), 30.0, 40.0, on="slider2"),
 }
-PLAIN = [name for name in SCENES if name.startswith("plain")]
-CAMS = [name for name in SCENES if "cam" in name]
 
 
 def solve(scene, angles, **options):
     loads = [load for load in (scene.gravity, scene.spring) if load is not None]
     if scene.push is not None:
-        loads.append(ks.ProcessForce(scene.push))
-    return ks.solve(
-        scene.mechanism,
-        angles,
-        crank_speed=SPEED,
-        crank_acceleration=scene.acceleration or 0.0,
-        loads=loads,
-        **options,
-    )
+        loads.append(ks.ProcessForce(scene.push, scene.on))
+    options = {"crank_speed": SPEED, "crank_acceleration": scene.acceleration or 0.0} | options
+    return ks.solve(scene.mechanism, angles, loads=loads, **options)
 
 
 def results(solution):
     """Every reaction, force and moment by name."""
-    scalars = ["guide_force", "guide_moment", "balancing_torque"]
-    if solution.mechanism.crank.length is None:
-        scalars += ["cam_force", "slot_force"]
-    vectors = {joint: solution.reaction(joint) for joint in ("O", "A", "B")}
-    return vectors | {name: getattr(solution, name) for name in scalars}
+    vectors = {name: solution.reaction(name) for name in solution.reactions}
+    return vectors | {name: solution.scalar(name) for name in solution.scalars}
 
 
 def largest(values):
@@ -98,184 +96,6 @@ def assert_agree(found, expected, tolerance=1e-13):
     assert found.keys() == expected.keys()
     for name, values in expected.items():
         assert largest(np.asarray(found[name]) - values) <= tolerance * largest(values), name
-
-
-# The kernels of a whole mechanism, called one after the other
-
-
-class Problem(NamedTuple):
-    """A scene as kernels take it."""
-
-    crank_length: Any
-    coupler_length: Any
-    guide: ks.Guide
-    assembly: Any
-    crank: links.Body
-    block: links.Body | None
-    coupler: links.Body
-    slider: links.Body
-    speed_squared: Any
-    acceleration: Any
-    gravity: Any
-    stiffness: Any
-    free_position: Any
-    push: Any
-
-
-def problem(scene):
-    mechanism, group = scene.mechanism, scene.mechanism.groups[-1]
-    bodies = {name: link.body for name, link in mechanism.links.items()}
-    level = ks.Guide(None, None)
-    return Problem(
-        crank_length=mechanism.crank.length,
-        coupler_length=group.coupler_length,
-        guide=level if group.guide == ks.Guide.at() else group.guide,
-        assembly=group.assembly,
-        crank=bodies["crank"],
-        block=bodies.get("block"),
-        coupler=bodies["coupler"],
-        slider=bodies["slider"],
-        speed_squared=SPEED * SPEED,
-        acceleration=scene.acceleration,
-        gravity=scene.gravity and scene.gravity.vector,
-        stiffness=scene.spring and scene.spring.stiffness,
-        free_position=scene.spring and scene.spring.free_position,
-        push=scene.push,
-    )
-
-
-def load(link, body, problem):
-    return links.load(link, body, problem.speed_squared, problem.acceleration, problem.gravity)
-
-
-def slider_forces(group, problem):
-    pull = planar.product(problem.stiffness, planar.minus(problem.free_position, group.travel.position))
-    return slider_group.resolve(
-        group,
-        problem.coupler_length,
-        problem.guide,
-        load(group.coupler, problem.coupler, problem),
-        load(group.slider, problem.slider, problem),
-        planar.plus(pull, problem.push),
-        None,
-    )
-
-
-def plain_forces(angle, problem):
-    """O, A, B (x and y of each), guide force and moment, torque of a plain crank-slider."""
-    ray = crank.ray(angle)
-    joint = crank.pin(ray, problem.crank_length)
-    group = slider_group.place(joint, problem.coupler_length, problem.guide, problem.assembly)
-    forces = slider_forces(group, problem)
-    own = load(links.LinkMotion(crank.ORIGIN, ray, 1.0, None), problem.crank, problem)
-    demand = links.Wrench(forces.inner, planar.moment(joint.position, forces.inner))
-    ground, torque = crank.resolve(own, demand)
-    return ground + forces.inner + forces.pin + (forces.guide_force, forces.guide_moment, torque)
-
-
-def cam_forces(angle, radius, slope, second, problem):
-    """The same of a cam-balanced one, from r, r', r'' of its cam, then cam and slot force."""
-    ray = crank.ray(angle)
-    joint = cam_roller.place(ray, radius, slope, second)
-    group = slider_group.place(joint, problem.coupler_length, problem.guide, problem.assembly)
-    forces = slider_forces(group, problem)
-    on_block = load(links.LinkMotion(joint, ray, 1.0, None), problem.block, problem)
-    roller = cam_roller.resolve(ray, radius, slope, on_block, forces.inner)
-    own = load(links.LinkMotion(crank.ORIGIN, ray, 1.0, None), problem.crank, problem)
-    ground, torque = crank.resolve(own, roller.crank_demand)
-    supports = (forces.guide_force, forces.guide_moment, torque, roller.cam, roller.slot)
-    return ground + forces.inner + forces.pin + supports
-
-
-def plain_loop(angles, problem, rows):
-    for i in range(angles.size):
-        forces = plain_forces(angles[i], problem)
-        for k in range(len(forces)):
-            rows[k, i] = forces[k]
-
-
-def cam_loop(angles, radius, slope, second, problem, rows):
-    for i in range(angles.size):
-        forces = cam_forces(angles[i], radius[i], slope[i], second[i], problem)
-        for k in range(len(forces)):
-            rows[k, i] = forces[k]
-
-
-def named(rows):
-    """Rows of forces by the names of `results`."""
-    names = ("guide_force", "guide_moment", "balancing_torque", "cam_force", "slot_force")
-    vectors = {joint: rows[2 * k : 2 * k + 2] for k, joint in enumerate("OAB")}
-    return vectors | dict(zip(names, rows[6:], strict=False))
-
-
-# numba
-
-
-class DecideAbsence(ast.NodeTransformer):
-    """Turns ``a is None`` into True or False, for arguments known to be absent or present."""
-
-    def __init__(self, absent):
-        self.absent = absent
-
-    def visit_Compare(self, node):
-        """Called by `ast` for every comparison."""
-        match node:
-            case ast.Compare(ast.Name(name), [ast.Is() | ast.IsNot() as test]):
-                return ast.Constant(self.absent[name] == isinstance(test, ast.Is))
-        return node
-
-
-@functools.cache
-def specialised(kernel, *absent):
-    """A kernel compiled from its own source, with the tests for absent arguments decided.
-
-    Numba by itself drops only the branch that an argument of None never takes; where the argument is present it keeps
-    both, and the result could be None as far as it can tell.
-    """
-    decide = DecideAbsence(dict(zip(inspect.signature(kernel).parameters, absent, strict=True)))
-    tree = ast.fix_missing_locations(decide.visit(ast.parse(inspect.getsource(kernel))))
-    made = {}
-    exec(compile(tree, inspect.getfile(kernel), "exec"), kernel.__globals__, made)
-    return made[kernel.__name__]
-
-
-@pytest.fixture(scope="module")
-def njit():
-    """`numba.njit`, once numba knows the kernels."""
-    numba = pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-    from numba.extending import overload
-
-    def register(kernel):
-        @overload(kernel, strict=False)
-        def choose(*arguments):
-            return specialised(kernel, *(isinstance(kind, numba.types.NoneType) for kind in arguments))
-
-    for module in KERNEL_MODULES:
-        for _, function in inspect.getmembers(module, inspect.isfunction):
-            if function.__module__ == module.__name__:
-                register(function)
-    for function in (load, slider_forces, plain_forces, cam_forces):
-        register(function)
-    overload(elementary.sin)(lambda x: lambda x: math.sin(x))
-    overload(elementary.cos)(lambda x: lambda x: math.cos(x))
-    overload(elementary.sqrt)(lambda x: lambda x: math.sqrt(x))
-    return numba.njit
-
-
-@pytest.mark.parametrize("name", PLAIN)
-def test_numba_loop_over_the_plain_kernels_equals_solve(njit, name):
-    rows = np.empty((9, ANGLES.size))
-    njit(plain_loop)(ANGLES, problem(SCENES[name]), rows)
-    assert_agree(named(rows), results(solve(SCENES[name], ANGLES)))
-
-
-@pytest.mark.parametrize("name", CAMS)
-def test_numba_loop_over_the_cam_kernels_equals_solve(njit, name):
-    scene = SCENES[name]
-    polar = scene.mechanism.group(ks.CamRoller).cam.radius(ANGLES)
-    rows = np.empty((11, ANGLES.size))
-    njit(cam_loop)(ANGLES, *polar, problem(scene), rows)
-    assert_agree(named(rows), results(solve(scene, ANGLES)))
 
 
 # JAX
@@ -302,13 +122,6 @@ def test_solve_under_jax_jit_equals_numpy(double, name):
     assert_agree(found, results(solve(SCENES[name], ANGLES)))
 
 
-@pytest.mark.parametrize("name", PLAIN)
-def test_kernels_under_jax_jit_equal_solve(double, name):
-    jnp = double.numpy
-    compute = double.jit(lambda angles: jnp.broadcast_arrays(*plain_forces(angles, problem(SCENES[name]))))
-    assert_agree(named(np.array(compute(ANGLES))), results(solve(SCENES[name], ANGLES)))
-
-
 def torque_by_stiffness(stiffness):
     """Mean squared torque of the cosine cam, (N m)^2."""
     scene = SCENES["cosine cam"]._replace(spring=ks.Spring(stiffness, 2.0))
@@ -326,7 +139,7 @@ def torque_by_cam_radius(radius):
 def test_jax_gradient_equals_central_difference(double, cost, at):
     step = 1e-5 * at
     difference = (cost(at + step) - cost(at - step)) / (2 * step)
-    assert float(double.grad(cost)(at)) == pytest.approx(difference, rel=1e-6)
+    assert float(double.jit(double.grad(cost))(at)) == pytest.approx(difference, rel=1e-6)
 
 
 def test_jax_in_single_precision_is_warned_of(jax):
@@ -334,7 +147,7 @@ def test_jax_in_single_precision_is_warned_of(jax):
     jax.config.update("jax_enable_x64", False)
     try:
         with pytest.warns(UserWarning, match="single precision.*jax_enable_x64"):
-            solve(SCENES["plain"], jax.numpy.asarray(ANGLES))
+            solve(SCENES["plain"], jax.numpy.asarray(ANGLES), on_gap="nan")
     finally:
         jax.config.update("jax_enable_x64", before)
 
@@ -397,7 +210,7 @@ def test_arb_enclosures_equal_the_50_digit_tables_to_24_digits(flint, variant):
     path = Path(__file__).parent / "data" / f"sawframe_{variant}.json"
     rows = json.loads(path.read_text(encoding="utf-8"))["rows"]
     columns = {"guide_force": "N", "balancing_torque": "T", "cam_force": "cam", "slot_force": "slot"}
-    found = results(sawframe(variant, flint))
+    found = {name: values for name, values in results(sawframe(variant, flint)).items() if name != "guide"}
     decimals = {name: np.array([row[columns.get(name, name)] for row in rows]).T for name in found}
     expected = {name: np.vectorize(lambda text: flint.arb(str(text)), "O")(texts) for name, texts in decimals.items()}
     assert_narrow(found, flint)
@@ -409,7 +222,336 @@ def test_arb_enclosures_equal_the_50_digit_tables_to_24_digits(flint, variant):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_dask_arrays_stay_lazy_in_chunks_and_equal_numpy(name):
-    dask_array = pytest.importorskip("dask.array", reason="dask is not installed (extra: distributed)")
-    found = results(solve(SCENES[name], dask_array.from_array(ANGLES, chunks=90)))
+    dask = pytest.importorskip("dask", reason="dask is not installed (extra: distributed)")
+    array = pytest.importorskip("dask.array", reason="dask is not installed (extra: distributed)")
+    found = results(solve(SCENES[name], array.from_array(ANGLES, chunks=90)))
     assert all(values.chunks[-1] == (90,) * 4 for values in found.values())
-    assert_agree({name: values.compute() for name, values in found.items()}, results(solve(SCENES[name], ANGLES)))
+    assert_agree(dask.compute(found)[0], results(solve(SCENES[name], ANGLES)))
+
+
+# Recorded and compiled programs
+
+
+@pytest.fixture
+def interpreted(monkeypatch):
+    """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
+    numba = ModuleType("numba")
+    numba.njit = lambda **options: lambda function: function
+    numba.__spec__ = ModuleSpec("numba", None)
+    monkeypatch.setitem(sys.modules, "numba", numba)
+    monkeypatch.setattr(compiled, "_loaded", compiled._loaded.__wrapped__)
+
+
+@pytest.fixture
+def numba():
+    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+
+
+def everything(solution):
+    """Names of all forces, moments, torques and rates, and of the motion of a slider."""
+    links = [link + ending for link in solution.mechanism.links for ending in ("_rate", "_angular_acceleration")]
+    slider = [f"slider_{order}" for order in ("position", "velocity", "acceleration")]
+    cam = ["pressure_angle"] if "cam_force" in solution.scalars else []
+    return (
+        *solution.reactions,
+        *solution.scalars,
+        "balancing_torque_by_power",
+        "shaking_force",
+        "shaking_moment",
+        *links,
+        *(slider if "slider" in solution.mechanism.links else ()),
+        *cam,
+    )
+
+
+def assert_program_equals(solution, tables=0):
+    """A program gives what the solution has: the same NaN, and what differs by 1e-15 of the largest value.
+
+    Sines and cosines are NumPy's, which may differ from others in the last place.
+    """
+    names = everything(solution)
+    made = compiled.program(solution, names)
+    assert len(made.trace.tables) == tables
+    angle = np.atleast_2d(solution.crank_angle)
+    if angle.shape[0] > 1:
+        angle = np.broadcast_to(angle, solution.shape).reshape(-1, solution.shape[-1]).copy()
+    rows = iter(made.at(angle, np.sin(angle), np.cos(angle), made.tabulated(solution)))
+    for name in names:
+        for part in components(solution, name):
+            found = next(rows).reshape(part.shape)
+            assert np.array_equal(np.isnan(found), np.isnan(part)), name
+            assert np.nanmax(np.abs(found - part)) <= 1e-15 * np.nanmax(np.abs(part)), name
+    assert next(rows, None) is None
+    return made
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_recorded_program_equals_solve(interpreted, name):
+    assert_program_equals(solve(SCENES[name], ANGLES))
+
+
+@pytest.mark.parametrize("name", ["circle cam, everything", "six-bar"])
+def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba, name):
+    made = assert_program_equals(solve(SCENES[name], ANGLES))
+    sine, cosine = made.turn(ANGLES[None])
+    assert largest(sine - np.sin(ANGLES)) <= 2**-52
+    assert largest(cosine - np.cos(ANGLES)) <= 2**-52
+
+
+def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
+    """The six-bar with a second coupler that is too short over a part of the turn, and one that just reaches."""
+    scene = SCENES["six-bar"]
+    first, second = scene.mechanism.groups
+    pin = solve(scene, ANGLES).position("B")[1]
+    for length in (0.35, pin.max()):
+        groups = (first, replace(second, coupler_length=length))
+        s = solve(scene._replace(mechanism=replace(scene.mechanism, groups=groups)), ANGLES, on_gap="nan")
+        assert np.array_equal(np.isnan(s.balancing_torque), np.abs(pin) > length)
+        assert_program_equals(s)
+    assert s.condition[pin.argmax()] == np.inf
+
+
+# What users bring
+
+
+@dataclass(frozen=True, eq=False)
+class Wave(ks.cams.Cam):
+    """A cam of the user's own, by operations that numbers can record."""
+
+    mean: Any
+    amplitude: Any
+
+    def polar(self, angle, ray):
+        """Waves around a circle."""
+        return self.mean + self.amplitude * ray[0], -self.amplitude * ray[1], -self.amplitude * ray[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Steps(ks.cams.Cam):
+    """A cam of the user's own, by a function that takes plain numbers only."""
+
+    radii: Any
+
+    def polar(self, angle, ray):
+        """Straight lines between the radii."""
+        turn = np.linspace(0, 2 * np.pi, len(self.radii))
+        return tuple(np.interp(angle, turn, np.roll(self.radii, shift), period=2 * np.pi) for shift in range(3))
+
+
+@dataclass(frozen=True, eq=False)
+class Pan:
+    """A group of the user's own: a link that hangs on the crank pin and does not turn."""
+
+    pan: ks.Link
+    closing: Any = 1.0
+    on: str = "A"
+
+    links = property(lambda self: {"pan": self.pan})
+    references = property(lambda self: {"pan": self.on})
+    bars = ()
+
+    def place(self, placement):
+        """Add the pan."""
+        placement.links["pan"] = LinkMotion(placement.joints[self.on], (1.0, 0.0), None, None)
+
+    def closure(self, placement):
+        """Nothing can keep it from closing."""
+        return self.closing + 0.0 * placement.joints[self.on].position[0]
+
+    def requirement(self, placement):
+        """Never asked for."""
+
+    def resolve(self, placement, loads, pushes, forces):
+        """Add the force at the pin, and the moment that keeps the pan level."""
+        x, y = loads["pan"].force
+        forces.reactions["A pan"] = (-x, -y)
+        forces.scalars["pan moment"] = -loads["pan"].moment
+        forces.require(self.on, (-x, -y))
+
+
+class Stop(Pan):
+    """A group that looks at values."""
+
+    def place(self, placement):
+        """Turn with the crank on one side."""
+        super().place(placement)
+        if placement.joints["A"].position[0] > 0:
+            placement.links["pan"] = placement.links["crank"]
+
+
+def with_group(group):
+    return Scene(ks.Mechanism("crank with a pan", ks.Crank(0.3, ks.Link(2.0, 0.1)), (group,)), ks.Gravity())
+
+
+TABLE = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+OWN = {
+    "cam that can be recorded": (Scene(ks.cam_crank_slider(Wave(0.3, 0.05), 2.0, **HEAVY), ks.Gravity()), 0),
+    "cam of plain numbers": (Scene(ks.cam_crank_slider(Steps(0.3 + 0.05 * np.cos(TABLE)), 2.0, **HEAVY)), 1),
+    "sampled cam": (Scene(ks.cam_crank_slider(ks.cams.Sampled(TABLE, 0.3 + 0.05 * np.cos(TABLE)), 2.0, **HEAVY)), 1),
+    "group": (with_group(Pan(ks.Link(3.0, (0.05, -0.1), 0.2))), 0),
+}
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_program_of_a_users_own_cam_or_group_equals_solve(interpreted, name):
+    """What takes plain numbers only is computed by NumPy beforehand."""
+    scene, tables = OWN[name]
+    assert_program_equals(solve(scene, ANGLES), tables)
+
+
+FORCES = {
+    "constant": (2500.0, 0),
+    "array over the crank angles": (1e3 * np.sin(ANGLES), 1),
+    "function that can be recorded": (lambda motion: -40.0 * motion.slider_velocity * motion.slider_velocity, 0),
+    "function of plain numbers": (lambda motion: np.where(motion.slider_velocity > 0, -2e3, 1e2), 1),
+    "function that gives a table": (lambda motion: 1e3 * np.cos(ANGLES), 1),
+    "function that looks at other angles": (lambda motion: 1e3 * motion.travel() / motion.travel().mean(axis=-1), 1),
+    "function that looks for an angle": (lambda motion: 1e3 * (motion.crank_angle == ANGLES[3]), 1),
+    "function that counts angles": (lambda motion: motion.travel() * np.arange(motion.crank_angle.size), 1),
+}
+
+
+@pytest.mark.parametrize("name", FORCES)
+def test_program_under_a_process_force_equals_solve(interpreted, name):
+    force, tables = FORCES[name]
+    s = ks.solve(SCENES["plain"].mechanism, ANGLES, crank_speed=SPEED, loads=ks.ProcessForce(force))
+    assert_program_equals(s, tables)
+
+
+SIZES = np.array([[0.2], [0.3], [0.37]])
+SAMPLES = ANGLES[::12]
+BATCHES = {
+    "lengths, masses and force": lambda: ks.solve(
+        ks.crank_slider(SIZES, 2.0, coupler=ks.Link(150.0 * SIZES, SIZES, 20.5), slider=ks.Link(600.0)),
+        SAMPLES,
+        crank_speed=SPEED,
+        loads=[ks.Gravity(9.81, SIZES), ks.ProcessForce(1e4 * SIZES)],
+    ),
+    "two axes": lambda: ks.solve(
+        ks.crank_slider(SIZES, np.array([1.5, 2.0])[:, None, None], **HEAVY), SAMPLES, crank_speed=SPEED
+    ),
+    "guide": lambda: ks.solve(
+        ks.crank_slider(0.3, 2.0, guide_angle=SIZES - 0.2, guide_offset=0.1 * SIZES, **HEAVY),
+        SAMPLES,
+        crank_speed=SPEED,
+    ),
+    "pivot in a list": lambda: ks.solve(
+        ks.four_bar(0.1, 1.0, 0.9, rocker_pivot=[0.7, SIZES], rocker=ks.Link(1.0)), SAMPLES, crank_speed=SPEED
+    ),
+    "cam": lambda: ks.solve(
+        ks.cam_crank_slider(ks.cams.Circle(SIZES, (0.1 * SIZES, 0.01)), 2.0, **HEAVY), SAMPLES, crank_speed=SPEED
+    ),
+    "crank speed": lambda: solve(
+        SCENES["plain, everything"], SAMPLES, crank_speed=100 * SIZES, crank_acceleration=SIZES
+    ),
+    "crank speed by angle": lambda: solve(
+        SCENES["plain, everything"], SAMPLES, crank_speed=SPEED + SAMPLES, crank_acceleration=np.cos(SAMPLES)
+    ),
+    "crank speed by design and angle, other lengths": lambda: ks.solve(
+        ks.crank_slider(SIZES[:2], 2.0, **HEAVY), SAMPLES, crank_speed=SPEED * SIZES[:, None] + SAMPLES
+    ),
+    "crank angles": lambda: solve(SCENES["plain, everything"], SAMPLES + SIZES),
+    "crank angles, other lengths, sampled cam, table": lambda: ks.solve(
+        ks.cam_crank_slider(ks.cams.Sampled(TABLE, 0.3 + 0.05 * np.cos(TABLE)), 2.0 + SIZES[:2], **HEAVY),
+        SAMPLES + SIZES[:, None],
+        crank_speed=SPEED,
+        loads=ks.ProcessForce(1e3 * np.sin(SAMPLES)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BATCHES)
+def test_program_of_many_designs_equals_solve(interpreted, name):
+    s = BATCHES[name]()
+    made = compiled.program(s, ["balancing_torque"])
+    assert made.shape == s.shape[:-1]
+    assert_program_equals(s, len(made.trace.tables))
+
+
+# What a program costs
+
+
+def operations(scene, *names):
+    return tracing.trace(solve(scene, ANGLES), names or everything(solve(scene, ANGLES))).operations
+
+
+def test_what_is_absent_or_not_asked_for_costs_nothing():
+    plain, weightless = SCENES["plain"], SCENES["plain, weightless"]
+    light = plain._replace(mechanism=plain.mechanism.with_link("coupler", ks.Link()))
+    assert operations(light) < operations(weightless) < operations(plain) < operations(SCENES["plain, everything"])
+    assert operations(plain, "slider_position") <= 10
+    torque, reactions = operations(plain, "balancing_torque"), operations(plain, "O", "A", "B", "guide")
+    assert operations(plain, "coupler_rate") < torque < reactions < operations(plain)
+    assert operations(plain, "balancing_torque", "A", "A") == operations(plain, "A", "balancing_torque")
+
+
+def test_designs_of_one_structure_share_a_source_and_others_do_not():
+    def text(**changes):
+        values = {"guide_offset": 0.1, "assembly": 1, "slider": 600.0} | changes
+        mass = ks.Link(values.pop("slider"))
+        mechanism = ks.crank_slider(0.3, values.pop("coupler", 2.0), slider=mass, **values)
+        s = ks.solve(mechanism, ANGLES, crank_speed=changes.get("coupler", 5.0))
+        return compiled.source(tracing.trace(s, ["balancing_torque"]))
+
+    same = [{"guide_offset": -0.2}, {"slider": 1.0}, {"coupler": 3.0}, {"coupler": np.array([[1.5], [2.5]])}]
+    assert {text(**changes) for changes in same} == {text()}
+    others = [{"guide_offset": 0.0}, {"slider": 0.0}, {"assembly": -1}, {"guide_angle": 0.3}]
+    assert len({text(), *(text(**changes) for changes in others)}) == 5
+
+
+def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monkeypatch, capsys):
+    """Nothing is compiled anew, neither there nor here for crank angles that are locked against writing."""
+    monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path))
+    code = (
+        "import kinetostatics as ks; from kinetostatics import compiled;"
+        " s = ks.solve(ks.crank_slider(0.3, 2.0), [0.1, 0.2], crank_speed=1.0);"
+        " made = compiled.program(s, ['slider_position', 'coupler_rate']);"
+        " print(made(s.crank_angle).tolist(), made([0.1, 0.2]).shape)"
+    )
+
+    def files():
+        kept = (path for path in tmp_path.rglob("*") if path.suffix in (".py", ".nbi", ".nbc"))
+        return sorted((path.suffix, path, path.stat().st_mtime_ns) for path in kept)
+
+    exec(code)
+    here, compiled_here = capsys.readouterr().out, files()
+    assert [suffix for suffix, *_ in compiled_here] == [".nbc"] * 3 + [".nbi"] * 3 + [".py"]
+    there = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert there.stdout == here
+    assert files() == compiled_here
+
+
+# What cannot be
+
+
+def test_kernel_that_branches_on_values_is_refused_with_the_reason():
+    s = solve(with_group(Stop(ks.Link(3.0))), np.array([0.3]))
+    with pytest.raises(TypeError, match="kernels must not branch on values"):
+        tracing.trace(s, ["O"])
+
+
+def test_values_of_recorded_numbers_cannot_be_looked_at():
+    recorded = []
+    force = ks.ProcessForce(lambda motion: recorded.append(motion.travel()[0]) or motion.travel())
+    tracing.trace(ks.solve(SCENES["plain"].mechanism, [0.1], crank_speed=1.0, loads=force), ["A"])
+    node = next(value for value in recorded if isinstance(value, tracing.Node))
+    for look in (bool, float, int, lambda x: x == 0, lambda x: x != 0, lambda x: x > 0, lambda x: x <= 0.0):
+        with pytest.raises(TypeError, match="not known yet"):
+            look(node)
+    with pytest.raises(TypeError, match="only squares"):
+        node**3
+
+
+def test_program_without_its_tables_or_with_those_of_other_angles_is_refused(interpreted):
+    s = ks.solve(SCENES["plain"].mechanism, ANGLES, crank_speed=1.0, loads=ks.ProcessForce(np.sin(ANGLES)))
+    made = compiled.program(s, ["A"])
+    for arguments in ((ANGLES,), (ANGLES[:9], made.tabulated(s)), (ANGLES * np.ones((2, 1)), made.tabulated(s))):
+        with pytest.raises(ValueError, match="make tables by `tabulated`"):
+            made(*arguments)
+
+
+def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(compiled, "_loaded", compiled._loaded.__wrapped__)
+    with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]"'):
+        compiled.program(solve(SCENES["plain"], ANGLES), ["O"])

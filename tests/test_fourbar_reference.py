@@ -16,7 +16,7 @@ from machines import largest
 
 import kinetostatics as ks
 from kinetostatics.linkage import chain_unit, chain_unit_angle, rocker_angle, swing
-from kinetostatics.methods import chain_unit_by_atan_acos
+from kinetostatics.methods.papers import chain_unit_by_atan_acos
 
 RHO = (0.1, 0.5)
 LAMBDA = 2 / 3

@@ -1,13 +1,11 @@
-"""Four-bars: motion and forces equal an independent full system, laws, accuracy near a toggle, and other engines."""
+"""Four-bars: motion and forces equal an independent full system, laws, and accuracy near a toggle."""
 
 from dataclasses import replace
-from typing import Any, NamedTuple
 
 import mpmath as mp
 import numpy as np
 import pytest
-import test_engines
-from four_bars import FORCES, LINKS, FourBar, moved, reference, results, turning
+from four_bars import LINKS, FourBar, moved, reference, results, turning
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from machines import ANGLES, assert_close, assert_equal, largest, motions, planar
@@ -17,8 +15,6 @@ from test_laws import dimension
 from test_newton_euler import body, columns, either_sign, errors, number, reproducible
 
 import kinetostatics as ks
-from kinetostatics import crank, links, rocker_group
-from kinetostatics import planar as vectors
 
 CLOSE = 1e-13
 """Error allowed relative to the largest of a kind; the sine of the transmission angle stays above 0.07 or so."""
@@ -309,91 +305,3 @@ def test_error_with_one_long_link_is_that_of_rounded_lengths(longer, assembly):
     for coupler, rocker in ((1.0, longer), (longer, 1.0)):
         bar = FourBar(0.5, coupler, rocker, 0.8 + 1j * longer, assembly)
         assert_error_is_that_of_rounded_lengths(bar, ANGLES[::6])
-
-
-# Engines
-
-njit, jax, double, flint = test_engines.njit, test_engines.jax, test_engines.double, test_engines.flint
-BAR = FourBar(assembly=-1)
-
-
-class Problem(NamedTuple):
-    """The four-bar as kernels take it; what is absent is None."""
-
-    crank_length: Any
-    coupler_length: Any
-    rocker_length: Any
-    pivot: Any
-    assembly: Any
-    crank: links.Body | None
-    coupler: links.Body
-    rocker: links.Body
-    speed_squared: Any
-    acceleration: Any
-    gravity: Any
-
-
-def problem(bar):
-    bodies = (links.Body(link.mass, *link.centre, link.inertia) for link in bar.links.values())
-    lengths = bar.crank, bar.coupler, bar.rocker, (bar.pivot.real, bar.pivot.imag), bar.assembly
-    return Problem(*lengths, *bodies, bar.speed**2, bar.acceleration, ks.Gravity(*bar.gravity).vector)
-
-
-def four_bar_forces(angle, problem):
-    """O, A, B, O2 (x and y of each) and torque: the kernels of a four-bar, one after the other."""
-    ray = crank.ray(angle)
-    joint = crank.pin(ray, problem.crank_length)
-    coupler_length, rocker_length = problem.coupler_length, problem.rocker_length
-    group = rocker_group.place(joint, coupler_length, rocker_length, problem.pivot, problem.assembly)
-    on_coupler = test_engines.load(group.coupler, problem.coupler, problem)
-    on_rocker = test_engines.load(group.rocker, problem.rocker, problem)
-    found = rocker_group.resolve(group, coupler_length, rocker_length, on_coupler, on_rocker, None)
-    own = test_engines.load(links.LinkMotion(crank.ORIGIN, ray, 1.0, None), problem.crank, problem)
-    ground, torque = crank.resolve(own, links.Wrench(found.inner, vectors.moment(joint.position, found.inner)))
-    return ground + found.inner + found.pin + found.pivot + (torque,)
-
-
-def four_bar_loop(angles, problem, rows):
-    for i in range(angles.size):
-        forces = four_bar_forces(angles[i], problem)
-        for k in range(len(forces)):
-            rows[k, i] = forces[k]
-
-
-def named(rows):
-    return {joint: rows[2 * k : 2 * k + 2] for k, joint in enumerate(FORCES)} | {"balancing_torque": rows[8]}
-
-
-def solved(s):
-    return {joint: s.reaction(joint) for joint in FORCES} | {"balancing_torque": s.balancing_torque}
-
-
-def test_numba_loop_over_the_rocker_kernels_equals_solve(njit):
-    from numba import types
-    from numba.extending import overload
-
-    for kernel in (rocker_group.place, rocker_group.resolve, four_bar_forces):
-
-        @overload(kernel, strict=False)
-        def choose(*arguments, kernel=kernel):
-            return test_engines.specialised(kernel, *(isinstance(kind, types.NoneType) for kind in arguments))
-
-    rows = np.empty((9, ANGLES.size))
-    njit(four_bar_loop)(ANGLES, problem(BAR), rows)
-    test_engines.assert_agree(named(rows), solved(BAR.solve()))
-
-
-def test_rocker_kernels_under_jax_jit_equal_solve(double):
-    compute = double.jit(lambda angles: double.numpy.stack(four_bar_forces(angles, problem(BAR))))
-    test_engines.assert_agree(named(np.array(compute(ANGLES))), solved(BAR.solve()))
-
-
-def test_solve_of_a_four_bar_under_jax_jit_equals_numpy(double):
-    found = double.jit(lambda angles: solved(BAR.solve(angles, on_gap="nan")))(ANGLES)
-    test_engines.assert_agree(found, solved(BAR.solve()))
-
-
-def test_double_precision_of_a_four_bar_lies_within_rounding_of_the_arb_enclosure(flint):
-    found = solved(BAR.solve(np.array([flint.arb(angle) for angle in ANGLES.tolist()])))
-    test_engines.assert_narrow(found, flint)
-    test_engines.assert_agree(test_engines.middles(found, flint), solved(BAR.solve()))

@@ -1,0 +1,90 @@
+"""Other ways to the motion of the joints: differences, spectra, harmonic series; and the coupler as two masses."""
+
+from dataclasses import fields
+
+import numpy as np
+
+from ..errors import NotGivenError
+from ..ingredients import two_mass_coupler
+from ..quantities import components
+from ..rerouted import Rerouted, assembled, harmonic_series, joints_of, positions, rerouted
+from ..solution import Solution
+from .method import Method
+
+__all__ = ["METHODS", "Rerouted", "assembled", "rerouted"]
+
+STENCILS = {
+    2: ((-1, 0, 1), (-0.5, 0.0, 0.5), (1.0, -2.0, 1.0)),
+    4: ((-2, -1, 0, 1, 2), (1 / 12, -2 / 3, 0.0, 2 / 3, -1 / 12), (-1 / 12, 4 / 3, -5 / 2, 4 / 3, -1 / 12)),
+}
+"""By order: offsets in steps, weights of the first and of the second derivative (Fornberg 1988)."""
+
+
+def _differences(order):
+    offsets, first, second = (np.array(row) for row in STENCILS[order])
+
+    def prepare(solution, quantity, step):
+        def way(mechanism, angle):
+            position = positions(mechanism, angle + step * offsets[:, None])
+            return assembled(
+                mechanism,
+                angle,
+                joints_of(
+                    mechanism,
+                    position[:, :, offsets.size // 2],
+                    np.tensordot(first / step, position, (0, 2)),
+                    np.tensordot(second / step**2, position, (0, 2)),
+                ),
+            )
+
+        return lambda: components(rerouted(solution, way), quantity)
+
+    return prepare
+
+
+def _spectral(solution, quantity, samples):
+    """Joint positions sampled over the turn, differentiated and interpolated to the crank angles by FFT."""
+    angle = solution.crank_angle
+    if not _is_even_turn(angle):
+        raise NotGivenError("spectral differentiation needs crank angles evenly over one turn from 0")
+    if samples > angle.size:
+        raise NotGivenError(f"{samples} samples are more than the {angle.size} crank angles asked for")
+    sampled = np.linspace(0.0, 2 * np.pi, samples, endpoint=False)
+    harmonic = 1j * np.arange((samples + 1) // 2)
+
+    def way(mechanism, angle):
+        spectrum = np.fft.rfft(positions(mechanism, sampled))[..., : harmonic.size] * (angle.size / samples)
+        parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
+        return assembled(mechanism, angle, joints_of(mechanism, *parts))
+
+    return lambda: components(rerouted(solution, way), quantity)
+
+
+def _is_even_turn(angle):
+    return np.ndim(angle) == 1 and np.allclose(
+        angle, np.linspace(0.0, 2 * np.pi, len(angle), endpoint=False), atol=1e-9
+    )
+
+
+def _series(solution, quantity, order):
+    if not np.all(np.isfinite(solution.at(np.linspace(0.0, 2 * np.pi, 512)).condition)):
+        raise NotGivenError("a harmonic series needs a mechanism that closes all around the turn")
+    way = harmonic_series(solution, order)
+    return lambda: components(rerouted(solution, way), quantity)
+
+
+def _two_mass(solution, quantity, setting):
+    mechanism = two_mass_coupler(solution.mechanism)
+    if mechanism is None:
+        raise NotGivenError("there is no coupler mass to share out between its joints")
+    given = {field.name: getattr(solution, field.name) for field in fields(Solution)} | {"mechanism": mechanism}
+    return lambda: components(Solution(**given), quantity)
+
+
+METHODS = (
+    Method("differences, 2nd order", _differences(2), "step [rad]", (1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5)),
+    Method("differences, 4th order", _differences(4), "step [rad]", (3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4)),
+    Method("spectral differentiation", _spectral, "samples", (8, 12, 16, 24, 32, 48, 64, 128)),
+    Method("harmonic series", _series, "harmonics", (1, 2, 4, 6)),
+    Method("two-mass coupler", _two_mass),
+)
