@@ -59,6 +59,7 @@ __all__ = [
     "cams",
     "compare",
     "crank_slider",
+    "designs",
     "extremes",
     "four_bar",
     "linkage",
@@ -69,18 +70,23 @@ __all__ = [
     "principal_points",
     "solve",
     "stability",
+    "sweep",
+    "tolerances",
 ]
 
 
 _LATER = {
     "balancing": None,
     "compare": "comparison",
+    "designs": None,
     "linkage": None,
     "load_case": "case",
     "needs": "ingredients",
     "plots": None,
     "precision": None,
     "stability": None,
+    "sweep": "sweeps",
+    "tolerances": "tolerance",
 }
 """Names loaded, with the libraries they need, only when used: modules, and functions with the module they are in."""
 

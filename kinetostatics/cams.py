@@ -84,10 +84,11 @@ class Circle(Cam):
         x, y = centre
         distance = sqrt(x * x + y * y)
         if checks.known(distance - radius) and np.any(distance >= radius):
-            raise ParameterError(
-                f"circle cam: O must lie inside the pitch circle, but its centre is {np.max(distance):.6g} m from O "
-                f"and its radius {np.min(radius):.6g} m; bring the centre nearer or enlarge the radius"
+            text = (
+                f"O must lie inside the pitch circle, but its centre is {np.max(distance):.6g} m from O and its radius "
+                f"{np.min(radius):.6g} m; bring the centre nearer or enlarge the radius"
             )
+            checks.require("circle cam", checks.Problem(text, distance >= radius))
         object.__setattr__(self, "pitch_radius", radius)
         object.__setattr__(self, "centre", (x, y))
 
@@ -150,10 +151,11 @@ class CosineLaw(Cam):
             checks.finite("guide_angle", self.guide_angle),
         )
         if checks.known(self.mean - self.amplitude) and np.any(self.mean <= self.amplitude):
-            raise ParameterError(
-                f"cosine-law cam: mean must exceed the amplitude, or the slider would run over O; got mean "
-                f"{self.mean} m and amplitude {self.amplitude} m"
+            text = (
+                f"mean must exceed the amplitude, or the slider would run over O; got mean {self.mean} m and amplitude "
+                f"{self.amplitude} m"
             )
+            checks.require("cosine-law cam", checks.Problem(text, self.mean <= self.amplitude))
 
     @cached_property
     def _cosine(self):

@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 import pydantic
 
-from . import balancing, cams, checks, linkage, schema
+from . import balancing, cams, checks, designs, linkage, parameters, schema
 from .comparison import Comparison
 from .errors import AssemblyError, CaseError, KinetostaticsError
 from .files import read_columns
@@ -30,6 +30,16 @@ class Variant:
     crank_acceleration: float
     loads: tuple
     balanced: balancing.Balanced | None = None
+    table: schema.MechanismVariant | None = field(default=None, repr=False)
+    folder: Path = field(default=Path(), repr=False)
+
+    def varied(self, values) -> "Variant":
+        """The variant with other values at some paths of its table (see `parameters.paths`), in SI.
+
+        A value may be an array of designs (designs, 1); what the file derives from others, such as a centre at
+        mid-length or a spring that balances the slider, follows.
+        """
+        return _built(parameters.with_values(self.table, values), self.folder)
 
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over one turn from 0, end excluded."""
@@ -53,6 +63,8 @@ class Case:
     reference : str
         Variant the others are compared with.
     variants : mapping of name to Variant
+    tolerances : mapping of parameter to text
+        How parameters spread, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
     """
 
     title: str
@@ -61,6 +73,7 @@ class Case:
     reference: str
     variants: typing.Mapping[str, Variant]
     published: schema.PublishedTable = field(repr=False)
+    tolerances: typing.Mapping[str, str] = field(default_factory=dict)
 
     def variant(self, name) -> Variant:
         """A variant by name."""
@@ -138,9 +151,23 @@ def load_case(path) -> Case:
     reference = raw.get("reference")
     if isinstance(reference, str) and variants and reference not in variants:
         problems.append(checks.choice("reference", reference, tuple(variants)))
+    if head is not None:
+        problems += _spread_problems(head.tolerances, variants)
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
-    return Case(head.title, head.source, path, head.reference, MappingProxyType(variants), head.published)
+    return Case(head.title, head.source, path, head.reference, MappingProxyType(variants), head.published, head.tolerances)
+
+
+def _spread_problems(spreads, variants):
+    """What is wrong with the tolerances: texts that cannot be read, parameters that no variant has."""
+    known = {name for variant in variants.values() if variant for name in parameters.paths(variant.table)}
+    problems = [checks.choice("tolerances", name, tuple(known)) for name in spreads if known]
+    for name, text in spreads.items():
+        try:
+            designs.distributions({name: text})
+        except KinetostaticsError as error:
+            problems.append(f"tolerances: {error}")
+    return [problem for problem in problems if problem]
 
 
 def _read(path):
@@ -275,7 +302,7 @@ def _built(table, folder):
     balanced = _balanced(mechanism, table.balancing) if table.balancing else None
     if balanced is not None:
         mechanism = balanced.mechanism
-    return Variant(mechanism, table.crank_speed, table.crank_acceleration, loads, balanced)
+    return Variant(mechanism, table.crank_speed, table.crank_acceleration, loads, balanced, table, folder)
 
 
 def _mechanism(table, folder):
@@ -333,7 +360,7 @@ def _balanced(mechanism, table):
 
 def _link(table, length=None):
     centre = table.centre
-    if centre == schema.MID_LENGTH:
+    if isinstance(centre, str):
         if length is None:
             raise KinetostaticsError(
                 'centre "mid-length" is for links between two joints, not for slider, block or slotted crank; give a '
@@ -356,7 +383,7 @@ def _cam_coupler_length(table, cam):
         return table.coupler_length
     if not isinstance(cam, cams.CosineLaw):
         raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
-    return float(cam.coupler_length)
+    return cam.coupler_length
 
 
 def _loads(table, folder):
@@ -364,7 +391,7 @@ def _loads(table, folder):
         yield Gravity(table.gravity.acceleration, table.gravity.direction)
     spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)
     if spring is not None:
-        if spring.stiffness == schema.BALANCE_THE_SLIDER:
+        if isinstance(spring.stiffness, str):
             yield Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position)
         else:
             yield Spring(spring.stiffness, spring.free_position)

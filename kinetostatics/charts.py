@@ -12,7 +12,8 @@ from .quantities import label
 
 EXACT = 1e-17
 """Where an error of zero is drawn: below the rounding of the largest value."""
-COLOURS = plt.get_cmap("tab20").colors
+COLOURS = [colour for colour in plt.get_cmap("tab20").colors if colour[0] < 1.6 * max(colour[1:])]
+"""Without reds, which are ours."""
 MARKERS = "osD^v<>PX*phd"
 
 

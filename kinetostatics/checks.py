@@ -5,10 +5,22 @@ Only plain numbers and NumPy arrays of floats are looked at: a traced JAX number
 
 import math
 import numbers
+from functools import reduce
 
 import numpy as np
 
 from .errors import ParameterError
+
+
+class Problem(str):
+    """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all."""
+
+    __slots__ = ("designs",)
+
+    def __new__(cls, text, wrong=None):
+        made = super().__new__(cls, text)
+        made.designs = wrong[..., 0] if np.ndim(wrong) > 1 else None
+        return made
 
 
 def known(value):
@@ -31,11 +43,14 @@ def problem(name, value, *, low=None, strict=False, table=False):
         return f"{name} must be a number or {kind}, got {value!r}"
     if isinstance(value, str) or (not table and (isinstance(value, list | tuple) or array.ndim == 1 < array.size)):
         return f"{name} must be a number or {kind}, got {value!r}"
-    if not np.all(np.isfinite(array)):
-        return f"{name} must be finite, got {value}"
-    if low is not None and np.any(array <= low if strict else array < low):
-        found = value if array.ndim == 0 else f"a smallest value of {array.min():g}"
-        return f"{name} must be {'greater than' if strict else 'at least'} {low:g}, got {found}"
+    infinite = ~np.isfinite(array)
+    if np.any(infinite):
+        return Problem(f"{name} must be finite, got {value}", infinite)
+    if low is not None:
+        outside = array <= low if strict else array < low
+        if np.any(outside):
+            found = value if array.ndim == 0 else f"a smallest value of {array.min():g}"
+            return Problem(f"{name} must be {'greater than' if strict else 'at least'} {low:g}, got {found}", outside)
     return None
 
 
@@ -52,7 +67,9 @@ def require(owner, *problems):
     """Raise one `ParameterError` that lists every problem found."""
     found = [text for text in problems if text]
     if found:
-        raise ParameterError(f"{owner}: " + "; ".join(found))
+        masks = [getattr(text, "designs", None) for text in found]
+        designs = None if any(mask is None for mask in masks) else reduce(np.logical_or, masks)
+        raise ParameterError(f"{owner}: " + "; ".join(found), designs)
 
 
 def fitting(**values):

@@ -10,19 +10,24 @@ import importlib.util
 import math
 import os
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from .elementary import ROUNDING, TINY
+from . import assembly
+from .elementary import RESOLUTION, ROUNDING, read_only
 from .errors import MissingLibraryError
 from .files import written_whole
+from .solution import Solution
 from .tracing import BY_ANGLE, Node, Trace, trace
 
+SHARE = 100_000
+"""Values over designs and angles that are worth a thread of their own."""
 HEADER = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import atan, cos, nan, sin, sqrt
@@ -41,7 +46,12 @@ def shared(angle, sine, cosine):
 
 @njit(**options)
 def root(square, unit):
-    return sqrt(max(square, {TINY!r} * unit)) if square >= {-ROUNDING!r} * unit else nan
+    return sqrt(max(square, 0.0)) if square >= {-ROUNDING!r} * unit else nan
+
+
+@njit(**options)
+def divisor(root, unit):
+    return root if root != root else max(root, {RESOLUTION!r} * unit)
 
 
 @njit(**options)
@@ -56,10 +66,10 @@ def source(trace: Trace) -> str:
     """Source of a module with the loops that compute the outputs of a trace.
 
     ``loop(angle, sine, cosine, parameters, tables, results)`` takes angles (1 or designs, N) with their sines and
-    cosines, parameters (designs, P), tables (T, 1 or designs, N), and fills results (outputs, designs, N).
+    cosines, parameters (designs, P), tables (T, 1 or designs, N), and fills results (designs, outputs, N).
     """
     by_design = [f"{_name(node)} = {_expression(node)}" for node in trace.nodes if node.varies < BY_ANGLE]
-    rows = [f"row_{number} = results[{number}, design]" for number in range(len(trace.outputs))]
+    rows = [f"row_{number} = results[design, {number}]" for number in range(len(trace.outputs))]
     by_angle = [
         f"{_name(node)} = {_expression(node)}"
         for node in trace.nodes
@@ -132,18 +142,36 @@ class Program:
         self._module.shared(angle.ravel(), sine.ravel(), cosine.ravel())
         return sine, cosine
 
-    def at(self, angle, sine, cosine, tables):
-        """Results (outputs, designs, N) from angles, their sines and cosines (1 or designs, N), and tables."""
-        designs = len(self.parameters)
+    def at(self, angle, sine, cosine, tables, parameters=None):
+        """Results (outputs, designs, N) from angles, their sines and cosines (1 or designs, N), and tables.
+
+        Other parameters (designs, P) may be given, some rows of its own for instance.
+        """
+        parameters = self.parameters if parameters is None else parameters
+        designs = len(parameters)
         fits = len(angle) in (1, designs) and tables.shape[1] in (1, designs) and tables.shape[2] == angle.shape[1]
         if not fits or len(tables) < self.trace.rows:
             raise ValueError(
                 f"angles {angle.shape} and tables {tables.shape} do not fit {designs} designs and {self.trace.rows} "
                 "tabulated values: make tables by `tabulated` from a solution at these angles"
             )
-        results = np.empty((len(self.trace.outputs), designs, angle.shape[1]))
-        self._module.loop(angle, sine, cosine, self.parameters, tables, results)
-        return results
+        over = designs if designs > 1 else angle.shape[1]
+        pieces = min(cores(), over, max(1, designs * angle.shape[1] // SHARE))
+        if pieces == 1:
+            return self._loop(angle, sine, cosine, tables, parameters)
+        edges = np.linspace(0, over, pieces + 1, dtype=int)
+
+        def piece(start, stop):
+            angles = [_part(array, start, stop, designs) for array in (angle, sine, cosine, tables)]
+            return self._loop(*angles, parameters[start:stop] if designs > 1 else parameters)
+
+        with ThreadPoolExecutor(pieces) as threads:
+            return np.concatenate(list(threads.map(piece, edges[:-1], edges[1:])), axis=1 if designs > 1 else 2)
+
+    def _loop(self, angle, sine, cosine, tables, parameters):
+        results = np.empty((len(parameters), len(self.trace.outputs), angle.shape[1]))
+        self._module.loop(angle, sine, cosine, parameters, tables, results)
+        return results.swapaxes(0, 1)
 
 
 def program(solution, quantities) -> Program:
@@ -168,13 +196,35 @@ def program(solution, quantities) -> Program:
     return Program(recorded, parameters, shape, _loaded(source(recorded)))
 
 
-@cache
-def _loaded(text):
-    """Module of the source, from the folder where numba keeps its machine code too."""
-    if importlib.util.find_spec("numba") is None:
+def _part(array, start, stop, designs):
+    """Columns of an array (..., designs, N) for some designs, or for some angles of a single one."""
+    if designs == 1:
+        return np.ascontiguousarray(array[..., start:stop])
+    return array if array.shape[-2] == 1 else np.ascontiguousarray(array[..., start:stop, :])
+
+
+def cores():
+    """Number of cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def available():
+    """Whether numba is installed."""
+    return importlib.util.find_spec("numba") is not None
+
+
+def require():
+    """Raise `MissingLibraryError` unless numba is installed."""
+    if not available():
         raise MissingLibraryError(
             'the compiled engine needs numba: pip install "kinetostatics[fast]"; engine="numpy" works without'
         )
+
+
+@cache
+def _loaded(text):
+    """Module of the source, from the folder where numba keeps its machine code too."""
+    require()
     name = f"kinetostatics_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
     path = _folder() / f"{name}.py"
     if not path.exists():
@@ -192,3 +242,88 @@ def _folder():
     from platformdirs import user_cache_path
 
     return Path(os.environ.get("KINETOSTATICS_CACHE") or user_cache_path("kinetostatics"))
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledSolution(Solution):
+    """A solution whose forces, torque and shaking come from compiled loops; motion is NumPy's.
+
+    Of a small problem one loop computes all forces at once, of a large one each quantity has its own when asked for.
+    """
+
+    def check(self):
+        margins = self._kept("closure")
+        if not np.min(margins) >= assembly.NEAR_LIMIT:
+            super().check()
+
+    @property
+    def reactions(self):
+        return self._names[0]
+
+    @property
+    def scalars(self):
+        return self._names[1]
+
+    def reaction(self, joint):
+        self._look_up("reaction", joint, self.reactions)
+        return self._kept(joint)
+
+    def scalar(self, name):
+        self._look_up("quantity", name, self.scalars)
+        return self._kept(name)[0]
+
+    @property
+    def shaking_force(self):
+        return self._kept("shaking_force")
+
+    @property
+    def shaking_moment(self):
+        return self._kept("shaking_moment")[0]
+
+    @property
+    def balancing_torque_by_power(self):
+        return self._kept("balancing_torque_by_power")[0]
+
+    @cached_property
+    def _found(self):
+        return {}
+
+    @cached_property
+    def _names(self):
+        return _names(self.mechanism)
+
+    def _look_up(self, kind, name, table):
+        return super()._look_up(kind, name, dict.fromkeys(table) if isinstance(table, tuple) else table)
+
+    def _kept(self, quantity):
+        if quantity not in self._found:
+            together = ("closure", *self.reactions, *self.scalars)
+            small = math.prod(self.shape) < SHARE and quantity in together
+            self._run(together if small else (quantity,))
+        return self._found[quantity]
+
+    def _run(self, quantities):
+        numbers = isinstance(self.crank_speed, float | int) and isinstance(self.crank_acceleration, float | int)
+        made = (_program if numbers else _program.__wrapped__)(
+            self.mechanism, self.crank_speed, self.crank_acceleration, self.loads, self.shape[:-1], quantities
+        )
+        angle = self.crank_angle
+        if angle.ndim > 2:
+            angle = np.broadcast_to(angle, (*self.shape[:-1], angle.shape[-1])).reshape(-1, angle.shape[-1])
+        rows = read_only(made(angle, made.tabulated(self)).reshape(-1, *self.shape))
+        edges = np.cumsum(made.trace.widths)
+        for name, stop, width in zip(quantities, edges, made.trace.widths, strict=True):
+            self._found[name] = rows[stop - width : stop]
+
+
+@lru_cache(maxsize=64)
+def _program(mechanism, crank_speed, crank_acceleration, loads, shape, quantities):
+    given = Solution(mechanism, np.zeros((*shape, 1)), crank_speed, crank_acceleration, loads)
+    return program(given, quantities)
+
+
+@lru_cache(maxsize=64)
+def _names(mechanism):
+    """Names of the reactions, and of the other forces and moments, of a mechanism."""
+    found = Solution(mechanism, np.zeros(1), 1.0, 0.0)
+    return found.reactions, found.scalars

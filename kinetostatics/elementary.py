@@ -50,22 +50,45 @@ def sqrt(x):
 _OBJECT = np.dtype(object)
 ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
-TINY = 2.0**-200
-"""Smallest square, in its unit: its root may divide without making infinities and NaN; far below rounding."""
+RESOLUTION = 2.0**-26
+"""Smallest divisor, in its unit, for a root of what is computed to a rounding unit of 2^-53."""
+APART = 2.0**-90
+"""Distance, in its unit, that counts as nothing but still has a direction."""
 
 
 def root(square, unit):
-    """Root of a square that counts in `unit`: finite where it is zero but for rounding, NaN where it is negative."""
-    if getattr(square, "dtype", None) == _OBJECT:
-        return np.frompyfunc(_root_of_object, 2, 1)(square, unit)
+    """Root of a square that counts in `unit`; NaN where that is negative by more than rounding."""
+    if _holds_objects(square):
+        return _each("forgiving_root", square, unit, lambda square: square.sqrt())
     xp = namespace(square)
-    return xp.where(square >= -ROUNDING * unit, xp.sqrt(xp.maximum(square, TINY * unit)), xp.nan)
+    return xp.where(square >= -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0 * unit)), xp.nan)
 
 
-def _root_of_object(square, unit):
-    if hasattr(square, "forgiving_root"):
-        return square.forgiving_root(unit)
-    return (TINY * unit if -ROUNDING * unit <= square < TINY * unit else square).sqrt()
+def divisor(root, unit):
+    """A root, counted in `unit`, to divide by: not nearer to zero than what the rounding of lengths may do."""
+    if _holds_objects(root):
+        return _each("kept_off_zero", root, unit, lambda root: root)
+    return namespace(root).maximum(root, RESOLUTION * unit)
+
+
+def apart(distance, unit):
+    """A distance moved off zero by nothing that counts, so that it has a direction."""
+    if _holds_objects(distance):
+        return _each("moved_apart", distance, unit, lambda distance: distance)
+    return distance + APART * unit
+
+
+def _holds_objects(x):
+    return getattr(x, "dtype", None) == _OBJECT
+
+
+def _each(method, x, unit, exactly):
+    """Apply a method of recorded numbers; enclosures and others of any precision need no help from rounding."""
+
+    def of_one(x, unit):
+        return getattr(x, method)(unit) if hasattr(x, method) else exactly(x)
+
+    return np.frompyfunc(of_one, 2, 1)(x, unit)
 
 
 def condition(margin, terms=None, result=None):

@@ -6,7 +6,17 @@ class KinetostaticsError(Exception):
 
 
 class ParameterError(KinetostaticsError, ValueError):
-    """A length, mass, stiffness, angle ... that no machine can have; the message lists every one found."""
+    """A length, mass, stiffness, angle ... that no machine can have; the message lists every one found.
+
+    Attributes
+    ----------
+    designs : array of bool or None
+        Which designs of a batch it is about, None if all.
+    """
+
+    def __init__(self, message, designs=None):
+        super().__init__(message)
+        self.designs = designs
 
 
 class AssemblyError(KinetostaticsError, ValueError):

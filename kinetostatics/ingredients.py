@@ -148,22 +148,25 @@ INGREDIENTS = {
     "mass-centre offsets": (Choice("mass centres on the links", _with_links(_centred)),),
     "crank": (Choice("massless crank", _massless("crank")),),
     "block": (Choice("massless block", _massless("block")),),
-    "coupler": (
-        Choice("no coupler inertia", _without_inertia("coupler")),
-        Choice("two-mass coupler", _as_two_masses),
-        Choice("massless coupler", _massless("coupler")),
-    ),
     "rocker": (
         Choice("no rocker inertia", _without_inertia("rocker")),
         Choice("massless rocker", _massless("rocker")),
     ),
     "slider": (Choice("massless slider", _massless("slider")),),
+    "coupler": (
+        Choice("no coupler inertia", _without_inertia("coupler")),
+        Choice("two-mass coupler", _as_two_masses),
+        Choice("massless coupler", _massless("coupler")),
+    ),
     "kinematics": (
         Choice("two harmonics", _up_to_harmonic(2)),
         Choice("one harmonic", _up_to_harmonic(1)),
     ),
 }
-"""By ingredient: how it can be simplified, from the least to the most; applied in this order, kinematics last."""
+"""By ingredient: how it can be simplified, from the least to the most; applied in this order.
+
+Other links come before the coupler, which shares its mass out to them, and kinematics come last.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,7 +274,7 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     --------
     >>> import kinetostatics as ks
     >>> ks.needs(ks.load_case("sawframe_2r63"), "O", within=0.05).smallest.name
-    'no gravity, two-mass coupler'
+    'two-mass coupler'
     """
     checks.require("needs", checks.positive("within", within))
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
@@ -301,7 +304,7 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     models = [made for choices in combinations if (made := model(choices))]
     ladder = _front(models)
     smallest = [made for made in ladder if made.error <= within][-1]
-    return Needs(quantity, within, ladder[0], tuple(alone.values()), tuple(ladder), smallest, len(models))
+    return Needs(quantity, within, models[0], tuple(alone.values()), tuple(ladder), smallest, len(models))
 
 
 def _options(alone):

@@ -98,6 +98,11 @@ class Motion:
         square, alpha = self.accelerating
         return self._scalar(plus(square * travel.second, product(alpha, travel.first)))
 
+    @property
+    def closure(self):
+        """Margin of each group, a tuple of (..., N): negative where it cannot be assembled, 0 at a limit position."""
+        return tuple(self._scalar(group.closure(self.placement)) for group in self.mechanism.groups)
+
     @cached_property
     def condition(self):
         """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).

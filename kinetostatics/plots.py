@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .canvas import INK, axes, closed, display, labelled, styled
+from .charts import error_by_distance, model_ladder, work_precision
 from .checks import choice, require
 from .drawings import animation, mass_centres, mechanism
 from .extremes import extremes
@@ -23,13 +24,16 @@ __all__ = [
     "animation",
     "cam_force",
     "chain_unit_motion",
+    "error_by_distance",
     "hodograph",
     "mass_centres",
     "mechanism",
+    "model_ladder",
     "over_turn",
     "pressure_angle",
     "shaking_force",
     "torque",
+    "work_precision",
 ]
 
 

@@ -36,6 +36,8 @@ def components(solution, quantity):
     if quantity in UNITS:
         found = getattr(solution, quantity)
         return tuple(found) if quantity in VECTORS else (found,)
+    if quantity == "closure":
+        return solution.closure
     link, ending = _of_link(quantity)
     if link in solution.mechanism.links:
         return (solution.rate(link) if ending == "_rate" else solution.angular_acceleration(link),)

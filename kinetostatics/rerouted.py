@@ -64,7 +64,7 @@ def _slider(group, placement, joints):
     sine, cosine = cross(direction, coupler.direction), dot(direction, coupler.direction)
     travel = Joint(*(dot(direction, part) for part in pin))
     placement.links |= {coupler_name: coupler, slider_name: slider}
-    placement.details[slider_name] = SliderMotion(coupler, slider, sine, cosine, None, travel)
+    placement.details[slider_name] = SliderMotion(coupler, slider, sine, cosine, cosine, None, travel)
 
 
 def _rocker(group, placement, joints):
@@ -75,7 +75,8 @@ def _rocker(group, placement, joints):
     rocker = _between(pivot, pin, group.rocker_length)
     q, p = coupler.direction, rocker.direction
     placement.links |= {coupler_name: coupler, rocker_name: rocker}
-    placement.details[rocker_name] = RockerMotion(coupler, rocker, pin, cross(q, p), dot(q, p), None)
+    sine, cosine = cross(q, p), dot(q, p)
+    placement.details[rocker_name] = RockerMotion(coupler, rocker, pin, sine, cosine, sine, None)
 
 
 _ASSEMBLE = {CamRoller: _roller, SliderGroup: _slider, RockerGroup: _rocker}

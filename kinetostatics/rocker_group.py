@@ -13,24 +13,23 @@ import numpy as np
 
 from . import checks
 from .chain import Bar
-from .elementary import condition, root, sqrt
+from .elementary import apart, condition, divisor, root, sqrt
 from .links import Joint, Link, LinkMotion
 from .planar import added, dot, left, minus, moment, number, quotient, stretched, subtracted
 
-APART = 2.0**-90
-"""Where A meets O2 it counts as this far to the left, in coupler and rocker lengths: B could be anywhere, but is not
-nowhere. Far below rounding elsewhere.
-"""
-
 
 class RockerMotion(NamedTuple):
-    """A placed rocker group, with sine and cosine of the transmission angle; `closure` is sine squared."""
+    """A placed rocker group, with sine and cosine of the transmission angle; `closure` is sine squared.
+
+    `divisor` is the sine to divide by, which never vanishes.
+    """
 
     coupler: LinkMotion
     rocker: LinkMotion
     pin: Joint
     sine: Any
     cosine: Any
+    divisor: Any
     closure: Any
 
 
@@ -45,24 +44,26 @@ class RockerForces(NamedTuple):
 def place(joint, coupler_length, rocker_length, pivot, assembly):
     """Coupler and rocker for a given inner joint (kernel)."""
     c, h = coupler_length, rocker_length
-    d = (pivot[0] - joint.position[0] + APART * (c + h), pivot[1] - joint.position[1])
+    d = (apart(pivot[0] - joint.position[0], c + h), pivot[1] - joint.position[1])
     square = dot(d, d)
     a = sqrt(square)
     heron = (a + c + h) * (a + c - h) * (a - c + h) * (c + h - a)
-    unit = (2.0 * c * h) ** 2
-    area = assembly * root(heron, unit)
+    product = 2.0 * c * h
+    unit = product * product
+    size = root(heron, unit)
+    area, divided = assembly * size, assembly * divisor(size, product) / product
     along, across = (square + (c - h) * (c + h)) / (2.0 * square), area / (2.0 * square)
     reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
     q = (reach[0] / c, reach[1] / c)
     p = ((reach[0] - d[0]) / h, (reach[1] - d[1]) / h)
-    sine = area / (2.0 * c * h)
-    cosine = (c * c + h * h - square) / (2.0 * c * h)
+    sine = area / product
+    cosine = (c * c + h * h - square) / product
 
-    ratio = -dot(joint.first, p) / (c * sine)
-    swing = -dot(joint.first, q) / (h * sine)
+    ratio = -dot(joint.first, p) / (c * divided)
+    swing = -dot(joint.first, q) / (h * divided)
     lag, swing_lag = c * ratio * ratio, h * swing * swing
-    ratio_slope = (lag * cosine - swing_lag - dot(joint.second, p)) / (c * sine)
-    swing_slope = (lag - swing_lag * cosine - dot(joint.second, q)) / (h * sine)
+    ratio_slope = (lag * cosine - swing_lag - dot(joint.second, p)) / (c * divided)
+    swing_slope = (lag - swing_lag * cosine - dot(joint.second, q)) / (h * divided)
 
     arm = stretched(h, p)
     aside = left(arm)
@@ -73,7 +74,7 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     )
     coupler = LinkMotion(joint, q, ratio, ratio_slope)
     rocker = LinkMotion(Joint(pivot, None, None), p, swing, swing_slope)
-    return RockerMotion(coupler, rocker, pin, sine, cosine, heron / unit)
+    return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
 
 
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load, demand):
@@ -84,8 +85,8 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load, de
     """
     q, p = motion.coupler.direction, motion.rocker.direction
     on_rocker = minus(quotient(rocker_load.moment, rocker_length), moment(p, demand))
-    along_coupler = number(on_rocker) / motion.sine
-    along_rocker = number(quotient(coupler_load.moment, coupler_length)) / motion.sine
+    along_coupler = number(on_rocker) / motion.divisor
+    along_rocker = number(quotient(coupler_load.moment, coupler_length)) / motion.divisor
     pin = added(stretched(along_coupler, q), stretched(along_rocker, p))
     pivot = subtracted(subtracted(demand, pin), rocker_load.force)
     return RockerForces(subtracted(pin, coupler_load.force), pin, pivot)

@@ -22,15 +22,16 @@ def _reader(unit, *, low=None, strict=False):
     return read
 
 
-Length = Annotated[float, BeforeValidator(_reader("m", low=0.0, strict=True))]
-Coordinate = Annotated[float, BeforeValidator(_reader("m"))]
-Angle = Annotated[float, BeforeValidator(_reader("rad"))]
-Mass = Annotated[float, BeforeValidator(_reader("kg", low=0.0))]
-Inertia = Annotated[float, BeforeValidator(_reader("kg m^2", low=0.0))]
-Force = Annotated[float, BeforeValidator(_reader("N"))]
-Speed = Annotated[float, BeforeValidator(_reader("rad/s"))]
-AngularAcceleration = Annotated[float, BeforeValidator(_reader("rad/s^2"))]
-GravityAcceleration = Annotated[float, BeforeValidator(_reader("m/s^2", low=0.0))]
+# each type ends with its SI unit, by which `parameters` finds what a design may vary
+Length = Annotated[float, BeforeValidator(_reader("m", low=0.0, strict=True)), "m"]
+Coordinate = Annotated[float, BeforeValidator(_reader("m")), "m"]
+Angle = Annotated[float, BeforeValidator(_reader("rad")), "rad"]
+Mass = Annotated[float, BeforeValidator(_reader("kg", low=0.0)), "kg"]
+Inertia = Annotated[float, BeforeValidator(_reader("kg m^2", low=0.0)), "kg m^2"]
+Force = Annotated[float, BeforeValidator(_reader("N")), "N"]
+Speed = Annotated[float, BeforeValidator(_reader("rad/s")), "rad/s"]
+AngularAcceleration = Annotated[float, BeforeValidator(_reader("rad/s^2")), "rad/s^2"]
+GravityAcceleration = Annotated[float, BeforeValidator(_reader("m/s^2", low=0.0)), "m/s^2"]
 
 _STIFFNESS = _reader("N/m", low=0.0)
 _COORDINATE = _reader("m")
@@ -56,7 +57,7 @@ def _point(value):
 
 
 def _centre(value):
-    if value == MID_LENGTH:
+    if isinstance(value, str) and value == MID_LENGTH:
         return value
     return _point(value) if isinstance(value, list) else (_or_words(MID_LENGTH, _COORDINATE, value), 0.0)
 
@@ -67,9 +68,9 @@ def _two_points(value):
     return tuple(_point(part) for part in value)
 
 
-Point = Annotated[tuple[float, float], BeforeValidator(_point)]
+Point = Annotated[tuple[float, float], BeforeValidator(_point), "m"]
 GuidePoints = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_two_points)]
-Centre = Annotated[tuple[float, float] | str, BeforeValidator(_centre)]
+Centre = Annotated[tuple[float, float] | str, BeforeValidator(_centre), "m"]
 
 
 class Table(BaseModel):
@@ -90,7 +91,7 @@ class GravityTable(Table):
 
 
 class SpringTable(Table):
-    stiffness: Annotated[float | str, BeforeValidator(_stiffness)]
+    stiffness: Annotated[float | str, BeforeValidator(_stiffness), "N/m"]
     free_position: Coordinate
 
 
@@ -231,6 +232,7 @@ class CaseTable(Table):
     common: dict = Field(default_factory=dict)
     variants: dict[str, dict] = Field(min_length=1)
     published: PublishedTable = PublishedTable()
+    tolerances: dict[str, str] = Field(default_factory=dict)
 
 
 VARIANTS = {

@@ -13,19 +13,23 @@ import numpy as np
 
 from . import checks
 from .chain import Bar
-from .elementary import condition, root
+from .elementary import condition, divisor, root
 from .guide import Guide
 from .links import Joint, Link, LinkMotion, present
 from .planar import added, minus, number, plus, quotient, subtracted, turned, unturned, vector
 
 
 class SliderMotion(NamedTuple):
-    """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint."""
+    """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
+
+    `divisor` is the cosine to divide by, which never vanishes.
+    """
 
     coupler: LinkMotion
     slider: LinkMotion
     sine: Any
     cosine: Any
+    divisor: Any
     closure: Any
     travel: Joint
 
@@ -47,12 +51,13 @@ def place(joint, coupler_length, guide, assembly):
 
     across = minus(guide.guide_offset, position[1])
     square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
-    along = assembly * root(square, unit)
+    reach = root(square, unit)
+    along, divided = assembly * reach, assembly * divisor(reach, coupler_length)
     sine, cosine = across / coupler_length, along / coupler_length
 
-    ratio = -first[1] / along
+    ratio = -first[1] / divided
     lag = ratio * ratio
-    ratio_slope = (lag * across - second[1]) / along
+    ratio_slope = (lag * across - second[1]) / divided
 
     travel = Joint(
         position[0] + along,
@@ -66,7 +71,7 @@ def place(joint, coupler_length, guide, assembly):
     )
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
-    return SliderMotion(coupler, slider, sine, cosine, square / unit, travel)
+    return SliderMotion(coupler, slider, sine, cosine, divided / coupler_length, square / unit, travel)
 
 
 def _on_guide(position, travel, reach, guide):
@@ -85,7 +90,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, dema
     """
     on_slider = unturned(vector(subtracted(slider_load.force, demand)), guide.direction)
     along = -plus(on_slider[0], push)
-    across = (number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along) / motion.cosine
+    across = (number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along) / motion.divisor
     pin = turned((along, across), guide.direction)
     return SliderForces(
         inner=subtracted(pin, coupler_load.force),

@@ -111,8 +111,9 @@ def _turn(count=90):
 
 
 def _dead_centre(distance):
-    mechanism = _saw(guide_angle=0.3, guide_offset=0.0)
-    return _solution(mechanism, np.concatenate([_around(0.3, distance), _around(0.3 + math.pi, distance)]))
+    """Guide through O; no length is a power of two, so that points on the guide round as they do elsewhere."""
+    mechanism = _saw(coupler_length=2.2, guide_angle=1.3)
+    return _solution(mechanism, np.concatenate([_around(1.3, distance), _around(1.3 + math.pi, distance)]))
 
 
 def _limit_position(distance):
@@ -289,29 +290,31 @@ def summary(table):
     rows = []
     for (place, method), part in table.groupby(["place", "method"], sort=False):
         counts = {name: int(part[name].sum()) for name in ("lost", "flipped", "nan")}
-        raised = int((part["raised"] != "").sum())
-        given = part["not given"].eq("").any()
+        raised, given_up = (int((part[name] != "").sum()) for name in ("raised", "not given"))
+        given = given_up < len(part)
         worst = part.loc[part["error"].idxmax()] if part["error"].notna().any() else None
         rows.append(
             {
                 "place": place,
                 "method": method,
-                "does": _verdict(counts, raised, part["error"].max()) if given else "does not give it",
+                "does": _verdict(counts, raised, given_up, part["error"].max()) if given else "does not give it",
                 "worst error": np.nan if worst is None else worst["error"],
                 "at": np.nan if worst is None else worst["number"],
                 "condition there": np.nan if worst is None else worst["condition"],
                 **counts,
                 "raised": raised,
+                "given up": given_up if given else 0,
                 "of angles": int(part["angles"].sum()),
             }
         )
     return pd.DataFrame(rows)
 
 
-def _verdict(counts, raised, worst):
+def _verdict(counts, raised, given_up, worst):
     said = [
         ("raises", raised),
-        ("NaN", counts["nan"]),
+        ("gives up", given_up),
+        ("gives NaN", counts["nan"]),
         ("flips assembly", counts["flipped"]),
         ("loses digits", counts["lost"]),
     ]

@@ -14,6 +14,7 @@ import numpy as np
 from .cam_roller import CamRoller
 from .cams import Cam
 from .crank import ray
+from .elementary import APART
 from .guide import Guide
 from .loads import Gravity, ProcessForce
 from .quantities import components
@@ -80,8 +81,14 @@ class Node:
         return self.graph.node("sqrt", self)
 
     def forgiving_root(self, unit):
-        """Called by `elementary.root`."""
+        """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
         return self.graph.node("root", self, unit)
+
+    def kept_off_zero(self, unit):
+        return self.graph.node("divisor", self, unit)
+
+    def moved_apart(self, unit):
+        return self + APART * unit
 
     def arctan(self):
         return self.graph.node("atan", self)
@@ -125,7 +132,9 @@ class Trace:
     Attributes
     ----------
     outputs : tuple of Node or float
-        What is computed: a vector gives two.
+        What is computed, components one after the other.
+    widths : tuple of int
+        How many components each quantity has: 1, or 2 for a vector.
     parameters : tuple
         Values of the numbers that belong to the design, in their order: numbers or arrays (designs, 1).
     tables : tuple of functions of a Solution
@@ -133,6 +142,7 @@ class Trace:
     """
 
     outputs: tuple[Any, ...]
+    widths: tuple[int, ...]
     parameters: tuple[Any, ...]
     tables: tuple[Callable[[Solution], Any], ...]
 
@@ -171,8 +181,9 @@ def trace(solution, quantities) -> Trace:
     """
     recorder = _Recorder(solution)
     recorded = recorder.recorded
-    outputs = tuple(part.flat[0] for name in quantities for part in components(recorded, name))
-    return Trace(outputs, tuple(recorder.parameters), tuple(recorder.tables))
+    found = [components(recorded, name) for name in quantities]
+    outputs = tuple(part.flat[0] for parts in found for part in parts)
+    return Trace(outputs, tuple(map(len, found)), tuple(recorder.parameters), tuple(recorder.tables))
 
 
 class _Recorder:
@@ -250,7 +261,6 @@ class _Recorder:
             (values,) = self._tabled(1, lambda solution: [solution.loads[number].push(solution)])
             return ProcessForce(values, item.on)
         return copied
-
 
     def _require_elementwise(self, compute):
         """Raise an error unless each result at a crank angle is the same whatever other angles are computed with it."""

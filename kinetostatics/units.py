@@ -40,22 +40,27 @@ def to_si(text, unit):
     number, given = found.groups()
     if given is None:
         raise ValueError(f'has no unit; write for example "{number} {unit}"')
-    value = float(number) * _factor(given, unit)
+    value = float(number) * factor(given, unit)
     if not math.isfinite(value):
         raise ValueError(f"must be finite, found {text!r}")
     return value
 
 
 @cache
-def _factor(given, unit):
-    """What a number in the given unit is multiplied by to be in the SI unit."""
+def factor(given, unit):
+    """What a number in a given unit is multiplied by to be in the SI unit; `ValueError` if it does not convert."""
     import pint
 
     registry = _registry()
     try:
-        factor, base = registry.get_base_units(registry.parse_units(given))
+        scale, base = registry.get_base_units(registry.parse_units(given))
     except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError, tokenize.TokenError):
         raise ValueError(f'unit "{given}" is not known; give one that converts to "{unit}"') from None
     if base != registry.get_base_units(registry.parse_units(unit))[1]:
         raise ValueError(f'"{given}" does not measure the same as "{unit}"; give a unit that converts to it')
-    return factor
+    return scale
+
+
+def base_factor(given):
+    """What a number in a given unit is multiplied by to be in SI base units."""
+    return factor(given, given)

@@ -58,7 +58,8 @@ def placed(request):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rocker_group, "sqrt", root)
         patch.setattr(rocker_group, "root", lambda square, unit: root(square))
-        patch.setattr(rocker_group, "APART", 0)
+        patch.setattr(rocker_group, "divisor", lambda root, unit: root)
+        patch.setattr(rocker_group, "apart", lambda distance, unit: distance)
         return joint, rocker_group.place(joint, c, h, (b, FIELD.zero), request.param), request.param
 
 

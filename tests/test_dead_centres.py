@@ -18,7 +18,7 @@ DIGITS = 50
 ULPS = 4
 """Largest error of the slider position, in units in the last place of the coupler length."""
 GUIDES = ("through O", "nearly through O", "offset", "level", "by angle")
-COUNT = 30
+COUNT = 15
 """Mechanisms for each kind of guide; each with two assemblies, two dead centres and 39 crank angles."""
 each_assembly = pytest.mark.parametrize("assembly", [1, -1])
 
@@ -137,7 +137,7 @@ def test_dead_centre_is_one_to_the_last_digit_of_the_crank_angle(assembly):
 # The function of the study
 
 
-def misses(kind, reach, count=20):
+def misses(kind, reach, count=10):
     """Errors of both, in coupler lengths, from a thousandth of `reach` to `reach` (rad) off the dead centres."""
     random, theirs, ours = np.random.default_rng(3), [], []
     for drive in drives(kind, count):

@@ -92,8 +92,7 @@ def columns(tables, names):
     return {name: np.array([table[name] for table in tables]) for name in names}
 
 
-def motion_errors(scene, solution):
-    reference = [solve(scene, angle) for angle in solution.crank_angle]
+def motion_errors(scene, solution, reference):
     points, found = ("A", "B", *scene.bodies), {}
     for order in ("position", "velocity", "acceleration"):
         expected = columns([table[order] for table in reference], points)
@@ -104,9 +103,8 @@ def motion_errors(scene, solution):
     return {(order, name): error for order, table in found.items() for name, error in table.items()}
 
 
-def force_errors(scene, solution):
+def force_errors(scene, solution, reference):
     """Forces relative to the largest force; moments to that times the coupler length."""
-    reference = [solve(scene, angle) for angle in solution.crank_angle]
     scalars = ("guide_force", *(("cam_force", "slot_force") if scene.has_cam else ()))
     forces = {joint: planar(solution.reaction(joint)) for joint in "OAB"}
     forces |= {"shaking_force": planar(solution.shaking_force)} | {name: getattr(solution, name) for name in scalars}
@@ -119,6 +117,11 @@ def force_errors(scene, solution):
     return errors(forces, expected) | errors(found, torques, arm)
 
 
+def exact(scene, solution):
+    """The reference at the crank angles of a solution."""
+    return [solve(scene, angle) for angle in solution.crank_angle]
+
+
 def wrong(errors):
     return {name: error for name, error in errors.items() if not error < CLOSE}
 
@@ -126,17 +129,18 @@ def wrong(errors):
 @pytest.mark.parametrize("kind", KINDS)
 @reproducible
 @given(data=st.data())
-def test_motion_of_all_joints_and_links_equals_differences_of_angle_formulas(kind, data):
-    """Positions, velocities, accelerations, angular rates; the reference differences positions with 80 digits."""
-    assert wrong(motion_errors(*data.draw(cases(kind)))) == {}
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@reproducible
-@given(data=st.data())
-def test_all_forces_and_moments_equal_newton_euler(kind, data):
-    """Joint, guide, cam and slot forces, guide moment, both torques, shaking force and moment."""
-    assert wrong(force_errors(*data.draw(cases(kind)))) == {}
+def test_motion_equals_differences_of_angle_formulas_forces_newton_euler_and_powers_balance(kind, data):
+    """Positions, velocities, accelerations and angular rates, of which the reference differences positions with 80
+    digits; joint, guide, cam and slot forces, guide moment, both torques, shaking force and moment. The two torques
+    share no force: one follows equilibrium link by link, one the powers of all loads.
+    """
+    scene, solution = data.draw(cases(kind))
+    reference = exact(scene, solution)
+    assert wrong(motion_errors(scene, solution, reference)) == {}
+    assert wrong(force_errors(scene, solution, reference)) == {}
+    assert solution.power_residual < 1e-14
+    normal = 1j * np.exp(1j * scene.guide_angle)
+    np.testing.assert_allclose(planar(solution.reaction("guide")), solution.guide_force * normal, rtol=1e-14)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -146,23 +150,5 @@ def test_forces_at_rest_equal_newton_euler(kind, data):
     """Statics is no special case."""
     scene, moving = data.draw(cases(kind))
     solution = ks.solve(moving.mechanism, moving.crank_angle, crank_speed=0.0, loads=moving.loads)
-    assert wrong(force_errors(replace(scene, speed=0.0, acceleration=0.0), solution)) == {}
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@reproducible
-@given(data=st.data())
-def test_powers_balance(kind, data):
-    """The two torques share no force: one follows equilibrium link by link, one the powers of all loads."""
-    _, solution = data.draw(cases(kind))
-    assert solution.power_residual < 1e-14
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@settings(reproducible, max_examples=10)
-@given(data=st.data())
-def test_guide_reaction_is_the_guide_force_along_the_left_normal(kind, data):
-    scene, solution = data.draw(cases(kind))
-    normal = 1j * np.exp(1j * scene.guide_angle)
-    expected = solution.guide_force * normal
-    np.testing.assert_allclose(planar(solution.reaction("guide")), expected, rtol=1e-14)
+    resting = replace(scene, speed=0.0, acceleration=0.0)
+    assert wrong(force_errors(resting, solution, exact(resting, solution))) == {}

@@ -12,10 +12,17 @@ certified   enclosures by arb and an independent path by mpmath: what all are me
 Nothing in the library's numeric path calls them; where they fail is counted by the tests.
 """
 
-from . import engines, integration, joints, newton
+from . import engines, integration, joints, kane, newton, papers
 from .method import Method
 
-METHODS = (*engines.METHODS, *newton.METHODS, *joints.METHODS, *integration.METHODS)
+METHODS = (
+    *engines.METHODS,
+    *papers.METHODS,
+    *kane.METHODS,
+    *newton.METHODS,
+    *joints.METHODS,
+    *integration.METHODS,
+)
 """All methods, in the order of charts."""
 
 __all__ = ["METHODS", "Method"]

@@ -11,17 +11,15 @@ direction of a guide only the direction counts: its length is 1 but for rounding
 
 import importlib
 from collections.abc import Iterable
-from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from .. import checks, rocker_group
+from .. import checks
 from ..cam_roller import CamRoller
 from ..cams import Circle, CosineLaw
 from ..crank import ray
-from ..elementary import TINY
 from ..errors import KinetostaticsError, MissingLibraryError
 from ..guide import Guide
 from ..loads import Gravity, ProcessForce, Spring
@@ -194,7 +192,7 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     _require_one_design(solution)
     bits = FEWEST_BITS
     while True:
-        with flint.ctx.workprec(bits), _unguarded():
+        with flint.ctx.workprec(bits):
             run = _on_arb(flint.arb, solution)
             closing = _closing(run, solution)
             values = _attempted(quantity, lambda run=run: components(run, quantity))
@@ -217,31 +215,18 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
         bits *= 2
 
 
-@contextmanager
-def _unguarded():
-    """Without what keeps the rocker kernel away from 0/0 where A meets O2: far below rounding, but not below arb's.
-
-    A crank angle at which they do meet is refused instead, as all limit positions are (see `_closing`).
-    """
-    guard, rocker_group.APART = rocker_group.APART, 0.0
-    try:
-        yield
-    finally:
-        rocker_group.APART = guard
-
-
 def _closing(run, solution):
     """Whether each group certainly closes at each angle; an error where one certainly does not."""
     closing = np.ones(run.crank_angle.shape, dtype=bool)
     for group in run.mechanism.groups:
         margin = group.closure(run.placement)
-        failing = np.flatnonzero(margin <= TINY)
+        failing = np.flatnonzero(margin <= 0)
         if failing.size:
             raise NotGivenError(
                 f"{_place(solution, failing[0])}: {type(group).__name__} is at a limit position or does not close "
                 f"(its closure margin is {margin[failing[0]].str(5)}), so there is nothing to certify"
             )
-        closing &= margin > TINY
+        closing &= margin > 0
     return closing
 
 
@@ -552,7 +537,7 @@ class _Machine:
     def given(self, place):
         """Value of a load that is a function of the motion, which no formula but the user's own can give."""
         flint = _library("flint")
-        with flint.ctx.workprec(int(3.33 * self.mp.dps)), _unguarded():
+        with flint.ctx.workprec(int(3.33 * self.mp.dps)):
             values = np.ravel(_on_arb(flint.arb, self.solution).loads[place].force)
             return self.mp.mpf(values[self.index if values.size > 1 else 0])
 

@@ -27,11 +27,14 @@ def _numpy(solution, quantity, setting):
     return lambda: components(_solved(solution, solution.crank_angle), quantity)
 
 
-def _compiled(solution, quantity, setting):
+def compiled_run(solution, quantity):
+    """Function that computes a quantity by a compiled loop."""
     made = compiled.program(solution, [quantity])
-    tables = made.tabulated(solution)
-    made(solution.crank_angle, tables)
-    return lambda: tuple(made(solution.crank_angle, tables)[:, 0])
+    return lambda: tuple(made(solution.crank_angle, made.tabulated(solution))[:, 0])
+
+
+def _compiled(solution, quantity, setting):
+    return compiled_run(solution, quantity)
 
 
 def _jax(solution, quantity, setting):

@@ -1,6 +1,6 @@
 """Other ways to the motion of the joints: differences, spectra, harmonic series; and the coupler as two masses."""
 
-from dataclasses import fields
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from ..errors import NotGivenError
 from ..ingredients import two_mass_coupler
 from ..quantities import components
 from ..rerouted import Rerouted, assembled, harmonic_series, joints_of, positions, rerouted
-from ..solution import Solution
+from .engines import compiled_run
 from .method import Method
 
 __all__ = ["METHODS", "Rerouted", "assembled", "rerouted"]
@@ -61,30 +61,47 @@ def _spectral(solution, quantity, samples):
 
 
 def _is_even_turn(angle):
-    return np.ndim(angle) == 1 and np.allclose(
-        angle, np.linspace(0.0, 2 * np.pi, len(angle), endpoint=False), atol=1e-9
-    )
+    turn = np.linspace(0.0, 2 * np.pi, np.size(angle), endpoint=False)
+    return np.ndim(angle) == 1 and np.allclose(angle, turn, atol=1e-9)
 
 
-def _series(solution, quantity, order):
+def _series(solution, order):
+    """The solution with its kinematics as a truncated series."""
     if not np.all(np.isfinite(solution.at(np.linspace(0.0, 2 * np.pi, 512)).condition)):
         raise NotGivenError("a harmonic series needs a mechanism that closes all around the turn")
-    way = harmonic_series(solution, order)
-    return lambda: components(rerouted(solution, way), quantity)
+    return rerouted(solution, harmonic_series(solution, order))
 
 
-def _two_mass(solution, quantity, setting):
+def _two_mass(solution, setting):
+    """The solution with its couplers as two masses each."""
     mechanism = two_mass_coupler(solution.mechanism)
     if mechanism is None:
         raise NotGivenError("there is no coupler mass to share out between its joints")
-    given = {field.name: getattr(solution, field.name) for field in fields(Solution)} | {"mechanism": mechanism}
-    return lambda: components(Solution(**given), quantity)
+    return replace(solution, mechanism=mechanism)
 
 
+def _eager(model):
+    """Method that computes a simpler model by NumPy."""
+
+    def prepare(solution, quantity, setting):
+        simpler = model(solution, setting)
+        return lambda: components(replace(simpler), quantity)
+
+    return prepare
+
+
+def _compiled(model):
+    """Method that computes a simpler model by a compiled loop, its fastest."""
+    return lambda solution, quantity, setting: compiled_run(model(solution, setting), quantity)
+
+
+HARMONICS = (1, 2, 4, 6)
 METHODS = (
     Method("differences, 2nd order", _differences(2), "step [rad]", (1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5)),
     Method("differences, 4th order", _differences(4), "step [rad]", (3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4)),
     Method("spectral differentiation", _spectral, "samples", (8, 12, 16, 24, 32, 48, 64, 128)),
-    Method("harmonic series", _series, "harmonics", (1, 2, 4, 6)),
-    Method("two-mass coupler", _two_mass),
+    Method("harmonic series", _eager(_series), "harmonics", HARMONICS),
+    Method("harmonic series, compiled", _compiled(_series), "harmonics", HARMONICS),
+    Method("two-mass coupler", _eager(_two_mass)),
+    Method("two-mass coupler, compiled", _compiled(_two_mass)),
 )

@@ -1,14 +1,15 @@
 """SymPy's Kane method, lambdified: the fastest way an expert would otherwise take.
 
-The crank angle is the only coordinate; angles of links and the cam radius are closed forms of it. Auxiliary speeds let
-each link part from its neighbours, so that their equations hold the joint reactions (Kane and Levinson, *Dynamics:
-Theory and Applications*, 1985: bringing noncontributing forces into evidence); each equation gives one unknown.
-`KanesMethod` derives them in symbols, once for each kind of mechanism. What is asked for, and only that, goes through
-`lambdify` with common subexpressions taken out, once for each pattern of parameters that are 0, 1 or -1, which are
-written in; all others are arguments.
+The crank angle is the only coordinate; angles of links and the cam radius are closed forms of it. Auxiliary speeds
+move links apart at a joint, so that their equations hold the reactions there (Kane and Levinson, *Dynamics: Theory and
+Applications*, 1985: bringing noncontributing forces into evidence); they are chosen so that each gives one unknown.
+`KanesMethod` derives the equations in symbols, once for each kind of mechanism. What is asked for, and only that, goes
+through `lambdify` with common subexpressions taken out, once for each pattern of parameters that are 0, 1 or -1, which
+are written in; all others are arguments.
 """
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -22,7 +23,7 @@ from ..slider_group import SliderGroup
 from .method import Method, NotGivenError
 
 PHI, SPEED = dynamicsymbols("phi speed")
-ANGLE, OMEGA, ALPHA = sp.symbols("crank_angle crank_speed crank_acceleration")
+ANGLE, OMEGA, ALPHA, TORQUE = sp.symbols("crank_angle crank_speed crank_acceleration balancing_torque")
 N, CRANK = ReferenceFrame("N"), ReferenceFrame("crank")
 CRANK.orient_axis(N, N.z, PHI)
 CRANK.set_ang_vel(N, SPEED * N.z)
@@ -39,13 +40,14 @@ def left(vector):
     return N.z ^ vector
 
 
+def functions(*names):
+    """Unknown functions of the crank angle."""
+    return [sp.Function(name)(PHI) for name in names]
+
+
 def slope(expression, order=1):
     """Derivative by the crank angle."""
     return sp.diff(expression, PHI, order) if order else expression
-
-
-def of_crank_angle(*names):
-    return [sp.Function(name)(PHI) for name in names]
 
 
 class Equations:
@@ -57,23 +59,28 @@ class Equations:
         What results are computed from; a step may use others, in any order.
     motions, forces : dict of str to tuple of expressions
         Results by name, in components.
+    symbols : dict of expression to Symbol
+        What stands for time and crank angle, functions of them and their derivatives in steps and results.
+    unknowns : dict of speed to Symbol
+        Unknown that the equation of each speed gives.
+    alone : set of speeds
+        Those in whose equations the other unknowns do no work, though SymPy does not see it.
     """
 
     def __init__(self):
+        self.steps, self.motions = {}, {}
+        self.forces: dict[str, tuple[Any, ...]] = {"balancing_torque": (TORQUE,)}
         self.symbols = {SPEED.diff(): ALPHA, SPEED: OMEGA, PHI.diff(): OMEGA, PHI: ANGLE}
-        self.steps, self.motions, self.forces = {}, {}, {}
+        self.unknowns, self.alone = {SPEED: TORQUE}, {SPEED}
         self.bodies, self.loads = [], []
-        torque = sp.Symbol("balancing_torque")
-        self.unknowns, self.alone = {SPEED: torque}, {SPEED}
-        self.parted, reaction = self.parting("O")
-        crank = self.link("crank", CRANK.x, ORIGIN, 1, self.parted)
-        self.push(ORIGIN, self.parted, reaction)
-        self.loads.append((crank, torque * N.z))
-        self.forces["balancing_torque"] = (torque,)
+        self.shift, reaction = self.parting("O")
+        crank = self.link("crank", CRANK.x, ORIGIN, 1, self.shift)
+        self.push(ORIGIN, self.shift, reaction)
+        self.loads.append((crank, TORQUE * N.z))
 
     @property
     def results(self):
-        return self.motions | self.forces
+        return self.motions | self.forces | {"balancing_torque_by_power": (TORQUE,)}
 
     def define(self, function, value, rate=None):
         """Give a function of the crank angle by its value and, if that is shorter, its derivative."""
@@ -83,32 +90,32 @@ class Equations:
             self.steps[symbol] = expression
 
     def report(self, function, rate, acceleration):
-        """Make motions of a function's derivatives by time."""
+        """Make results of a function's derivatives by time."""
         self.motions[rate] = (OMEGA * slope(function),)
         self.motions[acceleration] = (OMEGA**2 * slope(function, 2) + ALPHA * slope(function),)
 
     def auxiliary(self, unknown, alone=False):
-        """Auxiliary speed, whose equation gives an unknown; with `alone` the other unknowns do no work in it."""
+        """Auxiliary speed, and the unknown that its equation gives."""
         speed, symbol = dynamicsymbols(f"speed_{unknown}"), sp.Symbol(unknown)
         self.unknowns[speed] = symbol
         self.alone |= {speed} if alone else set()
         return speed, symbol
 
     def parting(self, joint):
-        """Auxiliary velocity of a link away from a joint, and the reaction there."""
+        """Auxiliary velocity of one link alone, and the reaction on it at its joint."""
         (to_x, x), (to_y, y) = self.auxiliary(f"{joint}_x"), self.auxiliary(f"{joint}_y")
         self.forces[joint] = (x, y)
         return planar(to_x, to_y), planar(x, y)
 
     def push(self, position, shift, force):
-        """Force at a point that moves as its position does and, by auxiliary speeds, otherwise."""
+        """Force at a point that moves as its position does and, besides, with an auxiliary velocity."""
         point = Point("P")
         point.set_vel(N, position.dt(N).subs(PHI.diff(), SPEED) + shift)
         self.loads.append((point, force))
         return point
 
-    def pin(self, position, force, on, by):
-        """Force at a joint, on the link with one auxiliary velocity there and back on that with another."""
+    def join(self, position, force, on, by):
+        """Force on the link with one auxiliary velocity at a joint, and back on that with another."""
         self.push(position, on, force)
         self.push(position, by, -force)
 
@@ -129,43 +136,44 @@ class Equations:
         method = KanesMethod(N, [PHI], speeds[:1], [PHI.diff() - SPEED], u_auxiliary=speeds[1:])
         active, inertial = method.kanes_equations(self.bodies, self.loads)
         for (speed, unknown), equation in zip(self.unknowns.items(), active + inertial, strict=True):
-            others = self.unknowns.values() if speed in self.alone else [unknown]
-            self.steps[unknown] = -equation.subs(dict.fromkeys(others, 0)) / equation.diff(unknown)
+            absent = self.unknowns.values() if speed in self.alone else [unknown]
+            self.steps[unknown] = -equation.subs(dict.fromkeys(absent, 0)) / equation.diff(unknown)
         return self
 
 
-def add_slider(equations, pin, bearer):
-    """Coupler and slider on a pin, whose link has the auxiliary velocity `bearer`."""
+def crank_pin():
+    """Position of A, along fixed axes, so that coupler and slider share its components."""
+    return (sp.Symbol("crank_length") * CRANK.x).express(N)
+
+
+def add_slider(equations, A, bearer):
+    """Coupler and slider on joint A of a link, which has there the auxiliary velocity `bearer`."""
     length, offset, assembly, guide = sp.symbols("coupler_length guide_offset assembly guide_angle")
     stiffness, free, process = sp.symbols("stiffness free_position process_force")
-    theta, travel = of_crank_angle("theta", "travel")
+    theta, travel = functions("theta", "travel")
     along = planar(sp.cos(guide), sp.sin(guide))
     across = left(along)
-    sine = (offset - (pin & across)) / length
+    sine = (offset - (A & across)) / length
     for function, value in (sp.sin, sine), (sp.cos, assembly * sp.sqrt(1 - sp.sin(theta) ** 2)):
         equations.symbols[function(theta)] = symbol = sp.Symbol(f"{function}_theta")
         equations.steps[symbol] = value
     equations.define(theta, sp.asin(sine), slope(sine) / sp.cos(theta))
-    equations.define(travel, (pin & along) + length * sp.cos(theta))
+    equations.define(travel, (A & along) + length * sp.cos(theta))
     equations.report(theta, "coupler_rate", "coupler_angular_acceleration")
     equations.report(travel, "slider_velocity", "slider_acceleration")
     equations.motions["slider_position"] = (travel,)
 
-    axis = sp.cos(theta) * along + sp.sin(theta) * across
+    axis, B = sp.cos(theta) * along + sp.sin(theta) * across, travel * along + offset * across
     spin, normal = equations.auxiliary("guide_force", alone=True)
     tilt, moment = equations.auxiliary("guide_moment")
-    shift, A = equations.parting("A")
-    away, B = equations.parting("B")
-    end, slid, slider = (
-        shift + spin * length * left(axis),
-        away + spin * length * left(axis),
-        travel * along + offset * across,
-    )
-    equations.link("coupler", axis, pin, slope(theta), shift, spin)
-    frame = equations.link("slider", along, slider, 0, slid, tilt)
-    equations.pin(pin, A, shift, bearer)
-    equations.pin(slider, B, slid, end)
-    equations.push(slider, slid, (process - stiffness * (travel - free)) * along + normal * across)
+    coupler, at_A = equations.parting("A")
+    slider, at_B = equations.parting("B")
+    swept = spin * length * left(axis)  # coupler about A, with it the slider
+    equations.link("coupler", axis, A, slope(theta), coupler, spin)
+    frame = equations.link("slider", along, B, 0, slider + swept, tilt)
+    equations.join(A, at_A, coupler, bearer)
+    equations.join(B, at_B, slider + swept, coupler + swept)
+    equations.push(B, slider + swept, (process - stiffness * (travel - free)) * along + normal * across)
     equations.loads.append((frame, moment * N.z))
     equations.forces["guide"] = (normal * across & N.x, normal * across & N.y)
     equations.forces |= {"guide_force": (normal,), "guide_moment": (moment,)}
@@ -174,27 +182,26 @@ def add_slider(equations, pin, bearer):
 
 def crank_slider():
     equations = Equations()
-    return add_slider(equations, (sp.Symbol("crank_length") * CRANK.x).express(N), equations.parted)
+    return add_slider(equations, crank_pin(), equations.shift)
 
 
 def cam_crank_slider(law):
-    """Block in the slotted crank, its roller on the cam: it parts from both along and across the ray."""
     equations = Equations()
-    (radius,) = of_crank_angle("radius")
+    (radius,) = functions("radius")
     law(equations, radius)
     (outward, cam), (sideways, slot) = equations.auxiliary("cam_force"), equations.auxiliary("slot_force")
-    shift, pin = outward * CRANK.x + sideways * CRANK.y, radius * CRANK.x
-    tangent = slope(radius) * CRANK.x + radius * CRANK.y
-    equations.link("block", CRANK.x, pin, 1, shift)
-    equations.push(pin, shift, cam * left(tangent) / sp.sqrt(slope(radius) ** 2 + radius**2) + slot * CRANK.y)
-    equations.push(ORIGIN, equations.parted, -slot * CRANK.y)
+    block, A = outward * CRANK.x + sideways * CRANK.y, radius * CRANK.x
+    inward = left(slope(radius) * CRANK.x + radius * CRANK.y) / sp.sqrt(slope(radius) ** 2 + radius**2)
+    equations.link("block", CRANK.x, A, 1, block)
+    equations.push(A, block, cam * inward + slot * CRANK.y)
+    equations.push(ORIGIN, equations.shift, -slot * CRANK.y)  # its moment about O works in the crank's equation alone
     equations.forces |= {"cam_force": (cam,), "slot_force": (slot,)}
-    return add_slider(equations, pin.express(N), shift)
+    return add_slider(equations, A.express(N), block)
 
 
 def circle(equations, radius):
-    """Pitch circle of any centre."""
-    (root,) = of_crank_angle("root")
+    """Radius of a pitch circle with any centre."""
+    (root,) = functions("root")
     centre = planar(*sp.symbols("cam_x cam_y"))
     square = sp.Symbol("cam_radius") ** 2 - (centre & CRANK.y) ** 2
     equations.define(root, sp.sqrt(square), slope(square) / (2 * root))
@@ -202,8 +209,8 @@ def circle(equations, radius):
 
 
 def cosine_law(equations, radius):
-    """Law of the sawframe study as published: its root changes sign at the singular angle."""
-    height, root = of_crank_angle("height", "root")
+    """Radius by the cosine law as the sawframe study has it, with a root that changes sign at the singular angle."""
+    height, root = functions("height", "root")
     mean, amplitude, guide, length, singular = sp.symbols("mean amplitude cam_angle law_length singular_cosine")
     angle, side = PHI - guide, sp.Symbol("side")
     travel = mean + amplitude * sp.cos(angle)
@@ -217,32 +224,32 @@ def four_bar():
     """Angles of coupler and rocker by atan2 and acos, their rates by the closed loop."""
     equations = Equations()
     crank, coupler, rocker, assembly = sp.symbols("crank_length coupler_length rocker_length assembly")
-    theta, psi = of_crank_angle("theta", "psi")
-    A, pivot = (crank * CRANK.x).express(N), planar(*sp.symbols("pivot_x pivot_y"))
+    theta, psi = functions("theta", "psi")
+    A, pivot = crank_pin(), planar(*sp.symbols("pivot_x pivot_y"))
     q, p = (planar(sp.cos(angle), sp.sin(angle)) for angle in (theta, psi))
     x, y = (pivot - A) & N.x, (pivot - A) & N.y
     a = sp.sqrt(x**2 + y**2)
-    at_A, at_pivot = (
-        assembly * sp.acos((a**2 + near**2 - far**2) / (2 * a * near))
-        for near, far in ((coupler, rocker), (rocker, coupler))
-    )
-    sine = left(q) & p
-    equations.define(theta, sp.atan2(y, x) + at_A, -(crank * CRANK.y & p) / (coupler * sine))
-    equations.define(psi, sp.atan2(-y, -x) - at_pivot, -(crank * CRANK.y & q) / (rocker * sine))
+
+    def corner(near, far):
+        return assembly * sp.acos((a**2 + near**2 - far**2) / (2 * a * near))
+
+    rise, sine = crank * CRANK.y, left(q) & p
+    equations.define(theta, sp.atan2(y, x) + corner(coupler, rocker), -(rise & p) / (coupler * sine))
+    equations.define(psi, sp.atan2(-y, -x) - corner(rocker, coupler), -(rise & q) / (rocker * sine))
     equations.report(theta, "coupler_rate", "coupler_angular_acceleration")
     equations.report(psi, "rocker_rate", "rocker_angular_acceleration")
 
-    spin, along_rocker = equations.auxiliary("B_along_rocker", alone=True)
-    swing, along_coupler = equations.auxiliary("B_along_coupler", alone=True)
-    shift, at_A = equations.parting("A")
-    away, at_pivot = equations.parting("O2")
-    B = along_coupler * q + along_rocker * p
-    equations.link("coupler", q, A, slope(theta), shift, spin)
-    equations.link("rocker", p, pivot, slope(psi), away, swing)
-    equations.pin(A, at_A, shift, equations.parted)
-    equations.pin(A + coupler * q, B, away + swing * rocker * left(p), shift + spin * coupler * left(q))
-    equations.push(pivot, away, at_pivot)
-    equations.forces["B"] = (B & N.x, B & N.y)
+    spin, along_p = equations.auxiliary("B_along_rocker", alone=True)
+    swing, along_q = equations.auxiliary("B_along_coupler", alone=True)
+    of_coupler, at_A = equations.parting("A")
+    of_rocker, at_pivot = equations.parting("O2")
+    at_B = along_q * q + along_p * p
+    equations.link("coupler", q, A, slope(theta), of_coupler, spin)
+    equations.link("rocker", p, pivot, slope(psi), of_rocker, swing)
+    equations.join(A, at_A, of_coupler, equations.shift)
+    equations.join(A + coupler * q, at_B, of_rocker + swing * rocker * left(p), of_coupler + spin * coupler * left(q))
+    equations.push(pivot, of_rocker, at_pivot)
+    equations.forces["B"] = (at_B & N.x, at_B & N.y)
     return equations
 
 
@@ -297,6 +304,8 @@ def in_order(steps, results):
 def described(solution):
     """Kind of the mechanism, and its parameters by name."""
     mechanism, group = solution.mechanism, solution.mechanism.groups[-1]
+    if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
+        raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
     values = {
         "crank_angle": solution.crank_angle,
         "crank_speed": solution.crank_speed,
@@ -341,48 +350,37 @@ def shaped(cam):
 
 
 def loading(loads):
-    """Gravity, the spring that all springs make together, and process force by name."""
-    kinds = Gravity, Spring, ProcessForce
-    if not all(isinstance(item, kinds) and not callable(getattr(item, "force", None)) for item in loads):
-        raise NotGivenError("SymPy's Kane method takes weight, springs and process forces given by numbers")
+    """Gravity, spring and process force by name."""
+    kinds: Any = (Gravity, Spring, ProcessForce)
     weights, springs, pushes = ([item for item in loads if isinstance(item, kind)] for kind in kinds)
-    stiffness = sum(item.stiffness for item in springs)
-    moment = sum(item.stiffness * item.free_position for item in springs)
-    return {
-        "stiffness": stiffness,
-        "free_position": moment / stiffness if stiffness else 0,
-        "process_force": sum(item.force for item in pushes),
-        **vector("gravity", [sum(parts) for parts in zip((0, 0), *(item.vector for item in weights), strict=True)]),
-    }
+    number = all(isinstance(item.force, int | float) for item in pushes)
+    if len(weights) + len(springs) + len(pushes) < len(loads) or len(springs) > 1 or not number:
+        raise NotGivenError("SymPy's Kane method takes gravity, one spring, and process forces that are numbers")
+    stiffness, free = (springs[0].stiffness, springs[0].free_position) if springs else (0, 0)
+    pull = [sum(parts) for parts in zip((0, 0), *(item.vector for item in weights), strict=True)]
+    push = sum(item.force for item in pushes)
+    return {"stiffness": stiffness, "free_position": free, "process_force": push, **vector("gravity", pull)}
 
 
 def evaluation(solution, names):
     """Function that computes results by name with one call of a lambdified function, as a list of components."""
     kind, values = described(solution)
-    unknown = set(names) - derived(kind).results.keys()
+    unknown = [name for name in names if name not in derived(kind).results]
     if unknown:
-        raise NotGivenError(f"SymPy's Kane method has no {', '.join(sorted(unknown))} for {solution.mechanism.name}")
-    written = ((name, value) for name, value in values.items() if isinstance(value, int | float))
-    function, arguments = compiled(kind, names, tuple(item for item in written if item[1] in (0, 1, -1)))
-    arguments = [values[name] for name in arguments]
-
-    shape = solution.crank_angle.shape
+        raise NotGivenError(f"SymPy's Kane method is not set up to give {', '.join(unknown)} of a {kind}")
+    plain = {name: value for name, value in values.items() if isinstance(value, int | float)}
+    function, arguments = compiled(kind, names, tuple(item for item in plain.items() if item[1] in (0, 1, -1)))
+    given, shape = [values[name] for name in arguments], solution.crank_angle.shape
 
     def run():
         with np.errstate(invalid="ignore", divide="ignore"):
-            return [part if np.shape(part) == shape else np.full(shape, part) for part in function(*arguments)]
+            return [part if np.shape(part) == shape else np.full(shape, float(part)) for part in function(*given)]
 
     return run
 
 
-def kane(solution, quantity, setting=None):
-    """Function that computes one quantity, as `Method` wants it."""
-    run = evaluation(solution, (quantity,))
-    return lambda: tuple(run())
-
-
 def all_forces(solution):
-    """Function that computes all reactions and the torque by name, in components, with one lambdified function."""
+    """Function that computes all reactions and the torque, components by name, with one lambdified function."""
     forces = derived(described(solution)[0]).forces
     run = evaluation(solution, tuple(forces))
 
@@ -393,4 +391,9 @@ def all_forces(solution):
     return named
 
 
-METHODS = (Method(name="SymPy Kane, lambdified", prepare=kane),)
+def _prepare(solution, quantity, setting=None):
+    run = evaluation(solution, (quantity,))
+    return lambda: tuple(run())
+
+
+METHODS = (Method("SymPy Kane, lambdified", _prepare),)

@@ -156,16 +156,15 @@ def four_bar_by_atan_acos(crank_length, coupler_length, rocker_length, pivot, as
 
 
 class CircleAsPrinted(Circle):
-    """Circle by the sawframe study's r = -a cos(phi) + sqrt(l^2 - a^2 sin^2(phi)), its centre at a behind O."""
+    """Circle by the sawframe study's r = -a cos(phi) + sqrt(R^2 - a^2 sin^2(phi)), centre at a behind O."""
 
     def polar(self, angle, ray):
         x, y = self.centre
-        l, a, phi = self.pitch_radius, np.hypot(x, y), angle - np.arctan2(-y, -x)
-        s, c = np.sin(phi), np.cos(phi)
-        square = l * l - a * a * s * s
+        R, a, phi = self.pitch_radius, np.hypot(x, y), angle - np.arctan2(-y, -x)
+        s, c = a * np.sin(phi), a * np.cos(phi)
+        square = R * R - s * s
         root = np.sqrt(square)
-        second = a * c - a * a * (l * l * (c * c - s * s) + a * a * s**4) / (square * root)
-        return -a * c + root, a * s - a * a * s * c / root, second
+        return root - c, s - s * c / root, c - (R * R * (c * c - s * s) + s * s * s * s) / (square * root)
 
 
 class CosineLawAsPrinted(CosineLaw):
@@ -225,7 +224,7 @@ class SliderByVectors(SliderGroup):
         sine, cosine, travel = dot(n, q), dot(u, q), Joint(dot(u, B), speed, gain)
         placement.joints[self.pin] = pin
         placement.links |= dict(zip(self.links, (coupler, slider), strict=True))
-        placement.details[self._slider] = SliderMotion(coupler, slider, sine, cosine, cosine * cosine, travel)
+        placement.details[self._slider] = SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel)
 
 
 class SliderByAsin(SliderByVectors):
@@ -257,7 +256,7 @@ class RockerByAtanAcos(RockerGroup):
         rocker, sine = LinkMotion(pivot, p, swing, swing_slope), cross(q, p)
         placement.joints |= {self.pin: pin, self.pivot_name: pivot}
         placement.links |= dict(zip(self.links, (coupler, rocker), strict=True))
-        placement.details[self._rocker] = RockerMotion(coupler, rocker, pin, sine, dot(q, p), sine * sine)
+        placement.details[self._rocker] = RockerMotion(coupler, rocker, pin, sine, dot(q, p), sine, sine * sine)
 
 
 def _as(kind, original, **more):
@@ -274,16 +273,22 @@ def _by_the_papers(mechanism):
     if kinds == [RockerGroup]:
         return (_as(RockerByAtanAcos, groups[0], crank_length=mechanism.crank.length),)
     cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
-    if kinds == [CamRoller, SliderGroup] and type(groups[0].cam) in cams:
-        cam = groups[0].cam
+    if kinds == [CamRoller, SliderGroup] and type(cam := groups[0].cam) in cams:
         return RollerByAngles(_as(cams[type(cam)], cam), groups[0].block), _as(SliderByAsin, groups[1])
-    raise NotGivenError(f"no study gives formulas for {mechanism.name} with these groups and cam")
+    raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
 
 
 def _prepare(solution, quantity, setting=None):
+    if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
+        raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
     mechanism = replace(solution.mechanism, groups=_by_the_papers(solution.mechanism))
     given = {field.name: getattr(solution, field.name) for field in fields(Solution)} | {"mechanism": mechanism}
-    return lambda: components(Solution(**given), quantity)
+
+    def run():
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return components(Solution(**given), quantity)
+
+    return run
 
 
 METHODS = (Method("papers' formulas", _prepare),)

@@ -1,0 +1,99 @@
+"""What designs may vary: paths into a variant of a case file, such as "spring.stiffness" or "cam.centre.x"."""
+
+import typing
+
+from . import checks
+from .schema import Table
+from .units import base_factor, factor
+
+PARTS = {"x": 0, "y": 1, "along": 0, "across": 1}
+"""Names of the components of a pair."""
+
+
+def paths(table) -> dict[str, str]:
+    """Paths of all numbers in a validated table that can be varied, with their SI units."""
+    found = {}
+    for name, field in type(table).model_fields.items():
+        value = getattr(table, name)
+        unit = _unit(field)
+        if isinstance(value, Table):
+            found |= {f"{name}.{path}": inner for path, inner in paths(value).items()}
+        elif unit and isinstance(value, tuple):
+            parts = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
+            found |= {f"{name}.{part}": unit for part in parts}
+        elif unit:
+            found[name] = unit
+    return found
+
+
+def _unit(field):
+    """SI unit of a field: the text in its annotation; None if it is no number."""
+    candidates = [field.metadata, *(getattr(part, "__metadata__", ()) for part in typing.get_args(field.annotation))]
+    return next((item for metadata in candidates for item in metadata if isinstance(item, str)), None)
+
+
+def si_columns(table, columns, owner):
+    """Path and factor to SI of each column of a table of designs: tuples (column, path, factor).
+
+    Parameters
+    ----------
+    table : Table
+        Validated variant of a case.
+    columns : sequence of str
+        Paths, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI.
+    owner : str
+        What the message of an error calls it.
+
+    Raises
+    ------
+    ParameterError
+        A path is not there or a unit does not convert; all problems at once.
+    """
+    known = paths(table)
+    found, problems = [], []
+    for column in columns:
+        path, unit = heading(column)
+        problem = checks.choice("parameter", path, tuple(known))
+        try:
+            found.append((column, path, factor(unit, known[path]) if unit and not problem else 1.0))
+        except ValueError as error:
+            problem = f"parameter {column!r}: {error}"
+        problems.append(problem)
+    checks.require(owner, *problems)
+    return tuple(found)
+
+
+def base_columns(columns):
+    """Name and factor to SI base units of each column; what the names mean is not known."""
+    found = []
+    for column in columns:
+        name, unit = heading(column)
+        found.append((column, name, base_factor(unit) if unit else 1.0))
+    return tuple(found)
+
+
+def heading(column):
+    """Path and unit of a column's name; the unit may be empty."""
+    path, _, unit = str(column).partition("[")
+    return path.strip(), unit.rstrip("] ").strip()
+
+
+def with_values(table, values):
+    """Copy of a validated table with values at some paths, as they are: numbers or arrays of designs."""
+    own, inner = {}, {}
+    for path, value in values.items():
+        name, _, rest = path.partition(".")
+        if not rest:
+            own[name] = value
+        else:
+            inner.setdefault(name, {})[rest] = value
+    for name, changes in inner.items():
+        current = getattr(table, name)
+        if isinstance(current, Table):
+            own[name] = with_values(current, changes)
+        else:
+            parts = list(current)
+            for part, value in changes.items():
+                parts[PARTS[part]] = value
+            own[name] = tuple(parts)
+    return table.model_copy(update=own)

@@ -1,0 +1,338 @@
+"""Work against precision: errors of known orders, nothing nearer than ours, and files that two runs compare by."""
+
+import platform
+import subprocess
+import sys
+from functools import partial
+from importlib.metadata import version
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+import kinetostatics as ks
+from kinetostatics import charts, cli, precision
+from kinetostatics.methods import METHODS
+from kinetostatics.methods.certified import enclosure, relative_errors
+
+pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+
+KINDS = [
+    ("sawframe_2r63", "plain"),
+    ("sawframe_2r63", "cam-circle"),
+    ("sawframe_2r63", "cam-cosine"),
+    ("mower_drive", "unbalanced"),
+    ("chain_unit", "rho-0.5"),
+]
+OURS = [method for method in METHODS if method.ours]
+OTHERS = [method for method in METHODS if not method.ours]
+FEW = [
+    method
+    for method in METHODS
+    if method.name
+    in (
+        "ours, NumPy",
+        "ours, torque by powers",
+        "differences, 2nd order",
+        "differences, 4th order",
+        "spectral differentiation",
+        "harmonic series",
+        "two-mass coupler",
+    )
+]
+TIME = "time [ns/angle]"
+
+
+@pytest.fixture(scope="module")
+def case():
+    return ks.load_case("sawframe_2r63")
+
+
+@pytest.fixture(scope="module")
+def torque(case):
+    """The study of one case, the plain sawframe."""
+    return precision.study(case.solve("plain", 48), methods=FEW, repeats=1)
+
+
+def curve(table, method, first, last):
+    """Settings and errors of a method over a stretch of its settings."""
+    rows = table[(table["method"] == method) & table["value"].between(first, last)]
+    return rows["value"].to_numpy(), rows["error"].to_numpy()
+
+
+# A study
+
+
+def test_study_has_a_row_for_each_method_and_setting_with_time_and_error_or_the_reason_why_not(torque):
+    expected = [(method.name, setting) for method in FEW for setting in method.settings]
+    found = list(zip(torque["method"], torque["value"].astype(object), strict=True))
+    assert [(name, None if value != value else value) for name, value in found] == expected
+    given = torque["not given"] == ""
+    assert np.all(torque.loc[given, [TIME, "error"]] > 0)
+    assert np.all(np.isfinite(torque.loc[given, [TIME, "error"]]))
+    assert torque.loc[~given, [TIME, "error"]].isna().all(axis=None)
+    assert list(torque.loc[~given, "value"]) == [64, 128]
+    assert torque.loc[~given, "not given"].str.contains("more than the 48 crank angles").all()
+
+
+def test_ours_lie_within_5e_15_and_are_marked_as_ours(torque):
+    ours = torque[torque["ours"]]
+    assert list(ours["method"]) == ["ours, NumPy", "ours, torque by powers"]
+    assert np.all(ours["error"] < 5e-15)
+
+
+@pytest.mark.parametrize(
+    ("method", "order", "coarsest", "finest"),
+    [("differences, 2nd order", 2, 1e-1, 1e-3), ("differences, 4th order", 4, 3e-1, 1e-2)],
+)
+def test_error_of_differences_falls_with_the_power_of_the_step_that_is_their_order(
+    torque, method, order, coarsest, finest
+):
+    step, error = curve(torque, method, finest, coarsest)
+    slopes = np.diff(np.log(error)) / np.diff(np.log(step))
+    assert slopes == pytest.approx(order, abs=0.07)
+
+
+@pytest.mark.parametrize("method", ["differences, 2nd order", "differences, 4th order"])
+def test_error_of_differences_rises_again_as_rounding_over_the_square_of_the_step(torque, method):
+    _, error = curve(torque, method, 0.0, 1e-3)
+    assert error[-1] > 20 * error.min()
+    assert error[-1] < 1e3 * 2.0**-53 / (1e-5 if "2nd" in method else 1e-4) ** 2
+
+
+SINGULARITY = np.arccosh(2.0 / 0.3)
+"""Crank angles pi/2 + i times this make the root in the kinematics zero; Fourier coefficients fall as exp(-k times it)
+(see e.g. Trefethen, *Spectral Methods in MATLAB*, chapter 4).
+"""
+
+
+def test_error_of_spectral_differentiation_falls_geometrically_with_the_samples(torque):
+    samples, error = curve(torque, "spectral differentiation", 8, 24)
+    rates = -np.diff(np.log(error)) / np.diff(samples)
+    assert rates == pytest.approx(SINGULARITY / 2, rel=0.03)
+
+
+def test_error_of_harmonic_series_falls_geometrically_with_the_harmonics(torque):
+    """The plain crank-slider on a guide through O has even harmonics only."""
+    harmonics, error = curve(torque, "harmonic series", 2, 6)
+    rates = -np.diff(np.log(error)) / np.diff(harmonics)
+    assert rates == pytest.approx(SINGULARITY, rel=0.03)
+
+
+# The front
+
+
+def test_front_holds_what_nothing_beats_in_time_and_error():
+    rows = {
+        "slow and exact": (50.0, 1e-16),
+        "middle": (10.0, 1e-8),
+        "beaten by middle": (11.0, 1e-7),
+        "slower with the same error": (12.0, 1e-8),
+        "coarse with the time of the fastest": (2.0, 1.0),
+        "fastest": (2.0, 1e-2),
+        "slow and wrong": (60.0, 10.0),
+        "not given": (np.nan, np.nan),
+    }
+    table = pd.DataFrame([(name, *row) for name, row in rows.items()], columns=["method", TIME, "error"])
+    for seed in range(5):
+        front = precision.front(table.sample(frac=1.0, random_state=seed))
+        assert list(front["method"]) == ["fastest", "middle", "slow and exact"]
+
+
+@pytest.mark.parametrize("quantity", ["balancing_torque", "O"])
+@pytest.mark.parametrize(("name", "variant"), KINDS)
+def test_no_method_is_nearer_to_the_certified_reference_than_ours_by_more_than_rounding(name, variant, quantity):
+    """So whatever is faster than ours and better than 1e-6 is no nearer; how fast is measured by the benchmark."""
+    s = ks.load_case(name).solve(variant, 24)
+    reference = enclosure(s, quantity)
+
+    def errors(methods):
+        found = {}
+        for method in methods:
+            for setting in method.settings:
+                try:
+                    run = method.prepare(s, quantity, setting)
+                except (ks.errors.NotGivenError, ks.errors.MissingLibraryError):
+                    continue
+                found[method.name, setting] = float(relative_errors(run(), reference).max())
+        return found
+
+    ours = errors(OURS)
+    assert max(ours.values()) < 5e-15
+    best = min(ours.values())
+    others = errors(method for method in OTHERS if not method.name.endswith("compiled"))
+    assert len(others) > 20
+    assert {key: error for key, error in others.items() if error < best / 4 and error < best - 1e-15} == {}
+
+
+# Files and charts
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """Studies with a few methods only, each timed once."""
+    monkeypatch.setattr(precision, "study", partial(precision.study, methods=FEW, repeats=1))
+
+
+def test_case_study_writes_tidy_rows_that_tell_the_machine_and_the_versions(few, case, tmp_path):
+    quantities = ("balancing_torque", "O")
+    paths = precision.case_study(case, tmp_path / "new", quantities=quantities, angles=16)
+    assert [path.name for path in paths] == [f"sawframe_2r63_precision.{kind}" for kind in ("csv", "png", "svg")]
+    assert sorted((tmp_path / "new").iterdir()) == sorted(paths)
+    table = pd.read_csv(paths[0], keep_default_na=False, na_values={TIME: "", "error": "", "value": ""})
+    settings = sum(len(method.settings) for method in FEW)
+    assert len(table) == 3 * 2 * settings
+    assert set(table["variant"]) == {"plain", "cam-circle", "cam-cosine"}
+    assert set(table["quantity"]) == set(quantities)
+    assert set(table["angles"]) == {16}
+    assert not table.duplicated(["variant", "quantity", "method", "value"]).any()
+    assert {name: dtype.kind for name, dtype in table[[TIME, "error", "value"]].dtypes.items()} == {
+        TIME: "f",
+        "error": "f",
+        "value": "f",
+    }
+    (machine,), (versions,) = set(table["machine"]), set(table["versions"])
+    assert platform.machine() in machine
+    assert "cores" in machine
+    assert f"Python {platform.python_version()}" in versions
+    for library in ("kinetostatics", "numpy", "scipy", "python-flint", "mpmath"):
+        assert f"{library} {version(library)}" in versions
+    refused = table[table["not given"] != ""]
+    assert "virtual power gives the torque of the drive, no reactions" in set(refused["not given"])
+    assert refused["error"].isna().all()
+
+
+def test_chart_of_a_case_opens_as_png_and_svg_and_names_every_method_that_gave_a_result(few, case, tmp_path):
+    _, png, svg = precision.case_study(case, tmp_path, variants=["plain"], angles=16)
+    assert plt.imread(png).shape[0] > 500
+    text = svg.read_text()
+    for method in FEW:
+        assert f"<!-- {method.name}" in text, method.name
+    assert "sawframe_2r63, plain: balancing torque" in text
+    assert "time [ns per crank angle]" in text
+    assert plt.get_fignums() == []
+
+
+def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_each_setting(torque):
+    figure, ax = plt.subplots()
+    assert charts.work_precision(torque, ax=ax) is ax
+    assert ks.plots.work_precision is charts.work_precision
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    assert ax.get_xlabel() == "time [ns per crank angle]"
+    assert ax.get_ylabel() == "largest error over the turn, relative to largest value [1]"
+    handles, names = ax.get_legend_handles_labels()
+    assert names == [f"{method.name} ({method.setting})" if method.setting else method.name for method in FEW]
+    for line, method in zip(handles, FEW, strict=True):
+        rows = torque[(torque["method"] == method.name) & torque["error"].notna()]
+        np.testing.assert_array_equal(line.get_xydata(), rows[[TIME, "error"]].to_numpy())
+    figure.canvas.draw()
+    plt.close(figure)
+
+
+def test_error_of_zero_is_drawn_below_rounding_and_a_method_that_gives_nothing_is_not_drawn(torque):
+    table = torque.assign(error=torque["error"].where(torque["method"] != "two-mass coupler"))
+    table.loc[table["method"] == "ours, NumPy", "error"] = 0.0
+    figure, ax = plt.subplots()
+    charts.work_precision(table, ax=ax)
+    curves = {line.get_label(): line.get_ydata() for line in ax.lines}
+    assert list(curves["ours, NumPy"]) == [charts.EXACT]
+    assert ax.get_ylim()[0] < charts.EXACT
+    assert "two-mass coupler" not in curves
+    plt.close(figure)
+
+
+def test_table_that_cannot_be_written_leaves_the_old_one_whole(few, case, tmp_path, monkeypatch):
+    target = tmp_path / "sawframe_2r63_precision.csv"
+    target.write_text("old")
+
+    def fails(self, path, **_):
+        with open(path, "w") as stream:  # noqa: PTH123
+            stream.write("half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(pd.DataFrame, "to_csv", fails)
+    with pytest.raises(OSError, match="disk full"):
+        precision.case_study(case, tmp_path, variants=["plain"], angles=16)
+    assert target.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [target]
+
+
+# The command line
+
+
+def test_command_prints_the_front_and_where_the_files_are(few, tmp_path, capsys):
+    arguments = ["--variant", "plain", "--quantity", "O", "--quantity", "balancing_torque", "--angles", "16"]
+    assert cli.main(["precision", "sawframe_2r63", "--out", str(tmp_path), *arguments]) == 0
+    printed, told = capsys.readouterr()
+    names = [f"sawframe_2r63_precision.{kind}" for kind in ("csv", "png", "svg")]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+    assert printed.splitlines()[-3:] == [str(tmp_path / name) for name in names]
+    front = printed.split("nearer than these")[1]
+    assert "ours, NumPy" in front or "ours, torque by powers" in front
+    assert "nan" not in front
+    assert told.splitlines() == [method.name for method in FEW] * 2
+    table = pd.read_csv(tmp_path / names[0])
+    assert list(table["quantity"].unique()) == ["O", "balancing_torque"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--variant", "cam"], ["variant", "cam-circle", "cam-cosine", "plain"]),
+        (["--variant", "plain", "--variant", "plan"], ["variant", "plain"]),
+        (["--quantity", "torqe"], ["quantity", "balancing_torque", "slider_acceleration", "guide_force", "O", "A"]),
+        (["--quantity", "O", "--quantity", "cam_forc"], ["quantity", "cam_force", "guide_force"]),
+    ],
+)
+def test_unknown_variant_or_quantity_lists_the_choices_and_leaves_no_files(few, arguments, said, tmp_path, capsys):
+    folder = tmp_path / "out"
+    assert cli.main(["precision", "sawframe_2r63", "--out", str(folder), "--angles", "16", *arguments]) == 2
+    printed, told = capsys.readouterr()
+    (line,) = [line for line in told.splitlines() if line not in {method.name for method in FEW}][-1:]
+    assert printed == ""
+    assert all(word in told[told.index("kinetostatics: ") :] for word in said), line
+    assert not folder.exists() or not list(folder.iterdir())
+
+
+@pytest.mark.parametrize("arguments", [["sawframe_2r63"], ["sawframe_2r63", "--out", "x", "--angles", "0"], []])
+def test_wrong_usage_of_the_command_ends_with_status_2(arguments):
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["precision", *arguments])
+    assert caught.value.code == 2
+
+
+def test_command_without_python_flint_says_what_to_install_and_writes_nothing(tmp_path):
+    """In a process of its own, in which flint cannot be imported."""
+    code = (
+        "import sys; sys.modules['flint'] = None; from kinetostatics.cli import main;"
+        f" sys.exit(main(['precision', 'sawframe_2r63', '--out', {str(tmp_path / 'out')!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert 'pip install "kinetostatics[precision]"' in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+# What cannot be
+
+
+@pytest.mark.parametrize("library", ["flint", "mpmath"])
+def test_missing_library_of_the_reference_is_said_with_the_way_to_install_it(monkeypatch, case, library):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[precision\]"'):
+        precision.study(case.solve("plain", 8))
+
+
+def test_sampled_cam_and_force_by_interpolation_are_named_as_what_cannot_be_certified(case):
+    turn = np.linspace(0.0, 2 * np.pi, 40, endpoint=False)
+    coupler = {"coupler": ks.Link(150.0, 1.0, 20.5), "slider": ks.Link(600.0)}
+    sampled = ks.cam_crank_slider(ks.cams.Sampled(turn, 0.3 + 0.05 * np.cos(turn)), 2.0, **coupler)
+    with pytest.raises(ks.errors.NotGivenError, match="cam Sampled"):
+        precision.study(ks.solve(sampled, turn, crank_speed=3.0))
+    force = ks.ProcessForce(lambda motion: np.interp(motion.crank_angle, [0.0, 6.3], [0.0, 1e4]))
+    loaded = ks.solve(case.variant("plain").mechanism, turn, crank_speed=3.0, loads=[ks.Gravity(), force])
+    with pytest.raises(ks.errors.NotGivenError, match="load 2, ProcessForce on 'slider'"):
+        precision.study(loaded)

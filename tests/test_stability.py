@@ -1,0 +1,288 @@
+"""Stability: every failure that the table names is counted here; none of ours, at any place."""
+
+from dataclasses import replace
+from functools import partial
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+import kinetostatics as ks
+from kinetostatics import charts, cli, stability
+from kinetostatics.methods import METHODS, Method
+from kinetostatics.quantities import components
+
+pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+
+NEWTON, KANE, PAPERS = "Newton iteration, global system", "SymPy Kane, lambdified", "papers' formulas"
+SINGLE, SERIES, MASSES = "ours, single precision", "harmonic series", "two-mass coupler"
+SECOND, FOURTH = "differences, 2nd order", "differences, 4th order"
+COARSE = {SINGLE: ["lost"], SECOND: ["lost"], FOURTH: ["lost"], SERIES: ["lost"], MASSES: ["lost"]}
+"""What never has all digits of a force."""
+LIMIT = COARSE | {SECOND: ["lost", "nan"], FOURTH: ["lost", "nan"], SERIES: []}
+"""Differences reach over the limit; a series needs a mechanism that closes all around."""
+FAILURES = {
+    "dead centres, inclined guide": {PAPERS: ["flipped"], SINGLE: ["lost"], SERIES: ["lost"]},
+    "limit position": LIMIT,
+    "coupler barely long enough": COARSE | {NEWTON: ["given up"]},
+    "singular angle of the cosine cam": COARSE | {PAPERS: ["lost", "nan"], KANE: ["lost", "nan"]},
+    "pressure angle toward 90 deg": COARSE | {SINGLE: ["lost", "nan"], NEWTON: ["lost"]},
+    "four-bar toggle": LIMIT,
+    "four-bar change point": LIMIT | {PAPERS: ["nan"], NEWTON: ["given up"]},
+    "size": COARSE,
+    "unequal masses": COARSE,
+    "many turns": COARSE | {NEWTON: ["lost"]},
+    "nearly balanced": COARSE,
+}
+"""What other methods do at each place."""
+CHANCY = {
+    ("dead centres, inclined guide", PAPERS, "lost"),
+    ("coupler barely long enough", SINGLE, "nan"),
+    ("coupler barely long enough", KANE, "nan"),
+    ("coupler barely long enough", SECOND, "nan"),
+    ("coupler barely long enough", FOURTH, "nan"),
+    ("four-bar toggle", SINGLE, "nan"),
+    ("size", NEWTON, "given up"),
+    ("many turns", NEWTON, "given up"),
+    ("nearly balanced", PAPERS, "lost"),
+    ("nearly balanced", KANE, "lost"),
+}
+"""What a few angles or one number decide, by their rounding: neither demanded nor wondered at."""
+WORDS = {"lost": "loses digits", "flipped": "flips assembly", "nan": "NaN", "given up": "gives up"}
+EXPECTED = [(place, method, how) for place, row in FAILURES.items() for method, ways in row.items() for how in ways]
+HARMLESS = {
+    "dead centres, inclined guide": 1.001,
+    "singular angle of the cosine cam": 4.0,
+    "size": 1.1,
+    "unequal masses": 1.1,
+    "many turns": 1.1,
+}
+"""Largest condition of places that hurt methods, not the problem."""
+
+
+@pytest.fixture(scope="module")
+def table():
+    """The study at every third number of each place."""
+    return stability.study([replace(place, numbers=place.numbers[::3]) for place in stability.PLACES])
+
+
+@pytest.fixture(scope="module")
+def summary(table):
+    return stability.summary(table).set_index(["place", "method"])
+
+
+def scene(distance):
+    """An ordinary plain crank-slider, whatever the distance."""
+    return stability.PLACES[0].scene(0.1 + distance)
+
+
+# Ours
+
+
+def test_ours_never_lose_digits_flip_turn_nan_or_raise_at_any_place(table):
+    ours = table[table["ours"]]
+    assert set(ours["method"]) == {"ours, NumPy", "ours, compiled", "ours, torque by powers"}
+    assert set(ours["place"]) == {place.name for place in stability.PLACES}
+    given = ours[ours["not given"] == ""]
+    assert len(given) > 100
+    assert not given[["lost", "flipped", "nan"]].any(axis=None)
+    assert set(ours["raised"]) == {""}
+    assert np.all(given["error"] <= 100 * given["condition"] * 2.0**-53)
+
+
+def test_ours_is_given_everywhere_but_for_reactions_by_powers(table):
+    refused = table[table["ours"] & (table["not given"] != "")]
+    assert set(refused["method"]) <= {"ours, torque by powers"}
+    assert not set(refused["quantity"]) & {"balancing_torque"}
+
+
+@pytest.mark.parametrize("place", HARMLESS)
+def test_ours_are_exact_where_the_problem_is_harmless_and_the_condition_says_that_it_is(table, place):
+    ours = table[table["ours"] & (table["place"] == place) & (table["not given"] == "")]
+    assert np.all(ours["condition"] <= HARMLESS[place])
+    assert np.all(ours["error"] < 2e-15)
+
+
+@pytest.mark.parametrize("place", [place for place in FAILURES if place not in HARMLESS])
+def test_condition_grows_toward_a_place_where_the_problem_itself_is_hard(table, place):
+    rows = table[(table["place"] == place) & (table["method"] == "ours, NumPy")].sort_values("number")
+    conditions = rows["condition"].to_numpy()
+    assert np.all(conditions[:-1] >= conditions[1:])
+    assert conditions[0] > 1e13
+    assert conditions[-1] < 1e10
+
+
+# The others
+
+
+@pytest.mark.parametrize(("place", "method", "how"), EXPECTED)
+def test_failure_of_another_method_is_reproduced_and_counted(summary, place, method, how):
+    row = summary.loc[(place, method)]
+    assert 0 < row[how] <= row["of angles"]
+    assert WORDS[how] in row["does"]
+
+
+def test_no_other_failure_is_in_the_table(summary):
+    found = {(*index, how) for index, row in summary.iterrows() for how in WORDS if row[how]}
+    assert found - CHANCY == set(EXPECTED)
+    assert not summary["raised"].any()
+
+
+def test_verdict_of_methods_without_failures_is_exact_or_as_near_as_the_condition_allows(summary):
+    fine = summary[(summary[list(WORDS)] == 0).all(axis=1)]
+    assert set(fine["does"]) == {"exact", "as near as the condition allows", "does not give it"}
+    exact = fine[fine["does"] == "exact"]
+    assert np.all(exact["worst error"] < 1e-12)
+    assert {"ours, NumPy", "ours, compiled"} <= set(exact.reset_index()["method"])
+    assert np.all(fine.loc[fine["does"] == "as near as the condition allows", "condition there"] > 1e3)
+    assert fine.loc[fine["does"] == "does not give it", "worst error"].isna().all()
+
+
+def test_formulas_of_the_papers_land_on_the_wrong_side_two_lengths_away(table):
+    """Rounding decides on which angles within 1e-13 rad of the dead centres, never beyond."""
+    rows = table[(table["place"] == "dead centres, inclined guide") & (table["method"] == PAPERS)]
+    wrong = rows[rows["flipped"] > 0]
+    assert np.all(wrong["number"] < 1e-12)
+    assert wrong["error"].max() == pytest.approx(2 * 2.2 / (2.2 + 0.3), abs=1e-9)
+    assert np.all(rows.loc[rows["number"] > 1e-12, "error"] < 1e-15)
+
+
+def test_single_precision_has_no_digit_left_after_a_million_radians(table):
+    rows = table[(table["place"] == "many turns") & (table["method"] == SINGLE)].set_index("number")
+    assert rows.loc[1.0, "error"] < 1e-6
+    assert rows.loc[1e6, "error"] > 1e-2
+
+
+# How failures are counted
+
+
+def planted(way):
+    """A method that the study knows by name but that goes another way."""
+    return Method(MASSES, lambda solution, quantity, setting: partial(way, solution, quantity))
+
+
+def flipped(solution, quantity):
+    (group,) = solution.mechanism.groups
+    mechanism = replace(solution.mechanism, groups=(replace(group, assembly=-group.assembly),))
+    return components(replace(solution, mechanism=mechanism), quantity)
+
+
+def at_first_three(change):
+    def way(solution, quantity):
+        (values,) = components(solution, quantity)
+        return (np.where(np.arange(values.size) < 3, change(values), values),)
+
+    return way
+
+
+def refuses(solution, quantity):
+    raise ks.errors.NotGivenError("not in the mood")
+
+
+def fails(solution, quantity):
+    raise ZeroDivisionError("no pivot")
+
+
+PLANTED = {
+    "exact": (components, {}, "exact"),
+    "one in 1e12 wrong": (at_first_three(lambda values: values * (1 + 1e-12)), {"lost": 3}, "loses digits"),
+    "other assembly": (flipped, {"flipped": 400}, "flips assembly"),
+    "NaN": (at_first_three(lambda values: values * np.nan), {"nan": 3}, "NaN"),
+    "infinite": (at_first_three(lambda values: values * np.inf), {"nan": 3}, "NaN"),
+    "raises": (fails, {"raised": 1}, "raises"),
+    "refuses": (refuses, {}, "does not give it"),
+}
+
+
+@pytest.mark.parametrize("name", PLANTED)
+def test_planted_failure_is_counted_as_what_it_is(name):
+    way, counts, verdict = PLANTED[name]
+    place = stability.Place("anywhere", "number [1]", (0.0,), scene, "slider_position")
+    table = stability.study([place], [planted(way)])
+    (row,) = stability.summary(table).to_dict("records")
+    assert {how: row[how] for how in (*WORDS, "raised") if row[how]} == counts
+    assert verdict in row["does"]
+    assert ("ZeroDivisionError: no pivot" in set(table["raised"])) == (name == "raises")
+    assert ("not in the mood" in set(table["not given"])) == (name == "refuses")
+
+
+def test_method_that_gives_up_at_some_numbers_is_said_to_and_not_called_exact():
+    def sometimes(solution, quantity):
+        return refuses(solution, quantity) if np.ptp(solution.crank_angle) > 3.5 else components(solution, quantity)
+
+    place = stability.Place("anywhere", "number [1]", (0.0, 0.5), scene, "slider_position")
+    (row,) = stability.summary(stability.study([place], [planted(sometimes)])).to_dict("records")
+    assert row["given up"] == 1
+    assert "gives up" in row["does"]
+
+
+# Files and charts
+
+
+@pytest.fixture
+def two_places(monkeypatch):
+    """Two places with three numbers each, and three methods."""
+    places = [replace(place, numbers=place.numbers[-3:]) for place in stability.PLACES[:2]]
+    methods = [method for method in METHODS if method.name in ("ours, NumPy", SINGLE, SECOND)]
+    monkeypatch.setattr(stability, "study", partial(stability.study, methods=methods))
+    monkeypatch.setattr(stability, "write", partial(stability.write, places=places))
+    return places
+
+
+def test_command_writes_all_rows_the_summary_and_the_chart(two_places, tmp_path, capsys):
+    folder = tmp_path / "new"
+    assert cli.main(["stability", "--out", str(folder)]) == 0
+    names = ["stability.csv", "stability_summary.csv", "stability.png", "stability.svg"]
+    printed, told = capsys.readouterr()
+    assert printed.splitlines()[-4:] == [str(folder / name) for name in names]
+    assert sorted(path.name for path in folder.iterdir()) == sorted(names)
+    assert told.splitlines() == [place.name for place in two_places]
+    rows, summary = (pd.read_csv(folder / name) for name in names[:2])
+    assert len(rows) == 2 * 3 * 3
+    assert not rows.duplicated(["place", "number", "method"]).any()
+    assert len(summary) == 2 * 3
+    for table in (rows, summary):
+        assert table["machine"].nunique() == table["versions"].nunique() == 1
+        assert table["versions"].str.contains(f"numpy {np.__version__}").all()
+    for place, method, verdict in summary[["place", "method", "does"]].itertuples(index=False):
+        line = next(line for line in printed.splitlines() if line.startswith(place) and method in line)
+        assert verdict in line
+    assert plt.imread(folder / "stability.png").shape[0] > 500
+    text = (folder / "stability.svg").read_text()
+    for name in ("ours, NumPy", SINGLE, SECOND, "condition x rounding", *(place.name for place in two_places)):
+        assert f"<!-- {name} -->" in text, name
+
+
+def test_command_that_cannot_write_ends_with_status_2_and_leaves_nothing(two_places, tmp_path, monkeypatch, capsys):
+    def disk_full(self, path, **_):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(pd.DataFrame, "to_csv", disk_full)
+    assert cli.main(["stability", "--out", str(tmp_path)]) == 2
+    assert "disk full" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("place", stability.PLACES, ids=lambda place: place.name)
+def test_chart_of_a_place_has_units_a_line_a_method_and_the_condition_dashed(table, place):
+    rows = table[table["place"] == place.name]
+    figure, ax = plt.subplots()
+    assert charts.error_by_distance(rows, ax=ax) is ax
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    assert ax.get_xlabel() == place.axis
+    assert ax.get_xlabel().endswith(("[rad]", "[1]", "[radii]"))
+    assert ax.get_ylabel().startswith("error of ")
+    assert ax.get_ylabel().endswith("[1]")
+    lines = {line.get_label(): line for line in ax.lines}
+    given = rows[rows["error"].notna()]
+    assert set(lines) == {*given["method"], "condition x rounding"}
+    dashed = [name for name, line in lines.items() if line.get_linestyle() == "--"]
+    assert dashed == ["condition x rounding"]
+    limit = rows.drop_duplicates("number").set_index("number")["condition"] * 2.0**-53
+    x, y = lines["condition x rounding"].get_data()
+    np.testing.assert_allclose(y, np.clip(limit[x], 1e-17, 1e3))
+    x, y = lines["ours, NumPy"].get_data()
+    assert np.all(y <= 100 * np.clip(limit[x], 1e-17, 1e3))
+    figure.canvas.draw()
+    plt.close(figure)
