@@ -155,7 +155,9 @@ def load_case(path) -> Case:
         problems += _spread_problems(head.tolerances, variants)
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
-    return Case(head.title, head.source, path, head.reference, MappingProxyType(variants), head.published, head.tolerances)
+    return Case(
+        head.title, head.source, path, head.reference, MappingProxyType(variants), head.published, head.tolerances
+    )
 
 
 def _spread_problems(spreads, variants):

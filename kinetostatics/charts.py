@@ -1,6 +1,7 @@
 """Charts of the studies: error over time, error over the distance from where it hurts, error over the model's cost."""
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -12,7 +13,9 @@ from .quantities import label
 
 EXACT = 1e-17
 """Where an error of zero is drawn: below the rounding of the largest value."""
-COLOURS = [colour for colour in plt.get_cmap("tab20").colors if colour[0] < 1.6 * max(colour[1:])]
+USELESS = 1e3
+"""Where larger errors, and NaN, are drawn."""
+COLOURS = [colour for colour in plt.get_cmap("tab20")(np.arange(20)).tolist() if colour[0] < 1.6 * max(colour[1:3])]
 """Without reds, which are ours."""
 MARKERS = "osD^v<>PX*phd"
 
@@ -63,6 +66,8 @@ def work_precision(table, ax=None):
 def error_by_distance(table, ax=None):
     """Error of every method over the number that leads to a place, logarithmic; dashed: condition times rounding.
 
+    Errors of a thousand times the largest value and more, and NaN, lie on the upper edge.
+
     Parameters
     ----------
     table : pandas.DataFrame
@@ -75,14 +80,18 @@ def error_by_distance(table, ax=None):
     """
     ax = axes(ax)
     for name, style in _styles(table).items():
-        rows = table[(table["method"] == name) & table["error"].notna()]
+        rows = table[(table["method"] == name) & (table["not given"] == "")]
+        failing = (rows["nan"] > 0) | (rows["raised"] != "")
         if len(rows):
-            ax.plot(rows["number"], np.clip(rows["error"], EXACT, 1e3), label=name, **style)
+            ax.plot(rows["number"], rows["error"].where(~failing, USELESS).clip(EXACT, USELESS), label=name, **style)
     problem = table.drop_duplicates("number")
     ax.plot(
-        problem["number"], np.clip(problem["condition"] * 2.0**-53, EXACT, 1e3), "k--", label="condition x rounding"
+        problem["number"],
+        np.clip(problem["condition"] * 2.0**-53, EXACT, USELESS),
+        "k--",
+        label="condition x rounding",
     )
-    ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3e3), xlabel=table["axis"].iloc[0])
+    ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3 * USELESS), xlabel=table["axis"].iloc[0])
     ax.set_ylabel(f"error of {label(table['quantity'].iloc[0])} [1]")
     ax.grid(visible=True, alpha=0.3)
     return ax
@@ -135,6 +144,77 @@ def model_ladder(needs, ax=None):
     return ax
 
 
+def sweep_map(table, parameters, output, ax=None):
+    """One output of a sweep over the one or two parameters that it varies: a line, or a map in colours.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `sweep`; designs that failed are left blank.
+    parameters : sequence of str
+        Columns of one or two parameters.
+    output : str
+        Column of the output.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    ax = axes(ax)
+    if len(parameters) == 1:
+        (x,) = parameters
+        ordered = table.sort_values(x)
+        ax.plot(ordered[x], ordered[output], marker="." if len(table) < 100 else None, color=ACCENT)
+        ax.set(xlabel=x, ylabel=output)
+        ax.grid(visible=True, alpha=0.3)
+        return ax
+    x, y = parameters
+    grid = table.pivot_table(index=y, columns=x, values=output, dropna=False)
+    if grid.size == len(table):
+        drawn = ax.pcolormesh(grid.columns, grid.index, grid.to_numpy(), shading="nearest", cmap="viridis")
+    else:
+        drawn = ax.scatter(table[x], table[y], c=table[output], s=8, cmap="viridis")
+    ax.figure.colorbar(drawn, ax=ax, label=output)
+    ax.set(xlabel=x, ylabel=y)
+    return ax
+
+
+def sweep_page(table, parameters, outputs, path):
+    """Chart of a sweep saved to a file: a panel for each output, or a scatter matrix with three parameters and more."""
+    if len(parameters) < 3:
+        columns = min(3, len(outputs))
+        rows = -(-len(outputs) // columns)
+        size = (5.4 * columns, 4.2 * rows)
+        figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+        for ax, output in zip(grid.flat, outputs, strict=False):
+            sweep_map(table, parameters, output, ax=ax)
+        for ax in grid.flat[len(outputs) :]:
+            ax.remove()
+    else:
+        figure = _scatter_matrix(table, [*parameters, *outputs])
+    with written_whole(path) as temporary:
+        figure.savefig(temporary, format=Path(path).suffix[1:] or "png", dpi=150, bbox_inches="tight")
+    plt.close(figure)
+    return Path(path)
+
+
+def _in_lines(column):
+    """Heading with its reduction, quantity and unit each on a line."""
+    name, unit = column.split(" [")
+    return "\n".join([*name.split(" "), f"[{unit}"])
+
+
+def _scatter_matrix(table, columns):
+    from pandas.plotting import scatter_matrix
+
+    shown = table[columns].dropna()
+    shown = shown.sample(min(len(shown), 2000), random_state=0).rename(columns=_in_lines)
+    side = 1.9 * len(columns)
+    grid = scatter_matrix(shown, figsize=(side, side), s=6, alpha=0.5, color=ACCENT, hist_kwds={"color": "0.6"})
+    return grid[0, 0].figure
+
+
 def precision_page(table, path):
     """Chart of a study, a panel for each variant and quantity, saved as PNG and SVG; returns the paths."""
     panels = {
@@ -155,14 +235,14 @@ def _page(draw, panels, path):
     rows = -(-len(panels) // columns)
     size = (5.0 * max(columns, 2), 3.8 * rows + 1.6)
     figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
-    entries = {}
+    entries: dict[str, Any] = {}
     for ax, (title, part) in zip(grid.flat, panels.items(), strict=False):
         draw(part, ax=ax)
         ax.set_title(title, fontsize=9)
         entries |= {text: handle for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)}
     for ax in grid.flat[len(panels) :]:
         ax.remove()
-    figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=3, fontsize=8)
+    figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=3, fontsize=8)
     return _saved(figure, path)
 
 

@@ -5,7 +5,7 @@ Only plain numbers and NumPy arrays of floats are looked at: a traced JAX number
 
 import math
 import numbers
-from functools import reduce
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from .errors import ParameterError
 class Problem(str):
     """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all."""
 
-    __slots__ = ("designs",)
+    designs: Any
 
     def __new__(cls, text, wrong=None):
         made = super().__new__(cls, text)
@@ -67,8 +67,8 @@ def require(owner, *problems):
     """Raise one `ParameterError` that lists every problem found."""
     found = [text for text in problems if text]
     if found:
-        masks = [getattr(text, "designs", None) for text in found]
-        designs = None if any(mask is None for mask in masks) else reduce(np.logical_or, masks)
+        masks: list[Any] = [getattr(text, "designs", None) for text in found]
+        designs = None if any(mask is None for mask in masks) else np.any(np.broadcast_arrays(*masks), axis=0)
         raise ParameterError(f"{owner}: " + "; ".join(found), designs)
 
 

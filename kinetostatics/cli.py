@@ -1,10 +1,17 @@
-"""The command line: ``kinetostatics run | compare | plot | precision CASE``, ``kinetostatics stability``."""
+"""The command line: ``kinetostatics run | compare | plot | precision | sweep CASE``, ``kinetostatics stability``."""
 
 import argparse
 import os
 import sys
+from pathlib import Path
 
-from .errors import CaseError, KinetostaticsError
+from . import checks
+from .errors import CaseError, KinetostaticsError, ParameterError
+
+SWEEP_OUTPUTS = ("mean_absolute balancing_torque", "largest O")
+"""What a sweep tells unless asked for something else."""
+TABLE_ENDINGS = (".csv", ".parquet")
+FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 
 def main(arguments=None):
@@ -47,6 +54,24 @@ def _parser():
     precision.add_argument("--variant", action="append", metavar="NAME", help="only these (one of each kind)")
     precision.add_argument("--quantity", action="append", metavar="NAME", help="of these (balancing_torque)")
     precision.add_argument("--angles", type=_count, default=360, metavar="N", help="crank angles over the turn (360)")
+
+    sweep = _command(commands, "sweep", _sweep, "outputs of many designs, a row for each")
+    sweep.add_argument(
+        "--vary",
+        action="append",
+        required=True,
+        metavar="PATH=SPREAD",
+        help='a parameter and its spread, "spring.stiffness=600..900 kN/m:40"; with --sample also '
+        '"spring.stiffness=normal 712 kN/m +- 5 kN/m"',
+    )
+    sweep.add_argument("--output", action="append", metavar="OUTPUT", help='"largest O", "ratio mean_absolute ..."')
+    sweep.add_argument("--variant", metavar="NAME", help="variant whose parameters vary")
+    sweep.add_argument("--reference", metavar="NAME", help="variant that ratios refer to")
+    sweep.add_argument("--sample", type=_count, metavar="N", help="N designs of a Latin hypercube in place of a grid")
+    sweep.add_argument("--angles", type=_count, default=360, metavar="N", help="crank angles over the turn (360)")
+    sweep.add_argument("--workers", type=_count, metavar="N", help="processes (this one, on all its cores)")
+    sweep.add_argument("--out", metavar="PATH", help="table to write, .csv or .parquet; or a folder to resume from")
+    sweep.add_argument("--plot", metavar="FILE", help="figure to write, .png or .svg")
 
     stability = _command(
         commands, "stability", _stability, "every method's error near the places where it hurts", False
@@ -154,6 +179,76 @@ def _stability(options):
     paths = stability.write(options.out, progress=_tell)
     _print(pd.read_csv(paths[1]).drop(columns=["machine", "versions"]).set_index("place"))
     print(*paths, sep="\n")
+
+
+def _sweep(options):
+    from concurrent.futures import ProcessPoolExecutor
+    from contextlib import nullcontext
+
+    from . import designs
+    from .case import load_case
+    from .reductions import parsed
+    from .sweeps import FAILED, sweep
+
+    case = load_case(options.case)
+    spreads = dict(_spread(text) for text in options.vary)
+    table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
+    wanted = [parsed(text) for text in options.output or SWEEP_OUTPUTS]
+    outputs = [item.column for item in wanted]
+    folder = options.out if options.out and not Path(options.out).suffix else None
+    _require_ending("--out", options.out if folder is None else None, TABLE_ENDINGS)
+    _require_ending("--plot", options.plot, FIGURE_ENDINGS)
+    with ProcessPoolExecutor(options.workers) if options.workers else nullcontext() as executor:
+        found = sweep(
+            case,
+            table,
+            wanted,
+            variant=options.variant,
+            reference=options.reference,
+            angles=options.angles,
+            executor=executor,
+            folder=folder,
+            progress=sys.stderr.isatty(),
+        )
+    failed = found[found[FAILED] != ""]
+    print(f"{case.title}: {len(found)} designs, {len(failed)} failed\n")
+    _print(found[outputs].describe().drop("count").rename_axis("over the designs"))
+    first = wanted[0]
+    print(f"\nbest five by {first.label}, {'largest' if first.ratio else 'smallest'} first\n")
+    best = found.dropna(subset=[first.column]).sort_values(first.column, ascending=not first.ratio).head(5)
+    _print(best.drop(columns=FAILED).rename_axis("design"))
+    for reason, count in failed[FAILED].value_counts().head(3).items():
+        print(f"\n{count} failed: {reason}")
+    if options.out and folder is None:
+        _write_table(found, options.out)
+    if options.plot:
+        from .charts import sweep_page
+
+        print(sweep_page(found, list(table.columns), outputs, options.plot))
+
+
+def _spread(text):
+    path, equals, spread = text.partition("=")
+    if not equals:
+        raise ParameterError(f'cannot read {text!r}; write path=spread, "spring.stiffness=600..900 kN/m:40"')
+    return path.strip(), spread.strip()
+
+
+def _require_ending(option, path, endings):
+    problem = checks.choice(f"{option}: the ending", Path(path).suffix, endings) if path else None
+    if problem:
+        raise ParameterError(problem)
+
+
+def _write_table(table, path):
+    from .files import written_whole
+
+    with written_whole(path) as temporary:
+        if Path(path).suffix == ".csv":
+            table.to_csv(temporary, index=False)
+        else:
+            table.to_parquet(temporary)
+    print(f"\nwrote {path}: {len(table)} rows")
 
 
 def _tell(text):

@@ -13,6 +13,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -136,7 +137,7 @@ class Program:
         tables = np.array([np.broadcast_to(row, shape) for row in rows], dtype=float)
         return tables.reshape(len(rows), math.prod(shape[:-1]), shape[-1])
 
-    def turn(self, angle):
+    def turn(self, angle) -> tuple[Any, Any]:
         """Sines and cosines of crank angles (1 or designs, N), which designs may share."""
         sine, cosine = np.empty(angle.shape), np.empty(angle.shape)
         self._module.shared(angle.ravel(), sine.ravel(), cosine.ravel())
@@ -158,17 +159,17 @@ class Program:
         over = designs if designs > 1 else angle.shape[1]
         pieces = min(cores(), over, max(1, designs * angle.shape[1] // SHARE))
         if pieces == 1:
-            return self._loop(angle, sine, cosine, tables, parameters)
+            return self._loop(parameters, angle, sine, cosine, tables)
         edges = np.linspace(0, over, pieces + 1, dtype=int)
 
         def piece(start, stop):
-            angles = [_part(array, start, stop, designs) for array in (angle, sine, cosine, tables)]
-            return self._loop(*angles, parameters[start:stop] if designs > 1 else parameters)
+            angles = tuple(_part(array, start, stop, designs) for array in (angle, sine, cosine, tables))
+            return self._loop(parameters[start:stop] if designs > 1 else parameters, *angles)
 
         with ThreadPoolExecutor(pieces) as threads:
             return np.concatenate(list(threads.map(piece, edges[:-1], edges[1:])), axis=1 if designs > 1 else 2)
 
-    def _loop(self, angle, sine, cosine, tables, parameters):
+    def _loop(self, parameters, angle, sine, cosine, tables):
         results = np.empty((len(parameters), len(self.trace.outputs), angle.shape[1]))
         self._module.loop(angle, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1)
@@ -230,10 +231,11 @@ def _loaded(text):
     if not path.exists():
         with written_whole(path) as temporary:
             Path(temporary).write_text(text, encoding="utf-8")
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = importlib.util.module_from_spec(spec)
+    loader = SourceFileLoader(name, str(path))
+    module = ModuleType(name)
+    module.__file__ = str(path)
     sys.modules[name] = module
-    spec.loader.exec_module(module)
+    loader.exec_module(module)
     return module
 
 

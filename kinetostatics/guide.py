@@ -6,6 +6,7 @@ import numpy as np
 
 from . import checks
 from .elementary import cos, sin
+from .links import present
 
 
 class Guide(NamedTuple):
@@ -43,6 +44,11 @@ class Guide(NamedTuple):
             length = (x * x + y * y).sqrt()
             checks.require("guide", None if length else f"W1 and W2 coincide at {tuple(W1)}")
             return cls((float(x / length), float(y / length)), float((x * y1 - y * x1) / length))
+
+    @property
+    def is_level(self):
+        """Whether it points along +x, by plain numbers."""
+        return present(self.direction[0] - 1.0) is None and present(self.direction[1]) is None
 
     @property
     def guide_angle(self):

@@ -1,6 +1,7 @@
 """What designs may vary: paths into a variant of a case file, such as "spring.stiffness" or "cam.centre.x"."""
 
 import typing
+from typing import Any
 
 from . import checks
 from .schema import Table
@@ -12,7 +13,7 @@ PARTS = {"x": 0, "y": 1, "along": 0, "across": 1}
 
 def paths(table) -> dict[str, str]:
     """Paths of all numbers in a validated table that can be varied, with their SI units."""
-    found = {}
+    found: dict[str, str] = {}
     for name, field in type(table).model_fields.items():
         value = getattr(table, name)
         unit = _unit(field)
@@ -80,7 +81,8 @@ def heading(column):
 
 def with_values(table, values):
     """Copy of a validated table with values at some paths, as they are: numbers or arrays of designs."""
-    own, inner = {}, {}
+    own: dict[str, Any] = {}
+    inner: dict[str, dict[str, Any]] = {}
     for path, value in values.items():
         name, _, rest = path.partition(".")
         if not rest:

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .canvas import INK, axes, closed, display, labelled, styled
-from .charts import error_by_distance, model_ladder, work_precision
+from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .checks import choice, require
 from .drawings import animation, mass_centres, mechanism
 from .extremes import extremes
@@ -32,6 +32,7 @@ __all__ = [
     "over_turn",
     "pressure_angle",
     "shaking_force",
+    "sweep_map",
     "torque",
     "work_precision",
 ]

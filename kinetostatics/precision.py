@@ -103,7 +103,7 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
 
 def kinds(case):
     """First variant of each kind of mechanism and cam in a case."""
-    found = {}
+    found: dict[tuple, str] = {}
     for name, variant in case.variants.items():
         cams = tuple(type(getattr(group, "cam", None)) for group in variant.mechanism.groups)
         found.setdefault((variant.mechanism.name, cams), name)

@@ -12,6 +12,7 @@ from .chain import Placement
 from .crank import ray
 from .errors import NotGivenError
 from .links import Joint, LinkMotion
+from .mechanism import Mechanism
 from .planar import cross, dot, subtracted, turned, vector
 from .rocker_group import RockerGroup, RockerMotion
 from .slider_group import SliderGroup, SliderMotion
@@ -25,7 +26,7 @@ SERIES_SAMPLES = 512
 class Rerouted(Solution):
     """A solution whose placement comes from ``way(mechanism, crank_angle)`` instead of the groups' closed forms."""
 
-    way: Callable[[Any, Any], Placement] | None = None
+    way: Callable[[Any, Any], Placement] = Mechanism.place
 
     @cached_property
     def placement(self):

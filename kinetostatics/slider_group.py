@@ -163,8 +163,7 @@ class SliderGroup:
     def _line(self):
         """The guide as kernels take it: None for a direction along +x and for no offset."""
         direction, offset = self.guide
-        level = present(direction[0] - 1.0) is None and present(direction[1]) is None
-        return Guide(None if level else direction, present(offset))
+        return Guide(None if self.guide.is_level else direction, present(offset))
 
     def place(self, placement):
         motion = place(placement.joints[self.on], self.coupler_length, self._line, self.assembly)

@@ -5,7 +5,7 @@ is its number of operations, and compiled it is as fast as a loop written by han
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -15,10 +15,10 @@ from .cam_roller import CamRoller
 from .cams import Cam
 from .crank import ray
 from .elementary import APART
-from .guide import Guide
 from .loads import Gravity, ProcessForce
 from .quantities import components
 from .solution import Solution
+from .substitution import with_fields, with_numbers
 
 CONSTANT, BY_DESIGN, BY_ANGLE = range(3)
 """What the value of a node may vary with: nothing, the design, the crank angle as well."""
@@ -201,22 +201,13 @@ class _Recorder:
         self.recorded = replace(idle, loads=tuple(loads))
 
     def _copied(self, item):
-        """The item with nodes for its numbers; structure stays: zeros, assemblies, a level guide, tables, names."""
-        if isinstance(item, CamRoller):
-            return _with_fields(item, cam=self._cam(item.cam), block=self._copied(item.block))
-        if is_dataclass(item):
-            numbers = {field.name: getattr(item, field.name) for field in fields(item) if field.name != "assembly"}
-            return _with_fields(item, **{name: self._copied(value) for name, value in numbers.items()})
-        if isinstance(item, Guide):
-            level = all(isinstance(part, int | float) for part in item.direction) and item.direction == (1.0, 0.0)
-            return Guide(item.direction if level else self._copied(item.direction), self._copied(item.guide_offset))
-        if isinstance(item, tuple | list):
-            return tuple(map(self._copied, item))
-        is_number = np.ndim(item) != 1 and isinstance(item, int | float | np.ndarray | np.generic)
-        return self._parameter(item) if is_number else item
+        return with_numbers(item, self._parameter, {CamRoller: self._roller})
+
+    def _roller(self, roller):
+        return with_fields(roller, cam=self._cam(roller.cam), block=self._copied(roller.block))
 
     def _parameter(self, value):
-        if isinstance(value, int | float) and value == 0:
+        if np.ndim(value) == 1:  # a table, of a cam or a load
             return value
         self.parameters.append(value)
         return Node(self.graph, "parameter", (len(self.parameters) - 1,), BY_DESIGN)
@@ -280,11 +271,3 @@ class _Tabled(Cam):
 
     def polar(self, angle, ray):
         return self.values
-
-
-def _with_fields(item, **changes):
-    """Copy of a dataclass with some fields changed and nothing checked."""
-    made = object.__new__(type(item))
-    for field in fields(item):
-        object.__setattr__(made, field.name, changes.get(field.name, getattr(item, field.name)))
-    return made

@@ -297,9 +297,13 @@ def scan(mechanism, norm, *, largest_unbalance=np.inf, phase=False):
 def test_optimum_is_no_worse_than_the_classical_cases_and_a_scan_and_the_phase_helps(mechanism, norm):
     """Up to what a grid hides of a peak between its angles, some 4e-5 of it: the optimum is that of the true peak."""
     classical = min(norm_of(partial(mechanism, ratio, crank=HEAVY), norm) for ratio in ("across", "along", "overall"))
-    plain, turned = (norm_of(optimum(mechanism, norm, phase), norm) for phase in (False, True))
+    plain = norm_of(optimum(mechanism, norm, False), norm)
     hidden = 2e-5 * NORMS[norm](shaking(mechanism))
     assert plain <= min(classical, scan(mechanism, norm)) + hidden
+    if norm == "across":  # gone without a phase
+        assert plain < 1e-5 * hidden
+        return
+    turned = norm_of(optimum(mechanism, norm, True), norm)
     assert turned <= min(plain, scan(mechanism, norm, phase=True)) + hidden
 
 

@@ -1,27 +1,88 @@
 """Gradients by JAX through the kernels, against central differences of the same kernels with 60 digits."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.elementary import namespace
 
 ANGLES = np.linspace(0.0, 2 * math.pi, 360, endpoint=False)
 SPEED = 320 * 2 * math.pi / 60
 STIFFNESS = 600.0 * SPEED**2
-MASSES = {"coupler": ks.Link(150.0, 1.0, 20.5), "slider": ks.Link(600.0)}
+STEP = "1e-20"
+"""Of the central difference, relative: its own error is 1e-40 times the third derivative."""
 
 
-def mean_absolute_torque(mechanism, number, spring=None):
-    """N m, in numbers of the kind of the given one."""
-    angles = namespace(number).asarray(ANGLES) if not is_arb(number) else np.array([arb(a) for a in ANGLES.tolist()])
-    loads = [ks.Gravity(), *([spring] if spring else [])]
-    return abs(ks.solve(mechanism, angles, crank_speed=SPEED, loads=loads, on_gap="nan").balancing_torque).mean()
+@pytest.fixture
+def double():
+    """JAX in double precision, and back to what it was."""
+    jax = pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
+    with jax.enable_x64(True):
+        yield jax
 
 
-def by_stiffness(stiffness):
-    mechanism = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.0219, 0.0)), 2.0219, **MASSES)
-    return mean_absolute_torque(mechanism, stiffness, ks.Spring(stiffness, 2.0))
+@pytest.fixture
+def flint():
+    """python-flint at 200 bits, and back to what it was."""
+    flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    with flint.ctx.workprec(200):
+        yield flint
+
+
+def links(coupler_length=2.0):
+    """Of the sawframe: the mass centre stays at the middle of the coupler, whatever its length."""
+    return {"coupler": ks.Link(150.0, coupler_length / 2, 20.5), "slider": ks.Link(600.0)}
+
+
+def cam_balanced(stiffness=STIFFNESS, radius=0.3, offset=-0.0219, coupler_length=2.0219):
+    """Circle cam with its centre at `offset` from O, and spring."""
+    cam = ks.cams.Circle(radius, (offset, 0.0))
+    return ks.cam_crank_slider(cam, coupler_length, **links(coupler_length)), (ks.Spring(stiffness, 2.0),)
+
+
+def plain(crank_length=0.3, coupler_length=2.0):
+    return ks.crank_slider(crank_length, coupler_length, **links(coupler_length)), ()
+
+
+PARAMETERS = {
+    "spring stiffness": lambda x: cam_balanced(stiffness=x),
+    "cam radius": lambda x: cam_balanced(radius=x),
+    "cam offset": lambda x: cam_balanced(offset=x),
+    "coupler length, cam-balanced": lambda x: cam_balanced(coupler_length=x),
+    "crank length": lambda x: plain(crank_length=x),
+    "coupler length": lambda x: plain(coupler_length=x),
+}
+VALUES = {
+    "spring stiffness": (0.9 * STIFFNESS, STIFFNESS, 1.3 * STIFFNESS),
+    "cam radius": (0.28, 0.3, 0.33),
+    "cam offset": (-0.04, -0.0219, 0.01),
+    "coupler length, cam-balanced": (1.8, 2.0219, 2.5),
+    "crank length": (0.1, 0.3, 0.9),
+    "coupler length": (0.5, 2.0, 3.0),
+}
+"""The case's own value between others."""
+
+
+def mean_absolute_torque(parameter, value, angles):
+    """N m, in numbers of the kind of the value."""
+    mechanism, springs = PARAMETERS[parameter](value)
+    s = ks.solve(mechanism, angles, crank_speed=SPEED, loads=[ks.Gravity(), *springs], on_gap="nan")
+    return abs(s.balancing_torque).mean()
+
+
+@pytest.mark.parametrize("parameter", PARAMETERS)
+def test_gradient_of_the_mean_absolute_torque_equals_the_central_difference_at_high_precision(double, flint, parameter):
+    """To 1e-12, at three values of each parameter by one compiled function."""
+    angles = np.array([flint.arb(angle) for angle in ANGLES.tolist()])
+    gradient = double.jit(
+        double.grad(lambda value: mean_absolute_torque(parameter, value, double.numpy.asarray(ANGLES)))
+    )
+    for value in VALUES[parameter]:
+        step = abs(flint.arb(value)) * flint.arb(STEP)
+        above, below = (mean_absolute_torque(parameter, flint.arb(value) + sign * step, angles) for sign in (1, -1))
+        difference = (above - below) / (2 * step)
+        assert difference.rad() < 1e-30 * abs(difference)
+        found = gradient(value)
+        assert found.dtype == "float64"
+        assert abs(flint.arb(float(found)) - difference) < 1e-12 * abs(difference), (value, float(found), difference)

@@ -1,7 +1,6 @@
 """Work against precision: errors of known orders, nothing nearer than ours, and files that two runs compare by."""
 
 import platform
-import subprocess
 import sys
 from functools import partial
 from importlib.metadata import version
@@ -143,14 +142,17 @@ def test_front_holds_what_nothing_beats_in_time_and_error():
 @pytest.mark.parametrize("quantity", ["balancing_torque", "O"])
 @pytest.mark.parametrize(("name", "variant"), KINDS)
 def test_no_method_is_nearer_to_the_certified_reference_than_ours_by_more_than_rounding(name, variant, quantity):
-    """So whatever is faster than ours and better than 1e-6 is no nearer; how fast is measured by the benchmark."""
+    """So whatever is faster than ours and better than 1e-6 is no nearer; how fast is measured by the benchmark.
+
+    Integration at its two finest tolerances only, and what is there twice, compiled too, once.
+    """
     s = ks.load_case(name).solve(variant, 24)
     reference = enclosure(s, quantity)
 
     def errors(methods):
         found = {}
         for method in methods:
-            for setting in method.settings:
+            for setting in method.settings[-2 if "integration" in method.name else 0 :]:
                 try:
                     run = method.prepare(s, quantity, setting)
                 except (ks.errors.NotGivenError, ks.errors.MissingLibraryError):
@@ -175,23 +177,23 @@ def few(monkeypatch):
     monkeypatch.setattr(precision, "study", partial(precision.study, methods=FEW, repeats=1))
 
 
+def test_case_study_looks_at_one_variant_of_each_kind_of_mechanism_and_cam_unless_told(case):
+    kinds = {name: precision.kinds(ks.load_case(name)) for name in ("mower_drive", "chain_unit")}
+    assert precision.kinds(case) == ["plain", "cam-circle", "cam-cosine"]
+    assert kinds == {"mower_drive": ["unbalanced"], "chain_unit": ["rho-0.1"]}
+
+
 def test_case_study_writes_tidy_rows_that_tell_the_machine_and_the_versions(few, case, tmp_path):
     quantities = ("balancing_torque", "O")
-    paths = precision.case_study(case, tmp_path / "new", quantities=quantities, angles=16)
-    assert [path.name for path in paths] == [f"sawframe_2r63_precision.{kind}" for kind in ("csv", "png", "svg")]
-    assert sorted((tmp_path / "new").iterdir()) == sorted(paths)
-    table = pd.read_csv(paths[0], keep_default_na=False, na_values={TIME: "", "error": "", "value": ""})
-    settings = sum(len(method.settings) for method in FEW)
-    assert len(table) == 3 * 2 * settings
-    assert set(table["variant"]) == {"plain", "cam-circle", "cam-cosine"}
-    assert set(table["quantity"]) == set(quantities)
+    variants = ("plain", "cam-circle")
+    path, *_ = precision.case_study(case, tmp_path, variants=variants, quantities=quantities, angles=16)
+    table = pd.read_csv(path, keep_default_na=False, na_values={TIME: "", "error": "", "value": ""})
+    assert len(table) == 2 * 2 * sum(len(method.settings) for method in FEW)
+    for column, values in {"case": ["sawframe_2r63"], "variant": variants, "quantity": quantities}.items():
+        assert set(table[column]) == set(values)
     assert set(table["angles"]) == {16}
     assert not table.duplicated(["variant", "quantity", "method", "value"]).any()
-    assert {name: dtype.kind for name, dtype in table[[TIME, "error", "value"]].dtypes.items()} == {
-        TIME: "f",
-        "error": "f",
-        "value": "f",
-    }
+    assert [table[name].dtype for name in (TIME, "error", "value", "ours")] == [float, float, float, bool]
     (machine,), (versions,) = set(table["machine"]), set(table["versions"])
     assert platform.machine() in machine
     assert "cores" in machine
@@ -200,17 +202,19 @@ def test_case_study_writes_tidy_rows_that_tell_the_machine_and_the_versions(few,
         assert f"{library} {version(library)}" in versions
     refused = table[table["not given"] != ""]
     assert "virtual power gives the torque of the drive, no reactions" in set(refused["not given"])
-    assert refused["error"].isna().all()
+    assert refused[[TIME, "error"]].isna().all(axis=None)
 
 
 def test_chart_of_a_case_opens_as_png_and_svg_and_names_every_method_that_gave_a_result(few, case, tmp_path):
-    _, png, svg = precision.case_study(case, tmp_path, variants=["plain"], angles=16)
-    assert plt.imread(png).shape[0] > 500
-    text = svg.read_text()
+    paths = precision.case_study(case, tmp_path / "new", variants=["plain"], angles=16)
+    assert [path.name for path in paths] == [f"sawframe_2r63_precision.{kind}" for kind in ("csv", "png", "svg")]
+    assert sorted((tmp_path / "new").iterdir()) == sorted(paths)
+    assert plt.imread(paths[1]).shape[0] > 500
+    text = paths[2].read_text()
     for method in FEW:
         assert f"<!-- {method.name}" in text, method.name
-    assert "sawframe_2r63, plain: balancing torque" in text
-    assert "time [ns per crank angle]" in text
+    assert "<!-- sawframe_2r63, plain: balancing torque -->" in text
+    assert "<!-- time [ns per crank angle] -->" in text
     assert plt.get_fignums() == []
 
 
@@ -302,17 +306,13 @@ def test_wrong_usage_of_the_command_ends_with_status_2(arguments):
     assert caught.value.code == 2
 
 
-def test_command_without_python_flint_says_what_to_install_and_writes_nothing(tmp_path):
-    """In a process of its own, in which flint cannot be imported."""
-    code = (
-        "import sys; sys.modules['flint'] = None; from kinetostatics.cli import main;"
-        f" sys.exit(main(['precision', 'sawframe_2r63', '--out', {str(tmp_path / 'out')!r}]))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert 'pip install "kinetostatics[precision]"' in done.stderr
-    assert len(done.stderr.splitlines()) == 1
+def test_command_without_python_flint_says_what_to_install_and_writes_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "flint", None)
+    assert cli.main(["precision", "sawframe_2r63", "--out", str(tmp_path / "out")]) == 2
+    printed, told = capsys.readouterr()
+    assert printed == ""
+    assert told.startswith("kinetostatics: ")
+    assert told.endswith('pip install "kinetostatics[precision]"\n')
     assert not (tmp_path / "out").exists()
 
 

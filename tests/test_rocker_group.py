@@ -17,7 +17,9 @@ from test_newton_euler import body, columns, either_sign, errors, number, reprod
 import kinetostatics as ks
 
 CLOSE = 1e-13
-"""Error allowed relative to the largest of a kind; the sine of the transmission angle stays above 0.07 or so."""
+"""Error allowed relative to the largest of a kind; the sine of the transmission angle stays above 0.07 or so, and the
+longest link below a few hundred times the shortest.
+"""
 EPSILON = 2.0**-53
 
 
@@ -37,6 +39,7 @@ def four_bars(draw, kind):
         angles = angles[:1]
         r, b = size, size * draw(number(0.4, 2.5))
         a = abs(b - r * np.exp(1j * angles[0]))
+        assume(a > 0.1 * r)
         c = a * draw(number(0.4, 2.5))
         h = between(abs(a - c), a + c, share)
         lengths = sorted((r, c, h, b))
@@ -281,7 +284,7 @@ def assert_error_is_that_of_rounded_lengths(bar, angles):
 
 
 @pytest.mark.parametrize("kind", ["stretched", "folded", "folded, long coupler"])
-@pytest.mark.parametrize("margin", 10.0 ** -np.arange(2, 15))
+@pytest.mark.parametrize("margin", 10.0 ** -np.arange(2, 15, 2))
 def test_error_near_a_toggle_is_that_of_rounded_lengths(kind, margin):
     """A closing margin of 1e-14 leaves a sine of the transmission angle of 1e-7.
 

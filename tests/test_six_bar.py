@@ -152,7 +152,7 @@ def unbalanced(s):
 
 
 @every_scheme
-@settings(reproducible, max_examples=15)
+@settings(reproducible, max_examples=10)
 @given(data=st.data())
 def test_powers_balance_and_reactions_satisfy_newtons_laws_of_every_body(scheme, data):
     """Joint forces, weight, loads and couples make mass times acceleration and inertia times angular acceleration."""

@@ -50,8 +50,8 @@ def _jax(solution, quantity, setting):
             jax.block_until_ready(compute(angle))
         except (TypeError, ValueError) as error:
             raise NotGivenError(f"a load or cam that JAX cannot trace: {str(error).splitlines()[0]}") from error
-        compute = compute.lower(angle).compile()
-    return lambda: tuple(jax.block_until_ready(compute(angle)))
+        compiled_once = compute.lower(angle).compile()
+    return lambda: tuple(jax.block_until_ready(compiled_once(angle)))
 
 
 def _single(solution, quantity, setting):
