@@ -48,7 +48,7 @@ def _warn_near_limit(mechanism, placement, margin, smallest):
         f"{max(0.0, 16 - lost):.0f} correct digits there and grow without bound (solution.condition says how many "
         "times errors are magnified, angle by angle)",
         ConditionWarning,
-        stacklevel=4,
+        stacklevel=5,
     )
 
 

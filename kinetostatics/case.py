@@ -335,7 +335,8 @@ def _mechanism(table, folder):
 
 def _guide(table):
     if table.guide_through is None:
-        return Guide.at(table.guide_angle or 0.0, table.guide_offset or 0.0)
+        angle, offset = (0.0 if value is None else value for value in (table.guide_angle, table.guide_offset))
+        return Guide.at(angle, offset)
     if table.guide_angle is not None or table.guide_offset is not None:
         raise KinetostaticsError("give either guide_through or guide_angle and guide_offset")
     return Guide.through(*table.guide_through)

@@ -15,7 +15,7 @@ EXACT = 1e-17
 """Where an error of zero is drawn: below the rounding of the largest value."""
 USELESS = 1e3
 """Where larger errors, and NaN, are drawn."""
-COLOURS = [colour for colour in plt.get_cmap("tab20")(np.arange(20)).tolist() if colour[0] < 1.6 * max(colour[1:3])]
+COLOURS = [plt.get_cmap("tab20")(number) for number in (0, 2, 4, 8, 10, 12, 14, 16, 18, 1, 3, 5, 9, 11, 13, 17, 19)]
 """Without reds, which are ours."""
 MARKERS = "osD^v<>PX*phd"
 
@@ -27,7 +27,7 @@ def _styles(table):
         styles[name] = {
             "marker": MARKERS[number % len(MARKERS)],
             "color": ACCENT if ours else COLOURS[number % len(COLOURS)],
-            "markersize": 7 if ours else 4.5,
+            "markersize": 7 if ours else 5.5,
             "markeredgecolor": "0.15" if ours else "none",
             "linewidth": 1.6 if ours else 1.0,
             "zorder": 3 if ours else 2,
@@ -100,6 +100,8 @@ def error_by_distance(table, ax=None):
 def model_ladder(needs, ax=None):
     """Error over operations: each simplification alone, and the ladder of the cheapest models; log scale.
 
+    Errors far below the tolerance lie on the lower edge.
+
     Parameters
     ----------
     needs : Needs
@@ -110,36 +112,24 @@ def model_ladder(needs, ax=None):
     Axes
     """
     ax = axes(ax)
-    alone = [made for made in needs.alone if np.isfinite(made.error)]
-    rungs = [made for made in needs.ladder if np.isfinite(made.error)]
-    shown = [max(made.error, EXACT) for made in (*alone, *rungs)]
-    ax.plot([made.operations for made in alone], shown[: len(alone)], "o", color="0.6", label="one simplification")
-    ax.step(
-        [made.operations for made in rungs],
-        shown[len(alone) :],
-        "-D",
-        where="pre",
-        color=ACCENT,
-        markersize=5,
-        label="model ladder: cheapest for its error",
-    )
+    floor = 1e-3 * min(needs.within, 1e-2)
+
+    def drawn(models, *style, **named):
+        shown = [made for made in models if np.isfinite(made.error)]
+        ax.plot([made.operations for made in shown], [max(made.error, floor) for made in shown], *style, **named)
+        return shown
+
+    for made in drawn(needs.alone, "o", color="0.6", label="one simplification"):
+        place = made.operations, max(made.error, floor)
+        ax.annotate(made.name, place, xytext=(5, 3), textcoords="offset points", fontsize=7, color="0.3")
+    drawn(needs.ladder, "-D", color=ACCENT, markersize=5, drawstyle="steps", label="ladder: cheapest for its error")
     ax.axhline(needs.within, color="0.3", linestyle="--", linewidth=1.0, label=f"tolerance {needs.within:g}")
-    best = needs.smallest
-    ax.plot(
-        best.operations,
-        max(best.error, EXACT),
-        "*",
-        color="tab:green",
-        markersize=16,
-        zorder=4,
-        label=f"smallest: {best.name}",
-    )
-    for made, height in zip(alone, shown, strict=False):
-        ax.annotate(made.name, (made.operations, height), xytext=(5, 3), textcoords="offset points", fontsize=7)
-    ax.set(yscale="log", xlabel="operations per crank angle [1]", ylim=(EXACT / 3, 30))
+    drawn([needs.smallest], "*", color="tab:green", markersize=16, zorder=4, label=f"smallest: {needs.smallest.name}")
+    ax.set(yscale="log", xlabel="operations per crank angle [1]", ylim=(floor / 2, 30))
     ax.set_ylabel(f"change of {label(needs.quantity)}, relative to largest value [1]")
     ax.invert_xaxis()
-    ax.legend(fontsize=7, loc="lower left")
+    ax.margins(x=0.15)
+    ax.legend(fontsize=7, loc="lower right")
     ax.grid(visible=True, alpha=0.3)
     return ax
 

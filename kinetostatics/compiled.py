@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from . import assembly
-from .elementary import RESOLUTION, ROUNDING, read_only
+from .elementary import ROUNDING, SMALLEST, read_only
 from .errors import MissingLibraryError
 from .files import written_whole
 from .solution import Solution
@@ -29,6 +29,19 @@ from .tracing import BY_ANGLE, Node, Trace, trace
 
 SHARE = 100_000
 """Values over designs and angles that are worth a thread of their own."""
+TURN = '''"""Written by kinetostatics; may be deleted at any time."""
+
+from math import cos, sin
+
+from numba import njit
+
+
+@njit(nogil=True, cache=True)
+def shared(angle, sine, cosine):
+    for i in range(angle.size):
+        cosine[i] = cos(angle[i])
+        sine[i] = sin(angle[i])
+'''
 HEADER = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import atan, cos, nan, sin, sqrt
@@ -39,20 +52,13 @@ options = dict(error_model="numpy", nogil=True, cache=True)
 
 
 @njit(**options)
-def shared(angle, sine, cosine):
-    for i in range(angle.size):
-        cosine[i] = cos(angle[i])
-        sine[i] = sin(angle[i])
-
-
-@njit(**options)
 def root(square, unit):
     return sqrt(max(square, 0.0)) if square >= {-ROUNDING!r} * unit else nan
 
 
 @njit(**options)
 def divisor(root, unit):
-    return root if root != root else max(root, {RESOLUTION!r} * unit)
+    return root if root != root else max(root, {SMALLEST!r} * unit)
 
 
 @njit(**options)
@@ -131,6 +137,8 @@ class Program:
 
     def tabulated(self, solution):
         """What NumPy must compute beforehand at the crank angles of a solution, (T, 1 or designs, N)."""
+        if not self.trace.tables:
+            return np.empty((0, 1, np.shape(np.atleast_1d(solution.crank_angle))[-1]))
         rows = [row for compute in self.trace.tables for row in compute(solution)]
         shape = np.broadcast_shapes(np.shape(np.atleast_1d(solution.crank_angle)), *map(np.shape, rows))
         shape = (*self.shape, shape[-1]) if len(shape) > 1 else shape
@@ -140,39 +148,53 @@ class Program:
     def turn(self, angle) -> tuple[Any, Any]:
         """Sines and cosines of crank angles (1 or designs, N), which designs may share."""
         sine, cosine = np.empty(angle.shape), np.empty(angle.shape)
-        self._module.shared(angle.ravel(), sine.ravel(), cosine.ravel())
+        _loaded(TURN).shared(angle.ravel(), sine.ravel(), cosine.ravel())
         return sine, cosine
 
-    def at(self, angle, sine, cosine, tables, parameters=None):
+    def at(self, angle, sine, cosine, tables, parameters=None, results=None):
         """Results (outputs, designs, N) from angles, their sines and cosines (1 or designs, N), and tables.
 
-        Other parameters (designs, P) may be given, some rows of its own for instance.
+        Other parameters (designs, P) may be given, some rows of its own for instance, and memory for the results
+        (designs, outputs, N) that is used again from call to call.
         """
         parameters = self.parameters if parameters is None else parameters
-        designs = len(parameters)
-        fits = len(angle) in (1, designs) and tables.shape[1] in (1, designs) and tables.shape[2] == angle.shape[1]
+        designs, angles = len(parameters), angle.shape[1]
+        fits = len(angle) in (1, designs) and tables.shape[1] in (1, designs) and tables.shape[2] == angles
         if not fits or len(tables) < self.trace.rows:
             raise ValueError(
                 f"angles {angle.shape} and tables {tables.shape} do not fit {designs} designs and {self.trace.rows} "
                 "tabulated values: make tables by `tabulated` from a solution at these angles"
             )
-        over = designs if designs > 1 else angle.shape[1]
-        pieces = min(cores(), over, max(1, designs * angle.shape[1] // SHARE))
-        if pieces == 1:
-            return self._loop(parameters, angle, sine, cosine, tables)
-        edges = np.linspace(0, over, pieces + 1, dtype=int)
+        shape = (designs, len(self.trace.outputs), angles)
+        if results is None:
+            results = np.empty(shape)
+        elif results.shape != shape:
+            raise ValueError(f"memory for results {shape} is needed, not {results.shape}")
+        pieces = designs * angles // SHARE
+        if pieces > 1:
+            pieces = min(pieces, cores(), designs if designs > 1 else angles)
+        if pieces > 1:
+            self._in_pieces(pieces, angle, sine, cosine, tables, parameters, results)
+        else:
+            self._module.loop(angle, sine, cosine, parameters, tables, results)
+        return results.swapaxes(0, 1)
+
+    def _in_pieces(self, pieces, angle, sine, cosine, tables, parameters, results):
+        """Fill results (designs, outputs, N) with a thread for each of some designs, or some angles of a single one."""
+        designs, angles = len(parameters), angle.shape[1]
+        edges = np.linspace(0, designs if designs > 1 else angles, pieces + 1, dtype=int)
 
         def piece(start, stop):
-            angles = tuple(_part(array, start, stop, designs) for array in (angle, sine, cosine, tables))
-            return self._loop(parameters[start:stop] if designs > 1 else parameters, *angles)
+            given = [_part(array, start, stop, designs) for array in (angle, sine, cosine, tables)]
+            if designs > 1:
+                self._module.loop(*given[:3], parameters[start:stop], given[3], results[start:stop])
+            else:
+                found = np.empty((1, results.shape[1], stop - start))
+                self._module.loop(*given[:3], parameters, given[3], found)
+                results[..., start:stop] = found
 
         with ThreadPoolExecutor(pieces) as threads:
-            return np.concatenate(list(threads.map(piece, edges[:-1], edges[1:])), axis=1 if designs > 1 else 2)
-
-    def _loop(self, parameters, angle, sine, cosine, tables):
-        results = np.empty((len(parameters), len(self.trace.outputs), angle.shape[1]))
-        self._module.loop(angle, sine, cosine, parameters, tables, results)
-        return results.swapaxes(0, 1)
+            list(threads.map(piece, edges[:-1], edges[1:]))
 
 
 def program(solution, quantities) -> Program:
@@ -253,10 +275,8 @@ class CompiledSolution(Solution):
     Of a small problem one loop computes all forces at once, of a large one each quantity has its own when asked for.
     """
 
-    def check(self):
-        margins = self._kept("closure")
-        if not np.min(margins) >= assembly.NEAR_LIMIT:
-            super().check()
+    def _surely_closes(self):
+        return np.min(self._kept("closure")) >= assembly.NEAR_LIMIT
 
     @property
     def reactions(self):

@@ -2,7 +2,7 @@
 
 A spread is a text: "600..900 kN/m" (evenly between, with ":40" behind it how many values of a grid), or for samples
 also "normal 712 kN/m +- 5 kN/m" (mean and standard deviation) and "triangular 690..710..740 kN/m" (low, likeliest,
-high).
+high). The unit of a plain number is 1.
 """
 
 import re
@@ -11,14 +11,18 @@ import numpy as np
 import pandas as pd
 
 from . import checks
+from .units import base_factor, factor
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+_TO = r"\s*\.\.\s*"
+_UNIT = r"\s+([^:+±]+?)"
 _FORMS = {
-    "grid": re.compile(rf"({_NUMBER})\s*\.\.\s*({_NUMBER})\s+([^:]*?)\s*:\s*(\d+)"),
-    "uniform": re.compile(rf"(?:uniform\s+)?({_NUMBER})\s*\.\.\s*({_NUMBER})\s+([^:+]+?)"),
-    "triangular": re.compile(rf"triangular\s+({_NUMBER})\s*\.\.\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s+([^:+]+?)"),
-    "normal": re.compile(rf"normal\s+({_NUMBER})\s+([^:+]+?)\s*(?:\+-|±)\s*({_NUMBER})\s+([^:+]+?)"),
+    "grid": re.compile(rf"{_NUMBER}{_TO}{_NUMBER}{_UNIT}\s*:\s*(\d+)"),
+    "uniform": re.compile(rf"(?:uniform\s+)?{_NUMBER}{_TO}{_NUMBER}{_UNIT}"),
+    "triangular": re.compile(rf"triangular\s+{_NUMBER}{_TO}{_NUMBER}{_TO}{_NUMBER}{_UNIT}"),
+    "normal": re.compile(rf"normal\s+{_NUMBER}{_UNIT}\s*(?:\+-|±)\s*{_NUMBER}{_UNIT}"),
 }
+_OTHER = "it has another form"
 _HELP = (
     '"600..900 kN/m:40" for a grid; "600..900 kN/m", "normal 712 kN/m +- 5 kN/m" or "triangular 690..710..740 kN/m" '
     "for samples"
@@ -41,97 +45,129 @@ def grid(spreads) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A text is of another form; all of them at once.
+        A text is of another form, or its unit not known; all of them at once.
     """
-    axes, columns, problems = [], [], []
-    for name, text in spreads.items():
-        found = _FORMS["grid"].fullmatch(str(text).strip())
-        if found is None:
-            problems.append(f"cannot read {text!r} for {name}; write {_HELP}")
-            continue
-        low, high, unit, count = found.groups()
-        axes.append(np.linspace(float(low), float(high), int(count)))
-        columns.append(f"{name} [{unit}]")
-    checks.require("grid", *problems)
-    values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
-    return pd.DataFrame(values, columns=columns)
+    axes = _read(spreads, _axis)
+    values = np.stack(np.meshgrid(*(axis for axis, _ in axes.values()), indexing="ij"), axis=-1)
+    return pd.DataFrame(values.reshape(-1, len(axes)), columns=_columns(axes))
 
 
 def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     """Designs spread evenly over every parameter by itself; see `sample`."""
     from scipy.stats import qmc
 
-    return sample(spreads, qmc.LatinHypercube(len(spreads), rng=seed).random(count))
+    return sample(spreads, lambda size: qmc.LatinHypercube(size, rng=seed).random(count))
 
 
 def sobol(spreads, count, seed=0) -> pd.DataFrame:
     """Designs of a scrambled Sobol sequence, `count` best a power of two; see `sample`."""
     from scipy.stats import qmc
 
-    return sample(spreads, qmc.Sobol(len(spreads), rng=seed).random(count))
+    return sample(spreads, lambda size: qmc.Sobol(size, rng=seed).random(count))
 
 
 def random(spreads, count, seed=0) -> pd.DataFrame:
     """Independent random designs; see `sample`."""
-    return sample(spreads, np.random.default_rng(seed).random((count, len(spreads))))
+    return sample(spreads, lambda size: np.random.default_rng(seed).random((count, size)))
 
 
 def sample(spreads, uniform) -> pd.DataFrame:
-    """Designs from numbers between 0 and 1, one column for each parameter, through the parameters' distributions.
+    """Designs from numbers between 0 and 1, through the parameters' distributions.
 
     Parameters
     ----------
     spreads : dict of parameter to text
         "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m".
-    uniform : array (designs, parameters)
+    uniform : array (designs, parameters) or function
+        The numbers, a column for each parameter; a function gives them for a number of parameters.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column for each parameter, with its unit.
 
     Raises
     ------
     ParameterError
-        A text is of another form; all of them at once.
+        A text is of another form, or its unit not known; all of them at once.
     """
     found = distributions(spreads)
-    return pd.DataFrame(
-        {
-            f"{name} [{unit}]": distribution.ppf(uniform[:, column])
-            for column, (name, (distribution, unit)) in enumerate(found.items())
-        }
-    )
+    numbers = np.asarray(uniform(len(found)) if callable(uniform) else uniform)
+    fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
+    checks.require("designs", None if fits else f"{len(found)} parameters need as many columns, got {numbers.shape}")
+    values = [distribution.ppf(column) for (distribution, _), column in zip(found.values(), numbers.T, strict=True)]
+    return pd.DataFrame(np.transpose(values), columns=_columns(found))
 
 
 def distributions(spreads):
-    """Distribution (scipy.stats) and unit by parameter."""
-    found, problems = {}, []
+    """Distribution (scipy.stats) and unit by parameter; raises one `ParameterError` for all texts that are wrong."""
+    return _read(spreads, _distribution)
+
+
+def _read(spreads, reader):
+    """What the reader, which raises `ValueError`, makes of the text of each parameter."""
+    found, problems = {}, [] if spreads else ["there are no parameters"]
     for name, text in spreads.items():
         try:
-            found[name] = _distribution(str(text).strip())
+            found[name] = reader(str(text).strip())
         except ValueError as error:
             problems.append(f"cannot read {text!r} for {name}: {error}")
+    if any(_OTHER in problem for problem in problems):
+        problems.append(f"write {_HELP}")
     checks.require("designs", *problems)
     return found
 
 
+def _columns(found):
+    return [f"{name} [{unit}]" for name, (_, unit) in found.items()]
+
+
+def _axis(text):
+    """Evenly spaced values, and their unit."""
+    match = _FORMS["grid"].fullmatch(text)
+    if not match or not int(match[4]):
+        raise ValueError(_OTHER)
+    low, high = _numbers(match[1], match[2])
+    return np.linspace(low, high, int(match[4])), _known(match[3])
+
+
 def _distribution(text):
+    """Distribution of the values, and their unit."""
     from scipy import stats
 
     if match := _FORMS["uniform"].fullmatch(text):
         low, high = _rising(match[1], match[2])
-        return stats.uniform(low, high - low), match[3]
+        return stats.uniform(low, high - low), _known(match[3])
     if match := _FORMS["triangular"].fullmatch(text):
         low, likeliest, high = _rising(match[1], match[2], match[3])
-        return stats.triang((likeliest - low) / (high - low), low, high - low), match[4]
+        return stats.triang((likeliest - low) / (high - low), low, high - low), _known(match[4])
     if match := _FORMS["normal"].fullmatch(text):
-        from .units import factor
-
-        deviation = float(match[3]) * factor(match[4], match[2]) / factor(match[2], match[2])
+        mean, deviation = _numbers(match[1], match[3])
+        deviation *= factor(match[4], _known(match[2])) / base_factor(match[2])
         if deviation <= 0:
             raise ValueError("the standard deviation must be greater than 0")
-        return stats.norm(float(match[1]), deviation), match[2]
-    raise ValueError(f"write {_HELP}")
+        return stats.norm(mean, deviation), match[2]
+    raise ValueError(_OTHER)
+
+
+def _known(unit):
+    """The unit, if it is one."""
+    try:
+        base_factor(unit)
+    except ValueError:
+        raise ValueError(f'unit "{unit}" is not known') from None
+    return unit
 
 
 def _rising(*texts):
-    values = [float(text) for text in texts]
+    values = _numbers(*texts)
     if values[0] >= values[-1] or sorted(values) != values:
         raise ValueError("the values must rise")
+    return values
+
+
+def _numbers(*texts):
+    values = [float(text) for text in texts]
+    if not np.all(np.isfinite(values)):
+        raise ValueError("the values must be finite")
     return values

@@ -50,8 +50,8 @@ def sqrt(x):
 _OBJECT = np.dtype(object)
 ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
-RESOLUTION = 2.0**-26
-"""Smallest divisor, in its unit, for a root of what is computed to a rounding unit of 2^-53."""
+SMALLEST = 2.0**-53
+"""Smallest root, in its unit, that is divided by."""
 APART = 2.0**-90
 """Distance, in its unit, that counts as nothing but still has a direction."""
 
@@ -65,10 +65,10 @@ def root(square, unit):
 
 
 def divisor(root, unit):
-    """A root, counted in `unit`, to divide by: not nearer to zero than what the rounding of lengths may do."""
+    """A root, counted in `unit`, to divide by: never zero, so that rates and forces stay finite at their poles."""
     if _holds_objects(root):
         return _each("kept_off_zero", root, unit, lambda root: root)
-    return namespace(root).maximum(root, RESOLUTION * unit)
+    return namespace(root).maximum(root, SMALLEST * unit)
 
 
 def apart(distance, unit):
@@ -91,19 +91,21 @@ def _each(method, x, unit, exactly):
     return np.frompyfunc(of_one, 2, 1)(x, unit)
 
 
-def condition(margin, terms=None, result=None):
+def condition(margin, proportion=1.0, terms=None, result=None):
     """How many times errors are magnified where rates and forces are divided by a root whose square is `margin`.
 
-    That makes 1 / margin. Where the `terms` of an acceleration cancel to a small `result`, as they do at change points,
-    their errors stay: up to 1 / margin once more. A result below its own rounding counts as zero.
+    That makes 1 / margin, times how much the group's surroundings are larger than its links (`proportion`). Where the
+    `terms` of an acceleration cancel to a small `result`, as they do at change points, their errors stay: up to
+    1 / margin once more. A result below its own rounding counts as zero.
     """
     xp = namespace(margin)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = 1.0 / xp.where(margin < -ROUNDING, xp.nan, margin * (margin > 0))
+        vanishing = 1.0 / xp.where(margin < -ROUNDING, xp.nan, margin * (margin > 0))
+        found = xp.maximum(proportion * vanishing, xp.sqrt(vanishing))
         if terms is None:
             return found
         cancelled = terms / xp.maximum(abs(result) - ROUNDING * found * terms, 0.0)
-        return found * xp.where(cancelled < found, cancelled, found)
+        return found * xp.where(cancelled < vanishing, cancelled, vanishing)
 
 
 def stack(arrays):

@@ -210,7 +210,7 @@ class Needs:
     ladder : tuple of Model
         From the full scene down, each the cheapest of all combinations with so small an error.
     smallest : Model
-        The cheapest of all combinations within the tolerance.
+        The cheapest of all combinations within the tolerance; of equally cheap ones, that with the least in it.
     tried : int
         Number of combinations run.
     """
@@ -274,7 +274,7 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     --------
     >>> import kinetostatics as ks
     >>> ks.needs(ks.load_case("sawframe_2r63"), "O", within=0.05).smallest.name
-    'two-mass coupler'
+    'no gravity, two-mass coupler'
     """
     checks.require("needs", checks.positive("within", within))
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
@@ -303,7 +303,8 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     combinations = (tuple(filter(None, picked)) for picked in itertools.product(*options))
     models = [made for choices in combinations if (made := model(choices))]
     ladder = _front(models)
-    smallest = [made for made in ladder if made.error <= within][-1]
+    allowed = [made for made in models if made.error <= within]
+    smallest = min(allowed, key=lambda made: (made.operations, -len(made.simplifications), made.error))
     return Needs(quantity, within, models[0], tuple(alone.values()), tuple(ladder), smallest, len(models))
 
 
@@ -333,17 +334,16 @@ def _frame(models, quantity, full):
 
     from .timing import seconds
 
+    times = seconds(*(partial(_afresh, made.solution, quantity) for made in models))
     rows = [
         {
             "model": made.name,
             "change": made.error,
             "operations": made.operations,
             "operations saved": full.operations - made.operations,
-            "time [ns/angle]": 1e9
-            * seconds(partial(_afresh, made.solution, quantity))
-            / made.solution.crank_angle.size,
+            "time [ns/angle]": 1e9 * time / made.solution.crank_angle.size,
         }
-        for made in models
+        for made, time in zip(models, times, strict=True)
     ]
     return pd.DataFrame(rows).set_index("model")
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from . import checks
 from .schema import Table
-from .units import base_factor, factor
+from .units import factor
 
 PARTS = {"x": 0, "y": 1, "along": 0, "across": 1}
 """Names of the components of a pair."""
@@ -33,44 +33,37 @@ def _unit(field):
     return next((item for metadata in candidates for item in metadata if isinstance(item, str)), None)
 
 
-def si_columns(table, columns, owner):
-    """Path and factor to SI of each column of a table of designs: tuples (column, path, factor).
+def si_columns(columns, known=None):
+    """Name and factor to SI of each column of a table of designs, and what is wrong with them.
 
     Parameters
     ----------
-    table : Table
-        Validated variant of a case.
     columns : sequence of str
-        Paths, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI.
-    owner : str
-        What the message of an error calls it.
+        Names, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI.
+    known : mapping of name to SI unit, optional
+        What there is to vary, as from `paths`; any name and unit will do if not given.
 
-    Raises
-    ------
-    ParameterError
-        A path is not there or a unit does not convert; all problems at once.
+    Returns
+    -------
+    columns : tuple of (column, name, factor)
+    problems : list of str
     """
-    known = paths(table)
-    found, problems = [], []
-    for column in columns:
-        path, unit = heading(column)
-        problem = checks.choice("parameter", path, tuple(known))
-        try:
-            found.append((column, path, factor(unit, known[path]) if unit and not problem else 1.0))
-        except ValueError as error:
-            problem = f"parameter {column!r}: {error}"
-        problems.append(problem)
-    checks.require(owner, *problems)
-    return tuple(found)
-
-
-def base_columns(columns):
-    """Name and factor to SI base units of each column; what the names mean is not known."""
-    found = []
+    found: dict[str, tuple[str, str, float]] = {}
+    problems = []
     for column in columns:
         name, unit = heading(column)
-        found.append((column, name, base_factor(unit) if unit else 1.0))
-    return tuple(found)
+        problem = checks.choice("parameter", name, tuple(known)) if known is not None else None
+        if name in found:
+            problem = f"parameter {name!r} has two columns"
+        scale = 1.0
+        if unit and not problem:
+            try:
+                scale = factor(unit, unit if known is None else known[name])
+            except ValueError as error:
+                problem = f"parameter {column!r}: {error}"
+        found[name] = (column, name, scale)
+        problems += [problem] if problem else []
+    return tuple(found.values()), problems
 
 
 def heading(column):

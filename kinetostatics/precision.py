@@ -45,23 +45,23 @@ def study(solution, quantity=QUANTITY, *, methods=METHODS, repeats=5, progress=N
     import pandas as pd
 
     reference = certified(solution, quantity)
-    rows = []
+    rows, runs = [], {}
     for method in methods:
         if progress:
             progress(method.name)
         for setting in method.settings:
             row = {"method": method.name, "ours": method.ours, "setting": method.setting, "value": setting}
-            rows.append(row | _measured(method, solution, quantity, setting, reference, repeats))
-    return pd.DataFrame(rows).assign(quantity=quantity, angles=solution.crank_angle.size)
-
-
-def _measured(method, solution, quantity, setting, reference, repeats):
-    try:
-        run = method.prepare(solution, quantity, setting)
-        error = float(np.max(relative_errors(run(), reference)))
-    except (NotGivenError, MissingLibraryError) as why:
-        return {"time [ns/angle]": np.nan, "error": np.nan, "not given": str(why)}
-    return {"time [ns/angle]": 1e9 * seconds(run, repeats) / solution.crank_angle.size, "error": error, "not given": ""}
+            try:
+                run = method.prepare(solution, quantity, setting)
+                row |= {"error": float(np.max(relative_errors(run(), reference))), "not given": ""}
+                runs[len(rows)] = run
+            except (NotGivenError, MissingLibraryError) as why:
+                row |= {"error": np.nan, "not given": str(why)}
+            rows.append(row)
+    table = pd.DataFrame(rows).assign(quantity=quantity, angles=solution.crank_angle.size)
+    times = pd.Series(seconds(*runs.values(), repeats=repeats), index=list(runs), dtype=float)
+    table.insert(4, "time [ns/angle]", 1e9 * times / solution.crank_angle.size)
+    return table
 
 
 def front(table):

@@ -8,27 +8,69 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial import polynomial
 
 from . import checks
 from .errors import ParameterError
 from .quantities import label, unit
 
+REACH = 4
+"""Samples on either side of a peak that tell how high it is between them."""
+_AROUND = np.arange(-REACH, REACH + 1)
+_POWERS = np.arange(_AROUND.size)[:, None]
+_THROUGH = np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True))
+
 
 def _peak(values):
-    """Largest value and its place in samples, by the parabola through the largest sample and its neighbours."""
-    rows, count = np.arange(len(values)), values.shape[-1]
-    top = np.argmax(values, axis=-1)
-    before, here, after = (values[rows, (top + k) % count] for k in (-1, 0, 1))
-    bend = before - 2.0 * here + after
-    with np.errstate(divide="ignore", invalid="ignore"):
-        shift = np.where(bend < 0, 0.5 * (before - after) / bend, 0.0)
-    return here - 0.25 * (before - after) * shift, 2 * np.pi * ((top + shift) % count) / count
+    """Largest value and its crank angle, rad: of all peaks of the samples the one that is highest between them."""
+    count = values.shape[-1]
+    rising = values > np.roll(values, 1, axis=-1)
+    peaks = rising & ~np.roll(rising, -1, axis=-1)
+    peaks[np.arange(len(values)), values.argmax(axis=-1)] = True
+    design, place = np.divmod(np.flatnonzero(peaks), count)
+    if count < _AROUND.size:
+        height, shift = values[design, place], 0.0 * place
+    else:
+        height, shift = _between(values[design, (place + _AROUND[:, None]) % count])
+    highest = np.maximum.reduceat(height, np.searchsorted(design, np.arange(len(values))))
+    _, first = np.unique(np.where(height < highest[design], -1, design), return_index=True)
+    first = first[-len(values) :]
+    return highest, 2 * np.pi * ((place + shift)[first] % count) / count
+
+
+def _between(near):
+    """Height of each peak, and how far from its highest sample, from the samples around it (places, peaks).
+
+    By the polynomial through all of them, by the parabola through three if others spoil it, as beyond a jump, and that
+    of the sample if not even three go together. What does not change its sign may be a magnitude, which has a corner at
+    zero, but its square has none.
+    """
+    sign = np.where((near >= 0).all(axis=0), 1.0, np.where((near <= 0).all(axis=0), -1.0, 0.0))
+    curve = np.where(sign == 0, near, near * abs(near))
+    _, bend, _ = bends = np.diff(curve[REACH - 2 : REACH + 3], 2, axis=0)
+    before, here, after = curve[REACH - 1 : REACH + 2]
+    with np.errstate(all="ignore"):
+        shift = 0.5 * (before - after) / bend
+        height = here - 0.25 * (before - after) * shift
+        series = (_THROUGH[:, :, None] * curve).sum(axis=1)
+        slope = series[1:] * _POWERS[1:]
+        change = slope[1:] * _POWERS[1:-1]
+        place = shift
+        for _ in range(2):
+            place = place - polynomial.polyval(place, slope, tensor=False) / polynomial.polyval(place, change, False)
+        top = polynomial.polyval(place, series, tensor=False)
+        fits = (abs(top - height) < 0.05 * abs(bend)) & (abs(place) < 1)
+    smooth = (bends < 0).all(axis=0)
+    height = np.where(smooth, np.where(fits, top, height), here)
+    shift = np.where(smooth, np.where(fits, place, shift), 0.0)
+    return np.where(sign == 0, height, sign * np.sqrt(np.maximum(sign * height, 0.0))), shift
 
 
 def _harmonic(order):
     def amplitude(values):
-        turn = np.exp(-2j * np.pi * order * np.arange(values.shape[-1]) / values.shape[-1])
-        return abs(values @ turn) * ((1.0 if order == 0 else 2.0) / values.shape[-1])
+        angle = 2 * np.pi * order * np.arange(values.shape[-1]) / values.shape[-1]
+        parts = (np.einsum("dn,n->d", values, wave(angle)) for wave in (np.cos, np.sin))
+        return np.hypot(*parts) * ((1.0 if order == 0 else 2.0) / values.shape[-1])
 
     return amplitude
 
@@ -38,6 +80,7 @@ REDUCTIONS = {
     "largest_at": lambda values: _peak(values)[1],
     "smallest": lambda values: -_peak(-values)[0],
     "smallest_at": lambda values: _peak(-values)[1],
+    "largest_absolute": lambda values: np.maximum(_peak(values)[0], _peak(-values)[0]),
     "range": lambda values: _peak(values)[0] + _peak(-values)[0],
     "mean": lambda values: values.mean(axis=-1),
     "mean_absolute": lambda values: abs(values).mean(axis=-1),
@@ -79,10 +122,15 @@ class Output:
         """What an axis calls it."""
         return f"{'ratio of ' * self.ratio}{self.reduction.replace('_', ' ')} {label(self.quantity)}"
 
+    @property
+    def order(self):
+        """Order of the harmonic; None for any other reduction."""
+        found = re.fullmatch(r"harmonic_(\d+)", self.reduction)
+        return int(found[1]) if found else None
+
     def reduced(self, values):
         """Numbers (designs,) from values (designs, N); NaN where a value is."""
-        harmonic = re.fullmatch(r"harmonic_(\d+)", self.reduction)
-        return (_harmonic(int(harmonic[1])) if harmonic else REDUCTIONS[self.reduction])(values)
+        return (REDUCTIONS[self.reduction] if self.order is None else _harmonic(self.order))(values)
 
 
 def parsed(text) -> Output:
@@ -95,14 +143,12 @@ def parsed(text) -> Output:
     """
     if isinstance(text, Output):
         return text
-    *first, reduction, quantity = ["", "", *str(text).split()]
-    known = reduction in REDUCTIONS or re.fullmatch(r"harmonic_\d+", reduction)
-    first = [word for word in first if word]
-    if first not in ([], ["ratio"]) or not known:
-        names = ", ".join((*REDUCTIONS, "harmonic_1", "harmonic_2 ..."))
-        hint = checks.hint(reduction, REDUCTIONS)
-        raise ParameterError(
-            f'output {text!r} must be a reduction and a quantity, such as "largest O" or "ratio mean_absolute '
-            f'balancing_torque"; reductions: {names}{hint}'
-        )
-    return Output(quantity, reduction, bool(first))
+    ratio, reduction, quantity = re.fullmatch(r"\s*(ratio\s)?\s*(\S*)\s*(.*?)\s*", str(text)).groups()
+    found = Output(quantity, reduction, bool(ratio))
+    if quantity and (reduction in REDUCTIONS or found.order is not None):
+        return found
+    names = ", ".join((*REDUCTIONS, "harmonic_1", "harmonic_2 ..."))
+    raise ParameterError(
+        f'output {text!r} must be a reduction and a quantity, such as "largest O" or "ratio mean_absolute '
+        f'balancing_torque"; reductions: {names}{checks.hint(reduction, REDUCTIONS)}'
+    )

@@ -47,12 +47,13 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     d = (apart(pivot[0] - joint.position[0], c + h), pivot[1] - joint.position[1])
     square = dot(d, d)
     a = sqrt(square)
-    heron = (a + c + h) * (a + c - h) * (a - c + h) * (c + h - a)
+    gap = c - h
+    heron = (a + c + h) * (a + gap) * (a - gap) * (c + h - a)
     product = 2.0 * c * h
     unit = product * product
     size = root(heron, unit)
     area, divided = assembly * size, assembly * divisor(size, product) / product
-    along, across = (square + (c - h) * (c + h)) / (2.0 * square), area / (2.0 * square)
+    along, across = (square + gap * (c + h)) / (2.0 * square), area / (2.0 * square)
     reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
     q = (reach[0] / c, reach[1] / c)
     p = ((reach[0] - d[0]) / h, (reach[1] - d[1]) / h)
@@ -185,7 +186,9 @@ class RockerGroup:
         c, h = self.coupler_length, self.rocker_length
         lag, swing_lag = c * motion.coupler.ratio**2, h * motion.rocker.ratio**2
         result = motion.sine * abs(c * motion.coupler.ratio_slope) + motion.sine * abs(h * motion.rocker.ratio_slope)
-        return condition(motion.closure, lag + swing_lag + abs(result), result)
+        (x, y), (u, v) = placement.joints[self.on].position, self.pivot
+        span, sizes = np.hypot(u - x, v - y), np.hypot(x, y) + np.hypot(u, v) + c + h
+        return condition(motion.closure, span * sizes / (c * h), lag + swing_lag + abs(result), result)
 
     def resolve(self, placement, loads, pushes, forces):
         """Add the reactions at A, B and O2, and demand the inner one of the joint it hangs on."""

@@ -196,7 +196,8 @@ class SliderGroup:
         motion = placement.details[self._slider]
         lag = motion.coupler.ratio * motion.coupler.ratio * motion.sine
         result = motion.coupler.ratio_slope * motion.cosine
-        return condition(motion.closure, abs(lag) + abs(lag - result), result)
+        proportion = 1.0 + np.hypot(*placement.joints[self.on].position) / self.coupler_length
+        return condition(motion.closure, proportion, abs(lag) + abs(lag - result), result)
 
     def resolve(self, placement, loads, pushes, forces):
         """Add pin reactions, guide force and moment, and demand the inner reaction of the joint it hangs on."""

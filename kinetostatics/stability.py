@@ -19,7 +19,7 @@ from .loads import Gravity, Spring
 from .mechanism import cam_crank_slider, crank_slider, four_bar
 from .methods import METHODS
 from .methods.certified import enclosure, relative_errors
-from .quantities import components, scale, values
+from .quantities import components
 from .solution import Solution
 from .timing import circumstances
 
@@ -35,7 +35,7 @@ METHOD_SETTINGS = {
     "ours, NumPy": None,
     "ours, compiled": None,
     "ours, torque by powers": None,
-    "ours, single precision": None,
+    "single precision": None,
     "papers' formulas": None,
     "SymPy Kane, lambdified": None,
     "Newton iteration, global system": 6,
@@ -211,13 +211,6 @@ PLACES = (
 )
 
 
-def condition(solution, quantity):
-    """Condition of a quantity at each crank angle, relative to its largest value: geometry times cancellation."""
-    largest = np.max(np.abs(values(solution, quantity)))
-    cancelled = scale(solution, quantity) / largest if largest > 0 else np.inf
-    return solution.condition * max(1.0, float(cancelled))
-
-
 def study(places=PLACES, methods=METHODS, progress=None):
     """Error and behaviour of every method at every place.
 
@@ -244,7 +237,7 @@ def _at(place, number, methods):
     with np.errstate(all="ignore"):
         solution = place.scene(number)
         reference = enclosure(solution, place.quantity, digits=20)
-        bound = ALLOWED * UNIT * condition(solution, place.quantity)
+        bound = ALLOWED * UNIT * solution.condition_of(place.quantity)
         other = _other_assembly(solution, place.quantity)
     common = {"place": place.name, "axis": place.axis, "number": number, "quantity": place.quantity}
     return [

@@ -11,20 +11,26 @@ SHORTEST = 2e-3
 """Shortest stretch of time, s, that is taken to be measured well; a faster function is repeated within it."""
 
 
-def seconds(run, repeats=5):
-    """Median time of one call over some repeats, s; the first call, which may compile, is not counted."""
-    run()
-    start = time.perf_counter()
-    run()
-    calls = max(1, int(SHORTEST / max(time.perf_counter() - start, 1e-9)))
-    return statistics.median(_stretch(run, calls) for _ in range(repeats))
+def seconds(*runs, repeats=5):
+    """Median time of one call of each function, s.
+
+    All take turns, so that a machine that is slow for a while is slow for all of them; first calls, which may compile,
+    are not counted.
+    """
+    for run in runs:
+        run()
+    calls = [max(1, int(SHORTEST / _stretch(run, 1))) for run in runs]
+    rounds = [[_stretch(*pair) for pair in zip(runs, calls, strict=True)] for _ in range(repeats)]
+    return [statistics.median(column) for column in zip(*rounds, strict=True)]
 
 
 def _stretch(run, calls):
+    for _ in range(calls // 2):  # after another function caches are cold
+        run()
     start = time.perf_counter()
     for _ in range(calls):
         run()
-    return (time.perf_counter() - start) / calls
+    return max(time.perf_counter() - start, 1e-9) / calls
 
 
 def circumstances():

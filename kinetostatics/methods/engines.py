@@ -20,6 +20,7 @@ def _solved(solution, angle):
         crank_acceleration=solution.crank_acceleration,
         loads=solution.loads,
         on_gap="nan",
+        engine="numpy",
     )
 
 
@@ -76,5 +77,5 @@ METHODS = (
     Method("ours, compiled", _compiled, ours=True),
     Method("ours, JAX jit", _jax, ours=True),
     Method("ours, torque by powers", _by_power, ours=True),
-    Method("ours, single precision", _single),
+    Method("single precision", _single),
 )

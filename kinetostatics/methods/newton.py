@@ -25,6 +25,8 @@ STEP = np.radians(15.0)
 """Step, at most, of the table of positions from which iterations start: 24 over a turn."""
 STRIDES = 4
 """Steps of continuation from one position of the table to the next."""
+CLOSED = 1e-9
+"""Residual, relative to the largest coordinate, of a position that is found."""
 POSITION, RATE, ACCELERATION, FORCE = range(4)
 
 
@@ -263,7 +265,7 @@ def table(model, angle):
         at = Configuration(model, q, turned)
         for _ in range(4):
             at = Configuration(model, at.corrected(), turned)
-        if not np.abs(at.residual).max() < 1e-9:
+        if not np.abs(at.residual).max() < CLOSED * max(1.0, np.abs(at.q).max()):
             raise NotGivenError(f"continuation finds no position of {model.mechanism.name} at {turned:.6g} rad")
         rows.append((at.q, at.rates(1.0)))
         q = at.q + step * rows[-1][1]

@@ -1,0 +1,282 @@
+"""What a worker of a sweep does: a chunk of designs built as one batch, and reduced to a row of numbers for each.
+
+The loop over designs and crank angles runs block by block, so that values over the turn never leave the cache. Designs
+that cannot be built are set apart, each with its reason, and the others go on together.
+"""
+
+import math
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from . import compiled
+from .case import Variant
+from .elementary import ROUNDING
+from .errors import MissingLibraryError, ParameterError, QuantityError
+from .quantities import components, magnitude
+from .reductions import Output
+from .solution import solve
+
+VALUES = 25_000
+"""Values over designs and angles that the compiled engine computes at a time on each core: what its cache holds."""
+BATCH = 100_000
+"""The same for NumPy, which keeps many such arrays and takes its time for each call."""
+PROBED = 64
+"""Designs among which one that can be built is looked for, to try a sweep before it begins."""
+NEGLIGIBLE = 1e-12
+"""Share of the reference's number below which a design's counts as zero, as in `comparison`."""
+FAILED = "failed"
+"""Column with the reason why a design has no numbers; empty for the others."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """What to do with a chunk of designs; goes to the workers.
+
+    Attributes
+    ----------
+    make, make_reference : function
+        From values in SI by name to a `Variant`; the reference's is None without ratios.
+    columns : tuple of (column, name, factor)
+        Where the values stand in the table of designs.
+    threads : int
+        Cores to use for a chunk.
+    """
+
+    make: Callable[[dict], Variant]
+    make_reference: Callable[[dict], Variant] | None
+    columns: tuple[tuple[str, str, float], ...]
+    outputs: tuple[Output, ...]
+    angles: int
+    engine: str
+    threads: int
+
+    @property
+    def ratios(self):
+        """Places of the outputs that are ratios to the reference."""
+        return [place for place, item in enumerate(self.outputs) if item.ratio]
+
+    @property
+    def sides(self):
+        """Functions that make variants, each with the outputs wanted of what it makes."""
+        own = [(self.make, self.outputs)]
+        return [*own, (self.make_reference, [self.outputs[place] for place in self.ratios])] if self.ratios else own
+
+    def values(self, frame):
+        """What to call the functions with for some designs, in turn: arrays, and plain numbers for a single design."""
+        arrays = {name: frame[column].to_numpy(dtype=float)[:, None] * scale for column, name, scale in self.columns}
+        return [arrays] if len(frame) > 1 else [arrays, {name: float(value[0, 0]) for name, value in arrays.items()}]
+
+
+def run_chunk(job, frame) -> pd.DataFrame:
+    """Outputs of some designs, with the reason for those that have none."""
+    numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
+    step = max(1, BATCH // job.angles if job.engine == "numpy" else len(frame))
+    for start in range(0, len(frame), step):
+        part = slice(start, start + step)
+        numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])
+    return rows(job, frame, numbers, reasons)
+
+
+def rows(job, frame, numbers, reasons):
+    """Table of outputs (outputs, designs) and reasons; no numbers where there is a reason."""
+    numbers[:, reasons != ""] = np.nan
+    found = {item.column: row for item, row in zip(job.outputs, numbers, strict=True)}
+    return pd.DataFrame({**found, FAILED: pd.Series(reasons, frame.index, dtype=str)}, index=frame.index)
+
+
+def suitable_engine(job, designs, engines):
+    """First of the engines that takes the mechanism, tried on the first design that can be built.
+
+    Raises what would otherwise be the reason of every design: `QuantityError` for a quantity that the mechanism does
+    not have, `ParameterError` for a function that makes something else than a variant, or if no engine is left.
+    """
+    for row in range(min(len(designs), PROBED)):
+        *_, plain = job.values(designs.iloc[row : row + 1])
+        try:
+            variants = [make(plain) for make, _ in job.sides]
+        except Exception:
+            continue
+        for variant in variants:
+            if not isinstance(variant, Variant):
+                raise ParameterError(f"sweep: the function must return a kinetostatics.case.Variant, got {variant!r}")
+        try:
+            solutions = [_solution(variant, job.angles) for variant in variants]
+            for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
+                for name in _quantities(outputs):
+                    components(solution, name)
+        except QuantityError:
+            raise
+        except Exception:
+            continue
+        return _engine(job, solutions, engines)
+    return engines[-1]
+
+
+def _engine(job, solutions, engines):
+    first, *others = engines
+    if first == "numpy":
+        return first
+    try:
+        for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
+            compiled.program(solution, [*_quantities(outputs), "closure"])
+    except TypeError as error:
+        if others:
+            return _engine(job, solutions, others)
+        raise ParameterError(f'sweep: {error}; use engine="numpy"') from error
+    return first
+
+
+def _quantities(outputs):
+    return list(dict.fromkeys(item.quantity for item in outputs))
+
+
+def _solution(variant, angles):
+    turn = np.linspace(0.0, 2 * np.pi, angles, endpoint=False)
+    drive = {"crank_speed": variant.crank_speed, "crank_acceleration": variant.crank_acceleration}
+    return solve(variant.mechanism, turn, **drive, loads=variant.loads, on_gap="nan", engine="numpy")
+
+
+# Designs set apart
+
+
+def _compared(job, frame):
+    """Numbers (outputs, designs), ratios among them, and reasons (designs,), empty for designs that have numbers."""
+    (own, reasons), *reference = (_reduced(make, job, frame, outputs) for make, outputs in job.sides)
+    numbers, reasons = np.array(own), np.array(reasons)
+    for above, failing in reference:
+        below = numbers[job.ratios]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = np.where(abs(below) <= NEGLIGIBLE * abs(above), np.inf, above / below)
+        numbers[job.ratios] = np.where((above == 0) & (below == 0), np.nan, ratios)
+        reasons = np.where((reasons == "") & (failing != ""), "reference: " + failing, reasons)
+    for row in np.flatnonzero(np.isnan(numbers).any(axis=0) & (reasons == "")):
+        wrong = (str(item) for item, number in zip(job.outputs, numbers[:, row], strict=True) if np.isnan(number))
+        reasons[row] = f"{', '.join(wrong)} is no number, such as 0 / 0"
+    return numbers, reasons
+
+
+def _reduced(make, job, frame, outputs):
+    """Numbers of a variant (outputs, designs) and reasons (designs,) why it cannot be made or solved."""
+    count = len(frame)
+    if count == 1:
+        return _alone(make, job, frame, outputs)
+    (values,) = job.values(frame)
+    try:
+        variant = make(values)
+    except Exception as error:
+        wrong = _told(error, count)
+        if wrong is None:
+            wrong = _unbuildable(make, job, frame)
+        apart = np.flatnonzero(wrong if wrong.any() else ~wrong)  # all that can be built by themselves only
+        parts = [np.delete(np.arange(count), apart), *apart[:, None]]
+    else:
+        try:
+            return _run(variant, job, count, outputs)
+        except (MissingLibraryError, OSError):
+            raise
+        except Exception as error:
+            wrong = _told(error, count)
+            halves = np.array_split(np.arange(count), 2)
+            parts = halves if wrong is None else [np.flatnonzero(~wrong), *np.flatnonzero(wrong)[:, None]]
+    numbers, reasons = np.empty((len(outputs), count)), np.empty(count, dtype=object)
+    for part in parts:
+        if part.size:
+            numbers[:, part], reasons[part] = _reduced(make, job, frame.iloc[part], outputs)
+    return numbers, reasons
+
+
+def _alone(make, job, frame, outputs):
+    """The same for a single design, as an array of one, so that it does not matter which designs come together."""
+    for values in job.values(frame):
+        try:
+            return _run(make(values), job, 1, outputs)
+        except (MissingLibraryError, OSError):
+            raise
+        except Exception as error:
+            reason = str(error) or type(error).__name__
+    return np.full((len(outputs), 1), np.nan), np.array([reason], dtype=object)
+
+
+def _told(error, count):
+    """Which designs an error is about, as a mask; None if it does not tell."""
+    wrong = np.ravel(getattr(error, "designs", None))
+    return wrong if wrong.dtype == bool and wrong.size == count and wrong.any() else None
+
+
+def _unbuildable(make, job, frame):
+    """Which designs cannot be made, found by halves."""
+    for values in job.values(frame):
+        try:
+            make(values)
+        except Exception:
+            continue
+        return np.zeros(len(frame), dtype=bool)
+    if len(frame) == 1:
+        return np.ones(1, dtype=bool)
+    halves = np.array_split(np.arange(len(frame)), 2)
+    return np.concatenate([_unbuildable(make, job, frame.iloc[half]) for half in halves])
+
+
+# Designs together
+
+
+def _run(variant, job, count, outputs):
+    """Numbers (outputs, designs), and the reasons (designs,) of those that do not close."""
+    solution = _solution(variant, job.angles)
+    made = math.prod(solution.shape[:-1])
+    if made not in (1, count):
+        raise ParameterError(
+            f"the variant made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
+            "(designs, 1) of the values handed in"
+        )
+    names = _quantities(outputs)
+    evaluate = (_by_loop if job.engine == "compiled" else _by_numpy)(solution, [*names, "closure"], made)
+    numbers, gaps = np.empty((len(outputs), made)), np.empty(made, dtype=int)
+    step = max(1, VALUES // job.angles)
+
+    def fill(start):
+        block = slice(start, start + step)
+        with np.errstate(all="ignore"):
+            *found, closure = evaluate(block)
+            values = {name: parts[0] if len(parts) == 1 else magnitude(parts) for name, parts in zip(names, found)}
+            for row, item in enumerate(outputs):
+                numbers[row, block] = item.reduced(values[item.quantity])
+            gaps[block] = (~(closure >= -ROUNDING)).any(axis=0).sum(axis=-1)
+
+    starts = range(0, made, step)
+    if min(job.threads, len(starts)) == 1:
+        list(map(fill, starts))
+    else:
+        with ThreadPoolExecutor(job.threads) as threads:
+            list(threads.map(fill, starts))
+    reasons = np.full(made, "", dtype=object)
+    for row in np.flatnonzero(gaps):
+        where = f"at {gaps[row]} of {job.angles} crank angles"
+        reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
+    return np.broadcast_to(numbers, (len(outputs), count)), np.broadcast_to(reasons, count)
+
+
+def _by_loop(solution, quantities, count):
+    """Function from a block of designs to the components of each quantity over the turn (parts, block, N), compiled."""
+    program = compiled.program(solution, quantities)
+    angle = np.array(solution.crank_angle, ndmin=2)
+    turn, tables = program.turn(angle), program.tabulated(solution)
+    edges = np.cumsum(program.trace.widths)[:-1]
+
+    def evaluate(block):
+        shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
+        return np.split(program.at(angle, *turn, shared, program.parameters[block]), edges)
+
+    return evaluate
+
+
+def _by_numpy(solution, quantities, count):
+    """The same by NumPy, all designs at a time."""
+    with np.errstate(all="ignore"):
+        found = [components(solution, name) for name in quantities]
+    shaped = [np.reshape(parts, (len(parts), count, solution.shape[-1])) for parts in found]
+    return lambda block: [parts[:, block] for parts in shaped]

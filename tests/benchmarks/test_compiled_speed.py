@@ -1,0 +1,258 @@
+"""How fast compiled: the sawframe, all reactions and torque, in one call and in sweeps, against C, SymPy and Dask.
+
+Run by ``python -m pytest tests/benchmarks --benchmark-only``. Rivals take turns within one run and least times are
+compared, so that a machine that has other work now and then spoils neither ratios nor limits; limits are those of the
+plain sawframe's requirement, figures are printed and kept in the benchmark's `extra_info`.
+"""
+
+import ctypes
+import shutil
+import subprocess
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+import pytest
+from test_speed import (
+    CENTRE,
+    COUPLER,
+    COUPLER_INERTIA,
+    COUPLER_MASS,
+    CRANK,
+    GRAVITY,
+    SLIDER_MASS,
+    SPEED,
+    assert_same,
+    run,
+    seconds,
+    turn,
+)
+
+import kinetostatics as ks
+from kinetostatics import compiled, timing
+from kinetostatics.methods import kane
+
+SAW = ks.load_case("sawframe_2r63")
+FORCES = ("O", "A", "B", "guide_force", "guide_moment", "balancing_torque")
+CAM_FORCES = (*FORCES, "cam_force", "slot_force")
+NONE = np.empty((0, 1, 360))
+BLOCK = 64
+"""Designs whose results, 1.5 MB, do not leave the cache."""
+DESIGN = np.array([SPEED, CRANK, COUPLER, CENTRE, COUPLER_MASS, COUPLER_INERTIA, SLIDER_MASS, GRAVITY])
+"""The plain sawframe as the C program takes it."""
+VARIED = {
+    "plain": {"crank_length": "0.25..0.35 m", "slider.mass": "500..700 kg"},
+    "cam-circle": {"spring.stiffness": "600..900 kN/m", "cam.centre.x": "-30..-10 mm"},
+}
+OUTPUTS = ("largest O", "mean_absolute balancing_torque", "range guide_force")
+MANY = 100_000
+
+pytestmark = pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)")
+
+
+@pytest.fixture(scope="module")
+def tell(request):
+    """Prints a line past pytest's capturing; first of all the machine and the versions."""
+    capturing = request.config.pluginmanager.getplugin("capturemanager")
+
+    def line(text):
+        with capturing.global_and_fixture_disabled():
+            print(f"\n{text}", end="")
+
+    for text in timing.circumstances().values():
+        line(text)
+    return line
+
+
+@pytest.fixture
+def one_core(monkeypatch):
+    monkeypatch.setattr(compiled, "cores", lambda: 1)
+
+
+@pytest.fixture(scope="module")
+def c(tmp_path_factory):
+    """The C program as a library, its divisions as ours, and with them taken together."""
+    gcc = shutil.which("gcc")
+    if gcc is None:
+        pytest.skip("gcc is not installed")
+
+    def library(*options):
+        source, built = Path(__file__).parent / "crank_slider.c", tmp_path_factory.mktemp("c") / "crank_slider.so"
+        # without the second option a root's error number keeps gcc from vectorising
+        options = ["-O3", "-fno-math-errno", "-march=native", "-fPIC", "-shared", *options]
+        subprocess.run([gcc, *options, source, "-o", built, "-lm"], check=True)
+        return ctypes.CDLL(str(built))
+
+    return library(), library("-DRECIPROCAL")
+
+
+def called(function, *arguments):
+    """Function that calls one of C with arrays and numbers."""
+    given = [
+        ctypes.c_void_p(item.ctypes.data) if isinstance(item, np.ndarray) else ctypes.c_long(item) for item in arguments
+    ]
+    return partial(function, *given)
+
+
+def program(variant, forces=FORCES):
+    return compiled.program(SAW.solve(variant, 8), forces)
+
+
+def shared(made, designs=BLOCK):
+    """Function that computes designs with crank angles in common, and the sines and cosines it takes."""
+    angle = turn(360)[None].copy()
+    sine, cosine = made.turn(angle)
+    parameters = np.repeat(made.parameters, designs, axis=0)
+    return partial(made.at, angle, sine, cosine, NONE, parameters), sine, cosine
+
+
+def test_one_turn_takes_12_us_and_is_near_c_and_far_from_sympy(benchmark, tell, one_core, c):
+    made, rows, few = program("plain"), np.empty((9, 360)), turn(360)
+    ours, plain_c = partial(made, few), called(c[0].turn, DESIGN, 360, few, rows)
+    by_kane = [kane.all_forces(SAW.solve("plain", count)) for count in (360, 3600)]
+    plain_c()
+    found = benchmark(ours)[:, 0]
+    assert_same(found, rows)
+    named = by_kane[0]()
+    assert_same(found, [row for name in FORCES for row in named[name]])
+
+    spent, in_c, theirs, more, theirs_more = seconds(ours, plain_c, by_kane[0], partial(made, turn(3600)), by_kane[1])
+    benchmark.extra_info.update(us=spent * 1e6, times_c=spent / in_c, sympy_times=theirs / spent)
+    tell(
+        f"360 angles in a call: {spent * 1e6:.1f} us, {spent / in_c:.2f} times as long as C, {in_c * 1e6:.1f} us;"
+        f" SymPy Kane {theirs * 1e6:.0f} us, {theirs / spent:.1f} times as long, at 3600 angles"
+        f" {theirs_more / more:.1f} times"
+    )
+    assert spent <= 12e-6
+    assert spent <= 1.6 * in_c
+    assert theirs >= 5 * spent
+    assert theirs_more > more
+
+
+def test_one_long_turn_takes_30_ns_an_angle_and_is_near_c(benchmark, tell, one_core, c):
+    made, angles = program("plain"), turn(MANY)
+    rows = np.empty((9, angles.size))
+    ours, plain_c = partial(made, angles), called(c[0].turn, DESIGN, angles.size, angles, rows)
+    plain_c()
+    assert_same(benchmark(ours)[:, 0], rows)
+    spent, in_c = seconds(ours, plain_c) / angles.size * 1e9
+    benchmark.extra_info.update(ns_an_angle=spent, times_c=spent / in_c)
+    tell(f"{MANY} angles: {spent:.1f} ns each, {spent / in_c:.2f} times as long as C, {in_c:.1f} ns")
+    assert spent <= 30
+    assert spent <= 1.6 * in_c
+
+
+def test_designs_with_angles_in_common_take_12_ns_an_angle_and_are_near_c(benchmark, tell, one_core, c):
+    ours, sine, cosine = shared(program("plain"))
+    rows = np.empty((BLOCK, 9, 360))
+    plain_c, fewer_divisions = (
+        called(library.sweep, np.repeat(DESIGN[None], BLOCK, axis=0), BLOCK, 360, sine, cosine, rows) for library in c
+    )
+    plain_c()
+    assert_same(benchmark(ours).swapaxes(0, 1)[-1], rows[-1])
+    spent, in_c, fewer = seconds(ours, plain_c, fewer_divisions) / (BLOCK * 360) * 1e9
+    benchmark.extra_info.update(ns_an_angle=spent, times_c=spent / in_c, times_c_by_reciprocals=spent / fewer)
+    tell(
+        f"{BLOCK} designs x 360 angles in common: {spent:.2f} ns an angle, {spent / in_c:.2f} times as long as C,"
+        f" {in_c:.2f} ns; C that multiplies by reciprocals, {fewer:.2f} ns: {spent / fewer:.2f} times"
+    )
+    assert spent <= 12
+    assert spent <= 1.6 * in_c
+
+
+def test_cam_takes_at_most_two_and_a_half_times_as_long_as_none(benchmark, tell, one_core):
+    plain, *cams = (
+        shared(program(*pair))[0]
+        for pair in (("plain", FORCES), ("cam-circle", CAM_FORCES), ("cam-cosine", CAM_FORCES))
+    )
+    benchmark(cams[0])
+    times = seconds(plain, *cams) / (BLOCK * 360) * 1e9
+    ratios = times[1:] / times[0]
+    benchmark.extra_info.update(circle=ratios[0], cosine=ratios[1])
+    tell(
+        f"cam-balanced, ns an angle: circle {times[1]:.2f}, {ratios[0]:.2f} times plain;"
+        f" cosine law {times[2]:.2f}, {ratios[1]:.2f} times"
+    )
+    assert ratios.max() <= 2.5
+
+
+def swept(variant, designs, **options):
+    """Table of the three outputs, and the time it takes, s."""
+    start = perf_counter()
+    table = ks.sweep(SAW, designs, OUTPUTS, variant=variant, progress=False, **options)
+    return table, perf_counter() - start
+
+
+def report(variant, count, repeats):
+    """For a process of its own: prints least time, s, peak memory and size of the tables, MB."""
+    import resource
+
+    designs = ks.designs.random(VARIED[variant], count)
+    swept(variant, designs[:10_000])
+    spent = []
+    for _ in range(repeats):
+        table, seconds = swept(variant, designs)
+        spent.append(seconds)
+    size = sum(frame.memory_usage(deep=True).sum() for frame in (designs, table))
+    print(min(spent), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3, size / 1e6)
+
+
+def reported(variant, count, repeats=3):
+    code = f"import test_compiled_speed as here; here.report({variant!r}, {count}, {repeats})"
+    return [float(text) for text in run(code, {}).split()]
+
+
+def test_sweep_of_many_designs_takes_seconds_and_no_more_memory_than_its_table(benchmark, tell):
+    limits = {"plain": 2.0, "cam-circle": 5.0}
+    benchmark.pedantic(reported, ("plain", MANY, 1), rounds=1)
+    for variant, limit in limits.items():
+        spent, memory, size = reported(variant, MANY)
+        benchmark.extra_info[f"{variant}, s"] = spent
+        tell(f"{MANY} designs x 360 angles, three reductions, {variant}: {spent:.2f} s, {memory:.0f} MB")
+        assert spent < limit
+        assert memory < 500
+        if variant == "plain":
+            spent_10, memory_10, size_10 = reported(variant, 10 * MANY, repeats=1)
+            tell(
+                f"ten times as many: {spent_10 / spent:.1f} times as long, {memory_10 - memory:.0f} MB more, of which"
+                f" the tables of designs and results take {size_10 - size:.0f} MB"
+            )
+            assert spent_10 < 13 * spent
+            assert memory_10 - memory < 1.5 * (size_10 - size)
+
+
+def test_designs_that_are_impossible_hardly_slow_a_sweep_down(benchmark, tell):
+    good = ks.designs.random({"coupler_length": "1.8..2.2 m", "slider.mass": "500..700 kg"}, MANY)
+    bad = good.copy()
+    bad.loc[::200, "coupler_length [m]"] = 0.2
+    bad.loc[100::200, "slider.mass [kg]"] = -1.0
+    table, _ = benchmark.pedantic(swept, ("plain", bad), rounds=1, warmup_rounds=1)
+    least = np.min([[swept("plain", designs)[1] for designs in (good, bad)] for _ in range(3)], axis=0)
+    benchmark.extra_info["times as long"] = least[1] / least[0]
+    reasons = table["failed"].value_counts()
+    tell(f"1 % impossible designs: {least[1] / least[0]:.2f} times as long; {reasons.iloc[1:].to_dict()}")
+    assert (table["failed"] != "").to_numpy().nonzero()[0].tolist() == list(range(0, MANY, 100))
+    assert least[1] <= 2 * least[0]
+
+
+def test_dask_is_nearly_as_fast_as_local_processes(benchmark, tell):
+    distributed = pytest.importorskip("distributed", reason="distributed is not installed (extra: distributed)")
+    designs = ks.designs.random(VARIED["plain"], 2 * MANY)
+    local = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with (
+        ProcessPoolExecutor(2, mp_context=get_context("spawn")) as processes,
+        distributed.LocalCluster(**local) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        executors = processes, client.get_executor()
+        for executor in executors:
+            swept("plain", designs[: MANY // 2], executor=executor)
+        benchmark.pedantic(swept, ("plain", designs), {"executor": executors[1]}, rounds=1)
+        times = [[swept("plain", designs, executor=executor)[1] for executor in executors] for _ in range(3)]
+    here, dask = np.min(times, axis=0)
+    benchmark.extra_info["throughput of Dask"] = here / dask
+    tell(f"{2 * MANY} designs: two processes {here:.2f} s, two workers of Dask {dask:.2f} s, {here / dask:.0%}")
+    assert here >= 0.8 * dask
