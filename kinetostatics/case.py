@@ -344,7 +344,7 @@ def _guide(table):
 
 def _balanced(mechanism, table):
     weights = {
-        name: balancing.Counterweight(**getattr(table, name).model_dump())
+        name: balancing.Counterweight(**dict(getattr(table, name)))
         for name in ("crank", "coupler", "rocker")
         if getattr(table, name) is not None
     }

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -20,10 +21,8 @@ from .quantities import components, magnitude
 from .reductions import Output
 from .solution import solve
 
-VALUES = 25_000
-"""Values over designs and angles that the compiled engine computes at a time on each core: what its cache holds."""
-BATCH = 100_000
-"""The same for NumPy, which keeps many such arrays and takes its time for each call."""
+VALUES = 100_000
+"""Values over designs and angles computed at a time on each core: about what its cache holds."""
 PROBED = 64
 """Designs among which one that can be built is looked for, to try a sweep before it begins."""
 NEGLIGIBLE = 1e-12
@@ -74,7 +73,7 @@ class Job:
 def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
-    step = max(1, BATCH // job.angles if job.engine == "numpy" else len(frame))
+    step = max(1, VALUES // job.angles if job.engine == "numpy" else len(frame))
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
         numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])
@@ -94,7 +93,7 @@ def suitable_engine(job, designs, engines):
     Raises what would otherwise be the reason of every design: `QuantityError` for a quantity that the mechanism does
     not have, `ParameterError` for a function that makes something else than a variant, or if no engine is left.
     """
-    for row in range(min(len(designs), PROBED)):
+    for row in range(len(designs)):
         *_, plain = job.values(designs.iloc[row : row + 1])
         try:
             variants = [make(plain) for make, _ in job.sides]
@@ -203,8 +202,8 @@ def _alone(make, job, frame, outputs):
 
 def _told(error, count):
     """Which designs an error is about, as a mask; None if it does not tell."""
-    wrong = np.ravel(getattr(error, "designs", None))
-    return wrong if wrong.dtype == bool and wrong.size == count and wrong.any() else None
+    wrong: Any = getattr(error, "designs", None)
+    return np.ravel(wrong) if np.size(wrong) == count and np.any(wrong) else None
 
 
 def _unbuildable(make, job, frame):
@@ -242,7 +241,7 @@ def _run(variant, job, count, outputs):
         block = slice(start, start + step)
         with np.errstate(all="ignore"):
             *found, closure = evaluate(block)
-            values = {name: parts[0] if len(parts) == 1 else magnitude(parts) for name, parts in zip(names, found)}
+            values = dict(zip(names, map(_size, found), strict=True))
             for row, item in enumerate(outputs):
                 numbers[row, block] = item.reduced(values[item.quantity])
             gaps[block] = (~(closure >= -ROUNDING)).any(axis=0).sum(axis=-1)
@@ -258,6 +257,10 @@ def _run(variant, job, count, outputs):
         where = f"at {gaps[row]} of {job.angles} crank angles"
         reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
     return np.broadcast_to(numbers, (len(outputs), count)), np.broadcast_to(reasons, count)
+
+
+def _size(parts):
+    return parts[0] if len(parts) == 1 else magnitude(parts)
 
 
 def _by_loop(solution, quantities, count):

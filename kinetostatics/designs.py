@@ -49,7 +49,7 @@ def grid(spreads) -> pd.DataFrame:
     """
     axes = _read(spreads, _axis)
     values = np.stack(np.meshgrid(*(axis for axis, _ in axes.values()), indexing="ij"), axis=-1)
-    return pd.DataFrame(values.reshape(-1, len(axes)), columns=_columns(axes))
+    return pd.DataFrame(values.reshape(-1, len(axes)), columns=columns(axes))
 
 
 def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
@@ -96,7 +96,7 @@ def sample(spreads, uniform) -> pd.DataFrame:
     fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
     checks.require("designs", None if fits else f"{len(found)} parameters need as many columns, got {numbers.shape}")
     values = [distribution.ppf(column) for (distribution, _), column in zip(found.values(), numbers.T, strict=True)]
-    return pd.DataFrame(np.transpose(values), columns=_columns(found))
+    return pd.DataFrame(np.transpose(values), columns=columns(found))
 
 
 def distributions(spreads):
@@ -118,7 +118,8 @@ def _read(spreads, reader):
     return found
 
 
-def _columns(found):
+def columns(found):
+    """Headings of parameters with units, from pairs that end with the unit, by parameter."""
     return [f"{name} [{unit}]" for name, (_, unit) in found.items()]
 
 

@@ -1,7 +1,7 @@
 """Chunks of a sweep handed to an executor, and run again when a worker dies."""
 
 from collections import Counter, deque
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 
 import numpy as np
 import pandas as pd
@@ -15,7 +15,65 @@ WAITING = 256
 """Chunks handed to an executor at a time; two for each worker if it tells how many it has."""
 
 
-def computed(job, rows_of, numbers, executor):
+class Workers:
+    """An executor, or this process; a pool of processes is replaced when it breaks because one of them died."""
+
+    def __init__(self, executor=None):
+        self._given = self._current = executor or _Here()
+        count = getattr(executor, "_max_workers", None)
+        self.capacity = 1 if executor is None else 2 * count if count else WAITING
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self._let_go()
+
+    def submit(self, *call) -> Future:
+        """Future of a call, as from any executor."""
+        try:
+            return self._current.submit(*call)
+        except BrokenExecutor:
+            if not isinstance(self._current, ProcessPoolExecutor):
+                raise
+            self._let_go()
+            self._current = _alike(self._current)
+            return self._current.submit(*call)
+
+    def survived(self, *call):
+        """Result of a call in a tuple; an empty one if the worker died."""
+        try:
+            return (self.submit(*call).result(),)
+        except Exception as error:
+            _deaths(error)
+            return ()
+
+    def _let_go(self):
+        if self._current is not self._given:
+            self._current.shutdown(cancel_futures=True)
+
+
+class _Here(Executor):
+    """This process and thread, at once."""
+
+    def submit(self, function, /, *arguments, **options):
+        future: Future = Future()
+        future.set_result(function(*arguments, **options))
+        return future
+
+
+def _alike(pool):
+    """A pool of processes like one that broke, whose options nothing public tells."""
+    return ProcessPoolExecutor(
+        pool._max_workers,
+        mp_context=pool._mp_context,
+        initializer=pool._initializer,
+        initargs=pool._initargs,
+        max_tasks_per_child=pool._max_tasks_per_child,
+    )
+
+
+def computed(job, rows_of, numbers, workers):
     """Number and result of each chunk, in the order in which they are done.
 
     Parameters
@@ -24,19 +82,10 @@ def computed(job, rows_of, numbers, executor):
     rows_of : function
         From the number of a chunk to its designs.
     numbers : sequence of int
-    executor : Executor or None
-        None: here, one after the other.
+    workers : Workers
     """
-    if executor is None:
-        for number in numbers:
-            yield number, run_chunk(job, rows_of(number))
-        return
-    with _Workers(executor) as workers:
-        yield from _by_workers(job, rows_of, numbers, workers)
-
-
-def _by_workers(job, rows_of, numbers, workers):
-    waiting, suspects, running = deque(numbers), [], {}
+    waiting, suspects = deque(numbers), []
+    running: dict[Future, int] = {}
     deaths: Counter[int] = Counter()
     try:
         while waiting or running:
@@ -49,14 +98,11 @@ def _by_workers(job, rows_of, numbers, workers):
                     found = future.result()
                 except Exception as error:
                     deaths[number] += _deaths(error)
-                    if deaths[number] < ATTEMPTS:
-                        waiting.appendleft(number)
-                    else:
-                        suspects.append(number)
+                    (waiting.appendleft if deaths[number] < ATTEMPTS else suspects.append)(number)
                 else:
                     yield number, found
-        if suspects:
-            _require_life(job, rows_of(suspects[0]), workers)
+        if suspects and not workers.survived(run_chunk, job, rows_of(suspects[0])[:0]):
+            raise KinetostaticsError("sweep: the workers of the executor die before they compute anything")
         for number in suspects:
             yield number, _narrowed(job, rows_of(number), workers)
     finally:
@@ -73,62 +119,11 @@ def _deaths(error):
     raise error
 
 
-def _require_life(job, frame, workers):
-    """Raise an error if workers die without any design."""
-    try:
-        workers.submit(run_chunk, job, frame.iloc[:0]).result()
-    except Exception as error:
-        _deaths(error)
-        raise KinetostaticsError("sweep: the workers of the executor die before they compute anything") from error
-
-
 def _narrowed(job, frame, workers):
     """Outputs of designs that may kill their worker, run by themselves: half by half, down to those that do it."""
-    try:
-        return workers.submit(run_chunk, job, frame).result()
-    except Exception as error:
-        _deaths(error)
+    for found in workers.survived(run_chunk, job, frame):
+        return found
     if len(frame) == 1:
         return rows(job, frame, np.full((len(job.outputs), 1), np.nan), np.array(["the worker died with this design"]))
     halves = np.array_split(np.arange(len(frame)), 2)
     return pd.concat([_narrowed(job, frame.iloc[half], workers) for half in halves])
-
-
-class _Workers:
-    """An executor; of processes, one that is replaced when it breaks because a process died."""
-
-    def __init__(self, executor):
-        self._given = self._current = executor
-        workers = getattr(executor, "_max_workers", None)
-        self.capacity = 2 * workers if workers else WAITING
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *error):
-        self._let_go()
-
-    def submit(self, *call):
-        try:
-            return self._current.submit(*call)
-        except BrokenExecutor:
-            if not isinstance(self._current, ProcessPoolExecutor):
-                raise
-            self._let_go()
-            self._current = _alike(self._current)
-            return self._current.submit(*call)
-
-    def _let_go(self):
-        if self._current is not self._given:
-            self._current.shutdown(cancel_futures=True)
-
-
-def _alike(pool):
-    """A pool of processes like one that broke, which does not tell its options otherwise."""
-    return ProcessPoolExecutor(
-        pool._max_workers,
-        mp_context=pool._mp_context,
-        initializer=pool._initializer,
-        initargs=pool._initargs,
-        max_tasks_per_child=pool._max_tasks_per_child,
-    )

@@ -100,8 +100,8 @@ def condition(margin, proportion=1.0, terms=None, result=None):
     """
     xp = namespace(margin)
     with np.errstate(divide="ignore", invalid="ignore"):
-        vanishing = 1.0 / xp.where(margin < -ROUNDING, xp.nan, margin * (margin > 0))
-        found = xp.maximum(proportion * vanishing, xp.sqrt(vanishing))
+        vanishing = 1.0 / xp.where(margin < -ROUNDING, xp.nan, xp.maximum(margin, 0.0))
+        found = xp.maximum(xp.maximum(proportion, SMALLEST) * vanishing, xp.sqrt(vanishing))
         if terms is None:
             return found
         cancelled = terms / xp.maximum(abs(result) - ROUNDING * found * terms, 0.0)

@@ -9,6 +9,8 @@ from .units import factor
 
 PARTS = {"x": 0, "y": 1, "along": 0, "across": 1}
 """Names of the components of a pair."""
+GUIDE = ("guide_angle", "guide_offset")
+"""What two points of the guide fix, if they are given."""
 
 
 def paths(table) -> dict[str, str]:

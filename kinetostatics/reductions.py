@@ -35,7 +35,8 @@ def _peak(values):
     highest = np.maximum.reduceat(height, np.searchsorted(design, np.arange(len(values))))
     _, first = np.unique(np.where(height < highest[design], -1, design), return_index=True)
     first = first[-len(values) :]
-    return highest, 2 * np.pi * ((place + shift)[first] % count) / count
+    where = 2 * np.pi * ((place + shift)[first] % count) / count
+    return highest, np.where(np.isnan(highest), np.nan, where)
 
 
 def _between(near):
@@ -143,8 +144,10 @@ def parsed(text) -> Output:
     """
     if isinstance(text, Output):
         return text
-    ratio, reduction, quantity = re.fullmatch(r"\s*(ratio\s)?\s*(\S*)\s*(.*?)\s*", str(text)).groups()
-    found = Output(quantity, reduction, bool(ratio))
+    words = str(text).split()
+    ratio = words[:1] == ["ratio"]
+    reduction, *quantity = words[ratio:] or [""]
+    found = Output(" ".join(quantity), reduction, ratio)
     if quantity and (reduction in REDUCTIONS or found.order is not None):
         return found
     names = ", ".join((*REDUCTIONS, "harmonic_1", "harmonic_2 ..."))

@@ -9,7 +9,7 @@ import inspect
 import pickle
 import re
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import replace
 from functools import partial
 
@@ -18,9 +18,9 @@ import pandas as pd
 
 from . import __version__, checks, compiled
 from .case import Case, Variant
-from .chunks import FAILED, Job, suitable_engine
+from .chunks import FAILED, PROBED, Job, suitable_engine
 from .dataset import Dataset, Parts
-from .dispatch import computed
+from .dispatch import Workers, computed
 from .errors import ParameterError
 from .parameters import paths, si_columns
 from .reductions import Output, parsed
@@ -99,18 +99,21 @@ def sweep(
     ...     ["ratio mean_absolute balancing_torque"], variant="cam-circle", progress=False,
     ... )
     >>> table.iloc[:, 1].round(2).tolist()
-    [2.83, 8.55, 3.47]
+    [3.92, 7.56, 50.56]
     """
-    job, compared = _job(source, designs, outputs, variant, reference, angles, engine, executor, chunk)
+    job, engines, compared = _job(source, designs, outputs, variant, reference, angles, engine, executor, chunk)
     parts = Parts(designs, chunk)
     if folder is not None:
         parts = Dataset(designs, chunk, folder, _identity(job, designs, compared, chunk))
     todo = [number for number in parts.numbers if not parts.holds(number)]
-    with _bar(progress, len(designs)) as bar, closing(computed(job, parts.rows, todo, executor)) as found:
+    with Workers(executor) as workers, _bar(progress, len(designs)) as bar:
+        for engine in workers.survived(suitable_engine, job, designs[:PROBED], engines):
+            job = replace(job, engine=engine)
         bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
-        for number, rows in found:
-            parts.keep(number, rows)
-            bar.update(len(rows))
+        with closing(computed(job, parts.rows, todo, workers)) as found:
+            for number, rows in found:
+                parts.keep(number, rows)
+                bar.update(len(rows))
     return parts.table()
 
 
@@ -124,7 +127,7 @@ def _bar(shown, total):
 
 
 def _job(source, designs, outputs, variant, reference, angles, engine, executor, chunk):
-    """The job, and what it compares: the variants of a case, or a function and a variant."""
+    """The job, the engines to try, and what is compared: variants of a case, or a function and a variant."""
     make, known, compared = (
         _of_case(source, variant, reference) if isinstance(source, Case) else _of_function(source, reference)
     )
@@ -154,19 +157,23 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
     engines = [engine] if engine else ["compiled", "numpy"] if large else ["numpy"]
     threads = 1 if executor is not None else compiled.cores()
     job = Job(make[0], make[1] if ratios else None, columns, wanted, angles, engines[0], threads)
-    job = replace(job, engine=suitable_engine(job, designs, engines))
     if isinstance(executor, ProcessPoolExecutor):
         _require_portable(job)
-    return job, compared if ratios else compared[:1]
+    return job, engines, compared if ratios else compared[:1]
 
 
 def _of_case(case, variant, reference):
     """Functions that make the varied variant and the reference, what may be varied, and the variants themselves."""
+    pair = chosen(case, variant, reference)
+    make = [partial(_varied, replace(item, loads=(), folder=item.folder.resolve())) for item in pair]
+    return make, paths(pair[0].table), pair
+
+
+def chosen(case, variant=None, reference=None):
+    """The variant that designs vary, and the one that ratios refer to."""
     reference = reference or case.reference
     variant = variant or next((name for name in case.variants if name != reference), reference)
-    chosen = case.variant(variant), case.variant(reference)
-    make = [partial(_varied, replace(item, loads=(), folder=item.folder.resolve())) for item in chosen]
-    return make, paths(chosen[0].table), chosen
+    return case.variant(variant), case.variant(reference)
 
 
 def _of_function(function, reference):
@@ -259,8 +266,6 @@ def _content(item):
         files = (getattr(getattr(table, part, None), "table", None) for part in ("cam", "process_force"))
         return table.model_dump_json().encode() + b"".join((item.folder / file).read_bytes() for file in files if file)
     text = re.sub(r" at 0x\w+", "", repr(item))
-    try:
+    with suppress(OSError, TypeError):  # of a session that keeps none, or no function but an object that can be called
         text += inspect.getsource(item)
-    except (OSError, TypeError):  # written in a session, or no function but an object that can be called
-        pass
     return text.encode()

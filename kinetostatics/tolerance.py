@@ -1,15 +1,19 @@
 """Tolerances: what the spread of parameters does to outputs, and whose spread matters most."""
 
+import itertools
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from . import designs
+from . import checks, designs
+from .case import Case
 from .errors import ParameterError
-from .reductions import parsed
-from .sweeps import FAILED, sweep
+from .parameters import paths
+from .reductions import Output, parsed
+from .sweeps import FAILED, chosen, sweep
 
 LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 
@@ -44,7 +48,7 @@ class Tolerances:
         return float(((values > above) & (values < below)).mean())
 
 
-def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, **options) -> Tolerances:
+def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, **options) -> Tolerances:
     """Monte Carlo study of the spread of parameters, on the path of `sweep`.
 
     Parameters
@@ -53,14 +57,16 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, **options) ->
     outputs : sequence of str
         As for `sweep`: "ratio mean_absolute balancing_torque" ...
     spreads : dict of parameter to text, optional
-        "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m"; the case file's
-        [tolerances] unless given.
+        "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m"; unless given those of
+        the case file's [tolerances] that the variant has.
     count : int
         Designs, a power of two; the Sobol indices take as many again for every parameter, and twice more.
     seed : int
-        Of the scrambled Sobol sequence.
+        Of the scrambled Sobol sequences.
+    folder : path
+        Holds a Parquet dataset for each of the sweeps behind a study, from which one that was stopped goes on.
     options
-        As for `sweep`: variant, reference, engine, executor ...
+        As for `sweep`: variant, reference, angles, engine, executor, chunk, progress.
 
     Returns
     -------
@@ -70,41 +76,58 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, **options) ->
     ------
     ParameterError
         No spreads, a text that cannot be read, a count that is no power of two, or designs within the spread that
-        cannot be computed, which makes the indices meaningless.
+        cannot be computed or have an infinite output, which makes the indices meaningless.
     """
+    if spreads is None and isinstance(case, Case):
+        known = paths(chosen(case, options.get("variant"), options.get("reference"))[0].table)
+        spreads = {name: text for name, text in case.tolerances.items() if name in known}
+    power = isinstance(count, int) and count > 1 and not count & (count - 1)
+    checks.require(
+        "tolerances",
+        None if spreads else 'no spreads are given, nor has the case file any for this variant, in "tolerances"',
+        None if power else f"count must be a power of two, got {count!r}",
+    )
+    found = designs.distributions(spreads)
+    names = tuple(dict.fromkeys(parsed(item).column for item in _listed(outputs)))
+    sweeps = itertools.count()
+
+    def run(table):
+        place = None if folder is None else Path(folder) / f"sweep-{next(sweeps)}"
+        return sweep(case, table, outputs, folder=place, **options)
+
+    def values(numbers):
+        table = run(pd.DataFrame(numbers.T, columns=designs.columns(found)))
+        _require_finite(table, names)
+        return table[list(names)].to_numpy().T
+
+    table = run(designs.sobol(spreads, count, seed))
+    return Tolerances(table, names, _sensitivity(values, found, names, count, seed), dict(spreads))
+
+
+def _listed(outputs):
+    return [outputs] if isinstance(outputs, str | Output) else outputs
+
+
+def _require_finite(table, names):
+    infinite = np.isinf(table[list(names)]).any(axis=1)
+    reasons = table[FAILED].where(~infinite, "an output is infinite")
+    wrong = reasons[reasons != ""]
+    if len(wrong):
+        raise ParameterError(
+            f"tolerances: {len(wrong)} of {len(table)} designs within the spread cannot be computed, for example: "
+            f"{wrong.iloc[0]}; narrow the spreads, or use sweep, which keeps them"
+        )
+
+
+def _sensitivity(values, found, names, count, seed):
+    """First-order and total Sobol index by output and parameter."""
     from scipy.stats import sobol_indices
 
-    spreads = dict(spreads or getattr(case, "tolerances", {}))
-    if not spreads:
-        raise ParameterError('tolerances: no spreads are given, nor does the case file have a table "tolerances"')
-    if count < 2 or count & (count - 1):
-        raise ParameterError(f"tolerances: count must be a power of two, got {count}")
-    found = designs.distributions(spreads)
-    names = tuple(parsed(item).column for item in ([outputs] if isinstance(outputs, str) else outputs))
-    columns = [f"{name} [{unit}]" for name, (_, unit) in found.items()]
-
-    def run(values):
-        table = sweep(case, pd.DataFrame(values.T, columns=columns), outputs, **options)
-        failing = table[table[FAILED] != ""]
-        if len(failing):
-            raise ParameterError(
-                f"tolerances: {len(failing)} of {len(table)} designs within the spread cannot be computed, for example: "
-                f"{failing[FAILED].iloc[0]}; narrow the spreads, or use sweep, which keeps them"
-            )
-        return np.array(table[list(names)]).T
-
-    table = sweep(case, designs.sobol(spreads, count, seed), outputs, **options)
-    indices: Any = sobol_indices(
-        func=run, n=count, dists=[distribution for distribution, _ in found.values()], rng=np.random.default_rng(seed)
-    )
-    rows = [
-        {
-            "output": name,
-            "parameter": parameter,
-            "first order": np.atleast_2d(indices.first_order)[row, column],
-            "total": np.atleast_2d(indices.total_order)[row, column],
-        }
-        for row, name in enumerate(names)
-        for column, parameter in enumerate(found)
-    ]
-    return Tolerances(table, names, pd.DataFrame(rows).set_index(["output", "parameter"]), spreads)
+    shape = len(names), len(found)
+    first = total = np.ones(shape)  # what a single parameter causes
+    if len(found) > 1:
+        distributions = [distribution for distribution, _ in found.values()]
+        indices: Any = sobol_indices(func=values, n=count, dists=distributions, rng=np.random.default_rng(seed))
+        first, total = (np.reshape(part, shape) for part in (indices.first_order, indices.total_order))
+    index = pd.MultiIndex.from_product([names, found], names=["output", "parameter"])
+    return pd.DataFrame({"first order": first.ravel(), "total": total.ravel()}, index=index)

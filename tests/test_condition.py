@@ -21,23 +21,26 @@ def solved(mechanism, angle=ANGLES, loads=(), **options):
 # What it means
 
 
-def assert_from_first_to_second_power(condition, cosine):
-    """1 / cos^2, and more, up to its square, only where terms of the angular acceleration cancel."""
-    assert np.all(condition * cosine**2 > 1 - 1e-12)
-    assert np.all(condition * cosine**4 < 1 + 1e-12)
+def assert_from_first_to_second_power(condition, cosine, proportion):
+    """1 / cos^2 in proportion, and more, up to its square, only where terms of the angular acceleration cancel."""
+    first = np.maximum(proportion / cosine**2, 1 / abs(cosine))
+    assert np.all(condition > first * (1 - 1e-12))
+    assert np.all(condition < first / cosine**2 * (1 + 1e-12))
 
 
 @each_assembly
 def test_condition_of_a_slider_group_is_that_of_the_coupler_against_the_guide(assembly):
     s = solved(ks.crank_slider(0.3, 0.5, guide_angle=0.4, guide_offset=0.07, assembly=assembly))
     coupler = planar(s.position("B")) - planar(s.position("A"))
-    assert_from_first_to_second_power(s.condition, (coupler * np.exp(-0.4j)).real / 0.5)
+    assert_from_first_to_second_power(s.condition, (coupler * np.exp(-0.4j)).real / 0.5, 1 + 0.3 / 0.5)
 
 
 @each_assembly
 def test_condition_of_a_four_bar_is_that_of_the_transmission_angle(assembly):
     s = solved(ks.four_bar(0.3, 0.8, 0.6, rocker_pivot=(0.7, 0.4), assembly=assembly))
-    assert_from_first_to_second_power(s.condition, np.sin(ks.linkage.transmission_angle(s)))
+    span = abs(planar(s.position("A")) - (0.7 + 0.4j))
+    proportion = span * (0.3 + abs(0.7 + 0.4j) + 0.8 + 0.6) / (0.8 * 0.6)
+    assert_from_first_to_second_power(s.condition, np.sin(ks.linkage.transmission_angle(s)), proportion)
 
 
 def test_condition_of_a_cam_is_that_of_the_pressure_angle():
@@ -58,7 +61,7 @@ def test_condition_of_a_batch_has_a_row_for_each_design():
     lengths = np.array([[0.31], [0.5], [2.0]])
     found = solved(ks.crank_slider(0.3, lengths)).condition
     assert found.shape == (3, ANGLES.size)
-    assert found[0].max() > 10 > 1.05 > found[2].max()
+    assert found[0].max() > 10 > 1.3 > found[2].max()
 
 
 @pytest.mark.parametrize(
@@ -242,12 +245,12 @@ def flint():
     flint.ctx.prec = before
 
 
-FAMILIES = [("slider", share) for share in (0.1, 1.0, 3.0)] + [("four-bar", share) for share in (0.3, 1.0, 3.0)]
+FAMILIES = [(kind, share) for kind in ("slider", "four-bar") for share in (0.01, 0.3, 1.0, 3.0, 100.0)]
 FAMILIES += [("slider driving a slider", share) for share in (0.3, 1.0)]
 
 
 @pytest.mark.parametrize(("kind", "proportion"), FAMILIES)
-def test_true_changes_stay_below_30_and_errors_below_100_times_the_condition(flint, kind, proportion):
+def test_true_changes_and_errors_stay_below_the_condition(flint, kind, proportion):
     """By 200 bits, each length changed by 1e-25 of itself; squares of sine or cosine from 0.3 down to 1e-11."""
     random, worst = np.random.default_rng(5), 0.0
     for margin in 10.0 ** -np.arange(0.5, 11.0):
@@ -255,9 +258,9 @@ def test_true_changes_stay_below_30_and_errors_below_100_times_the_condition(fli
         closed = np.isfinite(condition) & np.isfinite(changes)
         assert closed.sum() > 8
         assert np.all(changes[closed] < 30 * condition[closed])
-        assert np.all(errors[closed] < 100 * condition[closed])
+        assert np.all(errors[closed] < 30 * condition[closed])
         worst = max(worst, np.max(changes[closed] / condition[closed]))
-    assert worst > 1
+    assert worst > 0.3
 
 
 @pytest.mark.parametrize("kind", ["slider", "four-bar"])

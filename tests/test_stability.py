@@ -43,7 +43,7 @@ CHANCY = {
     ("coupler barely long enough", SECOND, "nan"),
     ("coupler barely long enough", FOURTH, "nan"),
     ("four-bar toggle", SINGLE, "nan"),
-    ("size", NEWTON, "given up"),
+    ("four-bar change point", SINGLE, "nan"),
     ("many turns", NEWTON, "given up"),
     ("nearly balanced", PAPERS, "lost"),
     ("nearly balanced", KANE, "lost"),
@@ -52,19 +52,19 @@ CHANCY = {
 WORDS = {"lost": "loses digits", "flipped": "flips assembly", "nan": "NaN", "given up": "gives up"}
 EXPECTED = [(place, method, how) for place, row in FAILURES.items() for method, ways in row.items() for how in ways]
 HARMLESS = {
-    "dead centres, inclined guide": 1.001,
+    "dead centres, inclined guide": 1.2,
     "singular angle of the cosine cam": 4.0,
-    "size": 1.1,
-    "unequal masses": 1.1,
-    "many turns": 1.1,
+    "size": 1.3,
+    "unequal masses": 1.3,
+    "many turns": 1.3,
 }
 """Largest condition of places that hurt methods, not the problem."""
 
 
 @pytest.fixture(scope="module")
 def table():
-    """The study at every third number of each place."""
-    return stability.study([replace(place, numbers=place.numbers[::3]) for place in stability.PLACES])
+    """The study at every other number of each place."""
+    return stability.study([replace(place, numbers=place.numbers[::2]) for place in stability.PLACES])
 
 
 @pytest.fixture(scope="module")
