@@ -167,7 +167,7 @@ def _precision(options):
     table = pd.read_csv(paths[0])
     fronts = [precision.front(part) for _, part in table.groupby(["variant", "quantity"], sort=False)]
     shown = ["variant", "quantity", "method", "setting", "value", "time [ns/angle]", "error"]
-    _print(pd.concat(fronts)[shown].set_index("variant").fillna(""))
+    _print(pd.concat(fronts)[shown].set_index("variant").astype(object).fillna(""))
     print(*paths, sep="\n")
 
 

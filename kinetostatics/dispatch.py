@@ -54,7 +54,7 @@ class Workers:
 
 
 class _Here(Executor):
-    """This process and thread, at once."""
+    """The process and thread that submits, at once."""
 
     def submit(self, function, /, *arguments, **options):
         future: Future = Future()
@@ -84,7 +84,8 @@ def computed(job, rows_of, numbers, workers):
     numbers : sequence of int
     workers : Workers
     """
-    waiting, suspects = deque(numbers), []
+    waiting = deque(numbers)
+    suspects: list[int] = []
     running: dict[Future, int] = {}
     deaths: Counter[int] = Counter()
     try:

@@ -16,9 +16,13 @@ GUIDE = ("guide_angle", "guide_offset")
 def paths(table) -> dict[str, str]:
     """Paths of all numbers in a validated table that can be varied, with their SI units."""
     found: dict[str, str] = {}
+    if getattr(table, "table", None):  # a file of numbers
+        return found
     for name, field in type(table).model_fields.items():
         value = getattr(table, name)
         unit = _unit(field)
+        if name in GUIDE and getattr(table, "guide_through", None):
+            continue
         if isinstance(value, Table):
             found |= {f"{name}.{path}": inner for path, inner in paths(value).items()}
         elif unit and isinstance(value, tuple):

@@ -53,7 +53,7 @@ def _between(near):
     with np.errstate(all="ignore"):
         shift = 0.5 * (before - after) / bend
         height = here - 0.25 * (before - after) * shift
-        series = (_THROUGH[:, :, None] * curve).sum(axis=1)
+        series = sum(weights[:, None] * sample for weights, sample in zip(_THROUGH.T, curve, strict=True))
         slope = series[1:] * _POWERS[1:]
         change = slope[1:] * _POWERS[1:-1]
         place = shift

@@ -102,15 +102,15 @@ def sweep(
     [3.92, 7.56, 50.56]
     """
     job, engines, compared = _job(source, designs, outputs, variant, reference, angles, engine, executor, chunk)
-    parts = Parts(designs, chunk)
-    if folder is not None:
-        parts = Dataset(designs, chunk, folder, _identity(job, designs, compared, chunk))
-    todo = [number for number in parts.numbers if not parts.holds(number)]
-    with Workers(executor) as workers, _bar(progress, len(designs)) as bar:
-        for engine in workers.survived(suitable_engine, job, designs[:PROBED], engines):
-            job = replace(job, engine=engine)
-        bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
-        with closing(computed(job, parts.rows, todo, workers)) as found:
+    with Workers(executor) as workers:
+        for suitable in workers.survived(suitable_engine, job, designs[:PROBED], engines):
+            job = replace(job, engine=suitable)
+        parts = Parts(designs, chunk)
+        if folder is not None:
+            parts = Dataset(designs, chunk, folder, _identity(job, designs, compared, chunk))
+        todo = [number for number in parts.numbers if not parts.holds(number)]
+        with _bar(progress, len(designs)) as bar, closing(computed(job, parts.rows, todo, workers)) as found:
+            bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
             for number, rows in found:
                 parts.keep(number, rows)
                 bar.update(len(rows))
@@ -138,13 +138,9 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
         *_type_problems(designs),
         None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
         *_count_problems(angles=angles, chunk=chunk),
-        checks.choice("engine", engine, (None, "compiled", "numpy")),
+        None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         None if len(designs) else "there are no designs",
-        *(
-            f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
-            for item in wanted
-            if item.order and 2 * item.order >= angles
-        ),
+        *_order_problems(wanted, angles),
     ]
     ratios = any(item.ratio for item in wanted)
     if ratios and not isinstance(compared[1], Variant):
@@ -225,6 +221,12 @@ def _count_problems(**counts):
     for name, value in counts.items():
         if not isinstance(value, int | np.integer) or value < 1:
             yield f"{name} must be a whole number of at least 1, got {value!r}"
+
+
+def _order_problems(wanted, angles):
+    for item in wanted:
+        if item.order and isinstance(angles, int) and 2 * item.order >= angles:
+            yield f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
 
 
 def _require_portable(job):

@@ -98,7 +98,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     def values(numbers):
         table = run(pd.DataFrame(numbers.T, columns=designs.columns(found)))
         _require_finite(table, names)
-        return table[list(names)].to_numpy().T
+        return np.array(table[list(names)]).T
 
     table = run(designs.sobol(spreads, count, seed))
     return Tolerances(table, names, _sensitivity(values, found, names, count, seed), dict(spreads))

@@ -1,6 +1,9 @@
 """What all tests share."""
 
 import os
+import sys
+from importlib.machinery import ModuleSpec
+from types import ModuleType
 
 import pytest
 
@@ -12,3 +15,15 @@ def cache(tmp_path_factory):
         if not os.environ.get("KINETOSTATICS_CACHE"):
             patch.setenv("KINETOSTATICS_CACHE", str(tmp_path_factory.mktemp("compiled")))
         yield
+
+
+@pytest.fixture
+def interpreted(monkeypatch):
+    """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
+    from kinetostatics import compiled
+
+    numba = ModuleType("numba")
+    numba.njit = lambda **options: lambda function: function
+    numba.__spec__ = ModuleSpec("numba", None)
+    monkeypatch.setitem(sys.modules, "numba", numba)
+    monkeypatch.setattr(compiled, "_loaded", compiled._loaded.__wrapped__)

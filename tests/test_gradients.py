@@ -54,14 +54,14 @@ PARAMETERS = {
     "coupler length": lambda x: plain(coupler_length=x),
 }
 VALUES = {
-    "spring stiffness": (0.9 * STIFFNESS, STIFFNESS, 1.3 * STIFFNESS),
-    "cam radius": (0.28, 0.3, 0.33),
-    "cam offset": (-0.04, -0.0219, 0.01),
-    "coupler length, cam-balanced": (1.8, 2.0219, 2.5),
-    "crank length": (0.1, 0.3, 0.9),
-    "coupler length": (0.5, 2.0, 3.0),
+    "spring stiffness": (STIFFNESS, 1.3 * STIFFNESS),
+    "cam radius": (0.3, 0.33),
+    "cam offset": (-0.0219, 0.01),
+    "coupler length, cam-balanced": (2.0219, 1.8),
+    "crank length": (0.3, 0.9),
+    "coupler length": (2.0, 0.5),
 }
-"""The case's own value between others."""
+"""The case's own value and another."""
 
 
 def mean_absolute_torque(parameter, value, angles):
@@ -73,7 +73,7 @@ def mean_absolute_torque(parameter, value, angles):
 
 @pytest.mark.parametrize("parameter", PARAMETERS)
 def test_gradient_of_the_mean_absolute_torque_equals_the_central_difference_at_high_precision(double, flint, parameter):
-    """To 1e-12, at three values of each parameter by one compiled function."""
+    """To 1e-12, at two values of each parameter by one compiled function."""
     angles = np.array([flint.arb(angle) for angle in ANGLES.tolist()])
     gradient = double.jit(
         double.grad(lambda value: mean_absolute_torque(parameter, value, double.numpy.asarray(ANGLES)))

@@ -141,10 +141,13 @@ def test_front_holds_what_nothing_beats_in_time_and_error():
 
 @pytest.mark.parametrize("quantity", ["balancing_torque", "O"])
 @pytest.mark.parametrize(("name", "variant"), KINDS)
-def test_no_method_is_nearer_to_the_certified_reference_than_ours_by_more_than_rounding(name, variant, quantity):
+def test_no_method_is_nearer_to_the_certified_reference_than_ours_by_more_than_rounding(
+    interpreted, name, variant, quantity
+):
     """So whatever is faster than ours and better than 1e-6 is no nearer; how fast is measured by the benchmark.
 
-    Integration at its two finest tolerances only, and what is there twice, compiled too, once.
+    Integration at its finest tolerance only, what is there twice, compiled too, once; compiled programs as they are
+    written.
     """
     s = ks.load_case(name).solve(variant, 24)
     reference = enclosure(s, quantity)
@@ -152,7 +155,7 @@ def test_no_method_is_nearer_to_the_certified_reference_than_ours_by_more_than_r
     def errors(methods):
         found = {}
         for method in methods:
-            for setting in method.settings[-2 if "integration" in method.name else 0 :]:
+            for setting in method.settings[-1 if "integration" in method.name else 0 :]:
                 try:
                     run = method.prepare(s, quantity, setting)
                 except (ks.errors.NotGivenError, ks.errors.MissingLibraryError):
@@ -184,12 +187,11 @@ def test_case_study_looks_at_one_variant_of_each_kind_of_mechanism_and_cam_unles
 
 
 def test_case_study_writes_tidy_rows_that_tell_the_machine_and_the_versions(few, case, tmp_path):
-    quantities = ("balancing_torque", "O")
     variants = ("plain", "cam-circle")
-    path, *_ = precision.case_study(case, tmp_path, variants=variants, quantities=quantities, angles=16)
+    path, *_ = precision.case_study(case, tmp_path, variants=variants, quantities=["O"], angles=16)
     table = pd.read_csv(path, keep_default_na=False, na_values={TIME: "", "error": "", "value": ""})
-    assert len(table) == 2 * 2 * sum(len(method.settings) for method in FEW)
-    for column, values in {"case": ["sawframe_2r63"], "variant": variants, "quantity": quantities}.items():
+    assert len(table) == 2 * sum(len(method.settings) for method in FEW)
+    for column, values in {"case": ["sawframe_2r63"], "variant": variants, "quantity": ["O"]}.items():
         assert set(table[column]) == set(values)
     assert set(table["angles"]) == {16}
     assert not table.duplicated(["variant", "quantity", "method", "value"]).any()

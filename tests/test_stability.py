@@ -284,5 +284,4 @@ def test_chart_of_a_place_has_units_a_line_a_method_and_the_condition_dashed(tab
     np.testing.assert_allclose(y, np.clip(limit[x], 1e-17, 1e3))
     x, y = lines["ours, NumPy"].get_data()
     assert np.all(y <= 100 * np.clip(limit[x], 1e-17, 1e3))
-    figure.canvas.draw()
     plt.close(figure)

@@ -1,0 +1,64 @@
+"""Functions that make designs for sweeps, in a module that is quickly imported by workers."""
+
+import math
+import os
+import signal
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+import kinetostatics as ks
+from kinetostatics.case import Variant
+
+
+def pump(crank, mass=1.0, speed=100.0):
+    """A crank-slider with a coupler four times the crank."""
+    return Variant(ks.crank_slider(crank, 4.0 * crank, slider=ks.Link(mass)), speed, 0.0, (ks.Gravity(),))
+
+
+def by_plain_numbers(crank, mass):
+    """The same by what takes no arrays."""
+    return pump(math.hypot(crank, 0.0), math.sqrt(mass) ** 2)
+
+
+def picky(crank, mass):
+    """The same for some masses only, without telling which of an array are wrong."""
+    if np.any((crank < 0.3) & (mass > 5.0)):
+        raise ValueError(f"a crank of {float(np.min(crank)):g} m does not carry {float(np.max(mass)):g} kg")
+    return pump(crank, mass)
+
+
+def _deadly(crank, mass, at, marker=None):
+    if np.any(crank == at) and not (marker and Path(marker).exists()):
+        if marker:
+            Path(marker).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return pump(crank, mass)
+
+
+def deadly(at):
+    """A function whose process dies whenever it makes this crank."""
+    return partial(_deadly, at=at)
+
+
+def deadly_once(at, marker):
+    """A function whose process dies when it makes this crank the first time."""
+    return partial(_deadly, at=at, marker=str(marker))
+
+
+def note(path):
+    """Start of a worker: how it was started, a line of a file."""
+    with Path(path).open("a", encoding="utf-8") as file:
+        file.write(multiprocessing.get_start_method() + "\n")
+
+
+class Deadly(pd.DataFrame):
+    """A table of designs that no worker survives."""
+
+    @property
+    def _constructor(self):
+        return Deadly
+
+    def __reduce__(self):
+        return os.kill, (0, signal.SIGKILL)

@@ -1,0 +1,141 @@
+"""Tables of designs: grids and samples, the texts that spread them, and the columns that name their parameters."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+import kinetostatics as ks
+from kinetostatics import designs, parameters, schema
+
+SPREADS = {
+    "spring.stiffness": "normal 700 kN/m +- 5000 N/m",
+    "cam.centre.x": "-30..-10 mm",
+    "coupler.inertia": "triangular 18..20..26 kg m^2",
+}
+COLUMNS = ["spring.stiffness [kN/m]", "cam.centre.x [mm]", "coupler.inertia [kg m^2]"]
+
+
+def test_grid_has_every_combination_the_last_parameter_running_fastest():
+    table = designs.grid({"cam.centre.x": "-30..-10 mm:3", "coupler.inertia": "1e1..+3.E1 kg m^2 : 2"})
+    assert list(table.columns) == ["cam.centre.x [mm]", "coupler.inertia [kg m^2]"]
+    assert table.to_numpy().tolist() == [[x, i] for x in (-30, -20, -10) for i in (10, 30)]
+    assert designs.grid({"slider.mass": "5..7 kg:1"}).to_numpy().tolist() == [[5]]
+
+
+@pytest.mark.parametrize("kind", [designs.latin_hypercube, designs.sobol, designs.random])
+def test_samples_are_reproducible_and_follow_their_distributions(kind):
+    table = kind(SPREADS, 512)
+    assert list(table.columns) == COLUMNS
+    assert table.shape == (512, 3)
+    pd.testing.assert_frame_equal(table, kind(SPREADS, 512, seed=0), check_exact=True)
+    assert not np.any(table == kind(SPREADS, 512, seed=1))
+    wanted = stats.norm(700, 5), stats.uniform(-30, 20), stats.triang(0.25, 18, 8)
+    for column, distribution in zip(COLUMNS, wanted, strict=True):
+        assert stats.kstest(table[column], distribution.cdf).statistic < 0.08
+
+
+def test_latin_hypercube_has_a_value_in_every_interval_of_each_parameter():
+    table = designs.latin_hypercube({"a": "0..10 m", "b": "-10..0 m"}, 10)
+    assert sorted(np.floor(table["a [m]"])) == sorted(np.floor(table["b [m]"] + 10)) == list(range(10))
+
+
+def test_sample_takes_quantiles():
+    uniform = [[0.5, 0.0, 0.25], [stats.norm.cdf(1.0), 1.0, 1.0]]
+    table = designs.sample(SPREADS, np.array(uniform))
+    assert table.to_numpy() == pytest.approx(np.array([[700, -30, 20], [705, -10, 26]]))
+    with pytest.raises(ks.ParameterError, match=r"3 parameters need as many columns, got \(2, 2\)"):
+        designs.sample(SPREADS, np.zeros((2, 2)))
+
+
+def test_spaces_words_and_signs_are_read_as_they_may_be_written():
+    texts = ["uniform -3 .. 1e1 1/s", " normal -3 mm ± 10 um ", "normal 3 kg m^2+-1 kg m^2", "triangular 1..1..2 rad"]
+    read = designs.distributions(dict(enumerate(texts)))
+    assert [unit for _, unit in read.values()] == ["1/s", "mm", "kg m^2", "rad"]
+    assert [found.mean() for found, _ in read.values()] == pytest.approx([3.5, -3, 3, 4 / 3])
+    assert read[1][0].std() == pytest.approx(0.01)
+
+
+WRONG_GRID = {
+    "form": "600..900 kN/m",
+    "no unit": "1..2:3",
+    "none": "1..2 m:0",
+    "unit": "1..2 furlogs:3",
+    "infinite": "1e999..2 m:3",
+}
+WRONG_SAMPLE = {
+    "grid": "1..2 m:3",
+    "falling": "2..1 m",
+    "likeliest": "triangular 1..3..2 m",
+    "deviation": "normal 3 m +- 0 mm",
+    "units": "normal 3 m +- 1 kg",
+    "no unit": "normal 3 +- 1 m",
+    "unit": "0..1 furlogs",
+}
+
+
+def test_all_texts_that_cannot_be_read_are_told_at_once():
+    with pytest.raises(ks.ParameterError) as caught:
+        designs.grid(WRONG_GRID | {"right": "1..2 m:3"})
+    message = str(caught.value)
+    assert all(f"cannot read {text!r} for {name}: " in message for name, text in WRONG_GRID.items())
+    assert "right" not in message
+    assert message.count('write "600..900 kN/m:40" for a grid') == 1
+    assert 'for unit: unit "furlogs" is not known' in message
+    with pytest.raises(ks.ParameterError) as caught:
+        designs.random(WRONG_SAMPLE | {"right": "1..2 m"}, 3)
+    message = str(caught.value)
+    assert all(f"cannot read {text!r} for {name}: " in message for name, text in WRONG_SAMPLE.items())
+    for reason in ("the values must rise", "deviation must be greater than 0", '"kg" does not measure the same as "m"'):
+        assert reason in message
+
+
+@pytest.mark.parametrize("kind", [designs.grid, lambda spreads: designs.sobol(spreads, 4)])
+def test_no_parameters_are_no_designs(kind):
+    with pytest.raises(ks.ParameterError, match="there are no parameters"):
+        kind({})
+
+
+# What may be varied
+
+
+def known(case, variant):
+    return parameters.paths(ks.load_case(case).variant(variant).table)
+
+
+def test_paths_are_the_numbers_of_a_variant_with_their_units():
+    paths = known("sawframe_2r63", "cam-circle")
+    wanted = {"spring.stiffness": "N/m", "cam.centre.x": "m", "coupler.centre": "m", "gravity.direction": "rad"}
+    assert wanted.items() <= paths.items()
+    assert "crank_length" not in paths
+    assert {"cam.amplitude", "coupler_length"} <= known("sawframe_2r63", "cam-cosine").keys()
+    assert "rocker.centre" in known("chain_unit", "rho-0.5")
+
+
+def test_what_the_file_fixes_otherwise_is_no_path():
+    """Two points fix the guide of the mower, a table a process force."""
+    table = ks.load_case("mower_drive").variant("unbalanced").table
+    assert not {"guide_angle", "guide_offset"} & parameters.paths(table).keys()
+    for force, there in (
+        (schema.ProcessForceTable(force="2 N"), True),
+        (schema.ProcessForceTable(table="f.csv"), False),
+    ):
+        assert ("process_force.force" in parameters.paths(table.model_copy(update={"process_force": force}))) is there
+
+
+def test_columns_are_read_with_their_units_and_all_that_is_wrong_with_them():
+    paths = {"slider.mass": "kg", "cam.centre.x": "m"}
+    columns, problems = parameters.si_columns(["cam.centre.x [mm]", "slider.mass"], paths)
+    assert columns == (("cam.centre.x [mm]", "cam.centre.x", 0.001), ("slider.mass", "slider.mass", 1.0))
+    assert not problems
+    _, problems = parameters.si_columns(
+        ["slider.mas [kg]", "cam.centre.x [kg]", "slider.mass [x]", "slider.mass"], paths
+    )
+    assert "did you mean 'slider.mass'" in problems[0]
+    assert '"kg" does not measure the same as "m"' in problems[1]
+    assert 'unit "x" is not known' in problems[2]
+    assert problems[3] == "parameter 'slider.mass' has two columns"
+    columns, problems = parameters.si_columns(["ratio [1]", "speed [rpm]", "size [foo]"])
+    assert [name for _, name, _ in columns] == ["ratio", "speed", "size"]
+    assert columns[1][2] == pytest.approx(np.pi / 30)
+    assert len(problems) == 1
