@@ -39,6 +39,8 @@ class Variant:
         A value may be an array of designs (designs, 1); what the file derives from others, such as a centre at
         mid-length or a spring that balances the slider, follows.
         """
+        known = parameters.paths(self.table)
+        checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
         return _built(parameters.with_values(self.table, values), self.folder)
 
     def solve(self, angles=720) -> Solution:
@@ -161,15 +163,16 @@ def load_case(path) -> Case:
 
 
 def _spread_problems(spreads, variants):
-    """What is wrong with the tolerances: texts that cannot be read, parameters that no variant has."""
-    known = {name for variant in variants.values() if variant for name in parameters.paths(variant.table)}
-    problems = [checks.choice("tolerances", name, tuple(known)) for name in spreads if known]
+    """What is wrong with the tolerances: texts that cannot be read, parameters and units that no variant has."""
+    known = {path: unit for item in variants.values() if item for path, unit in parameters.paths(item.table).items()}
     for name, text in spreads.items():
+        columns = [name]
         try:
-            designs.distributions({name: text})
+            columns = designs.columns(designs.distributions({name: text}))
         except KinetostaticsError as error:
-            problems.append(f"tolerances: {error}")
-    return [problem for problem in problems if problem]
+            yield f"tolerances: {str(error).removeprefix('designs: ')}"
+        if all(variants.values()):
+            yield from (f"tolerances: {problem}" for problem in parameters.si_columns(columns, known)[1])
 
 
 def _read(path):

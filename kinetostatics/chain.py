@@ -11,6 +11,8 @@ A group is a frozen dataclass with eight members; a new kind of group needs noth
     condition(placement)    how many times it magnifies relative errors of its lengths in rates and forces
     resolve(placement, loads, pushes, forces)
                             find the forces on its links, demand what they need of the joint it hangs on
+
+A group with a slider may have `elongation(placement, free_position)`, its travel from there without cancellation.
 """
 
 from dataclasses import dataclass, field

@@ -16,7 +16,7 @@ import pandas as pd
 from . import compiled
 from .case import Variant
 from .elementary import ROUNDING
-from .errors import MissingLibraryError, ParameterError, QuantityError
+from .errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
 from .quantities import components, magnitude
 from .reductions import Output
 from .solution import solve
@@ -91,7 +91,8 @@ def suitable_engine(job, designs, engines):
     """First of the engines that takes the mechanism, tried on the first design that can be built.
 
     Raises what would otherwise be the reason of every design: `QuantityError` for a quantity that the mechanism does
-    not have, `ParameterError` for a function that makes something else than a variant, or if no engine is left.
+    not have, `ParameterError` for a function that makes something else than a variant, `NotGivenError` if no engine
+    takes it.
     """
     for row in range(len(designs)):
         *_, plain = job.values(designs.iloc[row : row + 1])
@@ -122,10 +123,10 @@ def _engine(job, solutions, engines):
     try:
         for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
             compiled.program(solution, [*_quantities(outputs), "closure"])
-    except TypeError as error:
-        if others:
-            return _engine(job, solutions, others)
-        raise ParameterError(f'sweep: {error}; use engine="numpy"') from error
+    except NotGivenError:
+        if not others:
+            raise
+        return _engine(job, solutions, others)
     return first
 
 

@@ -10,8 +10,9 @@ import importlib.util
 import math
 import os
 import sys
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache, cached_property, lru_cache
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
@@ -21,9 +22,10 @@ from typing import Any
 import numpy as np
 
 from . import assembly
-from .elementary import ROUNDING, SMALLEST, read_only
-from .errors import MissingLibraryError
+from .elementary import ROUNDING, read_only
+from .errors import MissingLibraryError, NotGivenError
 from .files import written_whole
+from .loads import Gravity, ProcessForce, Spring
 from .solution import Solution
 from .tracing import BY_ANGLE, Node, Trace, trace
 
@@ -44,7 +46,7 @@ def shared(angle, sine, cosine):
 '''
 HEADER = f'''"""Written by kinetostatics; may be deleted at any time."""
 
-from math import atan, cos, nan, sin, sqrt
+from math import atan, cos, inf, nan, sin, sqrt
 
 from numba import njit
 
@@ -58,7 +60,7 @@ def root(square, unit):
 
 @njit(**options)
 def divisor(root, unit):
-    return root if root != root else max(root, {SMALLEST!r} * unit)
+    return root if root != root else max(root, unit)
 
 
 @njit(**options)
@@ -93,7 +95,7 @@ def source(trace: Trace) -> str:
 
 def _name(part):
     if not isinstance(part, Node):
-        return repr(part) if math.isfinite(part) else "nan"
+        return repr(part)
     return "angle[first, i]" if part.operation == "angle" else f"v{part.index}"
 
 
@@ -211,8 +213,16 @@ def program(solution, quantities) -> Program:
     ------
     MissingLibraryError
         numba is not installed.
+    NotGivenError
+        A group or load of the user's own cannot be recorded.
     """
-    recorded = trace(solution, quantities)
+    try:
+        recorded = trace(solution, quantities)
+    except (TypeError, AttributeError) as error:
+        raise NotGivenError(
+            f"the compiled engine cannot take {solution.mechanism.name}: a group or load of it does more than "
+            f'arithmetic with sin, cos and sqrt of `elementary` ({error}); use engine="numpy"'
+        ) from error
     shape = solution.shape[:-1]
     designs = [np.broadcast_to(value, (*shape, 1)).ravel() for value in recorded.parameters]
     parameters = np.array(designs, dtype=float).reshape(len(designs), -1).T.copy()
@@ -232,8 +242,9 @@ def cores():
 
 
 def available():
-    """Whether numba is installed."""
-    return importlib.util.find_spec("numba") is not None
+    """Whether numba is installed, and what finds a folder for its programs."""
+    needed = ["numba"] if os.environ.get("KINETOSTATICS_CACHE") else ["numba", "platformdirs"]
+    return all(importlib.util.find_spec(name) is not None for name in needed)
 
 
 def require():
@@ -250,9 +261,11 @@ def _loaded(text):
     require()
     name = f"kinetostatics_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
     path = _folder() / f"{name}.py"
-    if not path.exists():
-        with written_whole(path) as temporary:
-            Path(temporary).write_text(text, encoding="utf-8")
+    try:
+        _write(path, text)
+    except OSError:  # nowhere to keep it: compile for this process alone
+        path = Path(tempfile.mkdtemp(prefix="kinetostatics-")) / path.name
+        _write(path, text)
     loader = SourceFileLoader(name, str(path))
     module = ModuleType(name)
     module.__file__ = str(path)
@@ -261,14 +274,23 @@ def _loaded(text):
     return module
 
 
+def _write(path, text):
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        with written_whole(path) as temporary:
+            Path(temporary).write_text(text, encoding="utf-8")
+
+
 def _folder():
     """Where compiled programs are kept: KINETOSTATICS_CACHE, else the user's cache folder."""
+    given = os.environ.get("KINETOSTATICS_CACHE")
+    if given:
+        return Path(given)
     from platformdirs import user_cache_path
 
-    return Path(os.environ.get("KINETOSTATICS_CACHE") or user_cache_path("kinetostatics"))
+    return Path(user_cache_path("kinetostatics"))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CompiledSolution(Solution):
     """A solution whose forces, torque and shaking come from compiled loops; motion is NumPy's.
 
@@ -306,6 +328,14 @@ class CompiledSolution(Solution):
     def balancing_torque_by_power(self):
         return self._kept("balancing_torque_by_power")[0]
 
+    @property
+    def _unchanging(self):
+        """Whether nothing of it can change behind our back: all plain numbers, no arrays, no functions."""
+        drive = isinstance(self.crank_speed, float | int) and isinstance(self.crank_acceleration, float | int)
+        plain = (Gravity, Spring, ProcessForce)
+        fixed = all(isinstance(item, plain) and not callable(getattr(item, "force", None)) for item in self.loads)
+        return drive and fixed and self.mechanism.batch == () and all(item.batch == () for item in self.loads)
+
     @cached_property
     def _found(self):
         return {}
@@ -325,12 +355,11 @@ class CompiledSolution(Solution):
         return self._found[quantity]
 
     def _run(self, quantities):
-        numbers = isinstance(self.crank_speed, float | int) and isinstance(self.crank_acceleration, float | int)
-        made = (_program if numbers else _program.__wrapped__)(
+        made = (_program if self._unchanging else _program.__wrapped__)(
             self.mechanism, self.crank_speed, self.crank_acceleration, self.loads, self.shape[:-1], quantities
         )
         angle = self.crank_angle
-        if angle.ndim > 2:
+        if math.prod(angle.shape[:-1]) > 1:
             angle = np.broadcast_to(angle, (*self.shape[:-1], angle.shape[-1])).reshape(-1, angle.shape[-1])
         rows = read_only(made(angle, made.tabulated(self)).reshape(-1, *self.shape))
         edges = np.cumsum(made.trace.widths)
@@ -349,3 +378,17 @@ def _names(mechanism):
     """Names of the reactions, and of the other forces and moments, of a mechanism."""
     found = Solution(mechanism, np.zeros(1), 1.0, 0.0)
     return found.reactions, found.scalars
+
+
+def made_of(solution) -> CompiledSolution:
+    """The solution on the compiled engine.
+
+    Raises
+    ------
+    NotGivenError
+        A group or load of the user's own cannot be recorded.
+    """
+    given = {field.name: getattr(solution, field.name) for field in fields(Solution)}
+    made = CompiledSolution(**given)
+    made._kept("closure")
+    return made

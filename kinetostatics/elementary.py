@@ -50,8 +50,6 @@ def sqrt(x):
 _OBJECT = np.dtype(object)
 ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
-SMALLEST = 2.0**-53
-"""Smallest root, in its unit, that is divided by."""
 APART = 2.0**-90
 """Distance, in its unit, that counts as nothing but still has a direction."""
 
@@ -65,10 +63,10 @@ def root(square, unit):
 
 
 def divisor(root, unit):
-    """A root, counted in `unit`, to divide by: never zero, so that rates and forces stay finite at their poles."""
+    """A root to divide by, not smaller than `unit`: rates and forces stay finite at their poles."""
     if _holds_objects(root):
         return _each("kept_off_zero", root, unit, lambda root: root)
-    return namespace(root).maximum(root, SMALLEST * unit)
+    return namespace(root).maximum(root, unit)
 
 
 def apart(distance, unit):
@@ -101,7 +99,7 @@ def condition(margin, proportion=1.0, terms=None, result=None):
     xp = namespace(margin)
     with np.errstate(divide="ignore", invalid="ignore"):
         vanishing = 1.0 / xp.where(margin < -ROUNDING, xp.nan, xp.maximum(margin, 0.0))
-        found = xp.maximum(xp.maximum(proportion, SMALLEST) * vanishing, xp.sqrt(vanishing))
+        found = xp.maximum(xp.maximum(proportion, ROUNDING) * vanishing, xp.sqrt(vanishing))
         if terms is None:
             return found
         cancelled = terms / xp.maximum(abs(result) - ROUNDING * found * terms, 0.0)

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import checks
 from .cam_roller import CamRoller
-from .errors import ParameterError
+from .errors import NotGivenError, ParameterError
 from .links import Link
 from .loads import Gravity, ProcessForce, Spring
 from .quantities import components, label
@@ -133,8 +133,10 @@ def _guide_through_crank_centre(solution):
 
 def _up_to_harmonic(order):
     def simplified(solution):
-        turn = solution.at(np.linspace(0.0, 2 * np.pi, 512))
-        return rerouted(solution, harmonic_series(solution, order)) if np.all(np.isfinite(turn.condition)) else None
+        try:
+            return rerouted(solution, harmonic_series(solution, order))
+        except NotGivenError:
+            return None
 
     return simplified
 
@@ -276,7 +278,13 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     >>> ks.needs(ks.load_case("sawframe_2r63"), "O", within=0.05).smallest.name
     'no gravity, two-mass coupler'
     """
-    checks.require("needs", checks.positive("within", within))
+    known = isinstance(scene, Solution) or hasattr(scene, "variants")
+    checks.require(
+        "needs",
+        checks.positive("within", within),
+        None if known else f"scene must be a Solution or a Case, got {scene!r}",
+        "variant is for a case, a solution is of one" if variant and isinstance(scene, Solution) else None,
+    )
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
     if len(solution.shape) != 1:
         raise ParameterError(f"needs looks at one design over its crank angles, but this has shape {solution.shape}")

@@ -85,7 +85,8 @@ class ProcessForce(Batched):
     ----------
     force : float, array or function
         N; an array has one value for each crank angle; a function takes the `Motion` and returns such values, so the
-        force may depend on crank angle, position or velocity.
+        force may depend on crank angle, position or velocity, at each crank angle by itself. The compiled engine takes
+        its constants into the program, so a function with other constants is compiled anew.
     on : str
         The slider it acts on.
     """

@@ -77,8 +77,10 @@ class Motion:
 
     def elongation(self, free_position, slider="slider"):
         """Coordinate of a slider's pin along its guide less a free position (m), free of cancellation, (..., N), m."""
-        self._travel(slider)
+        travel = self._travel(slider)
         group = next(group for group in self.mechanism.groups if slider in group.links)
+        if not hasattr(group, "elongation"):
+            return self._scalar(travel.position - free_position)
         return self._scalar(group.elongation(self.placement, free_position))
 
     @property

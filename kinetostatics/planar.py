@@ -4,6 +4,8 @@ A vector is a pair (x, y) of numbers or arrays. `None` stands for what is absent
 is left out of sums. All functions are kernels: no branching on values, no writing in place, no array library by name.
 """
 
+from .elementary import sqrt
+
 
 def dot(a, b):
     return a[0] * b[0] + a[1] * b[1]
@@ -12,6 +14,10 @@ def dot(a, b):
 def cross(a, b):
     """Third component of a x b: the moment about the origin of force b acting at a."""
     return a[0] * b[1] - a[1] * b[0]
+
+
+def length(a):
+    return sqrt(dot(a, a))
 
 
 def left(a):

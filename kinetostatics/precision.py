@@ -7,6 +7,7 @@ import numpy as np
 from .errors import MissingLibraryError, NotGivenError
 from .methods import METHODS
 from .methods.certified import certified, relative_errors
+from .quantities import components
 from .timing import circumstances, seconds
 
 QUANTITY = "balancing_torque"
@@ -45,7 +46,8 @@ def study(solution, quantity=QUANTITY, *, methods=METHODS, repeats=5, progress=N
     import pandas as pd
 
     reference = certified(solution, quantity)
-    rows, runs = [], {}
+    rows: list[dict] = []
+    runs = {}
     for method in methods:
         if progress:
             progress(method.name)
@@ -89,6 +91,9 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     from .files import written_whole
 
     names = list(variants or kinds(case))
+    for name in names:
+        for quantity in quantities:
+            components(case.solve(name, 8), quantity)
     tables = [
         study(case.solve(name, angles), quantity, progress=progress).assign(case=case.path.stem, variant=name)
         for name in names

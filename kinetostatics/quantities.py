@@ -61,13 +61,18 @@ def scale(solution, quantity):
 
 def unit(quantity):
     """Unit of a quantity, SI; a joint's reaction is in N."""
-    return RATES.get(_of_link(quantity)[1]) or UNITS.get(quantity, "N")
+    return RATES.get(_of_link(quantity)[1]) or UNITS.get(_unlabelled(quantity), "N")
 
 
 def label(quantity):
     """What a table or an axis calls a quantity."""
-    named = quantity in UNITS or _of_link(quantity)[0]
+    named = _unlabelled(quantity) in UNITS or _of_link(quantity)[0]
     return quantity.replace("_", " ") if named else f"reaction {quantity}"
+
+
+def _unlabelled(quantity):
+    """Name of a quantity without the number of a second group: guide_force of "guide_force2"."""
+    return quantity.rstrip("0123456789")
 
 
 def _of_link(quantity):

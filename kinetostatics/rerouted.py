@@ -121,6 +121,8 @@ def harmonic_series(solution, order):
     """
     mechanism = solution.mechanism
     path = positions(mechanism, np.linspace(0.0, 2 * np.pi, SERIES_SAMPLES, endpoint=False))
+    if not np.all(np.isfinite(path)):
+        raise NotGivenError(f"{mechanism.name} does not close all around the turn, which a harmonic series needs")
     spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
     spectrum[..., 0] /= 2.0
     spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0

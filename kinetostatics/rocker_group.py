@@ -15,7 +15,10 @@ from . import checks
 from .chain import Bar
 from .elementary import apart, condition, divisor, root, sqrt
 from .links import Joint, Link, LinkMotion
-from .planar import added, dot, left, minus, moment, number, quotient, stretched, subtracted
+from .planar import added, dot, left, length, minus, moment, number, quotient, stretched, subtracted
+
+SMALLEST = 2.0**-53
+"""Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
 
 
 class RockerMotion(NamedTuple):
@@ -52,7 +55,7 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     product = 2.0 * c * h
     unit = product * product
     size = root(heron, unit)
-    area, divided = assembly * size, assembly * divisor(size, product) / product
+    area, divided = assembly * size, assembly * divisor(size, SMALLEST * product) / product
     along, across = (square + gap * (c + h)) / (2.0 * square), area / (2.0 * square)
     reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
     q = (reach[0] / c, reach[1] / c)
@@ -186,8 +189,8 @@ class RockerGroup:
         c, h = self.coupler_length, self.rocker_length
         lag, swing_lag = c * motion.coupler.ratio**2, h * motion.rocker.ratio**2
         result = motion.sine * abs(c * motion.coupler.ratio_slope) + motion.sine * abs(h * motion.rocker.ratio_slope)
-        (x, y), (u, v) = placement.joints[self.on].position, self.pivot
-        span, sizes = np.hypot(u - x, v - y), np.hypot(x, y) + np.hypot(u, v) + c + h
+        inner = placement.joints[self.on].position
+        span, sizes = length(subtracted(self.pivot, inner)), length(inner) + length(self.pivot) + c + h
         return condition(motion.closure, span * sizes / (c * h), lag + swing_lag + abs(result), result)
 
     def resolve(self, placement, loads, pushes, forces):

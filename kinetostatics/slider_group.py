@@ -16,7 +16,10 @@ from .chain import Bar
 from .elementary import condition, divisor, root
 from .guide import Guide
 from .links import Joint, Link, LinkMotion, present
-from .planar import added, minus, number, plus, quotient, subtracted, turned, unturned, vector
+from .planar import added, length, minus, number, plus, quotient, subtracted, turned, unturned, vector
+
+SMALLEST = 2.0**-27
+"""Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
 
 
 class SliderMotion(NamedTuple):
@@ -52,7 +55,7 @@ def place(joint, coupler_length, guide, assembly):
     across = minus(guide.guide_offset, position[1])
     square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
     reach = root(square, unit)
-    along, divided = assembly * reach, assembly * divisor(reach, coupler_length)
+    along, divided = assembly * reach, assembly * divisor(reach, SMALLEST * coupler_length)
     sine, cosine = across / coupler_length, along / coupler_length
 
     ratio = -first[1] / divided
@@ -196,7 +199,7 @@ class SliderGroup:
         motion = placement.details[self._slider]
         lag = motion.coupler.ratio * motion.coupler.ratio * motion.sine
         result = motion.coupler.ratio_slope * motion.cosine
-        proportion = 1.0 + np.hypot(*placement.joints[self.on].position) / self.coupler_length
+        proportion = 1.0 + length(placement.joints[self.on].position) / self.coupler_length
         return condition(motion.closure, proportion, abs(lag) + abs(lag - result), result)
 
     def resolve(self, placement, loads, pushes, forces):

@@ -11,7 +11,7 @@ import numpy as np
 from . import assembly, checks
 from .batch import wider
 from .elementary import is_foreign_array, read_only
-from .errors import ParameterError, QuantityError
+from .errors import NotGivenError, ParameterError, QuantityError
 from .links import load, virtual_work
 from .loads import Gravity, ProcessForce
 from .motion import Motion
@@ -168,9 +168,10 @@ class Solution(Motion):
         """
         from .quantities import scale, values
 
-        with np.errstate(divide="ignore", invalid="ignore"):
-            cancelled = scale(self, quantity) / self._largest(values(self, quantity))
-        return self.condition * np.fmax(cancelled, 1.0)[..., None]
+        largest = np.asarray(self._largest(values(self, quantity)))
+        terms = np.broadcast_to(scale(self, quantity), largest.shape)
+        cancelled = np.divide(terms, largest, out=np.ones(largest.shape), where=largest > 0)
+        return self.condition * np.fmax(cancelled, 1.0).reshape(*largest.shape, *[1] * (self.condition.ndim > 0))
 
     @property
     def pressure_angle(self):
@@ -288,6 +289,8 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         A value is not finite, or a load acts on a link that is not there.
     MissingLibraryError
         ``engine="compiled"`` without numba.
+    NotGivenError
+        ``engine="compiled"`` for a group or load of your own that does more than arithmetic.
 
     Warns
     -----
@@ -305,7 +308,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         checks.table("crank_speed", crank_speed),
         checks.table("crank_acceleration", crank_acceleration),
         checks.choice("on_gap", on_gap, ("raise", "nan")),
-        checks.choice("engine", engine, (None, "numpy", "compiled")),
+        None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
         *(_load_problem(mechanism, item) for item in loads),
         checks.fitting(
             crank_angle=angle,
@@ -320,25 +323,28 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
             stacklevel=2,
         )
-    solution = _engine(engine, angle)(mechanism, angle, crank_speed, crank_acceleration, loads)
+    solution = _on_engine(engine, Solution(mechanism, angle, crank_speed, crank_acceleration, loads))
     if on_gap == "raise":
         solution.check()
     return solution
 
 
-def _engine(engine, angle):
-    """Kind of solution for the engine asked for, or the one that suits."""
-    plain = isinstance(angle, np.ndarray) and angle.dtype == float
-    if engine == "numpy" or (engine is None and not (plain and angle.size >= WORTH_COMPILING)):
-        return Solution
+def _on_engine(engine, solution):
+    """The solution on the engine asked for, or on the one that suits."""
+    plain = isinstance(solution.crank_angle, np.ndarray) and solution.crank_angle.dtype == float
+    if engine == "numpy" or (engine is None and not (plain and math.prod(solution.shape) >= WORTH_COMPILING)):
+        return solution
     from . import compiled
 
-    if engine is None:
-        return compiled.CompiledSolution if compiled.available() else Solution
-    if not plain:
+    if engine == "compiled" and not plain:
         raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
-    compiled.require()
-    return compiled.CompiledSolution
+    if engine == "compiled":
+        compiled.require()
+        return compiled.made_of(solution)
+    try:
+        return compiled.made_of(solution) if compiled.available() else solution
+    except NotGivenError:
+        return solution
 
 
 def _load_problem(mechanism, item):

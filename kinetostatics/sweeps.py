@@ -89,6 +89,8 @@ def sweep(
         A parameter, unit, output or reduction is not known, or the folder holds another sweep.
     QuantityError
         The mechanism, or the reference of a ratio, has no such quantity.
+    NotGivenError
+        ``engine="compiled"`` does not take the mechanism.
 
     Examples
     --------

@@ -5,6 +5,7 @@ import platform
 import statistics
 import time
 from importlib import metadata
+from pathlib import Path
 
 LIBRARIES = ("kinetostatics", "numpy", "scipy", "sympy", "numba", "jax", "python-flint", "mpmath")
 SHORTEST = 2e-3
@@ -33,6 +34,15 @@ def _stretch(run, calls):
     return max(time.perf_counter() - start, 1e-9) / calls
 
 
+def _processor():
+    """Name of the processor as the system tells it, else its architecture."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        return next(line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor() or platform.machine()
+
+
 def circumstances():
     """Machine and versions of the libraries, as two texts."""
     found = {}
@@ -42,5 +52,5 @@ def circumstances():
         except metadata.PackageNotFoundError:
             continue
     versions = "; ".join(f"{name} {version}" for name, version in found.items())
-    machine = f"{platform.machine()} {platform.system()}, {os.cpu_count()} cores"
+    machine = f"{_processor()}, {platform.system()}, {os.cpu_count()} cores"
     return {"machine": machine, "versions": f"Python {platform.python_version()}; {versions}"}

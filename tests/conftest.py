@@ -2,6 +2,7 @@
 
 import os
 import sys
+from functools import cache
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
@@ -9,7 +10,7 @@ import pytest
 
 
 @pytest.fixture(scope="session", autouse=True)
-def cache(tmp_path_factory):
+def programs(tmp_path_factory):
     """A folder for compiled programs that goes with pytest's others, unless the environment names one."""
     with pytest.MonkeyPatch.context() as patch:
         if not os.environ.get("KINETOSTATICS_CACHE"):
@@ -26,4 +27,4 @@ def interpreted(monkeypatch):
     numba.njit = lambda **options: lambda function: function
     numba.__spec__ = ModuleSpec("numba", None)
     monkeypatch.setitem(sys.modules, "numba", numba)
-    monkeypatch.setattr(compiled, "_loaded", compiled._loaded.__wrapped__)
+    monkeypatch.setattr(compiled, "_loaded", cache(compiled._loaded.__wrapped__))

@@ -1,6 +1,7 @@
 """Functions that make designs for sweeps, in a module that is quickly imported by workers."""
 
 import math
+import multiprocessing
 import os
 import signal
 from functools import partial
@@ -33,7 +34,7 @@ def _deadly(crank, mass, at, marker=None):
     if np.any(crank == at) and not (marker and Path(marker).exists()):
         if marker:
             Path(marker).touch()
-        os.kill(os.getpid(), signal.SIGKILL)
+        die()
     return pump(crank, mass)
 
 
@@ -53,12 +54,17 @@ def note(path):
         file.write(multiprocessing.get_start_method() + "\n")
 
 
-class Deadly(pd.DataFrame):
-    """A table of designs that no worker survives."""
+def die():
+    """Kill this process, and no other."""
+    os.kill(os.getpid(), signal.SIGKILL)
 
-    @property
-    def _constructor(self):
-        return Deadly
+
+class Poison:
+    """A function that no other process survives to receive."""
+
+    def __call__(self, crank, mass):
+        """As others do."""
+        return pump(crank, mass)
 
     def __reduce__(self):
-        return os.kill, (0, signal.SIGKILL)
+        return die, ()

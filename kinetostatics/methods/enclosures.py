@@ -134,11 +134,11 @@ def on_arb(arb, solution) -> Solution:
             _require_exact(what, values, arb)
     drive = _copied((solution.crank_speed, solution.crank_acceleration), arb)
     idle = Solution(mechanism, angle, *drive)
-    loads = (_loadon_arb(arb, item, place, idle) for place, item in enumerate(solution.loads, 1))
+    loads = (_load_on_arb(arb, item, place, idle) for place, item in enumerate(solution.loads, 1))
     return replace(idle, loads=tuple(loads))
 
 
-def _loadon_arb(arb, item, place, motion):
+def _load_on_arb(arb, item, place, motion):
     exact = _copied(item, arb)
     if isinstance(item, Gravity):
         return exact
