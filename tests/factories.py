@@ -1,4 +1,4 @@
-"""Functions that make designs for sweeps, in a module that is quickly imported by workers."""
+"""Designs of sweeps and functions that make them, in a module that workers are quick to import."""
 
 import math
 import multiprocessing
@@ -8,9 +8,13 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 import kinetostatics as ks
 from kinetostatics.case import Variant
+
+OUTPUTS = ["largest O", "mean_absolute balancing_torque"]
+DESIGNS = pd.DataFrame({"crank [mm]": np.linspace(100.0, 500.0, 41), "mass": np.linspace(1.0, 9.0, 41)})
 
 
 def pump(crank, mass=1.0, speed=100.0):
