@@ -5,6 +5,7 @@ that cannot be built are set apart, each with its reason, and the others go on t
 """
 
 import math
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from . import compiled
 from .case import Variant
 from .elementary import ROUNDING
 from .errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from .quantities import components, magnitude
+from .quantities import components, sizes
 from .reductions import Output
 from .solution import solve
 
@@ -122,7 +123,7 @@ def _engine(job, solutions, engines):
         return first
     try:
         for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
-            compiled.program(solution, [*_quantities(outputs), "closure"])
+            compiled.program(solution, [*_quantities(outputs), "closure"], sizes=True)
     except NotGivenError:
         if not others:
             raise
@@ -235,17 +236,18 @@ def _run(variant, job, count, outputs):
         )
     names = _quantities(outputs)
     evaluate = (_by_loop if job.engine == "compiled" else _by_numpy)(solution, [*names, "closure"], made)
-    numbers, gaps = np.empty((len(outputs), made)), np.empty(made, dtype=int)
+    numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
     step = max(1, VALUES // job.angles)
 
     def fill(start):
         block = slice(start, start + step)
         with np.errstate(all="ignore"):
             *found, closure = evaluate(block)
-            values = dict(zip(names, map(_size, found), strict=True))
+            values = {name: parts[0] for name, parts in zip(names, found, strict=True)}
             for row, item in enumerate(outputs):
                 numbers[row, block] = item.reduced(values[item.quantity])
-            gaps[block] = (~(closure >= -ROUNDING)).any(axis=0).sum(axis=-1)
+            gaping = ~(closure.min(axis=-1) >= -ROUNDING).all(axis=0)
+            gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
 
     starts = range(0, made, step)
     if min(job.threads, len(starts)) == 1:
@@ -260,20 +262,26 @@ def _run(variant, job, count, outputs):
     return np.broadcast_to(numbers, (len(outputs), count)), np.broadcast_to(reasons, count)
 
 
-def _size(parts):
-    return parts[0] if len(parts) == 1 else magnitude(parts)
-
-
 def _by_loop(solution, quantities, count):
-    """Function from a block of designs to the components of each quantity over the turn (parts, block, N), compiled."""
-    program = compiled.program(solution, quantities)
+    """Function from a block of designs to the size of each quantity over the turn (parts, block, N), compiled.
+
+    Values stay until the same thread takes its next block: memory is asked for once.
+    """
+    program = compiled.program(solution, quantities, sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
     turn, tables = program.turn(angle), program.tabulated(solution)
-    edges = np.cumsum(program.trace.widths)[:-1]
+    edges, held = np.cumsum(program.trace.widths)[:-1], threading.local()
 
     def evaluate(block):
+        parameters = program.parameters[block]
+        designs = len(parameters)
+        if len(getattr(held, "results", ())) < designs:
+            held.results = np.empty((designs, len(program.trace.outputs), angle.shape[1]))
+            held.parts = np.empty((len(program.trace.outputs), designs, angle.shape[1]))
         shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
-        return np.split(program.at(angle, *turn, shared, program.parameters[block]), edges)
+        values = held.parts[:, :designs]
+        values[:] = program.at(angle, *turn, shared, parameters, held.results[:designs])
+        return np.split(values, edges)
 
     return evaluate
 
@@ -281,6 +289,6 @@ def _by_loop(solution, quantities, count):
 def _by_numpy(solution, quantities, count):
     """The same by NumPy, all designs at a time."""
     with np.errstate(all="ignore"):
-        found = [components(solution, name) for name in quantities]
+        found = [sizes(solution, name) for name in quantities]
     shaped = [np.reshape(parts, (len(parts), count, solution.shape[-1])) for parts in found]
     return lambda block: [parts[:, block] for parts in shaped]

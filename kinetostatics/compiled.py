@@ -199,7 +199,7 @@ class Program:
             list(threads.map(piece, edges[:-1], edges[1:]))
 
 
-def program(solution, quantities) -> Program:
+def program(solution, quantities, sizes=False) -> Program:
     """Loop for some quantities of a solution, compiled or taken from disk.
 
     Parameters
@@ -208,6 +208,8 @@ def program(solution, quantities) -> Program:
         Its mechanism, drive and loads, single or a batch; of its crank angles only the batch shape.
     quantities : sequence of str
         As for `quantities.components`.
+    sizes : bool
+        Whether the magnitude of a vector is wanted, not its components.
 
     Raises
     ------
@@ -217,7 +219,7 @@ def program(solution, quantities) -> Program:
         A group or load of the user's own cannot be recorded.
     """
     try:
-        recorded = trace(solution, quantities)
+        recorded = trace(solution, quantities, sizes)
     except (TypeError, AttributeError) as error:
         raise NotGivenError(
             f"the compiled engine cannot take {solution.mechanism.name}: a group or load of it does more than "

@@ -49,6 +49,12 @@ def components(solution, quantity):
     raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", quantity, tuple(dict.fromkeys(known))))
 
 
+def sizes(solution, quantity):
+    """The same with the magnitude in place of the components of a vector."""
+    parts = components(solution, quantity)
+    return (magnitude(parts),) if quantity in VECTORS or quantity in solution.reactions else parts
+
+
 def scale(solution, quantity):
     """Largest of the terms that a force, moment or torque is the sum of; 0 for a motion or a function of the user's.
 

@@ -4,7 +4,9 @@ Written as text, the reduction before the quantity: "largest O", "mean_absolute 
 "harmonic_2 balancing_torque", "ratio mean_absolute balancing_torque".
 """
 
+import math
 import re
+import threading
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,27 +18,58 @@ from .quantities import label, unit
 
 REACH = 4
 """Samples on either side of a peak that tell how high it is between them."""
+SCRATCH = 2**18
+"""Bytes of memory for short use that each thread keeps."""
+_own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
 _POWERS = np.arange(_AROUND.size)[:, None]
 _THROUGH = np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True))
 
 
-def _peak(values):
-    """Largest value and its crank angle, rad: of all peaks of the samples the one that is highest between them."""
+def _peak(values, sign=1.0):
+    """Largest value, times a sign, and its crank angle, rad: of all peaks of the samples the highest between them."""
     count = values.shape[-1]
-    rising = values > np.roll(values, 1, axis=-1)
-    peaks = rising & ~np.roll(rising, -1, axis=-1)
-    peaks[np.arange(len(values)), values.argmax(axis=-1)] = True
-    design, place = np.divmod(np.flatnonzero(peaks), count)
+    tops = [first * count + _tops(some, sign) for first, some in _pieces(values, 2)]
+    design, place = np.divmod(np.concatenate(tops), count)
     if count < _AROUND.size:
-        height, shift = values[design, place], 0.0 * place
+        height, shift = sign * values[design, place], 0.0 * place
     else:
-        height, shift = _between(values[design, (place + _AROUND[:, None]) % count])
-    highest = np.maximum.reduceat(height, np.searchsorted(design, np.arange(len(values))))
+        rivals = _rivals(sign * _around(values, design, place, 1), design, len(values))
+        design, place = design[rivals], place[rivals]
+        height, shift = _between(sign * _around(values, design, place, REACH))
+    highest = _highest(height, design, len(values))
     _, first = np.unique(np.where(height < highest[design], -1, design), return_index=True)
     first = first[-len(values) :]
     where = 2 * np.pi * ((place + shift)[first] % count) / count
     return highest, np.where(np.isnan(highest), np.nan, where)
+
+
+def _tops(values, sign):
+    """Places of samples higher than the one before and not lower than the one behind, or the first highest of all."""
+    higher, highest = (np.greater, np.argmax) if sign > 0 else (np.less, np.argmin)
+    rising, tops = _scratch(bool, 2, *values.shape)
+    higher(values[:, 1:], values[:, :-1], out=rising[:, 1:])
+    higher(values[:, 0], values[:, -1], out=rising[:, 0])
+    np.greater(rising[:, :-1], rising[:, 1:], out=tops[:, :-1])
+    np.greater(rising[:, -1], rising[:, 0], out=tops[:, -1])
+    tops[np.arange(len(values)), highest(values, axis=-1)] = True
+    return np.flatnonzero(tops)
+
+
+def _around(values, design, place, reach):
+    return values[design, (place + np.arange(-reach, reach + 1)[:, None]) % values.shape[-1]]
+
+
+def _rivals(near, design, count):
+    """Which peaks may be the highest of a design; one rises above its sample by less than that above its neighbours."""
+    before, here, after = near
+    bend = abs(before - 2.0 * here + after)
+    return ~(here + bend < _highest(here - bend, design, count)[design])
+
+
+def _highest(height, design, count):
+    """Highest of the peaks of each design, which stand one design after the other."""
+    return np.maximum.reduceat(height, np.searchsorted(design, np.arange(count)))
 
 
 def _between(near):
@@ -67,6 +100,27 @@ def _between(near):
     return np.where(sign == 0, height, sign * np.sqrt(np.maximum(sign * height, 0.0))), shift
 
 
+def _mean_absolute(values):
+    sizes = (np.abs(some, out=_scratch(float, *some.shape)) for _, some in _pieces(values, 8))
+    return np.concatenate([size.mean(axis=-1) for size in sizes])
+
+
+def _pieces(values, size):
+    """Number of the first design, and values, of some designs at a time that take one scratch at that size a value."""
+    step = max(1, SCRATCH // (size * values.shape[-1]))
+    return [(first, values[first : first + step]) for first in range(0, len(values), step)]
+
+
+def _scratch(kind, *shape):
+    """Memory for what is soon forgotten, the same each time: to get new one may take longer than to use it."""
+    size = math.prod(shape) * np.dtype(kind).itemsize
+    if size > SCRATCH:
+        return np.empty(shape, kind)
+    if not hasattr(_own, "scratch"):
+        _own.scratch = np.empty(SCRATCH, np.uint8)
+    return _own.scratch[:size].view(kind).reshape(shape)
+
+
 def _harmonic(order):
     def amplitude(values):
         angle = 2 * np.pi * order * np.arange(values.shape[-1]) / values.shape[-1]
@@ -79,12 +133,12 @@ def _harmonic(order):
 REDUCTIONS = {
     "largest": lambda values: _peak(values)[0],
     "largest_at": lambda values: _peak(values)[1],
-    "smallest": lambda values: -_peak(-values)[0],
-    "smallest_at": lambda values: _peak(-values)[1],
-    "largest_absolute": lambda values: np.maximum(_peak(values)[0], _peak(-values)[0]),
-    "range": lambda values: _peak(values)[0] + _peak(-values)[0],
+    "smallest": lambda values: -_peak(values, -1.0)[0],
+    "smallest_at": lambda values: _peak(values, -1.0)[1],
+    "largest_absolute": lambda values: np.maximum(_peak(values)[0], _peak(values, -1.0)[0]),
+    "range": lambda values: _peak(values)[0] + _peak(values, -1.0)[0],
     "mean": lambda values: values.mean(axis=-1),
-    "mean_absolute": lambda values: abs(values).mean(axis=-1),
+    "mean_absolute": _mean_absolute,
     "rms": lambda values: np.sqrt(np.einsum("dn,dn->d", values, values) / values.shape[-1]),
 }
 """By name: function of values (designs, N) at crank angles evenly over the turn; extremes are found between them."""

@@ -17,6 +17,7 @@ from .crank import ray
 from .elementary import APART
 from .loads import Gravity, ProcessForce
 from .quantities import components
+from .quantities import sizes as sizes_of
 from .solution import Solution
 from .substitution import with_fields, with_numbers
 
@@ -169,7 +170,7 @@ class Trace:
         return sum(node.varies == BY_ANGLE and node.operation not in INPUTS for node in self.nodes)
 
 
-def trace(solution, quantities) -> Trace:
+def trace(solution, quantities, sizes=False) -> Trace:
     """Arithmetic of some quantities of a solution.
 
     Parameters
@@ -178,10 +179,12 @@ def trace(solution, quantities) -> Trace:
         What its numbers are does not matter, except that a plain zero is taken to be absent.
     quantities : sequence of str
         Names as for `quantities.components`.
+    sizes : bool
+        Whether the magnitude of a vector is wanted, not its components.
     """
     recorder = _Recorder(solution)
     recorded = recorder.recorded
-    found = [components(recorded, name) for name in quantities]
+    found = [(sizes_of if sizes else components)(recorded, name) for name in quantities]
     outputs = tuple(part.flat[0] for parts in found for part in parts)
     return Trace(outputs, tuple(map(len, found)), tuple(recorder.parameters), tuple(recorder.tables))
 

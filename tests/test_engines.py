@@ -474,6 +474,26 @@ def test_program_of_many_designs_equals_solve(interpreted, name):
     assert_program_equals(s, len(made.trace.tables))
 
 
+@pytest.mark.parametrize("sizes", [False, True])
+@pytest.mark.parametrize("name", ["crank angles, other lengths, sampled cam, table", "one design"])
+def test_program_in_pieces_and_in_memory_handed_in_gives_the_same(interpreted, monkeypatch, name, sizes):
+    s = BATCHES[name]() if name in BATCHES else solve(SCENES["plain, everything"], SAMPLES)
+    made = compiled.program(s, ["O", "balancing_torque"], sizes)
+    angle, tables = np.broadcast_to(s.crank_angle, s.shape).reshape(-1, SAMPLES.size), made.tabulated(s)
+    whole = made(angle, tables)
+    expected = [ks.quantities.magnitude(s.reaction("O"))] if sizes else s.reaction("O")
+    assert largest(whole[:-1].reshape(-1, *s.shape) - expected) <= 1e-13 * largest(expected)
+    monkeypatch.setattr(compiled, "SHARE", 20)
+    monkeypatch.setattr(compiled, "cores", lambda: 3)
+    assert np.array_equal(made(angle, tables), whole)
+    results = np.empty((whole.shape[1], whole.shape[0], SAMPLES.size))
+    found = made.at(angle, *made.turn(angle), tables, results=results)
+    assert np.shares_memory(found, results)
+    assert np.array_equal(found, whole)
+    with pytest.raises(ValueError, match="memory for results"):
+        made.at(angle, *made.turn(angle), tables, results=results[1:])
+
+
 # What a program costs
 
 

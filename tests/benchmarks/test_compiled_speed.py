@@ -221,7 +221,7 @@ def test_sweep_of_many_designs_takes_seconds_and_no_more_memory_than_its_table(b
                 f" the tables of designs and results take {size_10 - size:.0f} MB"
             )
             assert spent_10 < 13 * spent
-            assert memory_10 - memory < 1.5 * (size_10 - size)
+            assert memory_10 - memory < 2 * (size_10 - size)
 
 
 def test_designs_that_are_impossible_hardly_slow_a_sweep_down(benchmark, tell):
@@ -241,7 +241,7 @@ def test_designs_that_are_impossible_hardly_slow_a_sweep_down(benchmark, tell):
 def test_dask_is_nearly_as_fast_as_local_processes(benchmark, tell):
     distributed = pytest.importorskip("distributed", reason="distributed is not installed (extra: distributed)")
     designs = ks.designs.random(VARIED["plain"], 2 * MANY)
-    local = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    local = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0"}
     with (
         ProcessPoolExecutor(2, mp_context=get_context("spawn")) as processes,
         distributed.LocalCluster(**local) as cluster,
