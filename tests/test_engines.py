@@ -17,7 +17,7 @@ from four_bars import FourBar
 from test_six_bar import six_bar
 
 import kinetostatics as ks
-from kinetostatics import compiled, elementary, tracing
+from kinetostatics import compiled, tracing
 from kinetostatics.links import LinkMotion
 from kinetostatics.quantities import components
 
@@ -122,26 +122,6 @@ def test_solve_under_jax_jit_equals_numpy(double, name):
     found = double.jit(lambda angles: results(solve(SCENES[name], angles, on_gap="nan")))(ANGLES)
     assert all(values.dtype == "float64" for values in found.values())
     assert_agree(found, results(solve(SCENES[name], ANGLES)))
-
-
-def torque_by_stiffness(stiffness):
-    """Mean squared torque of the cosine cam, (N m)^2."""
-    scene = SCENES["cosine cam"]._replace(spring=ks.Spring(stiffness, 2.0))
-    return (solve(scene, elementary.namespace(stiffness).asarray(ANGLES), on_gap="nan").balancing_torque ** 2).mean()
-
-
-def torque_by_cam_radius(radius):
-    """Mean squared torque of the circle cam, (N m)^2."""
-    cam = ks.cams.Circle(radius, (-0.0219, 0.0))
-    scene = SCENES["circle cam"]._replace(mechanism=ks.cam_crank_slider(cam, 2.0219, **LIGHT))
-    return (solve(scene, elementary.namespace(radius).asarray(ANGLES), on_gap="nan").balancing_torque ** 2).mean()
-
-
-@pytest.mark.parametrize(("cost", "at"), [(torque_by_stiffness, 7e5), (torque_by_cam_radius, 0.31)])
-def test_jax_gradient_equals_central_difference(double, cost, at):
-    step = 1e-5 * at
-    difference = (cost(at + step) - cost(at - step)) / (2 * step)
-    assert float(double.jit(double.grad(cost))(at)) == pytest.approx(difference, rel=1e-6)
 
 
 def test_jax_in_single_precision_is_warned_of(jax):
