@@ -7,16 +7,26 @@ cam_roller, cams            slotted crank, block and roller on a fixed cam
 slider_group, rocker_group  coupler and slider on a guide; coupler and rocker
 chain, batch, mechanism     how groups hang together; the mechanisms made of them
 motion, solution            what it does and what forces that takes
+tracing, compiled           the kernels' arithmetic written down, and as a loop by numba
 balancing, counterweights   static balancing, the counterweights it takes, and their price
 linkage                     swing and class of four-bars
 principal_points            common mass centre and shaking force from the link masses
 assembly                    where it can be put together
 extremes, comparison        true extrema; dynamic coefficients
+ingredients, rerouted       how much model a quantity needs; motion found in other ways
+precision, stability        every method's time against error; where methods fail
+methods                     the methods under study and the certified reference
+designs, parameters         tables of designs; what a case lets vary
+sweeps, chunks, dispatch    a row for each design: the sweep, one chunk, workers and their deaths
+reductions, dataset         numbers from values over the turn; results on disk
+tolerance                   spreads, quantiles, Sobol indices
 case, schema, units         case files and what they may hold; text with units
 files                       CSV tables in, results out
 quantities, tables          names and units of results; DataFrames
 checks, errors              what is refused at the door, and how it is said
-plots, drawings, canvas     figures: curves, the mechanism itself, what they share
+substitution, timing        other kinds of numbers in place of floats; how long, and on what machine
+plots, charts               figures of solutions; charts of studies
+drawings, canvas            the mechanism itself; what figures share
 figures, cli                figures of a case; command line
 """
 
