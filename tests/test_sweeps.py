@@ -336,6 +336,7 @@ def engines_taken(monkeypatch):
 
 
 def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
+    pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     taken = engines_taken(monkeypatch)
     monkeypatch.setattr(sweeps, "WORTH_COMPILING", 41 * 12)
     for options in ({}, {"engine": "numpy"}, {"angles": 11}):
