@@ -191,8 +191,8 @@ def sweep_page(table, parameters, outputs, path):
 
 def _in_lines(column):
     """Heading with its reduction, quantity and unit each on a line."""
-    name, unit = column.split(" [")
-    return "\n".join([*name.split(" "), f"[{unit}"])
+    name, bracket, unit = column.partition(" [")
+    return "\n".join([*name.split(" "), *([f"[{unit}"] if bracket else [])])
 
 
 def _scatter_matrix(table, columns):

@@ -8,7 +8,7 @@ import hashlib
 import inspect
 import pickle
 import re
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import closing, suppress
 from dataclasses import replace
 from functools import partial
@@ -74,7 +74,7 @@ def sweep(
         Designs computed together: what bounds the memory.
     folder : path
         Parquet dataset that chunks are written to as they are done. If it holds part of the same sweep, that is kept
-        and the rest computed.
+        and the rest computed. A function is the same if its source is, whatever the values that it refers to.
     progress : bool
         Whether a bar is shown.
 
@@ -130,6 +130,10 @@ def _bar(shown, total):
 
 def _job(source, designs, outputs, variant, reference, angles, engine, executor, chunk):
     """The job, the engines to try, and what is compared: variants of a case, or a function and a variant."""
+    if not isinstance(designs, pd.DataFrame):
+        raise ParameterError(
+            f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
+        )
     make, known, compared = (
         _of_case(source, variant, reference) if isinstance(source, Case) else _of_function(source, reference)
     )
@@ -142,6 +146,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
         *_count_problems(angles=angles, chunk=chunk),
         None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         None if len(designs) else "there are no designs",
+        _executor_problem(executor),
         *_order_problems(wanted, angles),
     ]
     ratios = any(item.ratio for item in wanted)
@@ -223,6 +228,13 @@ def _count_problems(**counts):
     for name, value in counts.items():
         if not isinstance(value, int | np.integer) or value < 1:
             yield f"{name} must be a whole number of at least 1, got {value!r}"
+
+
+def _executor_problem(executor):
+    if isinstance(executor, Executor | None):
+        return None
+    found = type(executor).__name__
+    return f"executor must be an Executor of concurrent.futures (of Dask: client.get_executor()), got {found}"
 
 
 def _order_problems(wanted, angles):

@@ -261,6 +261,8 @@ def test_all_that_is_wrong_is_told_at_once():
 
 
 WRONG = {
+    "a list": (factories.pump, [0.1, 0.2], OUTPUTS, {}, "designs must be a pandas DataFrame, .* got list"),
+    "a client": (factories.pump, DESIGNS, OUTPUTS, {"executor": 2}, r"client.get_executor\(\)\), got int"),
     "no designs": (factories.pump, DESIGNS[:0], OUTPUTS, {}, "there are no designs"),
     "no outputs": (factories.pump, DESIGNS, [], {}, "no outputs are asked for"),
     "half an angle": (factories.pump, DESIGNS, OUTPUTS, {"angles": 1.5}, "angles must be a whole number"),
