@@ -249,7 +249,8 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
 
     Left out or put more simply: gravity, springs, process forces, crank acceleration, guide offset, mass-centre offsets
     across the links, masses of crank, block, coupler, slider and rocker, inertia of coupler and rocker about their
-    centres, the coupler as two masses at its joints, and kinematics as Fourier series of one or two harmonics.
+    centres, the coupler as two masses at its joints, and kinematics as Fourier series of one or two harmonics. Where
+    that makes more than `MOST_MODELS` combinations, the simplifications that alone change most are left out.
 
     Parameters
     ----------

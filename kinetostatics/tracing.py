@@ -21,8 +21,8 @@ from .quantities import sizes as sizes_of
 from .solution import Solution
 from .substitution import with_fields, with_numbers
 
-CONSTANT, BY_DESIGN, BY_ANGLE = range(3)
-"""What the value of a node may vary with: nothing, the design, the crank angle as well."""
+BY_DESIGN, BY_ANGLE = range(2)
+"""What the value of a node varies with: the design, or the crank angle as well."""
 INPUTS = ("angle", "parameter", "table")
 
 

@@ -6,9 +6,7 @@ import math
 import subprocess
 import sys
 from dataclasses import dataclass, replace
-from importlib.machinery import ModuleSpec
 from pathlib import Path
-from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -212,16 +210,6 @@ def test_dask_arrays_stay_lazy_in_chunks_and_equal_numpy(name):
 
 
 # Recorded and compiled programs
-
-
-@pytest.fixture
-def interpreted(monkeypatch):
-    """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    numba = ModuleType("numba")
-    numba.njit = lambda **options: lambda function: function
-    numba.__spec__ = ModuleSpec("numba", None)
-    monkeypatch.setitem(sys.modules, "numba", numba)
-    monkeypatch.setattr(compiled, "_loaded", compiled._loaded.__wrapped__)
 
 
 @pytest.fixture

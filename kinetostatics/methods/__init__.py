@@ -1,13 +1,15 @@
 """Methods under study: other ways to the library's results, kept to be measured against it.
 
 method      what a method is
-engines     the library's own path: NumPy, compiled, JAX, single precision
-joints      other ways to the motion: differences, spectra, harmonic series; two-mass coupler, torque by powers
+engines     the library's own path: NumPy, compiled, JAX, by powers; single precision
+joints      other ways to the motion: differences, spectra, harmonic series; two-mass coupler
 papers      the published studies' own formulas
 newton      Newton iteration on the loop equations, and all forces from one system
 integration constrained multibody integration at constant speed
 kane        SymPy's Kane method, lambdified
-certified   enclosures by arb and an independent path by mpmath: what all are measured against
+enclosures  the library's kernels on arb numbers
+independent other formulas by mpmath
+certified   both in agreement: what all are measured against
 
 Nothing in the library's numeric path calls them; where they fail is counted by the tests.
 """

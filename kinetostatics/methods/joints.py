@@ -7,11 +7,9 @@ import numpy as np
 from ..errors import NotGivenError
 from ..ingredients import two_mass_coupler
 from ..quantities import components
-from ..rerouted import Rerouted, assembled, harmonic_series, joints_of, positions, rerouted
+from ..rerouted import assembled, harmonic_series, joints_of, positions, rerouted
 from .engines import compiled_run
 from .method import Method
-
-__all__ = ["METHODS", "Rerouted", "assembled", "rerouted"]
 
 STENCILS = {
     2: ((-1, 0, 1), (-0.5, 0.0, 0.5), (1.0, -2.0, 1.0)),
