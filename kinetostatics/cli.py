@@ -135,6 +135,8 @@ def _compare(options):
         ("swing and transmission", case.linkage_table(), case.published.linkage),
     ]
     print(case.title)
+    if case.published.note:
+        print(f"\n{case.published.note}")
     for heading, table, published in special:
         if table is not None:
             print(f"\n{heading}; published figures in brackets\n")

@@ -213,11 +213,12 @@ class PublishedTable(Table):
 
     `ratio` holds those of reference / balanced, `value` those of the balanced mechanism; `balancing` those of the
     balancing table, for every variant and link, taken at a crank-angle step of `sampling`; `linkage` those of the
-    four-bar table, for every variant.
+    four-bar table, for every variant. `note` says how to read them beside ours.
     """
 
     ratio: dict[str, str] = Field(default_factory=dict)
     value: dict[str, str] = Field(default_factory=dict)
+    note: str = ""
     sampling: Angle | None = None
     balancing: dict[str, dict[str, str]] = Field(default_factory=dict)
     linkage: dict[str, dict[str, str]] = Field(default_factory=dict)

@@ -3,7 +3,7 @@
 method      what a method is
 engines     the library's own path: NumPy, compiled, JAX, by powers; single precision
 joints      other ways to the motion: differences, spectra, harmonic series; two-mass coupler
-papers      the published studies' own formulas
+papers      the published studies' own formulas, and the one with a wrong sign as printed
 newton      Newton iteration on the loop equations, and all forces from one system
 integration constrained multibody integration at constant speed
 kane        SymPy's Kane method, lambdified
@@ -24,6 +24,7 @@ METHODS = (
     *newton.METHODS,
     *joints.METHODS,
     *integration.METHODS,
+    papers.AS_PRINTED,
 )
 """All methods, in the order of charts."""
 

@@ -1,7 +1,8 @@
 """Methods under study: the papers' own ways to a result, kept to be measured against the library's.
 
 Nothing in the library calls them; where they fail is counted by the tests. Functions and cams hold the formulas as the
-studies print them, groups put these in place of the library's, for every guide, pivot and assembly.
+studies print them, groups put these in place of the library's, for every guide, pivot and assembly. One printed sign
+is wrong, that of the sawframe study's slot force: `by_the_papers` has it mended, `as_printed` keeps it.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -12,12 +13,16 @@ import numpy as np
 from ..cam_roller import CamRoller
 from ..cams import Circle, CosineLaw
 from ..links import Joint, LinkMotion, Wrench
+from ..loads import ProcessForce, Spring
 from ..planar import added, cross, dot, left, minus, stretched, subtracted, vector
 from ..quantities import components
 from ..rocker_group import RockerGroup, RockerMotion
 from ..slider_group import SliderGroup, SliderMotion
 from ..solution import Solution
 from .method import Method, NotGivenError
+
+EQUILIBRIUM, PRINTED = 1.0, -1.0
+"""Sign of R40 sin(nu) in the slot force: that of the block's equilibrium, and that of the sawframe study."""
 
 
 def turned_to_length(vector, angle, length):
@@ -187,16 +192,29 @@ class CosineLawAsPrinted(CosineLaw):
         return x * c - w, x1 * c - x * s - w1, x2 * c - 2 * x1 * s - x * c - w2
 
 
+@dataclass(frozen=True, eq=False)
 class RollerByAngles(CamRoller):
-    """Cam roller by the sawframe study: cam and slot force from size and direction of the load R42 on the block."""
+    """Cam roller by the sawframe study: cam and slot force from size and direction of the load R42 on the block.
+
+    R40 = -R42 cos(phi - alpha42) / cos(nu) acts along the cam's outward normal, at phi - nu, and
+    R41 = R42 sin(phi - alpha42) + R40 sin(nu) across the ray, at phi + 90 deg. The study prints R41 with a minus, with
+    which the three forces on the block do not sum to zero.
+
+    Parameters
+    ----------
+    sign : float
+        Of R40 sin(nu): `EQUILIBRIUM` or `PRINTED`.
+    """
+
+    sign: float = EQUILIBRIUM
 
     def resolve(self, placement, loads, pushes, forces):
         radius, slope, _ = placement.details["cam"]
         x, y = vector(subtracted(loads["block"].force, forces.demand.get("A")))
         R42, behind, nu = np.hypot(x, y), placement.angle - np.arctan2(y, x), np.arctan(slope / radius)
-        R40 = R42 * np.cos(behind) / np.cos(nu)
-        R41 = R42 * np.sin(behind) - R40 * np.sin(nu)
-        forces.scalars |= {"cam_force": R40, "slot_force": R41}
+        R40 = -R42 * np.cos(behind) / np.cos(nu)
+        R41 = R42 * np.sin(behind) + self.sign * R40 * np.sin(nu)
+        forces.scalars |= {"cam_force": -R40, "slot_force": R41}
         torque = minus(R41 * radius, loads["block"].moment)
         forces.crank_demand = Wrench(stretched(R41, left(placement.ray)), torque)
 
@@ -264,7 +282,7 @@ def _as(kind, original, **more):
     return kind(*(getattr(original, field.name) for field in fields(original)), **more)
 
 
-def _by_the_papers(mechanism):
+def _groups(mechanism, sign):
     """Groups of a mechanism as its study calculates them."""
     groups = mechanism.groups
     kinds = [type(group) for group in groups]
@@ -274,21 +292,72 @@ def _by_the_papers(mechanism):
         return (_as(RockerByAtanAcos, groups[0], crank_length=mechanism.crank.length),)
     cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
     if kinds == [CamRoller, SliderGroup] and type(cam := groups[0].cam) in cams:
-        return RollerByAngles(_as(cams[type(cam)], cam), groups[0].block), _as(SliderByAsin, groups[1])
+        return RollerByAngles(_as(cams[type(cam)], cam), groups[0].block, sign), _as(SliderByAsin, groups[1])
     raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
 
 
-def _prepare(solution, quantity, setting=None):
-    if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
-        raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
-    mechanism = replace(solution.mechanism, groups=_by_the_papers(solution.mechanism))
-    given = {field.name: getattr(solution, field.name) for field in fields(Solution)} | {"mechanism": mechanism}
+def by_the_papers(solution, sign=EQUILIBRIUM):
+    """The solution by the formulas of the study of such a mechanism, its wrong sign mended unless told.
 
-    def run():
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return components(Solution(**given), quantity)
+    Parameters
+    ----------
+    solution : Solution
+        Of a mechanism built as one of the cases.
+    sign : float
+        Of R40 sin(nu) in the slot force of a cam roller: `EQUILIBRIUM` or `PRINTED`.
 
-    return run
+    Raises
+    ------
+    NotGivenError
+        No study has formulas for it.
+    """
+    given = {field.name: getattr(solution, field.name) for field in fields(Solution)}
+    mechanism = replace(solution.mechanism, groups=_groups(solution.mechanism, sign))
+    return Solution(**given | {"mechanism": mechanism})
 
 
-METHODS = (Method("papers' formulas", _prepare),)
+def exactly_cancelled(solution):
+    """The solution with a force that cancels the slider's inertia exactly, at every position, in place of the springs.
+
+    So the sawframe study calculates, as if the circular cam gave the cosine law of motion that springs need for it.
+    """
+    others = tuple(load for load in solution.loads if not isinstance(load, Spring))
+    if len(others) == len(solution.loads):
+        raise NotGivenError(f"{solution.mechanism.name} has no spring that could cancel the slider's inertia")
+    mass = solution.mechanism.links["slider"].mass
+    return replace(solution, loads=(*others, ProcessForce(lambda motion: mass * motion.slider_acceleration)))
+
+
+def as_printed(solution):
+    """The solution by the sawframe study's equations to the letter: exact cancellation, and its sign in the slot force.
+
+    Not right mechanics: it gives the study's dynamic coefficients, and fails the balance of powers.
+    """
+    mechanism = solution.mechanism
+    cams = [type(group.cam).__name__ for group in mechanism.groups if isinstance(group, CamRoller)]
+    if cams != [Circle.__name__]:
+        has = f"the cam {cams[0]}" if cams else "none"
+        raise NotGivenError(f"the sawframe study's equations are for a circular cam; {mechanism.name} has {has}")
+    return by_the_papers(exactly_cancelled(solution), PRINTED)
+
+
+def _prepared(formulas):
+    """Method that computes a solution by other formulas."""
+
+    def prepare(solution, quantity, setting=None):
+        if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
+            raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
+        formulated = formulas(solution)
+
+        def run():
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return components(replace(formulated), quantity)
+
+        return run
+
+    return prepare
+
+
+METHODS = (Method("papers' formulas", _prepared(by_the_papers)),)
+AS_PRINTED = Method("sawframe study as printed, wrong sign", _prepared(as_printed))
+"""Apart from the others, which are right but for rounding: its error, a fifth, is that of one sign."""
