@@ -13,7 +13,6 @@ from functools import partial
 import numpy as np
 
 from . import checks
-from .cam_roller import CamRoller
 from .errors import NotGivenError, ParameterError
 from .links import Link
 from .loads import Gravity, ProcessForce, Spring
@@ -44,7 +43,7 @@ def two_mass_coupler(mechanism):
     """
     made = mechanism
     for group in mechanism.groups:
-        if isinstance(group, CamRoller):
+        if not isinstance(group, SliderGroup | RockerGroup):
             continue
         name, output = group.links
         coupler = group.links[name]

@@ -43,8 +43,6 @@ def assembled(mechanism, angle, joints) -> Placement:
     """Placement of a mechanism whose moving joints are known, by name, with their derivatives."""
     placement = mechanism.crank.place(angle)
     for group in mechanism.groups:
-        if type(group) not in _ASSEMBLE:
-            raise NotGivenError(f"only the library's own groups are known to this method, not {type(group).__name__}")
         _ASSEMBLE[type(group)](group, placement, joints)
     return placement
 
@@ -93,6 +91,9 @@ def _between(start, end, length):
 
 def moving(mechanism):
     """Names of the joints that groups place; the crank pin is known exactly."""
+    foreign = sorted({type(group).__name__ for group in mechanism.groups if type(group) not in _ASSEMBLE})
+    if foreign:
+        raise NotGivenError(f"only the library's own groups are known to this method, not {', '.join(foreign)}")
     return ["A"] * (mechanism.crank.length is None) + [
         group.pin for group in mechanism.groups if not isinstance(group, CamRoller)
     ]
@@ -100,11 +101,18 @@ def moving(mechanism):
 
 def positions(mechanism, angle):
     """Positions of the moving joints, (joints, 2, ...)."""
+    names, shape = moving(mechanism), np.shape(angle)
     joints = mechanism.place(angle).joints
-    shape = np.shape(angle)
-    return np.array(
-        [[np.broadcast_to(part, shape) for part in joints[name].position] for name in moving(mechanism)], dtype=float
-    )
+    found = [[np.broadcast_to(part, shape) for part in joints[name].position] for name in names]
+    return np.array(found, dtype=float).reshape(len(names), 2, *shape)
+
+
+def closed_paths(mechanism, angle):
+    """The same over a whole turn; refused where the mechanism does not close."""
+    found = positions(mechanism, angle)
+    if not np.all(np.isfinite(found)):
+        raise NotGivenError(f"{mechanism.name} does not close all around the turn, which a Fourier series needs")
+    return found
 
 
 def joints_of(mechanism, position, first, second):
@@ -120,12 +128,10 @@ def harmonic_series(solution, order):
     coefficients to all powers of crank over coupler length.
     """
     mechanism = solution.mechanism
-    path = positions(mechanism, np.linspace(0.0, 2 * np.pi, SERIES_SAMPLES, endpoint=False))
-    if not np.all(np.isfinite(path)):
-        raise NotGivenError(f"{mechanism.name} does not close all around the turn, which a harmonic series needs")
+    path = closed_paths(mechanism, np.linspace(0.0, 2 * np.pi, SERIES_SAMPLES, endpoint=False))
     spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
     spectrum[..., 0] /= 2.0
-    spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0
+    spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max(initial=0.0)] = 0.0
     names = moving(mechanism)
 
     def way(mechanism, angle):

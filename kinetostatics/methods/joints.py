@@ -7,9 +7,9 @@ import numpy as np
 from ..errors import NotGivenError
 from ..ingredients import two_mass_coupler
 from ..quantities import components
-from ..rerouted import assembled, harmonic_series, joints_of, positions, rerouted
+from ..rerouted import assembled, closed_paths, harmonic_series, joints_of, positions, rerouted
 from .engines import compiled_run
-from .method import Method
+from .method import Method, require_one_design
 
 STENCILS = {
     2: ((-1, 0, 1), (-0.5, 0.0, 0.5), (1.0, -2.0, 1.0)),
@@ -22,6 +22,8 @@ def _differences(order):
     offsets, first, second = (np.array(row) for row in STENCILS[order])
 
     def prepare(solution, quantity, step):
+        require_one_design(solution)
+
         def way(mechanism, angle):
             position = positions(mechanism, angle + step * offsets[:, None])
             return assembled(
@@ -42,12 +44,14 @@ def _differences(order):
 
 def _spectral(solution, quantity, samples):
     """Joint positions sampled over the turn, differentiated and interpolated to the crank angles by FFT."""
+    require_one_design(solution)
     angle = solution.crank_angle
     if not _is_even_turn(angle):
         raise NotGivenError("spectral differentiation needs crank angles evenly over one turn from 0")
     if samples > angle.size:
         raise NotGivenError(f"{samples} samples are more than the {angle.size} crank angles asked for")
     sampled = np.linspace(0.0, 2 * np.pi, samples, endpoint=False)
+    closed_paths(solution.mechanism, sampled)
     harmonic = 1j * np.arange((samples + 1) // 2)
 
     def way(mechanism, angle):
@@ -65,6 +69,7 @@ def _is_even_turn(angle):
 
 def _series(solution, order):
     """The solution with its kinematics as a truncated series."""
+    require_one_design(solution)
     return rerouted(solution, harmonic_series(solution, order))
 
 

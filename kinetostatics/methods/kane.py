@@ -20,7 +20,7 @@ from ..cams import Circle, CosineLaw
 from ..loads import Gravity, ProcessForce, Spring
 from ..rocker_group import RockerGroup
 from ..slider_group import SliderGroup
-from .method import Method, NotGivenError
+from .method import Method, NotGivenError, require_one_design
 
 PHI, SPEED = dynamicsymbols("phi speed")
 ANGLE, OMEGA, ALPHA, TORQUE = sp.symbols("crank_angle crank_speed crank_acceleration balancing_torque")
@@ -303,9 +303,9 @@ def in_order(steps, results):
 
 def described(solution):
     """Kind of the mechanism, and its parameters by name."""
-    mechanism, group = solution.mechanism, solution.mechanism.groups[-1]
-    if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
-        raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
+    require_one_design(solution)
+    mechanism = solution.mechanism
+    group = mechanism.groups[-1] if mechanism.groups else None
     values = {
         "crank_angle": solution.crank_angle,
         "crank_speed": solution.crank_speed,

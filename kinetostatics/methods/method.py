@@ -4,9 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..errors import NotGivenError
 
-__all__ = ["Method", "NotGivenError"]
+__all__ = ["Method", "NotGivenError", "require_one_design"]
 
 
 @dataclass(frozen=True)
@@ -34,3 +36,9 @@ class Method:
     setting: str = ""
     settings: tuple[Any, ...] = (None,)
     ours: bool = False
+
+
+def require_one_design(solution):
+    """Raise `NotGivenError` for a batch of designs, and for crank angles that are no row."""
+    if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
+        raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")

@@ -19,7 +19,7 @@ from ..loads import Gravity, Spring
 from ..planar import left
 from ..rocker_group import RockerGroup
 from ..slider_group import SliderGroup
-from .method import Method, NotGivenError
+from .method import Method, NotGivenError, require_one_design
 
 STEP = np.radians(15.0)
 """Step, at most, of the table of positions from which iterations start: 24 over a turn."""
@@ -248,8 +248,7 @@ class Configuration:
 
 def modelled(solution, quantity):
     """Model of a solution's mechanism, which gives the quantity."""
-    if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
-        raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
+    require_one_design(solution)
     model = Model(solution.mechanism)
     if quantity not in model.readings:
         raise NotGivenError(f"the constraint equations give no {quantity}, but {', '.join(model.readings)}")

@@ -19,7 +19,7 @@ from ..quantities import components
 from ..rocker_group import RockerGroup, RockerMotion
 from ..slider_group import SliderGroup, SliderMotion
 from ..solution import Solution
-from .method import Method, NotGivenError
+from .method import Method, NotGivenError, require_one_design
 
 EQUILIBRIUM, PRINTED = 1.0, -1.0
 """Sign of R40 sin(nu) in the slot force: that of the block's equilibrium, and that of the sawframe study."""
@@ -345,8 +345,7 @@ def _prepared(formulas):
     """Method that computes a solution by other formulas."""
 
     def prepare(solution, quantity, setting=None):
-        if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
-            raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")
+        require_one_design(solution)
         formulated = formulas(solution)
 
         def run():
