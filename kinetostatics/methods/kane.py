@@ -305,7 +305,7 @@ def described(solution):
     """Kind of the mechanism, and its parameters by name."""
     require_one_design(solution)
     mechanism = solution.mechanism
-    group = mechanism.groups[-1] if mechanism.groups else None
+    group: Any = mechanism.groups[-1] if mechanism.groups else None
     values = {
         "crank_angle": solution.crank_angle,
         "crank_speed": solution.crank_speed,
