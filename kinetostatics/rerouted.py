@@ -108,8 +108,10 @@ def positions(mechanism, angle):
 
 
 def closed_paths(mechanism, angle):
-    """The same over a whole turn; refused where the mechanism does not close."""
+    """The same over a whole turn; refused where no joint moves but the crank pin, and where one cannot be found."""
     found = positions(mechanism, angle)
+    if not found.size:
+        raise NotGivenError(f"{mechanism.name} is a crank alone: it has no joint whose path is to be found as a series")
     if not np.all(np.isfinite(found)):
         raise NotGivenError(f"{mechanism.name} does not close all around the turn, which a Fourier series needs")
     return found
@@ -131,7 +133,7 @@ def harmonic_series(solution, order):
     path = closed_paths(mechanism, np.linspace(0.0, 2 * np.pi, SERIES_SAMPLES, endpoint=False))
     spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
     spectrum[..., 0] /= 2.0
-    spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max(initial=0.0)] = 0.0
+    spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0
     names = moving(mechanism)
 
     def way(mechanism, angle):
