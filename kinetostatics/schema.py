@@ -218,10 +218,10 @@ class PublishedTable(Table):
 
     ratio: dict[str, str] = Field(default_factory=dict)
     value: dict[str, str] = Field(default_factory=dict)
-    note: str = ""
     sampling: Angle | None = None
     balancing: dict[str, dict[str, str]] = Field(default_factory=dict)
     linkage: dict[str, dict[str, str]] = Field(default_factory=dict)
+    note: str = ""
 
 
 class CaseTable(Table):
