@@ -74,8 +74,9 @@ def si_columns(columns, known=None):
 
 def heading(column):
     """Path and unit of a column's name; the unit may be empty."""
-    path, _, unit = str(column).partition("[")
-    return path.strip(), unit.rstrip("] ").strip()
+    text = str(column).strip()
+    path, _, unit = text.removesuffix("]").partition("[") if text.endswith("]") else (text, "", "")
+    return path.strip(), unit.strip()
 
 
 def with_values(table, values):
