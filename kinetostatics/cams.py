@@ -23,6 +23,7 @@ NOISE_IN_SECOND_DERIVATIVE = 16.0
 LEFT_BY_BALANCING = 7.0
 """How many times inertia forces exceed what springs or counterweights leave of them."""
 
+
 class Cam:
     """What follows from r, r', r'' for every cam. A cam is one method: ``polar(angle, ray) -> r, r', r''``."""
 

@@ -79,6 +79,13 @@ def heading(column):
     return path.strip(), unit.strip()
 
 
+def value(table, path):
+    """Value at a path of a validated table: a number in SI, or the word that stands there."""
+    for name in path.split("."):
+        table = getattr(table, name) if isinstance(table, Table) else table[PARTS[name]]
+    return table
+
+
 def with_values(table, values):
     """Copy of a validated table with values at some paths, as they are: numbers or arrays of designs."""
     own: dict[str, Any] = {}

@@ -8,7 +8,6 @@ import numpy as np
 
 from .guide import Guide
 
-
 KEPT = ("assembly", "period")
 """Fields that are no numbers of the arithmetic."""
 
