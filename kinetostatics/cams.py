@@ -315,9 +315,9 @@ class Sampled(Cam):
         if self.force_error >= 0.01:
             warnings.warn(
                 f"sampled cam: {self.angle.size} points are too coarse or too noisy: r'' is uncertain by up to "
-                f"{self.second_derivative_error:.2g} m (the radii scatter by {self.noise:.2g} m about a smooth curve), and "
-                f"forces by up to {self.force_error:.1%} where inertia is balanced; measure more exactly, write more "
-                "digits or smooth the table",
+                f"{self.second_derivative_error:.2g} m (the radii scatter by {self.noise:.2g} m about a smooth curve), "
+                f"and forces by up to {self.force_error:.1%} where inertia is balanced; measure more exactly, write "
+                "more digits or smooth the table",
                 stacklevel=3,
             )
 

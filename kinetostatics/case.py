@@ -29,6 +29,7 @@ LARGEST_CASE = 1_000_000
 """Bytes that a case file may have."""
 DEEPEST = 20
 """Tables within tables that a case file may have; those that are used have three."""
+_LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""")
 FAR_OFF = 300.0
 """How many times a tolerance may be above or below its parameter before its unit is doubted."""
 
@@ -123,7 +124,7 @@ class Case:
         return table.assign(published=[printed.get(quantity, "") for quantity in table.index]) if printed else table
 
     def _row_problem(self, quantity, rows):
-        """What is wrong with the row that a published figure belongs to; rows that only other variants have are right."""
+        """What is wrong with the row that a published figure belongs to; one that other variants have is right."""
         if quantity in rows or re.fullmatch(r"torque extremum [1-9][0-9]?", quantity):
             return None
         reactions = (f"largest {label(joint)}" for name in self.variants for joint in self.solve(name, 1).reactions)
@@ -221,8 +222,8 @@ def _far_off(spreads, variants):
         if nominal and all(not 1 / FAR_OFF < size / value < FAR_OFF for value in nominal):
             si = next(paths[name] for item in variants.values() if name in (paths := parameters.paths(item.table)))
             yield (
-                f"tolerances: {name} = {text!r} is of the size {size:.6g} {si}, but the parameter {nominal[0]:.6g} {si}; "
-                "is the unit right?"
+                f"tolerances: {name} = {text!r} is of the size {size:.6g} {si}, but the parameter of "
+                f"{nominal[0]:.6g} {si}; is the unit right?"
             )
 
 
@@ -255,12 +256,16 @@ def _place(path):
 def _read(path):
     """The path and what its file holds."""
     shipped = shipped_cases()
-    if "\0" not in str(path) and not path.exists():
+    try:
+        missing = not path.exists()
+    except (OSError, ValueError):  # no path at all: reading it says why
+        missing = False
+    if missing:
         names = f"{', '.join(shipped)}{checks.hint(path.stem, shipped)}"
         raise CaseError(path, [f"no such file, and no shipped case of that name ({names})"])
     text = read_text(path, LARGEST_CASE)
     try:
-        raw = tomllib.loads(text)
+        raw = None if _LONG_KEY.search(text) else tomllib.loads(text)
     except ValueError as error:
         raise CaseError(path, [f"is not TOML: {error}"]) from None
     except RecursionError:

@@ -18,7 +18,7 @@ LARGEST = 50_000_000
 """Values that a table of designs may hold."""
 _NUMBER = f"({NUMBER})"
 _TO = r"\s*\.\.\s*"
-_UNIT = r"\s+([^:+±]+?)"
+_UNIT = r"\s+((?:(?!\d)|1\s*(?:/|per\b))[^:+±]+?|1)"
 _FORMS = {
     "grid": re.compile(rf"{_NUMBER}{_TO}{_NUMBER}{_UNIT}\s*:\s*([0-9]+)"),
     "uniform": re.compile(rf"(?:uniform\s+)?{_NUMBER}{_TO}{_NUMBER}{_UNIT}"),

@@ -13,7 +13,7 @@ import numpy as np
 
 from . import checks
 from .errors import CaseError
-from .units import NUMBER, shown, to_si
+from .units import NUMBER, factor, shown
 
 LARGEST_TABLE = 10_000_000
 """Bytes that a table may have: half a million rows."""
@@ -74,35 +74,42 @@ def read_columns(path, wanted):
         another length, or holds no number.
     """
     headings, rows = _rows(path)
+    for line, cells in rows:
+        if len(cells) != len(headings):
+            comma = "; if a comma is meant for a decimal point, write a point" if len(cells) > len(headings) else ""
+            raise CaseError(path, [f"line {line} has {len(cells)} fields, but the heading {len(headings)}{comma}"])
     problems, columns = [], []
-    ragged = next(((line, cells) for line, cells in rows if len(cells) != len(headings)), None)
-    if ragged:
-        line, cells = ragged
-        comma = "; if a comma is meant for a decimal point, write a point" if len(cells) > len(headings) else ""
-        raise CaseError(path, [f"line {line} has {len(cells)} fields, but the heading {len(headings)}{comma}"])
-    names = [(found[1].strip() if (found := _HEADING.fullmatch(heading)) else heading) for heading in headings]
-    for name, wanted_unit in wanted.items():
-        places = [place for place, found in enumerate(names) if found == name]
-        if len(places) != 1:
-            all_headings = ", ".join(map(repr, headings[:20]))
-            twice = f"{len(places)} columns are {name!r}, of {all_headings}; keep one"
-            problems.append(twice if places else f"no column {name!r}; it has {all_headings}{checks.hint(name, names)}")
-            continue
-        heading = headings[places[0]]
+    for name, unit in wanted.items():
         try:
-            factor = to_si(f"1 {_HEADING.fullmatch(heading)[2] or ''}", wanted_unit)
+            columns.append(_column(headings, rows, name, unit))
         except ValueError as error:
-            problems.append(f"column {heading!r}: {error}")
-            continue
-        cells = [cells[places[0]] for _, cells in rows]
-        wrong = next((row for row, cell in enumerate(cells) if not _is_number(cell)), None)
-        if wrong is not None:
-            problems.append(f"column {heading!r}, line {rows[wrong][0]}: not a number: {shown(cells[wrong])}")
-        else:
-            columns.append(np.array(cells, dtype=float) * factor)
+            problems.append(str(error))
     if problems:
         raise CaseError(path, problems)
     return columns
+
+
+def _column(headings, rows, name, wanted):
+    """Values of a column in the SI unit wanted; `ValueError` says what is wrong with it."""
+    named = [_HEADING.fullmatch(heading) for heading in headings]
+    names = [found[1].strip() if found else heading for found, heading in zip(named, headings, strict=True)]
+    places = [place for place, found in enumerate(names) if found == name]
+    if len(places) != 1:
+        there = ", ".join(map(repr, headings[:20]))
+        twice = f"{len(places)} columns are {name!r}, of {there}; keep one"
+        raise ValueError(twice if places else f"no column {name!r}; it has {there}{checks.hint(name, names)}")
+    (place,) = places
+    heading, found = headings[place], named[place]
+    if not found or not found[2]:
+        raise ValueError(f'column {heading!r}: has no unit; head it for example "{name} [{wanted}]"')
+    try:
+        scale = factor(found[2].strip(), wanted)
+    except ValueError as error:
+        raise ValueError(f"column {heading!r}: {error}") from None
+    for line, cells in rows:
+        if not _is_number(cells[place]):
+            raise ValueError(f"column {heading!r}, line {line}: not a number: {shown(cells[place])}")
+    return np.array([cells[place] for _, cells in rows], dtype=float) * scale
 
 
 def _is_number(cell):

@@ -109,6 +109,7 @@ class ProcessForce(Batched):
             turns_problem(self.period),
             None if known == self.period else f"the period is {self.period!r}, but that of its force {known!r}",
         )
+        object.__setattr__(self, "period", whole_turns(self.period))
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
@@ -121,6 +122,11 @@ def turns_problem(period):
     turns = period / TURN if number else 0.0
     whole = round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns
     return None if whole else f"period must be 2 pi or a whole multiple of it, got {period!r}"
+
+
+def whole_turns(period):
+    """The multiple of 2 pi that a period is, but for rounding."""
+    return round(period / TURN) * TURN
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -167,7 +173,7 @@ class Tabulated:
         for name, values in (("angle", angle), ("force", force)):
             values.setflags(write=False)
             object.__setattr__(self, name, values)
-        object.__setattr__(self, "period", period)
+        object.__setattr__(self, "period", whole_turns(period))
 
     def __call__(self, motion):
         return np.interp(motion.crank_angle, self.angle, self.force, period=self.period)
@@ -185,7 +191,7 @@ class Tabulated:
 
 def _closes(angle, period):
     """Whether the last row stands at the angle of the first, a period later, but for rounding."""
-    return abs(angle[-1] - angle[0] - period) < 0.1 * np.median(np.diff(angle))
+    return abs(angle[-1] - angle[0] - period) < min(0.1 * np.median(np.diff(angle)), 0.005)
 
 
 def _rows_problem(angle, force, period):
@@ -196,8 +202,8 @@ def _rows_problem(angle, force, period):
     if np.any(step <= 0):
         row = int(np.argmax(step <= 0)) + 1
         return (
-            f"angles must rise, but {_degrees(angle[row])} follows {_degrees(angle[row - 1])}; for a jump give two angles "
-            "close together"
+            f"angles must rise, but {_degrees(angle[row])} follows {_degrees(angle[row - 1])}; for a jump give two "
+            "angles close together"
         )
     if _closes(angle, period):
         unequal = abs(force[-1] - force[0]) > 1e-9 * np.max(np.abs(force))
@@ -209,8 +215,9 @@ def _rows_problem(angle, force, period):
         )
     if span > period:
         turns = math.ceil(span / TURN - 1e-9)
-        unit = "are the angles in degrees, and headed rad?" if turns > 8 else f'period = "{360 * turns} deg"'
-        remedy = unit if turns > 8 else f"if the force repeats only after {turns} turns say so: {unit}"
+        remedy = f'if it repeats after {turns} turns, give period = "{360 * turns} deg" ({2 * turns} pi in Python)'
+        if turns > 8:
+            remedy = "are they degrees under a heading of rad?"
         return f"the angles span {_degrees(span)}, more than the period of {_degrees(period)}; {remedy}"
     return _missing(angle, force, period, step)
 
@@ -221,15 +228,15 @@ def _missing(angle, force, period, step):
     if rest > 1.5 * step.max():
         return (
             f"rows are missing: they end at {_degrees(angle[-1])}, {_degrees(rest)} before the next begins at "
-            f"{_degrees(angle[0] + period)} (period {_degrees(period)}); if the force runs straight between them repeat "
-            f"the first row at {_degrees(angle[0] + period)}; are the angles in the unit of their heading?"
+            f"{_degrees(angle[0] + period)} (period {_degrees(period)}); if the force runs straight between them "
+            f"repeat the first row at {_degrees(angle[0] + period)}; are the angles in the unit of their heading?"
         )
     wide = (step > max(5 * float(np.median(step)), math.radians(20.0))) & (np.diff(force) != 0)
     if np.any(wide):
         row = int(np.argmax(wide))
         return (
-            f"rows are missing between {_degrees(angle[row])} and {_degrees(angle[row + 1])}; if the force runs straight "
-            "between them add a row halfway"
+            f"rows are missing between {_degrees(angle[row])} and {_degrees(angle[row + 1])}; if the force runs "
+            "straight between them add a row halfway"
         )
     return None
 

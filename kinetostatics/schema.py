@@ -7,7 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from .balancing import RATIOS
 from .checks import choice
-from .loads import TURN, turns_problem
+from .loads import turns_problem, whole_turns
 from .units import shown, to_si
 
 
@@ -63,6 +63,12 @@ def _centre(value):
     return _point(value) if isinstance(value, list) else (_or_words(MID_LENGTH, _COORDINATE, value), 0.0)
 
 
+def _sign(value):
+    if isinstance(value, bool):
+        raise ValueError(f"must be 1 or -1, found {value!r}")
+    return value
+
+
 def _two_points(value):
     if not isinstance(value, list) or len(value) != 2:
         raise ValueError(f'must be two points such as [["0 m", "0 m"], ["1 m", "0 m"]], found {shown(value)}')
@@ -73,7 +79,7 @@ def _period(text):
     value = to_si(text, "rad")
     if turns_problem(value):
         raise ValueError(f'must be a whole number of turns, such as "720 deg", found {text!r}')
-    return round(value / TURN) * TURN
+    return whole_turns(value)
 
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -168,7 +174,7 @@ class MechanismVariant(Table):
 
     crank_speed: Speed
     crank_acceleration: AngularAcceleration = 0.0
-    assembly: Literal[1, -1] = 1
+    assembly: Annotated[Literal[1, -1], BeforeValidator(_sign)] = 1
     crank: LinkTable = LinkTable()
     coupler: LinkTable = LinkTable()
     gravity: GravityTable | None = None

@@ -129,7 +129,7 @@ def shown(value, most=80):
 def respelled(text, readable):
     """Advice how to write the numbers of a text that cannot be read; empty if no `readable` text comes of it.
 
-    A comma, or a space, is taken for the decimal point, and what stands before three digits also for nothing.
+    A comma, or a plain space, is taken for the decimal point; what stands before three digits also for nothing.
     """
     advice = []
     for choice in (0, -1):
@@ -158,7 +158,7 @@ def _readings(text):
     if not groups or any(len(group) != 3 for group in groups[:-1]) or len(set(found[:-1])) > 1:
         return []
     readings = []
-    if found[-1] not in found[:-1] and (found[-1] in ".," or (found[-1].isspace() and len(found) == 1)):
+    if found[-1] not in found[:-1] and (found[-1] in ".," or found == [" "]):
         readings.append("".join([first, *groups[:-1]]) + "." + groups[-1])
     if len(set(found)) == 1 and len(groups[-1]) == 3:
         readings.append(first + "".join(groups))
