@@ -340,7 +340,7 @@ DOUBTFUL = [
     ('"slider.mass" = "normal 590 kg +- 5 kg"', False),
     ('"slider.mass" = "0..1200 kg"', False),
     ('"slider.centre.along" = "normal 0 mm +- 5 mm"', False),
-    ('"coupler.centre.across" = "normal 0 mm +- 5 mm"', False),
+    ('"slider.centre.across" = "normal 0 mm +- 5 mm"', False),
 ]
 
 
