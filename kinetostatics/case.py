@@ -25,7 +25,7 @@ from .solution import Solution, solve
 from .tables import balancing_table
 from .units import base_factor, shown
 
-LARGEST_CASE = 1_000_000
+LARGEST_CASE = 300_000
 """Bytes that a case file may have."""
 DEEPEST = 20
 """Tables within tables that a case file may have; those that are used have three."""

@@ -63,6 +63,13 @@ def _centre(value):
     return _point(value) if isinstance(value, list) else (_or_words(MID_LENGTH, _COORDINATE, value), 0.0)
 
 
+def _sampling(text):
+    value = to_si(text, "rad")
+    if not math.radians(0.001) <= value <= math.pi:
+        raise ValueError(f"must be a step of the crank angle from 0.001 to 180 deg, found {text!r}")
+    return value
+
+
 def _sign(value):
     if isinstance(value, bool):
         raise ValueError(f"must be 1 or -1, found {value!r}")
@@ -82,7 +89,7 @@ def _period(text):
     return whole_turns(value)
 
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Weight = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0)]
 Point = Annotated[tuple[float, float], BeforeValidator(_point), "m"]
 GuidePoints = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_two_points)]
 Centre = Annotated[tuple[float, float] | str, BeforeValidator(_centre), "m"]
@@ -162,7 +169,7 @@ class BalancingTable(Table):
     method: Literal["full", "partial", "optimal"]
     ratio: Annotated[float | str, BeforeValidator(_ratio)] = "overall"
     norm: Literal["largest", "mean", "along", "across", "weighted"] = "largest"
-    weights: tuple[Number, Number] = (1.0, 0.0)
+    weights: tuple[Weight, Weight] = (1.0, 0.0)
     phase: Annotated[bool, Field(strict=True)] = False
     crank: CounterweightTable | None = None
     coupler: CounterweightTable | None = None
@@ -236,7 +243,7 @@ class PublishedTable(Table):
 
     ratio: dict[str, str] = Field(default_factory=dict)
     value: dict[str, str] = Field(default_factory=dict)
-    sampling: Angle | None = None
+    sampling: Annotated[float | None, BeforeValidator(_sampling)] = None
     balancing: dict[str, dict[str, str]] = Field(default_factory=dict)
     linkage: dict[str, dict[str, str]] = Field(default_factory=dict)
 

@@ -1,11 +1,13 @@
 """Texts, units, tables and case files that are wrong: each ends in one clear error, or the right number."""
 
 import os
+import re
 import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings, strategies
 
 import kinetostatics as ks
 from kinetostatics import designs
@@ -158,6 +160,18 @@ def test_grids_that_are_too_large_or_no_text_are_refused(spreads, message):
 def test_samples_of_no_or_too_many_designs_are_refused(kind, count):
     with pytest.raises(ks.ParameterError, match=r"how many must be|too many for one table"):
         kind({"a": "0..1 m"}, count)
+
+
+@settings(max_examples=300, deadline=None)
+@given(strategies.text("0123456789.,eE+-*/^ mkNsg()²\u2009\u2212٣'_", max_size=12))
+def test_any_text_is_one_number_with_one_unit_or_refused(text):
+    """What is accepted is a number as Python writes it, up to the first letter that is no exponent, and a unit."""
+    try:
+        found = to_si(text, "m")
+    except ValueError:
+        return
+    number, unit = re.fullmatch(r"\s*([-+0-9.]+(?:[eE][-+]?[0-9]+)?)\s*([^\W\d].*?)\s*", text).groups()
+    assert found == float(number) * factor(unit, "m")
 
 
 # Tables
@@ -331,6 +345,10 @@ BAD_CASES = {
     "date": (CASE.replace('"2 m"', "2020-01-01"), "must be text"),
     "words for a switch": (CASE + 'balancing = {method = "optimal", phase = "no", crank = {arm = "1 m"}}', "phase"),
     "weights that are no numbers": (CASE + 'balancing = {method = "optimal", weights = [nan, inf]}', "weights"),
+    "a negative weight": (CASE + 'balancing = {method = "optimal", weights = [-1, 0]}', "weights"),
+    "no sampling": (CASE + '[published]\nsampling = "0 deg"', "published.sampling must be a step"),
+    "backward sampling": (CASE + '[published]\nsampling = "-1 deg"', "published.sampling must be a step"),
+    "endless sampling": (CASE + '[published]\nsampling = "1e-9 deg"', "published.sampling must be a step"),
     "ratio without end": (CASE + 'balancing = {method = "partial", ratio = inf, crank = {arm = "1 m"}}', "ratio"),
     "long text": (CASE.replace('"2 m"', '"' + "2" * 100_000 + ' m"'), "must be text"),
     "pipe beside it": (CASE + 'process_force = { table = "/dev/zero" }', "a pipe or device, not a file"),
