@@ -164,21 +164,23 @@ def _axis(text):
 
 def _distribution(text):
     """Distribution of the values, and their unit."""
+    forms = ((name, _FORMS[name].fullmatch(text)) for name in ("uniform", "triangular", "normal"))
+    name, match = next(((name, match) for name, match in forms if match), ("", None))
+    if match is None:
+        raise ValueError(_other(text))
     from scipy import stats
 
-    if match := _FORMS["uniform"].fullmatch(text):
+    if name == "uniform":
         low, high = _rising(match[1], match[2])
         return stats.uniform(low, high - low), _known(match[3])
-    if match := _FORMS["triangular"].fullmatch(text):
+    if name == "triangular":
         low, likeliest, high = _rising(match[1], match[2], match[3])
         return stats.triang((likeliest - low) / (high - low), low, high - low), _known(match[4])
-    if match := _FORMS["normal"].fullmatch(text):
-        mean, deviation = _numbers(match[1], match[3])
-        deviation *= factor(match[4], _known(match[2])) / base_factor(match[2])
-        if deviation <= 0:
-            raise ValueError("the standard deviation must be greater than 0")
-        return stats.norm(mean, deviation), match[2]
-    raise ValueError(_other(text))
+    mean, deviation = _numbers(match[1], match[3])
+    deviation *= factor(match[4], _known(match[2])) / base_factor(match[2])
+    if deviation <= 0:
+        raise ValueError("the standard deviation must be greater than 0")
+    return stats.norm(mean, deviation), match[2]
 
 
 def _other(text):

@@ -15,6 +15,14 @@ from kinetostatics.cli import main
 from kinetostatics.files import read_columns
 from kinetostatics.units import factor, to_si
 
+
+@pytest.fixture(scope="module", autouse=True)
+def libraries():
+    """Loads pint and scipy before the clock of any test runs."""
+    designs.distributions({"a": "0..1 m"})
+    ks.load_case("sawframe_2r63")
+
+
 # Numbers
 
 BADLY_WRITTEN = {  # with what to write in its place
