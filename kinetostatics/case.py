@@ -5,7 +5,7 @@ import re
 import tomllib
 import typing
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import MappingProxyType
 
@@ -48,8 +48,15 @@ class Variant:
     loads: tuple
     balanced: balancing.Balanced | None = None
     table: schema.MechanismVariant | None = field(default=None, repr=False)
+    folder: Path = field(default=Path(), repr=False)
     tabulated: typing.Mapping[str, typing.Any] = field(default_factory=dict, repr=False)
-    """By key of the table what was read from a file beside the case: a cam, a process force."""
+    """By key of the table what was read from a file in the folder: a cam, a process force. It is not read again."""
+
+    @property
+    def content(self):
+        """What it is made of as bytes, the same in every session: its table, and what was read from files."""
+        arrays = (getattr(part, column.name) for part in self.tabulated.values() for column in fields(part))
+        return self.table.model_dump_json().encode() + b"".join(np.asarray(values).tobytes() for values in arrays)
 
     def varied(self, values) -> "Variant":
         """The variant with other values at some paths of its table (see `parameters.paths`), in SI.
@@ -59,7 +66,7 @@ class Variant:
         """
         known = parameters.paths(self.table)
         checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
-        return _built(parameters.with_values(self.table, values), self.tabulated)
+        return _built(parameters.with_values(self.table, values), self.folder, self.tabulated)
 
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over one turn from 0, end excluded."""
@@ -306,7 +313,7 @@ def _variant(name, own, common, folder, problems):
     if table is None:
         return None
     try:
-        variant = _built(table, _tabulated(table, folder))
+        variant = _built(table, folder, _tabulated(table, folder))
         variant.solve(angles=720)
     except CaseError as error:
         problems += [f"variants.{name}: {error.path}: {problem}" for problem in error.problems]
@@ -417,14 +424,14 @@ def _from_csv(path, wanted, make):
         raise CaseError(path, [str(error)]) from None
 
 
-def _built(table, tabulated):
+def _built(table, folder, tabulated):
     """Mechanism, drive and loads of a validated variant."""
     mechanism = _mechanism(table, tabulated)
     loads = tuple(_loads(table, tabulated))
     balanced = _balanced(mechanism, table.balancing) if table.balancing else None
     if balanced is not None:
         mechanism = balanced.mechanism
-    return Variant(mechanism, table.crank_speed, table.crank_acceleration, loads, balanced, table, tabulated)
+    return Variant(mechanism, table.crank_speed, table.crank_acceleration, loads, balanced, table, folder, tabulated)
 
 
 def _mechanism(table, tabulated):

@@ -10,7 +10,7 @@ import pickle
 import re
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import closing, suppress
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -283,10 +283,8 @@ def _digest(content):
 
 def _content(item):
     """What a variant or a function is made of, the same in every session."""
-    table = getattr(item, "table", None)
-    if table is not None:
-        tabulated = (getattr(part, column.name) for part in item.tabulated.values() for column in fields(part))
-        return table.model_dump_json().encode() + b"".join(np.asarray(values).tobytes() for values in tabulated)
+    if getattr(item, "table", None) is not None:
+        return item.content
     text = re.sub(r" at 0x\w+", "", repr(item))
     with suppress(OSError, TypeError):  # of a session that keeps none, or no function but an object that can be called
         text += inspect.getsource(item)
