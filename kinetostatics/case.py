@@ -54,9 +54,10 @@ class Variant:
 
     @property
     def content(self):
-        """What it is made of as bytes, the same in every session: its table, and what was read from files."""
+        """What a case's variant is made of as bytes, the same in every session: its table, and what files held."""
+        text = self.table.model_dump_json() if self.table else ""
         arrays = (getattr(part, column.name) for part in self.tabulated.values() for column in fields(part))
-        return self.table.model_dump_json().encode() + b"".join(np.asarray(values).tobytes() for values in arrays)
+        return text.encode() + b"".join(np.asarray(values).tobytes() for values in arrays)
 
     def varied(self, values) -> "Variant":
         """The variant with other values at some paths of its table (see `parameters.paths`), in SI.
