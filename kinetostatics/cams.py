@@ -5,6 +5,7 @@ and the curvature radius of the pitch curve. Each r is a smooth closed form or s
 the turn.
 """
 
+import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +17,11 @@ from . import checks
 from .crank import ray as ray_at
 from .elementary import namespace, sqrt
 from .errors import ParameterError
+
+NOISE_IN_SECOND_DERIVATIVE = 16.0
+"""Largest error of r'' that noise of 1 makes at points 1 apart: a standard deviation of 4.8, exceeded 3.3 times."""
+LEFT_BY_BALANCING = 7.0
+"""How many times inertia forces exceed what springs or counterweights leave of them."""
 
 
 class Cam:
@@ -216,8 +222,7 @@ class Sampled(Cam):
     Warns
     -----
     UserWarning
-        The table is too coarse or too noisy: the second derivative changes by more than three per cent of the largest
-        curvature term when every other point is left out.
+        The table is too coarse or too noisy: `force_error` is a hundredth or more.
     """
 
     angle: Any
@@ -252,7 +257,7 @@ class Sampled(Cam):
         for name, values in (("angle", angle), ("samples", samples)):
             values.setflags(write=False)
             object.__setattr__(self, name, values)
-        self._warn_if_coarse()
+        self._warn_if_uncertain()
 
     @classmethod
     def from_csv(cls, path):
@@ -269,19 +274,69 @@ class Sampled(Cam):
     def polar(self, angle, ray):
         return tuple(spline(angle) for spline in self._splines)
 
-    def _warn_if_coarse(self):
-        fine = self._splines[2](self.angle)
-        coarse = _periodic_spline(self.angle[::2], self.samples[::2]).derivative(2)(self.angle)
-        # bounds truncation, a fifteenth of it for a quintic spline, and noise of the table, which is of its size
-        error = np.max(np.abs(fine - coarse))
-        scale = np.max(np.abs(self.samples) + np.abs(fine))
-        if error > 0.03 * scale:
+    @cached_property
+    def noise(self):
+        """Standard deviation of the radii about a smooth curve, m; of radii rounded to a step, 0.29 of it.
+
+        From what each radius differs by from the polynomial through its neighbours, for the number of neighbours that
+        explains the table best.
+        """
+        return min(_roughness(self.angle, self.samples, reach) for reach in range(2, 7) if 2 * reach < self.angle.size)
+
+    @cached_property
+    def second_derivative_error(self):
+        """Expected largest error of r'' over the turn, m/rad2, from noise and coarseness of the table.
+
+        Half of the points tell r'' too, and worse: by the noise that shows in the spline through all of them, and by
+        2^4 times its truncation. So their difference bounds both, and a twelfth of it the truncation (a fifteenth, and
+        something for coarse tables); where it is more than `noise` can cause, the rest is truncation.
+        """
+        nodes = np.append(self.angle, self.angle[0] + 2 * np.pi)
+        places = np.append(nodes[:-1], nodes[:-1] + np.diff(nodes) / 2)
+        coarse = _periodic_spline(self.angle[::2], self.samples[::2]).derivative(2)
+        difference = float(np.max(np.abs(self._splines[2](places) - coarse(places))))
+        caused = NOISE_IN_SECOND_DERIVATIVE * self.noise / np.diff(nodes).min() ** 2
+        return min(difference, caused + difference / 12)
+
+    @cached_property
+    def force_error(self):
+        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table.
+
+        The error of the acceleration of the roller centre, relative to its largest value over the turn at even speed,
+        is that of inertia forces. Springs or counterweights that balance them leave a fraction, but the error whole:
+        the figure is for a machine in which they leave a seventh, and on the safe side for others.
+        """
+        r, slope, second = (spline(self.angle) for spline in self._splines)
+        error = self.second_derivative_error
+        scale = max(np.max(np.hypot(second - r, 2 * slope)) - error, np.max(r))
+        return LEFT_BY_BALANCING * error / float(scale)
+
+    def _warn_if_uncertain(self):
+        if self.force_error >= 0.01:
             warnings.warn(
                 f"sampled cam: {self.angle.size} points are too coarse or too noisy: r'' is uncertain by up to "
-                f"{error:.3g} m ({error / scale:.1%} of its scale), and forces with it; measure more points or smooth "
-                "the table",
+                f"{self.second_derivative_error:.2g} m (the radii scatter by {self.noise:.2g} m about a smooth curve), "
+                f"and forces by up to {self.force_error:.1%} where inertia is balanced; measure more exactly, write "
+                "more digits or smooth the table",
                 stacklevel=3,
             )
+
+
+def _roughness(angle, radius, reach):
+    """Root mean square of what each radius differs by from the polynomial through `reach` neighbours on both sides.
+
+    In units of one radius: what independent noise of that size in every radius would give.
+    """
+    size = angle.size
+    steps = [step for step in range(-reach, reach + 1) if step]
+    places = {step: np.arange(size) + step for step in steps}
+    ahead = {step: angle[place % size] + 2 * np.pi * (place // size) - angle for step, place in places.items()}
+    rest, gain = radius.copy(), np.ones(size)
+    for step in steps:
+        weight = math.prod(ahead[other] / (ahead[other] - ahead[step]) for other in steps if other != step)
+        rest -= weight * radius[places[step] % size]
+        gain += weight * weight
+    return float(np.sqrt(np.mean(rest * rest / gain)))
 
 
 def _periodic_spline(angle, radius):

@@ -1,8 +1,11 @@
 """Case files: TOML with units as text, to mechanisms ready to solve; every problem of a file reported at once."""
 
+import os
+import re
 import tomllib
 import typing
-from dataclasses import dataclass, field
+import warnings
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import MappingProxyType
 
@@ -11,14 +14,28 @@ import pydantic
 
 from . import balancing, cams, checks, designs, linkage, parameters, schema
 from .comparison import Comparison
-from .errors import AssemblyError, CaseError, KinetostaticsError
-from .files import read_columns
+from .errors import AssemblyError, CaseError, KinetostaticsError, ParameterError
+from .files import read_columns, read_text
 from .guide import Guide
 from .links import Link
-from .loads import Gravity, ProcessForce, Spring
+from .loads import TURN, Gravity, ProcessForce, Spring, Tabulated
 from .mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
+from .quantities import label
 from .solution import Solution, solve
 from .tables import balancing_table
+from .units import base_factor, shown
+
+LARGEST_CASE = 300_000
+"""Bytes that a case file may have."""
+DEEPEST = 20
+"""Tables within tables that a case file may have; those that are used have three."""
+_LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""")
+FAR_OFF = 300.0
+"""How many times a tolerance may be above or below its parameter before its unit is doubted."""
+
+
+CAM_FORCE = ("smallest cam force", "largest cam force")
+"""Rows of the comparison that variants without a cam lack."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +49,15 @@ class Variant:
     balanced: balancing.Balanced | None = None
     table: schema.MechanismVariant | None = field(default=None, repr=False)
     folder: Path = field(default=Path(), repr=False)
+    tabulated: typing.Mapping[str, typing.Any] = field(default_factory=dict, repr=False)
+    """By key of the table what was read from a file in the folder: a cam, a process force. It is not read again."""
+
+    @property
+    def content(self):
+        """What a case's variant is made of as bytes, the same in every session: its table, and what files held."""
+        text = self.table.model_dump_json() if self.table else ""
+        arrays = (getattr(part, column.name) for part in self.tabulated.values() for column in fields(part))
+        return text.encode() + b"".join(np.asarray(values).tobytes() for values in arrays)
 
     def varied(self, values) -> "Variant":
         """The variant with other values at some paths of its table (see `parameters.paths`), in SI.
@@ -41,7 +67,7 @@ class Variant:
         """
         known = parameters.paths(self.table)
         checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
-        return _built(parameters.with_values(self.table, values), self.folder)
+        return _built(parameters.with_values(self.table, values), self.folder, self.tabulated)
 
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over one turn from 0, end excluded."""
@@ -100,7 +126,17 @@ class Case:
             for column in ("ratio", "value")
             for quantity, text in getattr(self.published, column).items()
         }
+        problems = [self._row_problem(quantity, table.index) for quantity in printed]
+        if any(problems):
+            raise CaseError(self.path, [f"published: {problem}" for problem in problems if problem])
         return table.assign(published=[printed.get(quantity, "") for quantity in table.index]) if printed else table
+
+    def _row_problem(self, quantity, rows):
+        """What is wrong with the row that a published figure belongs to; one that other variants have is right."""
+        if quantity in rows or re.fullmatch(r"torque extremum [1-9][0-9]?", quantity):
+            return None
+        reactions = (f"largest {label(joint)}" for name in self.variants for joint in self.solve(name, 1).reactions)
+        return checks.choice("row", quantity, tuple(dict.fromkeys([*rows, *reactions, *CAM_FORCE])))
 
     def balancing_table(self):
         """Table of counterweights and shaking force of the balanced variants, a pandas DataFrame; None without any."""
@@ -131,18 +167,26 @@ def load_case(path) -> Case:
     Parameters
     ----------
     path : str or path
-        A TOML file, or the name of a shipped case ("sawframe_2r63").
+        A TOML file, or the name of a shipped case ("sawframe_2r63"). A file of that very name, without ending, is meant
+        by a path with a folder ("./sawframe_2r63") or a `pathlib.Path`.
 
     Returns
     -------
     Case
+        With all that its file and the tables beside it hold; they are not read again.
 
     Raises
     ------
     CaseError
         The file is missing, unreadable or wrong; the message lists every problem with its key.
+
+    Warns
+    -----
+    UserWarning
+        A tolerance is hundreds of times above or below its parameter, a sampled cam is noisy, or a file has the name of
+        the shipped case that is read.
     """
-    path, raw = _read(path)
+    path, raw = _read(_place(path))
     head, problems = _validated(schema.CaseTable, raw, lambda keys: keys)
     variants = {}
     tables = raw.get("variants")
@@ -157,6 +201,8 @@ def load_case(path) -> Case:
         problems += _spread_problems(head.tolerances, variants)
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
+    for doubt in _far_off(head.tolerances, variants):
+        warnings.warn(f"{path}: {doubt}", stacklevel=2)
     return Case(
         head.title, head.source, path, head.reference, MappingProxyType(variants), head.published, head.tolerances
     )
@@ -175,24 +221,79 @@ def _spread_problems(spreads, variants):
             yield from (f"tolerances: {problem}" for problem in parameters.si_columns(columns, known)[1])
 
 
-def _read(path):
+def _far_off(spreads, variants):
+    """Tolerances whose size is far from that of their parameter in every variant that has it, as a sentence each."""
+    for name, text in spreads.items():
+        distribution, unit = designs.distributions({name: text})[name]
+        size = max(abs(float(distribution.median())), float(distribution.std())) * base_factor(unit)
+        nominal = [abs(value) for item in variants.values() if (value := _nominal(item, name))]
+        if nominal and all(not 1 / FAR_OFF < size / value < FAR_OFF for value in nominal):
+            si = next(paths[name] for item in variants.values() if name in (paths := parameters.paths(item.table)))
+            yield (
+                f"tolerances: {name} = {text!r} is of the size {size:.6g} {si}, but the parameter of "
+                f"{nominal[0]:.6g} {si}; is the unit right?"
+            )
+
+
+def _nominal(variant, path):
+    """Value of a parameter; None if the variant has none, or a word for it."""
+    if path not in parameters.paths(variant.table):
+        return None
+    if path == "spring.stiffness":
+        return next(float(item.stiffness) for item in variant.loads if isinstance(item, Spring))
+    value = parameters.value(variant.table, path)
+    return value if isinstance(value, float) else None
+
+
+def _place(path):
+    """Path of the case file that is meant."""
+    if not isinstance(path, str | os.PathLike):
+        raise ParameterError(f"load_case: takes a path or the name of a shipped case, got {shown(path)}")
     shipped = shipped_cases()
-    found = Path(path)
-    if not found.is_file() and str(path) in shipped:
-        found = shipped[str(path)]
-    try:
-        return found, tomllib.loads(found.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        problem = (
-            f"no such file, and no shipped case of that name ({', '.join(shipped)}){checks.hint(found.stem, shipped)}"
+    if not isinstance(path, str) or path not in shipped:
+        found = Path(path)
+        return shipped[str(found)] if str(found) in shipped and not found.is_file() else found
+    if Path(path).is_file():
+        warnings.warn(
+            f"{path!r} is read as the shipped case of that name, not the file here; write {'./' + path!r} for the file",
+            stacklevel=3,
         )
-    except OSError as error:
-        problem = f"cannot be read: {error.strerror}"
-    except UnicodeDecodeError as error:
-        problem = f"is not UTF-8 text: {error.reason} at byte {error.start}"
-    except tomllib.TOMLDecodeError as error:
-        problem = f"is not TOML: {error}"
-    raise CaseError(path, [problem])
+    return shipped[path]
+
+
+def _read(path):
+    """The path and what its file holds."""
+    shipped = shipped_cases()
+    try:
+        missing = not path.exists()
+    except (OSError, ValueError):  # no path at all: reading it says why
+        missing = False
+    if missing:
+        names = f"{', '.join(shipped)}{checks.hint(path.stem, shipped)}"
+        raise CaseError(path, [f"no such file, and no shipped case of that name ({names})"])
+    text = read_text(path, LARGEST_CASE)
+    try:
+        raw = None if _LONG_KEY.search(text) else tomllib.loads(text)
+    except ValueError as error:
+        raise CaseError(path, [f"is not TOML: {error}"]) from None
+    except RecursionError:
+        raw = None
+    if raw is None or _deeper(raw, DEEPEST):
+        raise CaseError(path, [f"holds tables or lists within each other more than {DEEPEST} deep"])
+    return path, raw
+
+
+def _deeper(table, depth):
+    """Whether tables and lists stand within each other more than so deep."""
+    level = [table]
+    for _ in range(depth):
+        level = [
+            inner
+            for outer in level
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+            if isinstance(inner, dict | list)
+        ]
+    return bool(level)
 
 
 def _variant(name, own, common, folder, problems):
@@ -213,7 +314,7 @@ def _variant(name, own, common, folder, problems):
     if table is None:
         return None
     try:
-        variant = _built(table, folder)
+        variant = _built(table, folder, _tabulated(table, folder))
         variant.solve(angles=720)
     except CaseError as error:
         problems += [f"variants.{name}: {error.path}: {problem}" for problem in error.problems]
@@ -263,7 +364,7 @@ def _sentence(model, item, place):
         return f"{path}.kind {found}; allowed: {', '.join(map(repr, schema.CAM_KINDS))}"
     if item["type"] == "value_error":
         return f"{path} {item['ctx']['error']}"
-    return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {item['input']!r}"
+    return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {shown(item['input'])}"
 
 
 def _path(keys):
@@ -300,17 +401,41 @@ def _tables(annotation):
     return [table for part in typing.get_args(annotation) for table in _tables(part)]
 
 
-def _built(table, folder):
+def _tabulated(table, folder):
+    """What a validated variant has in files: cam and process force, by their keys."""
+    found: dict[str, typing.Any] = {}
+    cam, force = getattr(table, "cam", None), getattr(table, "process_force", None)
+    if isinstance(cam, schema.SampledTable):
+        found["cam"] = _from_csv(folder / cam.table, {"angle": "rad", "radius": "m"}, cams.Sampled)
+    if force is not None and force.table is not None:
+        found["process_force"] = _from_csv(
+            folder / force.table,
+            {"crank_angle": "rad", "force": "N"},
+            lambda angle, values: Tabulated(angle, values, force.period or TURN),
+        )
+    return found
+
+
+def _from_csv(path, wanted, make):
+    """What is made of columns of a file."""
+    columns = read_columns(path, wanted)
+    try:
+        return make(*columns)
+    except ParameterError as error:
+        raise CaseError(path, [str(error)]) from None
+
+
+def _built(table, folder, tabulated):
     """Mechanism, drive and loads of a validated variant."""
-    mechanism = _mechanism(table, folder)
-    loads = tuple(_loads(table, folder))
+    mechanism = _mechanism(table, tabulated)
+    loads = tuple(_loads(table, tabulated))
     balanced = _balanced(mechanism, table.balancing) if table.balancing else None
     if balanced is not None:
         mechanism = balanced.mechanism
-    return Variant(mechanism, table.crank_speed, table.crank_acceleration, loads, balanced, table, folder)
+    return Variant(mechanism, table.crank_speed, table.crank_acceleration, loads, balanced, table, folder, tabulated)
 
 
-def _mechanism(table, folder):
+def _mechanism(table, tabulated):
     if isinstance(table, schema.FourBarVariant | schema.ChainUnitVariant):
         lengths = table.crank_length, table.coupler_length, table.rocker_length
         links = {
@@ -330,7 +455,7 @@ def _mechanism(table, folder):
             coupler=_link(table.coupler, table.coupler_length),
             **shared,
         )
-    cam = _cam(table.cam, guide.guide_angle, folder)
+    cam = tabulated.get("cam") or _cam(table.cam, guide.guide_angle)
     length = _cam_coupler_length(table, cam)
     coupler = _link(table.coupler, length)
     return cam_crank_slider(cam, length, crank=_link(table.crank), block=_link(table.block), coupler=coupler, **shared)
@@ -376,12 +501,10 @@ def _link(table, length=None):
     return Link(table.mass, centre, table.inertia)
 
 
-def _cam(table, guide_angle, folder):
+def _cam(table, guide_angle):
     if table.kind == "circle":
         return cams.Circle(table.radius, table.centre)
-    if table.kind == "cosine-law":
-        return cams.CosineLaw(table.amplitude, table.mean, guide_angle)
-    return cams.Sampled.from_csv(folder / table.table)
+    return cams.CosineLaw(table.amplitude, table.mean, guide_angle)
 
 
 def _cam_coupler_length(table, cam):
@@ -392,7 +515,7 @@ def _cam_coupler_length(table, cam):
     return cam.coupler_length
 
 
-def _loads(table, folder):
+def _loads(table, tabulated):
     if table.gravity is not None:
         yield Gravity(table.gravity.acceleration, table.gravity.direction)
     spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)
@@ -401,11 +524,7 @@ def _loads(table, folder):
             yield Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position)
         else:
             yield Spring(spring.stiffness, spring.free_position)
-    if force is not None:
-        yield ProcessForce(force.force if force.table is None else _tabulated_force(folder / force.table))
-
-
-def _tabulated_force(path):
-    """Function of the motion that interpolates a table of force by crank angle, periodic and linear."""
-    angle, force = read_columns(path, {"crank_angle": "rad", "force": "N"})
-    return lambda motion: np.interp(motion.crank_angle, angle, force, period=2 * np.pi)
+    if "process_force" in tabulated:
+        yield ProcessForce(tabulated["process_force"], period=tabulated["process_force"].period)
+    elif force is not None:
+        yield ProcessForce(force.force)

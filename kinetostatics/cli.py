@@ -140,7 +140,7 @@ def _compare(options):
     for heading, table, published in special:
         if table is not None:
             print(f"\n{heading}; published figures in brackets\n")
-            _print(_with_published(table, published))
+            _print(_with_published(table, published, case.path))
     for name, table in tables.items():
         print(f"\n{case.reference} / {name}\n")
         _print(table)
@@ -193,7 +193,7 @@ def _sweep(options):
     from .sweeps import FAILED, sweep
 
     case = load_case(options.case)
-    spreads = dict(_spread(text) for text in options.vary)
+    spreads = _spreads(options.vary)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
     wanted = [parsed(text) for text in options.output or SWEEP_OUTPUTS]
     outputs = [item.column for item in wanted]
@@ -227,6 +227,15 @@ def _sweep(options):
         from .charts import sweep_page
 
         print(sweep_page(found, list(table.columns), outputs, options.plot))
+
+
+def _spreads(texts):
+    pairs = [_spread(text) for text in texts]
+    paths = [path for path, _ in pairs]
+    twice = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
+    if twice:
+        raise ParameterError(f"--vary: {', '.join(twice)} is given more than once; give each parameter one spread")
+    return dict(pairs)
 
 
 def _spread(text):
@@ -264,9 +273,16 @@ def _print(table):
     print(tabulate(cells, headers="keys", showindex=False, disable_numparse=True, colalign=_alignment(table)))
 
 
-def _with_published(table, published):
+def _with_published(table, published, path):
     """Cells as text, the published figure behind ours in brackets."""
     cells = table.map(_cell).astype(object)
+    problems = [checks.choice("published: row", quantity, tuple(cells.index)) for quantity in published] + [
+        checks.choice(f"published: column of {quantity!r}", column, tuple(cells.columns))
+        for quantity, entries in published.items()
+        for column in entries
+    ]
+    if any(problems):
+        raise CaseError(path, [problem for problem in problems if problem])
     for quantity, entries in published.items():
         for column, printed in entries.items():
             cells.loc[quantity, column] += f" ({printed})"

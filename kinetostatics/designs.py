@@ -5,19 +5,22 @@ also "normal 712 kN/m +- 5 kN/m" (mean and standard deviation) and "triangular 6
 high). The unit of a plain number is 1.
 """
 
+import math
 import re
 
 import numpy as np
 import pandas as pd
 
 from . import checks
-from .units import base_factor, factor
+from .units import LONGEST, NUMBER, base_factor, factor, respelled, shown
 
-_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+LARGEST = 50_000_000
+"""Values that a table of designs may hold."""
+_NUMBER = f"({NUMBER})"
 _TO = r"\s*\.\.\s*"
-_UNIT = r"\s+([^:+±]+?)"
+_UNIT = r"\s+((?:(?!\d)|1\s*(?:/|per\b))[^:+±]+?|1)"
 _FORMS = {
-    "grid": re.compile(rf"{_NUMBER}{_TO}{_NUMBER}{_UNIT}\s*:\s*(\d+)"),
+    "grid": re.compile(rf"{_NUMBER}{_TO}{_NUMBER}{_UNIT}\s*:\s*([0-9]+)"),
     "uniform": re.compile(rf"(?:uniform\s+)?{_NUMBER}{_TO}{_NUMBER}{_UNIT}"),
     "triangular": re.compile(rf"triangular\s+{_NUMBER}{_TO}{_NUMBER}{_TO}{_NUMBER}{_UNIT}"),
     "normal": re.compile(rf"normal\s+{_NUMBER}{_UNIT}\s*(?:\+-|±)\s*{_NUMBER}{_UNIT}"),
@@ -48,6 +51,7 @@ def grid(spreads) -> pd.DataFrame:
         A text is of another form, or its unit not known; all of them at once.
     """
     axes = _read(spreads, _axis)
+    _require_room(math.prod(axis.size for axis, _ in axes.values()), len(axes))
     values = np.stack(np.meshgrid(*(axis for axis, _ in axes.values()), indexing="ij"), axis=-1)
     return pd.DataFrame(values.reshape(-1, len(axes)), columns=columns(axes))
 
@@ -56,6 +60,7 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     """Designs spread evenly over every parameter by itself; see `sample`."""
     from scipy.stats import qmc
 
+    _require_room(count, len(spreads))
     return sample(spreads, lambda size: qmc.LatinHypercube(size, rng=seed).random(count))
 
 
@@ -63,11 +68,13 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
     """Designs of a scrambled Sobol sequence, `count` best a power of two; see `sample`."""
     from scipy.stats import qmc
 
+    _require_room(count, len(spreads))
     return sample(spreads, lambda size: qmc.Sobol(size, rng=seed).random(count))
 
 
 def random(spreads, count, seed=0) -> pd.DataFrame:
     """Independent random designs; see `sample`."""
+    _require_room(count, len(spreads))
     return sample(spreads, lambda size: np.random.default_rng(seed).random((count, size)))
 
 
@@ -109,13 +116,34 @@ def _read(spreads, reader):
     found, problems = {}, [] if spreads else ["there are no parameters"]
     for name, text in spreads.items():
         try:
-            found[name] = reader(str(text).strip())
+            found[name] = reader(_text(text))
         except ValueError as error:
-            problems.append(f"cannot read {text!r} for {name}: {error}")
+            problems.append(f"cannot read {shown(text)} for {name}: {error}")
     if any(_OTHER in problem for problem in problems):
         problems.append(f"write {_HELP}")
     checks.require("designs", *problems)
     return found
+
+
+def _text(text):
+    if not isinstance(text, str) or len(text) > LONGEST:
+        raise ValueError("it must be text of numbers with a unit")
+    if "..." in text:  # 0...1 may mean 0 to 1 or 0 to 0.1
+        raise ValueError(f"{_OTHER}; write two dots between numbers, and a 0 before a decimal point")
+    return text.strip()
+
+
+def _require_room(count, parameters):
+    """Raise an error unless a table of so many designs can be held."""
+    whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
+    checks.require(
+        "designs",
+        None if whole and count > 0 else f"how many must be a whole number of at least 1, got {count!r}",
+        f"{count} designs of {parameters} parameters are too many for one table, which holds {LARGEST} values; sweep "
+        "them in parts"
+        if whole and count * parameters > LARGEST
+        else None,
+    )
 
 
 def columns(found):
@@ -127,28 +155,36 @@ def _axis(text):
     """Evenly spaced values, and their unit."""
     match = _FORMS["grid"].fullmatch(text)
     if not match or not int(match[4]):
-        raise ValueError(_OTHER)
+        raise ValueError(_other(text))
     low, high = _numbers(match[1], match[2])
+    if int(match[4]) > LARGEST:
+        raise ValueError(f"{match[4]} values are too many, at most {LARGEST}")
     return np.linspace(low, high, int(match[4])), _known(match[3])
 
 
 def _distribution(text):
     """Distribution of the values, and their unit."""
+    forms = ((name, _FORMS[name].fullmatch(text)) for name in ("uniform", "triangular", "normal"))
+    name, match = next(((name, match) for name, match in forms if match), ("", None))
+    if match is None:
+        raise ValueError(_other(text))
     from scipy import stats
 
-    if match := _FORMS["uniform"].fullmatch(text):
+    if name == "uniform":
         low, high = _rising(match[1], match[2])
         return stats.uniform(low, high - low), _known(match[3])
-    if match := _FORMS["triangular"].fullmatch(text):
+    if name == "triangular":
         low, likeliest, high = _rising(match[1], match[2], match[3])
         return stats.triang((likeliest - low) / (high - low), low, high - low), _known(match[4])
-    if match := _FORMS["normal"].fullmatch(text):
-        mean, deviation = _numbers(match[1], match[3])
-        deviation *= factor(match[4], _known(match[2])) / base_factor(match[2])
-        if deviation <= 0:
-            raise ValueError("the standard deviation must be greater than 0")
-        return stats.norm(mean, deviation), match[2]
-    raise ValueError(_OTHER)
+    mean, deviation = _numbers(match[1], match[3])
+    deviation *= factor(match[4], _known(match[2])) / base_factor(match[2])
+    if deviation <= 0:
+        raise ValueError("the standard deviation must be greater than 0")
+    return stats.norm(mean, deviation), match[2]
+
+
+def _other(text):
+    return _OTHER + respelled(text, lambda reading: any(form.fullmatch(reading) for form in _FORMS.values()))
 
 
 def _known(unit):

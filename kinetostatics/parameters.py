@@ -74,8 +74,16 @@ def si_columns(columns, known=None):
 
 def heading(column):
     """Path and unit of a column's name; the unit may be empty."""
-    path, _, unit = str(column).partition("[")
-    return path.strip(), unit.rstrip("] ").strip()
+    text = str(column).strip()
+    path, _, unit = text.removesuffix("]").partition("[") if text.endswith("]") else (text, "", "")
+    return path.strip(), unit.strip()
+
+
+def value(table, path):
+    """Value at a path of a validated table: a number in SI, or the word that stands there."""
+    for name in path.split("."):
+        table = getattr(table, name) if isinstance(table, Table) else table[PARTS[name]]
+    return table
 
 
 def with_values(table, values):

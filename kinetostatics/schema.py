@@ -7,7 +7,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from .balancing import RATIOS
 from .checks import choice
-from .units import to_si
+from .loads import turns_problem, whole_turns
+from .units import shown, to_si
 
 
 def _reader(unit, *, low=None, strict=False):
@@ -52,7 +53,7 @@ def _stiffness(text):
 
 def _point(value):
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f'must be a pair such as ["10 mm", "0 mm"], found {value!r}')
+        raise ValueError(f'must be a pair such as ["10 mm", "0 mm"], found {shown(value)}')
     return tuple(to_si(part, "m") for part in value)
 
 
@@ -62,12 +63,33 @@ def _centre(value):
     return _point(value) if isinstance(value, list) else (_or_words(MID_LENGTH, _COORDINATE, value), 0.0)
 
 
+def _sampling(text):
+    value = to_si(text, "rad")
+    if not math.radians(0.001) <= value <= math.pi:
+        raise ValueError(f"must be a step of the crank angle from 0.001 to 180 deg, found {text!r}")
+    return value
+
+
+def _sign(value):
+    if isinstance(value, bool):
+        raise ValueError(f"must be 1 or -1, found {value!r}")
+    return value
+
+
 def _two_points(value):
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f'must be two points such as [["0 m", "0 m"], ["1 m", "0 m"]], found {value!r}')
+        raise ValueError(f'must be two points such as [["0 m", "0 m"], ["1 m", "0 m"]], found {shown(value)}')
     return tuple(_point(part) for part in value)
 
 
+def _period(text):
+    value = to_si(text, "rad")
+    if turns_problem(value):
+        raise ValueError(f'must be a whole number of turns, such as "720 deg", found {text!r}')
+    return whole_turns(value)
+
+
+Weight = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0)]
 Point = Annotated[tuple[float, float], BeforeValidator(_point), "m"]
 GuidePoints = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_two_points)]
 Centre = Annotated[tuple[float, float] | str, BeforeValidator(_centre), "m"]
@@ -98,11 +120,14 @@ class SpringTable(Table):
 class ProcessForceTable(Table):
     force: Force | None = None
     table: str | None = None
+    period: Annotated[float | None, BeforeValidator(_period)] = None
 
     @model_validator(mode="after")
     def _one_of_two(self):
         if (self.force is None) == (self.table is None):
             raise ValueError('needs either force, such as "-2 kN", or table, a CSV file by crank angle')
+        if self.period is not None and self.table is None:
+            raise ValueError("has a period, but no table: only a table repeats after one")
         return self
 
 
@@ -124,7 +149,7 @@ class SampledTable(Table):
 
 
 def _ratio(value):
-    number = isinstance(value, int | float) and not isinstance(value, bool)
+    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     problem = None if number else choice("ratio", value, tuple(RATIOS))
     if problem:
         raise ValueError(f"must be a number or a name: {problem}")
@@ -134,7 +159,7 @@ def _ratio(value):
 class CounterweightTable(Table):
     mass: Mass | None = None
     arm: Coordinate | None = None
-    whole_link: bool = False
+    whole_link: Annotated[bool, Field(strict=True)] = False
     largest_mass: Mass | None = None
     largest_arm: Length | None = None
     keep_out: Length | None = None
@@ -144,8 +169,8 @@ class BalancingTable(Table):
     method: Literal["full", "partial", "optimal"]
     ratio: Annotated[float | str, BeforeValidator(_ratio)] = "overall"
     norm: Literal["largest", "mean", "along", "across", "weighted"] = "largest"
-    weights: tuple[float, float] = (1.0, 0.0)
-    phase: bool = False
+    weights: tuple[Weight, Weight] = (1.0, 0.0)
+    phase: Annotated[bool, Field(strict=True)] = False
     crank: CounterweightTable | None = None
     coupler: CounterweightTable | None = None
     rocker: CounterweightTable | None = None
@@ -156,7 +181,7 @@ class MechanismVariant(Table):
 
     crank_speed: Speed
     crank_acceleration: AngularAcceleration = 0.0
-    assembly: Literal[1, -1] = 1
+    assembly: Annotated[Literal[1, -1], BeforeValidator(_sign)] = 1
     crank: LinkTable = LinkTable()
     coupler: LinkTable = LinkTable()
     gravity: GravityTable | None = None
@@ -218,7 +243,7 @@ class PublishedTable(Table):
 
     ratio: dict[str, str] = Field(default_factory=dict)
     value: dict[str, str] = Field(default_factory=dict)
-    sampling: Angle | None = None
+    sampling: Annotated[float | None, BeforeValidator(_sampling)] = None
     balancing: dict[str, dict[str, str]] = Field(default_factory=dict)
     linkage: dict[str, dict[str, str]] = Field(default_factory=dict)
     note: str = ""

@@ -8,6 +8,9 @@ import numpy as np
 
 from .guide import Guide
 
+KEPT = ("assembly", "period")
+"""Fields that are no numbers of the arithmetic."""
+
 
 def with_numbers(item, number: Callable[[Any], Any], special: dict | None = None):
     """Copy of parameters with ``number(value)`` in place of each number and array.
@@ -19,7 +22,7 @@ def with_numbers(item, number: Callable[[Any], Any], special: dict | None = None
         if isinstance(item, kind):
             return copied(item)
     if is_dataclass(item):
-        numbers = {field.name: getattr(item, field.name) for field in fields(item) if field.name != "assembly"}
+        numbers = {field.name: getattr(item, field.name) for field in fields(item) if field.name not in KEPT}
         return with_fields(item, **{name: with_numbers(value, number, special) for name, value in numbers.items()})
     if isinstance(item, Guide):
         direction = item.direction if item.is_level else with_numbers(item.direction, number, special)

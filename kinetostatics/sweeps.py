@@ -141,6 +141,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
     columns, wrong = si_columns(designs.columns, known)
     problems += [
         *wrong,
+        *_name_problems(designs.columns, wanted),
         *_type_problems(designs),
         None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
         *_count_problems(angles=angles, chunk=chunk),
@@ -168,8 +169,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
 def _of_case(case, variant, reference):
     """Functions that make the varied variant and the reference, what may be varied, and the variants themselves."""
     pair = chosen(case, variant, reference)
-    make = [partial(_varied, replace(item, loads=(), folder=item.folder.resolve())) for item in pair]
-    return make, paths(pair[0].table), pair
+    return [partial(_varied, item) for item in pair], paths(pair[0].table), pair
 
 
 def chosen(case, variant=None, reference=None):
@@ -206,6 +206,12 @@ def _outputs(outputs):
         except ParameterError as error:
             problems.append(str(error))
     return tuple(dict.fromkeys(wanted)), problems or ([] if wanted else ["no outputs are asked for"])
+
+
+def _name_problems(columns, wanted):
+    """Columns of the designs that would stand in the table twice."""
+    taken = {item.column for item in wanted} | {FAILED}
+    return [f"column {name!r} of the designs has the name of an output; rename it" for name in columns if name in taken]
 
 
 def _type_problems(designs):
@@ -277,10 +283,8 @@ def _digest(content):
 
 def _content(item):
     """What a variant or a function is made of, the same in every session."""
-    table = getattr(item, "table", None)
-    if table is not None:
-        files = (getattr(getattr(table, part, None), "table", None) for part in ("cam", "process_force"))
-        return table.model_dump_json().encode() + b"".join((item.folder / file).read_bytes() for file in files if file)
+    if getattr(item, "table", None) is not None:
+        return item.content
     text = re.sub(r" at 0x\w+", "", repr(item))
     with suppress(OSError, TypeError):  # of a session that keeps none, or no function but an object that can be called
         text += inspect.getsource(item)

@@ -1,18 +1,32 @@
-"""Text with a unit ("300 mm", "320 rpm") to SI, read with pint. An angle is no plain number: 5 Hz is no crank speed."""
+"""Text with a unit ("300 mm", "320 rpm") to SI, read with pint. An angle is no plain number: 5 Hz is no crank speed.
+
+Numbers are written in ASCII digits with a decimal point and no thousands separators. A unit is a product or quotient of
+names with small whole powers ("kN/mm", "kg m^2", "1/s"), worked from left to right; nothing else reaches pint.
+"""
 
 import math
 import re
-import tokenize
-from functools import cache
+import unicodedata
+from functools import cache, partial
 
-_NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
+NUMBER = r"(?:[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)"
+"""A number, as a regular expression: the only form that case files, tables and spreads take."""
+LONGEST = 200
+"""Characters that a text with a unit may have."""
+_NUMBER_AND_UNIT = re.compile(
+    rf"\s*({NUMBER})(?:\s*(?![eE][-+]?[0-9])((?:[^\W\d_]|[°%]).*?)|\s+(1(?:\s*(?:/|per\b).*?)?))?\s*", re.DOTALL
+)
+_FACTOR = re.compile(r"([^\W\d_][A-Za-z_]*|[°%])(?:(?:\^|\*\*)?([-+]?[1-9])|([²³]))?")
+_BETWEEN = re.compile(r"\s*(?:[*/·⋅]|\bper\b)\s*|\s+")
+_DIGITS = re.compile(r"[-+−–]?\d(?:[\d.,'’_\s]*\d)?")
+_SEPARATOR = re.compile(r"[.,'’_\s]")
 
 
 @cache
 def _registry():
     import pint
 
-    return pint.UnitRegistry(preprocessors=[lambda text: re.sub(r"\b(mm|cm|m|s)([23])\b", r"\1^\2", text)])
+    return pint.UnitRegistry()
 
 
 def to_si(text, unit):
@@ -34,10 +48,15 @@ def to_si(text, unit):
     ValueError
         No number, no unit, an unknown unit or one of another dimension; the message says which.
     """
-    found = _NUMBER_AND_UNIT.fullmatch(text) if isinstance(text, str) else None
+    readable = isinstance(text, str) and len(text) <= LONGEST
+    found = _NUMBER_AND_UNIT.fullmatch(text) if readable else None
     if found is None:
-        raise ValueError(f"must be text of a number and a unit that converts to {unit}, found {text!r}")
-    number, given = found.groups()
+        advice = respelled(text, _NUMBER_AND_UNIT.fullmatch) if readable else ""
+        raise ValueError(
+            f"must be text of a number and a unit that converts to {unit}, found {shown(text)}"
+            + (advice or f'; write for example "1.5 {unit}"')
+        )
+    number, given = found[1], found[2] or found[3]
     if given is None:
         raise ValueError(f'has no unit; write for example "{number} {unit}"')
     value = float(number) * factor(given, unit)
@@ -49,14 +68,8 @@ def to_si(text, unit):
 @cache
 def factor(given, unit):
     """What a number in a given unit is multiplied by to be in the SI unit; `ValueError` if it does not convert."""
-    import pint
-
-    registry = _registry()
-    try:
-        scale, base = registry.get_base_units(registry.parse_units(given))
-    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError, tokenize.TokenError):
-        raise ValueError(f'unit "{given}" is not known; give one that converts to "{unit}"') from None
-    if base != registry.get_base_units(registry.parse_units(unit))[1]:
+    scale, base = _base(given, unit)
+    if base != _base(unit, unit)[1]:
         raise ValueError(f'"{given}" does not measure the same as "{unit}"; give a unit that converts to it')
     return scale
 
@@ -64,3 +77,89 @@ def factor(given, unit):
 def base_factor(given):
     """What a number in a given unit is multiplied by to be in SI base units."""
     return factor(given, given)
+
+
+def _base(given, unit):
+    """Factor to base units, and these."""
+    import pint
+
+    registry = _registry()
+    try:
+        scale, base = registry.get_base_units(registry.parse_units(_spelled_for_pint(given)))
+    except (pint.PintError, ValueError, TypeError, AttributeError):
+        scale = None
+    if scale is None or not 0 < scale < math.inf:
+        raise ValueError(f'unit "{shown(given)[1:-1]}" is not known; give one that converts to "{unit}"')
+    return scale, base
+
+
+def _spelled_for_pint(text):
+    """The unit as a plain expression; `ValueError` unless it is a product or quotient of names with small powers."""
+    if len(text) > LONGEST:
+        raise ValueError("too long")
+    spelled, place = [], 0
+    if reciprocal := re.match(r"\s*1\s*(?=/|per\b|$)", text):
+        spelled, place = ["1"], reciprocal.end()
+    while place < len(text):
+        if spelled:
+            between = _BETWEEN.match(text, place)
+            if not between:
+                raise ValueError("two names touch")
+            spelled.append("/" if between[0].strip() in ("/", "per") else "*")
+            place = between.end()
+        found = _FACTOR.match(text, place)
+        if not found:
+            raise ValueError("no name of a unit")
+        power = found[2] or ("3" if found[3] == "³" else "2" if found[3] else "1")
+        spelled.append(f"{found[1].replace('°', 'degree').replace('%', 'percent')}**{int(power)}")
+        place = found.end()
+    if not spelled:
+        raise ValueError("no unit")
+    return "".join(spelled)
+
+
+def shown(value, most=80):
+    """The value as Python writes it, cut if it is long."""
+    if isinstance(value, dict | list | tuple | set):
+        return f"a {type(value).__name__}"
+    text = repr(value[: most + 1] if isinstance(value, str) else value)
+    return text if len(text) <= most + 2 else f"{text[:most]}..."
+
+
+def respelled(text, readable):
+    """Advice how to write the numbers of a text that cannot be read; empty if no `readable` text comes of it.
+
+    A comma, or a plain space, is taken for the decimal point; what stands before three digits also for nothing.
+    """
+    advice = []
+    for choice in (0, -1):
+        parts = [part if ".." in part else _DIGITS.sub(partial(_reading, choice), part) for part in _split(text)]
+        advice.append("".join(parts).strip())
+    advice = [f'"{found}"' for found in dict.fromkeys(advice) if found != text.strip() and readable(found)]
+    return f"; write {' or '.join(advice)}" if advice else ""
+
+
+def _split(text):
+    return re.split(r"(\.\.+)", text)
+
+
+def _reading(choice, found):
+    return (_readings(found[0]) or [found[0]])[choice]
+
+
+def _readings(text):
+    """Numbers that digits with separators may stand for, in plain ASCII."""
+    text = "".join(str(unicodedata.digit(sign)) if sign.isdecimal() else sign for sign in text)
+    text = re.sub("[−–]", "-", text)
+    if re.fullmatch(NUMBER, text):
+        return [text]
+    found = _SEPARATOR.findall(text)
+    first, *groups = _SEPARATOR.split(text)
+    if not groups or any(len(group) != 3 for group in groups[:-1]) or len(set(found[:-1])) > 1:
+        return []
+    readings = []
+    if found[-1] not in found[:-1] and (found[-1] in ".," or found == [" "]):
+        readings.append("".join([first, *groups[:-1]]) + "." + groups[-1])
+    if len(set(found)) == 1 and len(groups[-1]) == 3:
+        readings.append(first + "".join(groups))
+    return readings

@@ -1,6 +1,8 @@
 """Case files: what they give, and what is said of every way to get one wrong."""
 
 import shutil
+import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -298,3 +300,68 @@ crank = { mass = "3 kg", centre = "mid-length" }
     for name, expected in {"a": a, "b": b, "c": c}.items():
         found = case.solve(name, angles=16).frame()
         np.testing.assert_allclose(found, expected.frame(), rtol=1e-12, atol=1e-9)
+
+
+# What is read, and what is doubted
+
+
+def test_the_name_of_a_shipped_case_means_that_case_whatever_lies_here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sawframe_2r63").write_text(PLAIN, encoding="utf-8")
+    with pytest.warns(UserWarning, match=r"read as the shipped case of that name.* write './sawframe_2r63'") as caught:
+        assert ks.load_case("sawframe_2r63").title.startswith("Log frame saw")
+    assert caught[0].filename == __file__
+    for path in ("./sawframe_2r63", Path("sawframe_2r63"), str(tmp_path / "sawframe_2r63")):
+        assert ks.load_case(path).title == "test"
+    (tmp_path / "sawframe_2r63").rename(tmp_path / "sawframe_2r63.toml")
+    assert ks.load_case("sawframe_2r63.toml").title == "test"
+    assert ks.load_case("sawframe_2r63").title.startswith("Log frame saw")
+
+
+def test_a_published_figure_without_a_row_is_refused(tmp_path):
+    published = '[published.ratio]\n"mean |balancing torqe|" = "6.77"\n[published.value]\n"largest reaction Q" = "1"\n'
+    case = ks.load_case(case_file(tmp_path, PLAIN + published))
+    with pytest.raises(ks.CaseError, match=r"row is 'mean .balancing torqe.', .*did you mean 'mean .bal") as caught:
+        case.comparison_table("plain")
+    assert "'largest reaction Q'" in caught.value.problems[1]
+
+
+def test_a_published_figure_of_another_variant_is_left_out_of_this_one(tmp_path):
+    published = '[published.value]\n"largest cam force" = "1"\n"torque extremum 9" = "1"\n"largest reaction B" = "2"\n'
+    table = ks.load_case(case_file(tmp_path, PLAIN + published)).comparison_table("plain")
+    assert table["published"][table["published"] != ""].to_dict() == {"largest reaction B": "2 (value)"}
+
+
+DOUBTFUL = [
+    ('"slider.mass" = "normal 600000 kg +- 5 kg"', True),
+    ('"slider.mass" = "normal 600 g +- 5 g"', True),
+    ('"crank_length" = "299..301 m"', True),
+    ('"coupler_length" = "normal 0 mm +- 0.5 mm"', True),
+    ('"slider.mass" = "normal 590 kg +- 5 kg"', False),
+    ('"slider.mass" = "0..1200 kg"', False),
+    ('"slider.centre.along" = "normal 0 mm +- 5 mm"', False),
+    ('"slider.centre.across" = "normal 0 mm +- 5 mm"', False),
+]
+
+
+@pytest.mark.parametrize(("spread", "doubted"), DOUBTFUL)
+def test_a_tolerance_hundreds_of_times_off_its_parameter_is_doubted(tmp_path, spread, doubted):
+    path = case_file(tmp_path, f"{PLAIN}[tolerances]\n{spread}\n")
+    if doubted:
+        with pytest.warns(UserWarning, match=r"tolerances: .* but the parameter of .*; is the unit right\?") as caught:
+            ks.load_case(path)
+        assert caught[0].filename == __file__
+    else:
+        ks.load_case(path)
+
+
+def test_the_stiffness_of_a_spring_that_balances_is_compared_with_its_number(tmp_path):
+    spring = '[variants.plain.spring]\nstiffness = "balance the slider"\nfree_position = "2 m"\n'
+    for unit, doubted in (("kN/m", False), ("N/m", True)):
+        path = case_file(
+            tmp_path, f'{PLAIN}{spring}[tolerances]\n"spring.stiffness" = "normal 674 {unit} +- 7 {unit}"\n'
+        )
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            ks.load_case(path)
+        assert bool(caught) is doubted

@@ -1,11 +1,13 @@
 """The command line, as a user runs it."""
 
+import re
 import subprocess
 import sys
 
 import pandas as pd
 import pytest
 
+from kinetostatics.case import shipped_cases
 from kinetostatics.cli import main
 
 
@@ -147,3 +149,21 @@ def test_values_of_the_wrong_kind_are_problems_not_tracebacks(tmp_path, text, ca
     (tmp_path / "odd.toml").write_text(text)
     assert main(["run", str(tmp_path / "odd.toml")]) == 2
     assert capsys.readouterr().err.startswith("kinetostatics: ")
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ('"modulus"', "published: row is 'modulus', allowed: 'modulus h [mm]'"),
+        (
+            '"modulus h [mm]"',
+            "published: column of 'modulus h [mm]' is 'ful crank', allowed: .* did you mean 'full crank'",
+        ),
+    ],
+)
+def test_a_published_figure_without_a_place_in_the_balancing_table_is_refused(tmp_path, capsys, table, message):
+    text = shipped_cases()["mower_drive"].read_text(encoding="utf-8").partition("[published]")[0]
+    path = tmp_path / "mower.toml"
+    path.write_text(f'{text}[published.balancing.{table}]\n"ful crank" = "1"\n', encoding="utf-8")
+    assert main(["compare", str(path), "--variant", "full"]) == 2
+    assert re.search(message.replace("[mm]", ".mm."), capsys.readouterr().err)

@@ -287,6 +287,14 @@ def test_what_cannot_be_done_is_refused(name):
         sweep(source, designs, outputs, **options)
 
 
+@pytest.mark.parametrize("name", ["rms O [N]", "failed"])
+def test_a_column_of_the_designs_named_like_an_output_is_refused(name):
+    designs = DESIGNS[["mass"]].assign(**{name: 1.0})
+    with pytest.raises(ks.ParameterError, match="of the designs has the name of an output") as caught:
+        sweep(factories.pump, designs, ["rms O"])
+    assert repr(name) in str(caught.value)
+
+
 def test_unknown_quantities_of_design_and_reference_are_refused(tmp_path):
     for outputs, message in ((["rms cam_forc"], "cam_force"), (["ratio rms cam_force"], "crank-slider: quantity")):
         with pytest.raises(ks.QuantityError, match=message):
