@@ -30,7 +30,8 @@ def programs_folder() -> Path:
         There is none, it cannot be made, or others may write to it.
     """
     folder = _named() or _usual()
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    for step in reversed([folder, *folder.parents]):
+        step.mkdir(mode=0o700, exist_ok=True)
     require_private(folder)
     return folder
 
