@@ -11,7 +11,6 @@ import sys
 import tempfile
 import warnings
 from functools import cache
-from pathlib import Path
 from types import ModuleType
 
 from .errors import CacheWarning
