@@ -112,15 +112,15 @@ class Dataset(Parts):
         return self._folder / f"part-{number:06d}.parquet"
 
     def _put(self, number, whole):
-        import pyarrow
+        import pyarrow as pa
         from pyarrow import parquet
 
         path, told = self._path(number), {KEY: json.dumps(self._told(number, whole))}
         try:
-            table = pyarrow.Table.from_pandas(whole)
+            table = pa.Table.from_pandas(whole)
             with written_whole(path) as temporary:
                 parquet.write_table(table.replace_schema_metadata({**table.schema.metadata, **told}), temporary)
-        except (OSError, pyarrow.ArrowException) as error:
+        except (OSError, pa.ArrowException) as error:
             raise KinetostaticsError(
                 f"sweep: {path} cannot be written: {error}; what is done is kept, and the same call goes on from there"
             ) from error
@@ -199,6 +199,6 @@ def _record(manifest):
             raise ValueError(f"it holds no table but {str(found)[:40]!r}")
     except (ValueError, RecursionError) as error:
         raise ParameterError(
-            f"sweep: {manifest} does not tell of what sweep the folder is: {error}; give another folder, or delete that one"
+            f"sweep: {manifest} does not tell of what sweep the folder is: {error}; give another folder, or delete it"
         ) from error
     return found

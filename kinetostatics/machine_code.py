@@ -49,7 +49,7 @@ def _kept(text):
     """
     from numba import config
 
-    if config.CACHE_DIR:
+    if vars(config)["CACHE_DIR"]:
         raise OSError("NUMBA_CACHE_DIR is set, so numba would put it elsewhere")
     name = _name(text, *_machine())
     entry = programs_folder() / name
@@ -93,8 +93,8 @@ def _machine():
     from llvmlite import binding
 
     processor = binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
-    options = numba.config.CPU_NAME, numba.config.CPU_FEATURES, numba.config.OPT
-    return numba.__version__, sys.implementation.cache_tag, platform.machine(), *processor, *map(repr, options)
+    options = [repr(vars(numba.config)[name]) for name in ("CPU_NAME", "CPU_FEATURES", "OPT")]
+    return numba.__version__, sys.implementation.cache_tag, platform.machine(), *processor, *options
 
 
 @cache
