@@ -80,7 +80,8 @@ class Dataset(Parts):
         if unsound:
             listed = ", ".join(unsound[:LISTED]) + f" and {len(unsound) - LISTED} more" * (len(unsound) > LISTED)
             warnings.warn(
-                f"sweep: in {self._folder} these are not parts of it as it wrote them, and are made anew: {listed}",
+                f"sweep: in {self._folder} these are no parts of it as it wrote them, and are made anew or left out: "
+                f"{listed}",
                 CacheWarning,
                 stacklevel=3,
             )

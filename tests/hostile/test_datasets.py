@@ -125,7 +125,7 @@ def test_a_part_that_is_not_as_it_was_written_is_made_anew(folder, expected, nam
     if name.startswith("flipped") and not caught:  # of what no reader looks at
         return
     assert [item.category for item in caught] == [CacheWarning]
-    message = f"{folder} these are not parts of it as it wrote them, and are made anew: part-000001.parquet"
+    message = f"{folder} these are no parts of it as it wrote them, and are made anew or left out: part-000001.parquet"
     assert message in str(caught[0].message)
     assert caught[0].filename == __file__
     with warnings.catch_warnings():
@@ -181,7 +181,7 @@ MANIFESTS = {
 @pytest.mark.parametrize("name", MANIFESTS)
 def test_a_manifest_that_tells_nothing_is_refused(folder, name):
     (folder / MANIFEST).write_bytes(MANIFESTS[name])
-    with pytest.raises(ks.ParameterError, match="does not tell of what sweep the folder is: .*; give another"):
+    with pytest.raises(ks.ParameterError, match=r"does not tell of what sweep the folder is: .*; give another"):
         sweep(folder)
 
 
