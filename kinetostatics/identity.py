@@ -126,7 +126,7 @@ def _named(item):
     """Name of a module, class or function, with the version of what it comes from."""
     module = item.__name__ if isinstance(item, ModuleType) else str(getattr(item, "__module__", ""))
     version = getattr(sys.modules.get(_package(module)), "__version__", "")
-    return f"{module}.{getattr(item, '__qualname__', '')} {version}"
+    return f"{module}.{getattr(item, '__qualname__', None) or getattr(item, '__name__', '')} {version}"
 
 
 def _package(module):
