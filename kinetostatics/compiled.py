@@ -5,17 +5,13 @@ compiled once, and kept on disk for the next session. Sines and cosines of the c
 their own, and are shared by all designs; what is left has no calls, so the compiler vectorises it.
 """
 
-import hashlib
+import importlib
 import importlib.util
 import math
 import os
-import sys
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from functools import cache, cached_property, lru_cache
-from importlib.machinery import SourceFileLoader
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -24,21 +20,23 @@ import numpy as np
 from . import assembly
 from .elementary import ROUNDING, read_only
 from .errors import MissingLibraryError, NotGivenError
-from .files import written_whole
 from .loads import Gravity, ProcessForce, Spring
+from .machine_code import load
 from .solution import Solution
 from .tracing import BY_ANGLE, Node, Trace, trace
 
 SHARE = 100_000
 """Values over designs and angles that are worth a thread of their own."""
-TURN = '''"""Written by kinetostatics; may be deleted at any time."""
+GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
+"""Arrays of so many axes that a loop reads, which may be locked, and that it writes, as numba names them."""
+TURN = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import cos, sin
 
 from numba import njit
 
 
-@njit(nogil=True, cache=True)
+@njit("void({", ".join([GIVEN, FILLED, FILLED]).format(1, 1, 1)})", nogil=True, cache=KEEP)
 def shared(angle, sine, cosine):
     for i in range(angle.size):
         cosine[i] = cos(angle[i])
@@ -50,7 +48,7 @@ from math import atan, cos, inf, nan, sin, sqrt
 
 from numba import njit
 
-options = dict(error_model="numpy", nogil=True, cache=True)
+options = dict(error_model="numpy", nogil=True)
 
 
 @njit(**options)
@@ -63,7 +61,7 @@ def divisor(root, unit):
     return root if root != root else max(root, unit)
 
 
-@njit(**options)
+@njit("void({", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})", cache=KEEP, **options)
 def loop(angle, sine, cosine, parameters, tables, results):
     for design in range(parameters.shape[0]):
         first = design * (angle.shape[0] > 1)
@@ -132,7 +130,7 @@ class Program:
 
     def __call__(self, angle, tables=None):
         """Results (outputs, designs, N) at crank angles (N,) or (designs, N), rad."""
-        angle = np.array(angle, dtype=float, ndmin=2, order="C")  # a copy: numba would compile anew for a locked one
+        angle = np.array(angle, dtype=float, ndmin=2, order="C")
         if tables is None:
             tables = np.empty((0, 1, angle.shape[1]))
         return self.at(angle, *self.turn(angle), tables)
@@ -243,53 +241,36 @@ def cores():
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def _problem():
+    """Why numba cannot be used, or None."""
+    if importlib.util.find_spec("numba") is None:
+        return "is not installed"
+    try:
+        importlib.import_module("numba")
+    except ImportError as error:  # installed beside a NumPy that it does not know, for instance
+        return f"cannot be imported: {error}"
+    return None
+
+
 def available():
-    """Whether numba is installed, and what finds a folder for its programs."""
-    needed = ["numba"] if os.environ.get("KINETOSTATICS_CACHE") else ["numba", "platformdirs"]
-    return all(importlib.util.find_spec(name) is not None for name in needed)
+    """Whether numba is installed, and can be imported."""
+    return _problem() is None
 
 
 def require():
-    """Raise `MissingLibraryError` unless numba is installed."""
+    """Raise `MissingLibraryError` unless numba is available."""
     if not available():
         raise MissingLibraryError(
-            'the compiled engine needs numba: pip install "kinetostatics[fast]"; engine="numpy" works without'
+            f'the compiled engine needs numba, which {_problem()}: pip install "kinetostatics[fast]"; engine="numpy" '
+            "works without"
         )
 
 
 @cache
 def _loaded(text):
-    """Module of the source, from the folder where numba keeps its machine code too."""
+    """Module of the source, its machine code kept on disk."""
     require()
-    name = f"kinetostatics_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
-    path = _folder() / f"{name}.py"
-    try:
-        _write(path, text)
-    except OSError:  # nowhere to keep it: compile for this process alone
-        path = Path(tempfile.mkdtemp(prefix="kinetostatics-")) / path.name
-        _write(path, text)
-    loader = SourceFileLoader(name, str(path))
-    module = ModuleType(name)
-    module.__file__ = str(path)
-    sys.modules[name] = module
-    loader.exec_module(module)
-    return module
-
-
-def _write(path, text):
-    if not path.exists() or path.read_text(encoding="utf-8") != text:
-        with written_whole(path) as temporary:
-            Path(temporary).write_text(text, encoding="utf-8")
-
-
-def _folder():
-    """Where compiled programs are kept: KINETOSTATICS_CACHE, else the user's cache folder."""
-    given = os.environ.get("KINETOSTATICS_CACHE")
-    if given:
-        return Path(given)
-    from platformdirs import user_cache_path
-
-    return Path(user_cache_path("kinetostatics"))
+    return load(text, keep=True)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -67,3 +67,7 @@ class CaseError(KinetostaticsError, ValueError):
 
 class ConditionWarning(UserWarning):
     """The result is right for the numbers given, but small changes of them change it much."""
+
+
+class CacheWarning(UserWarning):
+    """Results are right, but machine code or finished parts on disk could not be used, and are made anew."""

@@ -4,24 +4,23 @@ A sweep goes chunk by chunk (`chunks`) through any `concurrent.futures.Executor`
 stream to a Parquet dataset (`dataset`), from which a sweep that was stopped goes on.
 """
 
-import hashlib
 import inspect
 import pickle
-import re
 from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import closing, suppress
+from contextlib import closing
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pandas as pd
 
-from . import __version__, checks, compiled
+from . import checks, compiled
 from .case import Case, Variant
 from .chunks import FAILED, PROBED, Job, suitable_engine
 from .dataset import Dataset, Parts
 from .dispatch import Workers, computed
 from .errors import ParameterError
+from .identity import identity
 from .parameters import paths, si_columns
 from .reductions import Output, parsed
 from .solution import WORTH_COMPILING
@@ -74,7 +73,8 @@ def sweep(
         Designs computed together: what bounds the memory.
     folder : path
         Parquet dataset that chunks are written to as they are done. If it holds part of the same sweep, that is kept
-        and the rest computed. A function is the same if its source is, whatever the values that it refers to.
+        and the rest computed, also what was damaged since. A function is the same if its code is, with what it holds
+        and what it names of its own module (see `identity`).
     progress : bool
         Whether a bar is shown.
 
@@ -109,7 +109,7 @@ def sweep(
             job = replace(job, engine=suitable)
         parts = Parts(designs, chunk)
         if folder is not None:
-            parts = Dataset(designs, chunk, folder, _identity(job, designs, compared, chunk))
+            parts = Dataset(designs, chunk, folder, identity(job, designs, compared, chunk))
         todo = [number for number in parts.numbers if not parts.holds(number)]
         with _bar(progress, len(designs)) as bar, closing(computed(job, parts.rows, todo, workers)) as found:
             bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
@@ -257,35 +257,3 @@ def _require_portable(job):
             f"sweep: the function and its reference cannot go to other processes: {error}; define the function at the "
             "top of a module, or use threads or Dask, which take any"
         ) from error
-
-
-# Whether it is the same sweep
-
-
-def _identity(job, designs, compared, chunk):
-    """What makes a sweep the same sweep, by name."""
-    hashed = pd.util.hash_pandas_object(designs, index=True).to_numpy().tobytes()
-    names = ("variant", "reference") if hasattr(compared[0], "table") else ("function", "reference")
-    return {
-        "version": __version__,
-        **{name: _digest(_content(item)) for name, item in zip(names, compared, strict=False)},
-        "outputs": [str(item) for item in job.outputs],
-        "angles": int(job.angles),
-        "chunk": int(chunk),
-        "columns": [str(column) for column in designs.columns],
-        "designs": _digest(hashed),
-    }
-
-
-def _digest(content):
-    return hashlib.sha256(content).hexdigest()
-
-
-def _content(item):
-    """What a variant or a function is made of, the same in every session."""
-    if getattr(item, "table", None) is not None:
-        return item.content
-    text = re.sub(r" at 0x\w+", "", repr(item))
-    with suppress(OSError, TypeError):  # of a session that keeps none, or no function but an object that can be called
-        text += inspect.getsource(item)
-    return text.encode()

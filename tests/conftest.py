@@ -21,10 +21,10 @@ def programs(tmp_path_factory):
 @pytest.fixture
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    from kinetostatics import compiled
+    from kinetostatics import compiled, machine_code
 
     numba = ModuleType("numba")
-    numba.njit = lambda **options: lambda function: function
+    numba.njit = lambda *signature, **options: lambda function: function
     numba.__spec__ = ModuleSpec("numba", None)
     monkeypatch.setitem(sys.modules, "numba", numba)
-    monkeypatch.setattr(compiled, "_loaded", cache(compiled._loaded.__wrapped__))
+    monkeypatch.setattr(compiled, "_loaded", cache(machine_code.load))

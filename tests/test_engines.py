@@ -511,7 +511,7 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
     exec(code)
     here, compiled_here = capsys.readouterr().out, files()
     programs, code_files = ([name for name, _ in compiled_here if name.endswith(end)] for end in (".py", ".nbc"))
-    assert len(programs) == 2 < len(code_files)
+    assert len(programs) == len(code_files) == 2
     assert all(name.endswith(".1.nbc") for name in code_files)
     there = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     assert there.stdout == here
