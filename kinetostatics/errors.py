@@ -2,7 +2,17 @@
 
 
 class KinetostaticsError(Exception):
-    """Any fault the library reports on purpose."""
+    """Any fault the library reports on purpose; it can be copied, and sent from one process to another."""
+
+    def __reduce__(self):
+        return _restored, (type(self), self.args, vars(self))
+
+
+def _restored(kind, arguments, state):
+    """An error with its message and attributes as they were, whatever its constructor takes."""
+    error = kind.__new__(kind, *arguments)
+    vars(error).update(state)
+    return error
 
 
 class ParameterError(KinetostaticsError, ValueError):
