@@ -3,6 +3,7 @@
 import tomllib
 import typing
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
@@ -43,8 +44,15 @@ class Variant:
         checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
         return _built(parameters.with_values(self.table, values), self.folder)
 
+    @property
+    def files(self):
+        """Files that it is made from besides the case file, a list of paths."""
+        parts = (getattr(self.table, part, None) for part in ("cam", "process_force"))
+        return [self.folder / part.table for part in parts if getattr(part, "table", None)]
+
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over one turn from 0, end excluded."""
+        checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
         return solve(
             self.mechanism,
             np.linspace(0.0, 2 * np.pi, angles, endpoint=False),
@@ -76,6 +84,17 @@ class Case:
     variants: typing.Mapping[str, Variant]
     published: schema.PublishedTable = field(repr=False)
     tolerances: typing.Mapping[str, str] = field(default_factory=dict)
+
+    def __getstate__(self):
+        return {**vars(self), "variants": dict(self.variants)}
+
+    def __setstate__(self, state):
+        vars(self).update(state, variants=MappingProxyType(state["variants"]))
+
+    @property
+    def files(self):
+        """All files that it is made from, a list of paths."""
+        return [self.path, *(path for variant in self.variants.values() for path in variant.files)]
 
     def variant(self, name) -> Variant:
         """A variant by name."""
@@ -408,4 +427,8 @@ def _loads(table, folder):
 def _tabulated_force(path):
     """Function of the motion that interpolates a table of force by crank angle, periodic and linear."""
     angle, force = read_columns(path, {"crank_angle": "rad", "force": "N"})
-    return lambda motion: np.interp(motion.crank_angle, angle, force, period=2 * np.pi)
+    return partial(_interpolated, angle=angle, force=force)
+
+
+def _interpolated(motion, angle, force):
+    return np.interp(motion.crank_angle, angle, force, period=2 * np.pi)

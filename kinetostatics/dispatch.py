@@ -62,8 +62,8 @@ class Workers:
             raise error
         if self._count is None:
             raise KinetostaticsError(
-                f"sweep: the executor broke, as one of its workers died or could not start ({error}); give workers=n in "
-                "place of executor= for processes that are replaced when they die"
+                f"sweep: the executor broke, as one of its workers died or could not start ({error}); give workers=n "
+                "in place of executor= for processes that are replaced when they die"
             ) from error
         return 1
 

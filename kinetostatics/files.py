@@ -76,7 +76,11 @@ def written_whole(path):
     path.parent.mkdir(parents=True, exist_ok=True)
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
-    os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600 if before else 0o666))
+    try:
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600 if before else 0o666))
+    except OSError as error:
+        error.filename = str(path)
+        raise
     try:
         yield str(temporary)
         if before is not None:

@@ -108,7 +108,9 @@ def sweep(
     >>> table.iloc[:, 1].round(2).tolist()
     [3.92, 7.56, 50.56]
     """
-    job, engines, compared = _job(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk)
+    job, engines, compared = _job(
+        source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
+    )
     with Workers(executor, workers) as hands:
         for suitable in hands.survived(suitable_engine, job, designs[:PROBED], engines):
             job = replace(job, engine=suitable)
@@ -152,7 +154,8 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
         *wrong,
         *_type_problems(designs),
         None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
-        *_count_problems(angles=angles, chunk=chunk),
+        checks.count("angles", angles, size=checks.ANGLE),
+        checks.count("chunk", chunk),
         None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         None if len(designs) else "there are no designs",
         _executor_problem(executor),
@@ -175,7 +178,9 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
 
         _require_portable(job, dumps, "give it no open files or locks, or use threads")
     elif isinstance(executor, ProcessPoolExecutor):
-        _require_portable(job, pickle.dumps, "define the function at the top of a module, or use workers=n, threads or Dask")
+        _require_portable(
+            job, pickle.dumps, "define the function at the top of a module, or use workers=n, threads or Dask"
+        )
     return job, engines, compared if ratios else compared[:1]
 
 
@@ -245,12 +250,6 @@ def _signature_problem(function, names):
     except ValueError:  # it does not say what it takes
         return None
     return None
-
-
-def _count_problems(**counts):
-    for name, value in counts.items():
-        if not isinstance(value, int | np.integer) or value < 1:
-            yield f"{name} must be a whole number of at least 1, got {value!r}"
 
 
 def _executor_problem(executor):

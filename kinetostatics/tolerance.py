@@ -1,6 +1,7 @@
 """Tolerances: what the spread of parameters does to outputs, and whose spread matters most."""
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -87,6 +88,9 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     checks.require(
         "tolerances",
         None if spreads else 'no spreads are given, nor has the case file any for this variant, in "tolerances"',
+        None
+        if spreads is None or isinstance(spreads, Mapping)
+        else f"spreads must be a dict of parameter to text, got {spreads!r}",
         None if power else f"count must be a power of two, got {count!r}",
     )
     found = designs.distributions(spreads)
