@@ -46,6 +46,10 @@ class Workers:
             self._stop(at_once=True)
             return self._submitted(call)
 
+    def one_at_a_time(self):
+        """From now on: processes that must be started anew are one."""
+        self._count = self._count and 1
+
     def survived(self, *call):
         """Result of a call in a tuple; an empty one if the worker died."""
         try:
@@ -148,6 +152,7 @@ def computed(job, rows_of, numbers, workers):
                     (waiting.appendleft if deaths[number] < ATTEMPTS else suspects.append)(number)
                 else:
                     yield number, found
+        workers.one_at_a_time()
         if suspects and not workers.survived(run_chunk, job, rows_of(suspects[0])[:0]):
             raise KinetostaticsError("sweep: the workers die before they compute anything")
         for number in suspects:
