@@ -214,6 +214,8 @@ def _compare(options):
     names = others if options.variant is None else [options.variant]
     if not names:
         raise CaseError(case.path, [f"has one variant only, {case.reference}: nothing to compare; use run"])
+    for name in names:
+        case.variant(name)
     tables = {name: case.comparison_table(name) for name in names}
     special = [
         ("counterweights and shaking force", case.balancing_table(), case.published.balancing),

@@ -77,17 +77,22 @@ def written_whole(path):
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
     try:
-        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600 if before else 0o666))
-    except OSError as error:
-        error.filename = str(path)
-        raise
-    try:
+        _create(temporary, 0o600 if before else 0o666, path)
         yield str(temporary)
         if before is not None:
             _resembling(temporary, before)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _create(temporary, mode, path):
+    """An empty file that is new; errors name what it is for."""
+    try:
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
+    except OSError as error:
+        error.filename = str(path)
+        raise
 
 
 def _resembling(path, before):
@@ -121,6 +126,8 @@ def unwritable(path, *, inputs=(), endings=()):
         if endings and path.suffix.lower() not in endings:
             return checks.choice(f"{path}: the ending", path.suffix, endings)
         target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            return f"{path} is a symbolic link that leads in a circle"
         if target.exists() and not (target.stat().st_mode & 0o222 and os.access(target, os.W_OK)):
             return f"{path} is read-only; allow writing, or give another name"
         return unwritable_folder(target.parent)
