@@ -47,8 +47,8 @@ class Variant:
     @property
     def files(self):
         """Files that it is made from besides the case file, a list of paths."""
-        parts = (getattr(self.table, part, None) for part in ("cam", "process_force"))
-        return [self.folder / part.table for part in parts if getattr(part, "table", None)]
+        named = (getattr(getattr(self.table, part, None), "table", None) for part in ("cam", "process_force"))
+        return [self.folder / name for name in named if name]
 
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over one turn from 0, end excluded."""

@@ -30,7 +30,7 @@ def main(arguments=None):
 
     0, or 2 for input that cannot be used, 130 if it was interrupted (Ctrl-C), 143 if it was told to end (SIGTERM).
     """
-    status, message = 0, None
+    status, message = 0, ""
     try:
         with _ending_in_order():
             _require_output()
@@ -40,14 +40,14 @@ def main(arguments=None):
     except BrokenPipeError:
         pass
     except (KinetostaticsError, OSError) as error:
-        status, message = 2, error
+        status, message = 2, str(error)
     except MemoryError as error:
         status, message = 2, f"there is not enough memory; take fewer crank angles or designs ({error})"
     except KeyboardInterrupt:
         status, message = 130, "interrupted"
     except _Terminated:
         status, message = 143, "terminated"
-    if message is not None:
+    if status:
         _tell(f"kinetostatics: {message}")
     _drop_what_cannot_be_written()
     return status
@@ -255,6 +255,9 @@ def _precision(options):
     fronts = [precision.front(part) for _, part in table.groupby(["variant", "quantity"], sort=False)]
     shown = ["variant", "quantity", "method", "setting", "value", "time [ns/angle]", "error"]
     _print(pd.concat(fronts)[shown].set_index("variant").astype(object).fillna(""))
+    absent = table[table.groupby(["variant", "quantity", "method"])["error"].transform("count") == 0]
+    for method, why in dict.fromkeys(zip(absent["method"], absent["not given"], strict=True)):
+        print(f"left out: {method}: {why}")
     print(*paths, sep="\n")
 
 

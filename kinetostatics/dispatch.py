@@ -7,6 +7,7 @@ import time
 from collections import Counter, deque
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -27,7 +28,8 @@ class Workers:
     """
 
     def __init__(self, executor=None, count=None):
-        self._executor = executor or (None if count else _Here())
+        self._given = executor or _Here()
+        self._pool: Any = None
         self._count = count
         self.capacity = 2 * count if count else WAITING if executor else 1
 
@@ -72,15 +74,17 @@ class Workers:
         return 1
 
     def _submitted(self, call):
-        if self._executor is None:
-            self._executor = _pool(self._count)
+        if not self._count:
+            return self._given.submit(*call)
+        if self._pool is None:
+            self._pool = _pool(self._count)
         with _without_interrupts():  # what starts here inherits it
-            return self._executor.submit(*call)
+            return self._pool.submit(*call)
 
     def _stop(self, at_once):
-        if self._count and self._executor is not None:
-            self._executor.shutdown(kill_workers=at_once)
-            self._executor = None
+        if self._pool is not None:
+            self._pool.shutdown(kill_workers=at_once)
+            self._pool = None
 
 
 class _Here(Executor):
