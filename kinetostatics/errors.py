@@ -59,6 +59,10 @@ class MissingLibraryError(KinetostaticsError, ImportError):
     """A library of an extra is not installed; the message says how to install it."""
 
 
+class FileError(KinetostaticsError, OSError):
+    """A result cannot be written to this file; the message says why."""
+
+
 class CaseError(KinetostaticsError, ValueError):
     """A case file cannot be used; the message lists every problem with file and key.
 

@@ -42,7 +42,7 @@ def draw_case(case, folder, file_format="png", only=None):
     if problem:
         raise ParameterError(problem)
     paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in ([only] if only else figures)}
-    checks.require("figures", *(unwritable(path, inputs=case.files) for path in paths.values()))
+    checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
     names = [case.reference, *(name for name in case.variants if name != case.reference)]
     solutions = {name: case.solve(name) for name in names}
     return [_saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from . import checks
-from .errors import CaseError
+from .errors import CaseError, FileError
 from .units import to_si
 
 
@@ -72,7 +72,9 @@ def written_whole(path):
     if path.exists() and not path.is_file():  # a pipe or a device takes what is written as it comes
         yield path
         return
-    checks.require("files", unwritable(path))
+    problem = unwritable(path)
+    if problem:
+        raise FileError(problem)
     path.parent.mkdir(parents=True, exist_ok=True)
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
@@ -141,7 +143,7 @@ def unwritable_folder(path):
     try:
         standing = next(place for place in (path.absolute(), *path.absolute().parents) if os.path.lexists(place))
         if not standing.is_dir():
-            return f"{standing} is no folder, so {path} cannot be one or be made in it"
+            return f"{standing} is no folder, so nothing can be written to {path}"
         if not os.access(standing, os.W_OK | os.X_OK):
             return f"folder {standing} may not be written to; give another place"
     except (OSError, ValueError) as error:

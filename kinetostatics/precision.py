@@ -99,8 +99,8 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
 
     checks.require("precision", checks.case("case", case))
     path = Path(folder) / f"{case.path.stem}_precision.csv"
-    outputs = [path, *(path.with_suffix(ending) for ending in (".png", ".svg"))]
-    checks.require("precision", *dict.fromkeys(unwritable(item, inputs=case.files) for item in outputs))
+    written = [path, *(path.with_suffix(ending) for ending in (".png", ".svg"))]
+    checks.require("precision", *dict.fromkeys(unwritable(item, inputs=case.files) for item in written))
     names = list(variants or kinds(case))
     for name in names:
         for quantity in quantities:

@@ -16,21 +16,16 @@ WAYS = {
     "deep copy": copy.deepcopy,
     "copy": copy.copy,
 }
-ERRORS = {
-    "KinetostaticsError": errors.KinetostaticsError("what is wrong"),
+ONE_MESSAGE = {
+    name: kind("what is wrong")
+    for name, kind in vars(errors).items()
+    if isinstance(kind, type) and kind.__module__ == errors.__name__ and name not in ("AssemblyError", "CaseError")
+}
+ERRORS = ONE_MESSAGE | {
     "ParameterError": errors.ParameterError("mass must be positive", designs=np.array([True, False])),
     "AssemblyError": errors.AssemblyError("a gap", [(0.5, 1.0)]),
-    "QuantityError": errors.QuantityError("no such joint"),
-    "NotGivenError": errors.NotGivenError("not by this method"),
-    "MissingLibraryError": errors.MissingLibraryError("pip install it"),
     "CaseError": errors.CaseError(Path("saw.toml"), ["one", "two"]),
-    "ConditionWarning": errors.ConditionWarning("few digits"),
 }
-
-
-def test_all_errors_are_tried():
-    own = {name for name, kind in vars(errors).items() if isinstance(kind, type) and kind.__module__ == errors.__name__}
-    assert own == set(ERRORS)
 
 
 @pytest.mark.parametrize("way", WAYS)

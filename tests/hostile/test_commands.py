@@ -123,7 +123,7 @@ def test_precision_does_not_write_over_a_table_that_happens_to_have_its_name(saw
 
 PLACES = {
     "folder": ("folder.csv", "is a folder"),
-    "file in a file": ("saw.toml/x.csv", "is no folder"),
+    "file in a file": ("saw.toml/x.csv", "is no folder, so nothing can be written to"),
     "other ending": ("x.xlsx", "the ending is '.xlsx', allowed: '.csv'"),
     "long name": ("x" * 300 + ".csv", "is no name of a file here: File name too long"),
     "read-only": ("read-only.csv", "is read-only; allow writing"),
@@ -215,6 +215,15 @@ def test_a_file_that_is_replaced_keeps_its_owner(tmp_path):
     with files.written_whole(file) as temporary:
         Path(temporary).write_text("new")
     assert (file.stat().st_uid, file.stat().st_gid) == (12345, 54321)
+
+
+def test_a_file_that_is_read_only_is_refused_when_written_too(tmp_path):
+    file = tmp_path / "x.csv"
+    file.write_text("old")
+    file.chmod(0o444)
+    with pytest.raises(ks.errors.FileError, match="is read-only; allow writing"), files.written_whole(file):
+        pytest.fail("it may be written")
+    assert file.read_text() == "old"
 
 
 def test_a_link_to_nothing_is_written_through(tmp_path):
@@ -400,7 +409,7 @@ def test_a_full_disk_is_told_in_a_line(saw):
 def test_a_sweep_that_is_stopped_says_so_in_a_line_and_leaves_no_process(saw, how, status, word):
     """The signal goes to all its processes, as from a terminal."""
     out = saw.parent / "out"
-    vary = "slider.mass=600..700 kg:1000000"
+    vary = "slider.mass=600..700 kg:400000"
     command = [*COMMAND, "sweep", saw, "--vary", vary, "--variant", "plain", "--angles", "4", "--workers", "1"]
     process = subprocess.Popen(
         [*command, "--output", "rms O", "--out", out], stderr=subprocess.PIPE, text=True, start_new_session=True
@@ -540,7 +549,7 @@ CALLS = {
     },
     **{
         f"angles {angles!r}": (lambda angles=angles: ks.plots.mechanism(PLAIN, angles=angles), "angles must be")
-        for angles in ("ten", [math.nan], [[0, 1]], object())
+        for angles in ("ten", [math.nan], [[0, 1]], {"a": 1})
     },
     **{
         f"frames {frames!r}": (lambda frames=frames: ks.plots.animation(PLAIN, frames=frames), "frames must be a whole")
