@@ -69,8 +69,15 @@ class Variant:
         checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
         return _built(parameters.with_values(self.table, values), self.folder, self.tabulated)
 
+    @property
+    def files(self):
+        """Files that it is made from besides the case file, a list of paths."""
+        named = (getattr(getattr(self.table, part, None), "table", None) for part in ("cam", "process_force"))
+        return [self.folder / name for name in named if name]
+
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over one turn from 0, end excluded."""
+        checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
         return solve(
             self.mechanism,
             np.linspace(0.0, 2 * np.pi, angles, endpoint=False),
@@ -102,6 +109,17 @@ class Case:
     variants: typing.Mapping[str, Variant]
     published: schema.PublishedTable = field(repr=False)
     tolerances: typing.Mapping[str, str] = field(default_factory=dict)
+
+    def __getstate__(self):
+        return {**vars(self), "variants": dict(self.variants)}
+
+    def __setstate__(self, state):
+        vars(self).update(state, variants=MappingProxyType(state["variants"]))
+
+    @property
+    def files(self):
+        """All files that it is made from, a list of paths."""
+        return [self.path, *(path for variant in self.variants.values() for path in variant.files)]
 
     def variant(self, name) -> Variant:
         """A variant by name."""

@@ -7,7 +7,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import rc_context
 
-from .canvas import ACCENT, axes
+from .canvas import ACCENT, axes, require_columns
+from .errors import ParameterError
 from .files import written_whole
 from .quantities import label
 
@@ -48,6 +49,7 @@ def work_precision(table, ax=None):
     -------
     Axes
     """
+    require_columns("work_precision", table, ("method", "ours", "setting", "error", "time [ns/angle]"))
     ax = axes(ax)
     given = table.dropna(subset=["error"])
     for name, style in _styles(table).items():
@@ -78,6 +80,8 @@ def error_by_distance(table, ax=None):
     -------
     Axes
     """
+    shown = ("method", "ours", "number", "error", "nan", "raised", "not given", "condition", "axis", "quantity")
+    require_columns("error_by_distance", table, shown)
     ax = axes(ax)
     for name, style in _styles(table).items():
         rows = table[(table["method"] == name) & (table["not given"] == "")]
@@ -111,6 +115,8 @@ def model_ladder(needs, ax=None):
     -------
     Axes
     """
+    if not hasattr(needs, "ladder"):
+        raise ParameterError(f"model_ladder: needs must be what ks.needs(...) returns, got a {type(needs).__name__}")
     ax = axes(ax)
     floor = 1e-3 * min(needs.within, 1e-2)
 
@@ -151,6 +157,10 @@ def sweep_map(table, parameters, output, ax=None):
     -------
     Axes
     """
+    parameters = [parameters] if isinstance(parameters, str) else list(parameters or ())
+    require_columns("sweep_map", table, (*parameters, output))
+    if len(parameters) not in (1, 2) or len(set(parameters)) < len(parameters):
+        raise ParameterError(f"sweep_map: one or two different parameters can be drawn, got {parameters}")
     ax = axes(ax)
     if len(parameters) == 1:
         (x,) = parameters

@@ -120,6 +120,58 @@ def assembly_sign(value):
     return None if value in (1, -1) else f"assembly must be +1 or -1, got {value!r}"
 
 
+MEMORY = 10_000_000_000
+"""Bytes that no table of angles or designs may take."""
+ANGLE = 1000
+"""Bytes that the results at a crank angle take, all forces in a table."""
+
+
+def count(name, value, *, size=None):
+    """What is wrong with a number of things, or None; with their `size` in bytes, they must have room in memory."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
+        return f"{name} must be a whole number of at least 1, got {value!r}"
+    if size is not None and value * size > MEMORY:
+        found = f"{value} would take {value * size // 10**9} GB" if value < 10**15 else "so many would take all"
+        return f"{name} must be at most {MEMORY // size}, as {found} of memory"
+    return None
+
+
+def solution(name, value):
+    """What is wrong with what must be a `Solution`, or None."""
+    if hasattr(type(value), "power_residual"):
+        return None
+    return (
+        f"{name} must be a Solution, as ks.solve(...), case.solve(name) and variant.solve() return, "
+        f"got {_described(value)}"
+    )
+
+
+def case(name, value):
+    """What is wrong with what must be a `Case`, or None."""
+    return None if hasattr(value, "variants") else f"{name} must be a Case, as ks.load_case, got {_described(value)}"
+
+
+def mechanism(name, value):
+    """What is wrong with what must be a `Mechanism`, or None."""
+    if hasattr(type(value), "references"):
+        return None
+    return f"{name} must be a Mechanism, as ks.crank_slider(...) and solution.mechanism are, got {_described(value)}"
+
+
+def quantity(value, *, function=False):
+    """What is wrong with what must name a quantity, or None."""
+    if isinstance(value, str) or (function and callable(value)):
+        return None
+    other = ", or a function of a solution" if function else ""
+    return f'quantity must be a name, such as "balancing_torque" or "O"{other}, got {_described(value)}'
+
+
+def _described(value):
+    """A value as errors show it: what it is, and short."""
+    text = repr(value) if isinstance(value, str | int | float | None) else ""
+    return text if 0 < len(text) < 80 else f"a {type(value).__name__}"
+
+
 def choice(name, value, allowed):
     """What is wrong with a name that must be one of `allowed`; names the nearest."""
     if value in allowed:

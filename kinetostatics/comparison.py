@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from . import checks
 from .errors import ParameterError, QuantityError
 from .extremes import extremes
 from .quantities import label, magnitude, unit
@@ -111,6 +112,7 @@ def compare(reference, balanced):
         Ratios reference / balanced: `.torque_extremum_ratios`, `.mean_torque_ratio`, `.peak_reaction_ratio(joint)`,
         ranges of cam and inertia force, `.frame()`.
     """
+    checks.require("compare", checks.solution("reference", reference), checks.solution("balanced", balanced))
     return Comparison(reference, balanced)
 
 

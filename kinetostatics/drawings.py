@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from . import checks
 from .cam_roller import CamRoller
-from .canvas import ACCENT, INK, STEEL, axes, closed, display, labelled, styled
+from .canvas import ACCENT, INK, STEEL, axes, closed, display, labelled, single, styled
+from .errors import ParameterError
 from .motion import Motion
 from .principal_points import principal_points
 from .quantities import magnitude
@@ -26,6 +28,7 @@ def mass_centres(solutions, angle=60, ax=None):
     Axes
         With equal scales on both axes.
     """
+    checks.require("mass_centres", checks.finite("angle", angle))
     named = labelled(solutions, "common mass centre")
     ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
     for name, solution, style in styled(named):
@@ -51,7 +54,14 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     Axes
         With equal scales on both axes.
     """
-    ax = axes(ax)
+    try:
+        angles = np.atleast_1d(np.asarray(angles, dtype=float))
+    except (TypeError, ValueError):
+        raise ParameterError(f"mechanism: angles must be numbers, in degrees, got {angles!r}") from None
+    checks.require(
+        "mechanism", None if angles.ndim == 1 and np.isfinite(angles).all() else f"angles must be finite, got {angles}"
+    )
+    solution, ax = single(solution), axes(ax)
     _frame(ax, solution)
     shades = np.linspace(1.0, 0.3, len(angles))
     for angle, shade in zip(angles, shades, strict=True):
@@ -97,7 +107,14 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     """
     from matplotlib.animation import FuncAnimation
 
-    ax = axes(ax)
+    solution, ax = single(solution), axes(ax)
+    joints = (joints,) if isinstance(joints, str) else tuple(joints)
+    checks.require(
+        "animation",
+        checks.count("frames", frames),
+        checks.positive("interval", interval),
+        None if joints else "joints must name at least one reaction",
+    )
     count = solution.crank_angle.size
     steps = np.linspace(0, count, min(frames, count), endpoint=False).astype(int)
     _frame(ax, solution)

@@ -2,7 +2,17 @@
 
 
 class KinetostaticsError(Exception):
-    """Any fault the library reports on purpose."""
+    """Any fault the library reports on purpose; it can be copied, and sent from one process to another."""
+
+    def __reduce__(self):
+        return _restored, (type(self), self.args, vars(self))
+
+
+def _restored(kind, arguments, state):
+    """An error with its message and attributes as they were, whatever its constructor takes."""
+    error = kind.__new__(kind, *arguments)
+    vars(error).update(state)
+    return error
 
 
 class ParameterError(KinetostaticsError, ValueError):
@@ -47,6 +57,10 @@ class NotGivenError(KinetostaticsError):
 
 class MissingLibraryError(KinetostaticsError, ImportError):
     """A library of an extra is not installed; the message says how to install it."""
+
+
+class FileError(KinetostaticsError, OSError):
+    """A result cannot be written to this file; the message says why."""
 
 
 class CaseError(KinetostaticsError, ValueError):

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import checks
 from .errors import ParameterError
 from .quantities import scale, values
 
@@ -86,6 +87,7 @@ def extremes(solution, quantity):
     ParameterError
         The solution is a batch of designs, or depends on a table over its own crank angles.
     """
+    checks.require("extremes", checks.solution("solution", solution), checks.quantity(quantity, function=True))
 
     def evaluate(angle):
         return values(solution.at(np.mod(angle, TURN)), quantity)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from . import checks, plots
 from .cam_roller import CamRoller
 from .errors import ParameterError
-from .files import written_whole
+from .files import unwritable, written_whole
 from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
 
@@ -34,22 +34,21 @@ def draw_case(case, folder, file_format="png", only=None):
     Raises
     ------
     ParameterError
-        There is no figure of that name; the message lists them.
+        There is no figure of that name; the message lists them. Or the files cannot be written.
     """
+    checks.require("figures", checks.case("case", case))
     figures = {name: draw for name, (draw, applies) in FIGURES.items() if applies(case)}
     problem = checks.choice("figure", only, figures) if only else None
     if problem:
         raise ParameterError(problem)
+    paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in ([only] if only else figures)}
+    checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
     names = [case.reference, *(name for name in case.variants if name != case.reference)]
     solutions = {name: case.solve(name) for name in names}
-    return [
-        _saved(figures[name], solutions, name, case, Path(folder), file_format)
-        for name in ([only] if only else figures)
-    ]
+    return [_saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]
 
 
-def _saved(draw, solutions, name, case, folder, file_format):
-    path = folder / f"{case.path.stem}_{name}.{file_format}"
+def _saved(draw, solutions, path, case, file_format):
     with rc_context({"svg.hashsalt": case.path.stem, "font.size": 9}):
         figure = draw(solutions)
         metadata = {"Date": None} if file_format == "svg" else {}

@@ -4,15 +4,15 @@ import csv
 import io
 import os
 import re
+import secrets
 import stat
-import tempfile
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
 
 from . import checks
-from .errors import CaseError
+from .errors import CaseError, FileError
 from .units import NUMBER, factor, shown
 
 LARGEST_TABLE = 10_000_000
@@ -137,23 +137,89 @@ def _rows(path):
 
 @contextmanager
 def written_whole(path):
-    """Path of a temporary file that takes the place of `path` when the block ends without an error."""
-    path = Path(path)
+    """Path of a temporary file that takes the place of `path` when the block ends without an error.
+
+    What stands there keeps its permissions and, where that is allowed, its owner; through a symbolic link its target is
+    written. A file that may not be written is refused.
+    """
+    path = Path(os.path.realpath(path))
     if path.exists() and not path.is_file():  # a pipe or a device takes what is written as it comes
         yield path
         return
+    problem = unwritable(path)
+    if problem:
+        raise FileError(problem)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    os.close(handle)
+    before = path.stat() if path.exists() else None
+    temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
     try:
-        yield temporary
-        Path(temporary).chmod(0o666 & ~_umask())
-        Path(temporary).replace(path)
+        _create(temporary, 0o600 if before else 0o666, path)
+        yield str(temporary)
+        if before is not None:
+            _resembling(temporary, before)
+        temporary.replace(path)
     finally:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
 
 
-def _umask():
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _create(temporary, mode, path):
+    """An empty file that is new; errors name what it is for."""
+    try:
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
+    except OSError as error:
+        error.filename = str(path)
+        raise
+
+
+def _resembling(path, before):
+    """Give a file the permissions that another had, and its owner where this process may."""
+    own = path.stat()
+    if hasattr(os, "chown") and (own.st_uid, own.st_gid) != (before.st_uid, before.st_gid):
+        with suppress(PermissionError):
+            os.chown(path, before.st_uid, before.st_gid)
+    path.chmod(stat.S_IMODE(before.st_mode))
+
+
+def unwritable(path, *, inputs=(), endings=()):
+    """Why a result cannot be written to this file, as a sentence, or None; to ask before the work that it takes.
+
+    Parameters
+    ----------
+    path : path
+    inputs : sequence of paths
+        What is read and so must not be replaced, under whatever name.
+    endings : sequence of str
+        Those a file may have; pipes and devices have none.
+    """
+    path = Path(path)
+    try:
+        if path.is_dir():
+            return f"{path} is a folder; give the name of a file in it"
+        if any(path.exists() and item.exists() and path.samefile(item) for item in map(Path, inputs)):
+            return f"{path} is read as input and would be replaced; give another name"
+        if path.exists() and not path.is_file():
+            return None
+        if endings and path.suffix.lower() not in endings:
+            return checks.choice(f"{path}: the ending", path.suffix, endings)
+        target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            return f"{path} is a symbolic link that leads in a circle"
+        if target.exists() and not (target.stat().st_mode & 0o222 and os.access(target, os.W_OK)):
+            return f"{path} is read-only; allow writing, or give another name"
+        return unwritable_folder(target.parent)
+    except (OSError, ValueError) as error:
+        return f"{str(path)!r} is no name of a file here: {getattr(error, 'strerror', None) or error}"
+
+
+def unwritable_folder(path):
+    """Why results cannot be written into this folder, as a sentence, or None; it need not exist."""
+    path = Path(path)
+    try:
+        standing = next(place for place in (path.absolute(), *path.absolute().parents) if os.path.lexists(place))
+        if not standing.is_dir():
+            return f"{standing} is no folder, so nothing can be written to {path}"
+        if not os.access(standing, os.W_OK | os.X_OK):
+            return f"folder {standing} may not be written to; give another place"
+    except (OSError, ValueError) as error:
+        return f"{str(path)!r} is no name of a folder here: {getattr(error, 'strerror', None) or error}"
+    return None

@@ -7,7 +7,7 @@ each one takes at a crank angle, and names the cheapest that keeps the quantity.
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -29,7 +29,10 @@ MOST_MODELS = 20_000
 
 @dataclass(frozen=True)
 class Choice:
-    """One simplification: what it is called, and how it is made; None where it changes nothing."""
+    """One simplification: what it is called, and how it is made; None where it changes nothing.
+
+    Where it cannot be made it raises `NotGivenError`, which says why.
+    """
 
     name: str
     simplified: Callable[[Solution], Solution | None]
@@ -40,6 +43,11 @@ def two_mass_coupler(mechanism):
 
     Total mass and the place of the mass centre along the link are kept; the moment of inertia becomes
     m s (l - s), whatever it was (Biezeno and Grammel, *Technische Dynamik*).
+
+    Raises
+    ------
+    NotGivenError
+        A mass centre lies beyond a joint, so that the mass at the other would be negative.
     """
     made = mechanism
     for group in mechanism.groups:
@@ -50,6 +58,11 @@ def two_mass_coupler(mechanism):
         if _is_zero(coupler.mass):
             continue
         outer = coupler.mass * coupler.centre[0] / group.coupler_length
+        if np.any(outer < 0) or np.any(outer > coupler.mass):
+            raise NotGivenError(
+                f"the mass centre of the {name}, {coupler.centre[0]} m along its {group.coupler_length} m, lies beyond "
+                "its joints, so one of two masses there would be negative"
+            )
         carrier, place = _carrier(mechanism, group.on)
         far = (group.rocker_length, 0.0) if isinstance(group, RockerGroup) else (0.0, 0.0)
         for link, mass, at in ((carrier, coupler.mass - outer, place), (output, outer, far)):
@@ -131,13 +144,7 @@ def _guide_through_crank_centre(solution):
 
 
 def _up_to_harmonic(order):
-    def simplified(solution):
-        try:
-            return rerouted(solution, harmonic_series(solution, order))
-        except NotGivenError:
-            return None
-
-    return simplified
+    return lambda solution: rerouted(solution, harmonic_series(solution, order))
 
 
 INGREDIENTS = {
@@ -214,6 +221,8 @@ class Needs:
         The cheapest of all combinations within the tolerance; of equally cheap ones, that with the least in it.
     tried : int
         Number of combinations run.
+    left_out : dict of str to str
+        Simplifications that were not tried in combinations, by name, and why not.
     """
 
     quantity: str
@@ -223,14 +232,18 @@ class Needs:
     ladder: tuple[Model, ...]
     smallest: Model
     tried: int
+    left_out: dict[str, str] = field(default_factory=dict)
 
     def __str__(self):
         saved = 1 - self.smallest.operations / self.full.operations
         return (
             f"{label(self.quantity)} within {self.within:.3g}: {self.smallest.name}, {self.smallest.operations} of "
             f"{self.full.operations} operations ({saved:.0%} saved), error {self.smallest.error:.2g}; "
-            f"{self.tried} models run"
+            f"{self.tried} models run{self._omissions()}"
         )
+
+    def _omissions(self):
+        return "".join(f"; {name} left out: {why}" for name, why in self.left_out.items())
 
     __repr__ = __str__
 
@@ -249,7 +262,9 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     Left out or put more simply: gravity, springs, process forces, crank acceleration, guide offset, mass-centre offsets
     across the links, masses of crank, block, coupler, slider and rocker, inertia of coupler and rocker about their
     centres, the coupler as two masses at its joints, and kinematics as Fourier series of one or two harmonics. Where
-    that makes more than `MOST_MODELS` combinations, the simplifications that alone change most are left out.
+    that makes more than `MOST_MODELS` combinations, the simplifications that alone change most are left out; so are
+    those that the scene does not allow, such as two masses for a coupler whose mass centre lies beyond its joints. The
+    result tells them by name, with the reason.
 
     Parameters
     ----------
@@ -265,7 +280,7 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     Returns
     -------
     Needs
-        `.smallest`, with its `.solution`; `.frame()`, `.ladder_frame()`, ``ks.plots.model_ladder(needs)``.
+        `.smallest`, with its `.solution`; `.left_out`, `.frame()`, `.ladder_frame()`, ``ks.plots.model_ladder(needs)``.
 
     Raises
     ------
@@ -283,6 +298,7 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
         "needs",
         checks.positive("within", within),
         None if known else f"scene must be a Solution or a Case, got {scene!r}",
+        checks.quantity(quantity),
         "variant is for a case, a solution is of one" if variant and isinstance(scene, Solution) else None,
     )
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
@@ -293,10 +309,16 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     if not largest > 0:
         raise ParameterError(f"needs: {quantity} is {largest} in this scene; there is nothing to compare with")
 
+    left_out: dict[str, str] = {}
+
     def model(choices):
         simplified = solution
         for choice in choices:
-            made = choice.simplified(simplified)
+            try:
+                made = choice.simplified(simplified)
+            except NotGivenError as why:
+                left_out[choice.name] = str(why)
+                return None
             if made is None:
                 return None
             simplified = made
@@ -307,24 +329,28 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
         return Model(names, error, trace(simplified, [quantity]).operations, simplified)
 
     alone = {choice: made for choices in INGREDIENTS.values() for choice in choices if (made := model((choice,)))}
-    options = _options(alone)
+    options = _options(alone, left_out)
     combinations = (tuple(filter(None, picked)) for picked in itertools.product(*options))
     models = [made for choices in combinations if (made := model(choices))]
     ladder = _front(models)
     allowed = [made for made in models if made.error <= within]
     smallest = min(allowed, key=lambda made: (made.operations, -len(made.simplifications), made.error))
-    return Needs(quantity, within, models[0], tuple(alone.values()), tuple(ladder), smallest, len(models))
+    return Needs(quantity, within, models[0], tuple(alone.values()), tuple(ladder), smallest, len(models), left_out)
 
 
-def _options(alone):
-    """By ingredient: None and its simplifications; those that change most are dropped if there are too many models."""
+def _options(alone, left_out):
+    """By ingredient: None and its simplifications; those that change most are left out if there are too many models."""
     kept = set(alone)
 
     def options():
         return [(None, *(item for item in choices if item in kept)) for choices in INGREDIENTS.values()]
 
     while math.prod(map(len, options())) > MOST_MODELS:
-        kept.remove(max(kept, key=lambda choice: alone[choice].error))
+        worst = max(kept, key=lambda choice: alone[choice].error)
+        kept.remove(worst)
+        left_out[worst.name] = (
+            f"alone it changes {alone[worst].error:.2g}, and there are more than {MOST_MODELS} models"
+        )
     return options()
 
 

@@ -4,6 +4,7 @@ The chain unit of the Belarusian study counts its crank angle from +y, clockwise
 angle zero; `chain_unit` builds it and `chain_unit_angle` turns its crank angle into the library's.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import asin, atan2, pi, sqrt
 
@@ -62,12 +63,14 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
 
 def chain_unit_angle(angle):
     """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad."""
+    checks.require("chain unit", checks.table("angle", angle))
     return QUARTER - np.asarray(angle)
 
 
 def rocker_angle(solution, start=QUARTER):
     """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad."""
-    _four_bar(solution.mechanism)
+    _require_four_bar(solution)
+    checks.require("rocker_angle", checks.finite("start", start))
     x, y = _rocker(solution)
     x0, y0 = _rocker(solution.at(start))
     return np.arctan2(x * y0 - y * x0, x * x0 + y * y0)
@@ -79,7 +82,7 @@ def _rocker(solution):
 
 def transmission_angle(solution):
     """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi."""
-    _four_bar(solution.mechanism)
+    _require_four_bar(solution)
     motion = solution.placement.details["rocker"]
     return np.arctan2(abs(motion.sine), motion.cosine)
 
@@ -126,6 +129,7 @@ def swing(solution, start=QUARTER):
     -------
     Swing
     """
+    _require_four_bar(solution)
     found_class = grashof(solution.mechanism)
     whole = found_class.intervals == ((0.0, 2 * pi),)
     if not whole or "O2" in found_class.turning_joints:
@@ -214,10 +218,16 @@ def grashof(mechanism):
 
 def _four_bar(mechanism):
     """The rocker group of a four-bar; an error for any other mechanism."""
+    checks.require("linkage", checks.mechanism("mechanism", mechanism))
     group = mechanism.groups[0]
     if len(mechanism.groups) > 1 or not isinstance(group, RockerGroup) or mechanism.crank.length is None:
         raise ParameterError(f"this is for four-bars, not for a {mechanism.name}")
     return group
+
+
+def _require_four_bar(solution):
+    checks.require("linkage", checks.solution("solution", solution))
+    _four_bar(solution.mechanism)
 
 
 def _closed_intervals(lengths, frame_angle, slack):
@@ -248,6 +258,14 @@ def _closed_intervals(lengths, frame_angle, slack):
     return tuple(sorted((start % turn, start % turn + end - start) for start, end in pieces))
 
 
+def _standing(name, solution):
+    """What is wrong with a solution whose speeds are to be compared with the crank's."""
+    problem = checks.solution(name, solution)
+    if problem is None and np.any(np.asarray(solution.crank_speed) == 0):
+        return f"{name}: the crank speed is 0, but speeds are compared with it; give one"
+    return problem
+
+
 def characteristics(solutions, reference):
     """Swing, unevenness and transmission of four-bars, side by side as a pandas DataFrame.
 
@@ -262,9 +280,21 @@ def characteristics(solutions, reference):
     -------
     pandas.DataFrame
         A column for each mechanism; speeds relative to the crank's.
+
+    Raises
+    ------
+    ParameterError
+        There is no such reference, or a solution is of something else or of a crank that stands still.
     """
     import pandas as pd
 
+    named = isinstance(solutions, Mapping)
+    checks.require(
+        "characteristics",
+        None if named and solutions else f"solutions must be a dict of name to Solution, got {solutions!r}",
+        checks.choice("reference", reference, tuple(solutions)) if named and solutions else None,
+        *(_standing(name, solution) for name, solution in (solutions.items() if named else ())),
+    )
     columns = {}
     for name, solution in solutions.items():
         found = swing(solution)

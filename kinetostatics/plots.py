@@ -12,7 +12,7 @@ import numpy as np
 
 from .canvas import INK, axes, closed, display, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
-from .checks import choice, require
+from .checks import choice, problem, require
 from .drawings import animation, mass_centres, mechanism
 from .extremes import extremes
 from .linkage import chain_unit_angle
@@ -36,6 +36,9 @@ __all__ = [
     "torque",
     "work_precision",
 ]
+
+LEAST_MARKS = 0.01
+"""Least step of the crank-angle marks, degrees."""
 
 
 def over_turn(solutions, quantity, ax=None):
@@ -86,6 +89,7 @@ def acceleration_error(solutions, ax=None):
     """
     ax = axes(ax)
     named = labelled(solutions, "slider_acceleration")
+    _require_turning(named)
     for name, solution, style in styled(named):
         half_stroke = np.ptp(extremes(solution, "slider_position").value) / 2
         square, alpha = solution.crank_speed**2, solution.crank_acceleration
@@ -113,6 +117,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     Axes
         With equal scales on both axes.
     """
+    require("hodograph", problem("marks", marks, low=LEAST_MARKS))
     ax = axes(ax)
     named = labelled(solutions, joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
@@ -149,8 +154,14 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     -------
     Axes
     """
+    require(
+        "chain_unit_motion",
+        None if order in (1, 2) else f"order must be 1 or 2, got {order!r}",
+        choice("link", link, ("coupler", "rocker")),
+    )
     ax = axes(ax)
     named = labelled(solutions, f"{link}_rate")
+    _require_turning(named)
     for name, solution, style in styled(named):
         angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
         rows = np.argsort(angle)
@@ -182,6 +193,7 @@ def shaking_force(solutions, by="direction", ax=None):
     require("shaking_force", choice("by", by, ("direction", "crank angle")))
     if ax is None:
         ax = plt.subplots(subplot_kw={"projection": "polar"}, layout="constrained")[1]
+    ax = axes(ax)
     named = labelled(solutions, "shaking_force")
     sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
     factor, shown = display("N", sizes.values())
@@ -193,6 +205,13 @@ def shaking_force(solutions, by="direction", ax=None):
     if len(named) > 1:
         ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
     return ax
+
+
+def _require_turning(named):
+    still = [name for name, solution in named.items() if np.any(np.asarray(solution.crank_speed) == 0)]
+    require(
+        "plots", f"the crank speed of {', '.join(still)} is 0, but what is shown is relative to it" if still else None
+    )
 
 
 def _degrees(solution):

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import checks
 from .errors import MissingLibraryError, NotGivenError
 from .methods import METHODS
 from .methods.certified import certified, relative_errors
@@ -45,6 +46,7 @@ def study(solution, quantity=QUANTITY, *, methods=METHODS, repeats=5, progress=N
     """
     import pandas as pd
 
+    checks.require("precision", checks.solution("solution", solution), checks.quantity(quantity))
     reference = certified(solution, quantity)
     rows: list[dict] = []
     runs = {}
@@ -84,12 +86,21 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     quantities : sequence of str
     angles : int
         Crank angles over the turn.
+
+    Raises
+    ------
+    ParameterError
+        Before any work: the files cannot be written there, or would replace what the case is read from.
     """
     import pandas as pd
 
     from .charts import precision_page
-    from .files import written_whole
+    from .files import unwritable, written_whole
 
+    checks.require("precision", checks.case("case", case))
+    path = Path(folder) / f"{case.path.stem}_precision.csv"
+    written = [path, *(path.with_suffix(ending) for ending in (".png", ".svg"))]
+    checks.require("precision", *dict.fromkeys(unwritable(item, inputs=case.files) for item in written))
     names = list(variants or kinds(case))
     for name in names:
         for quantity in quantities:
@@ -100,7 +111,6 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
         for quantity in quantities
     ]
     table = pd.concat(tables, ignore_index=True).assign(**circumstances())
-    path = Path(folder) / f"{case.path.stem}_precision.csv"
     with written_whole(path) as temporary:
         table.to_csv(temporary, index=False)
     return [path, *precision_page(table, path.with_suffix(""))]

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
+from . import checks
 from .errors import ParameterError
 from .links import accelerated, arm, first_at, present, second_at
 from .planar import added, stretched
@@ -121,6 +122,7 @@ def principal_points(mechanism):
         `.moduli` (h by link, m), `.vectors`, `.contour`, `.mass_centre`, `.mass_centre_velocity`,
         `.mass_centre_acceleration` and `.shaking_force` of a solution.
     """
+    checks.require("principal_points", checks.mechanism("mechanism", mechanism))
     links = mechanism.links.items()
     static_moments = {name: (link.mass * link.centre[0], link.mass * link.centre[1]) for name, link in links}
     carried: dict[str, Any] = {}

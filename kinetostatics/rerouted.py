@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -134,17 +134,15 @@ def harmonic_series(solution, order):
     spectrum = 2.0 * np.fft.rfft(path)[..., : order + 1] / SERIES_SAMPLES
     spectrum[..., 0] /= 2.0
     spectrum[abs(spectrum) < 1e-14 * abs(spectrum).max()] = 0.0
-    names = moving(mechanism)
+    return partial(_by_series, order=order, series=dict(zip(moving(mechanism), spectrum.tolist(), strict=True)))
 
-    def way(mechanism, angle):
-        turns = list(_multiples(ray(angle), order))
-        joints = {
-            name: Joint(*(tuple(_summed(row, turns, k) for row in rows) for k in range(3)))
-            for name, rows in zip(names, spectrum.tolist(), strict=True)
-        }
-        return assembled(mechanism, angle, joints)
 
-    return way
+def _by_series(mechanism, angle, order, series):
+    turns = list(_multiples(ray(angle), order))
+    joints = {
+        name: Joint(*(tuple(_summed(row, turns, k) for row in rows) for k in range(3))) for name, rows in series.items()
+    }
+    return assembled(mechanism, angle, joints)
 
 
 def _multiples(ray, order):

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import checks
 from .cams import Circle, CosineLaw
 from .errors import MissingLibraryError, NotGivenError
 from .links import Link
@@ -323,8 +324,9 @@ def _verdict(counts, raised, given_up, worst):
 def write(folder, places=PLACES, progress=None):
     """Run the study into a folder: all rows and the summary as CSV, the chart as PNG and SVG; returns their paths."""
     from .charts import stability_page
-    from .files import written_whole
+    from .files import unwritable_folder, written_whole
 
+    checks.require("stability", unwritable_folder(folder))
     table = study(places, progress=progress)
     folder = Path(folder)
     paths = []

@@ -6,6 +6,7 @@ stream to a Parquet dataset (`dataset`), from which a sweep that was stopped goe
 
 import inspect
 import pickle
+from collections.abc import Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import closing
 from dataclasses import replace
@@ -38,6 +39,7 @@ def sweep(
     angles=360,
     engine=None,
     executor=None,
+    workers=None,
     chunk=10_000,
     folder=None,
     progress=True,
@@ -66,9 +68,12 @@ def sweep(
         Unless told, compiled for a million crank angles, all designs together, and more, if numba is installed and
         takes the mechanism.
     executor : concurrent.futures.Executor
-        Where chunks run; this process, on all its cores, unless told. A Dask cluster: ``client.get_executor()``. Of
-        workers that die only the chunks under way are run again, in a new pool if a pool of processes broke, and only
-        designs that kill their worker by themselves have no numbers.
+        Where chunks run; this process, on all its cores, unless told. A Dask cluster: ``client.get_executor()``. One
+        that breaks ends the sweep.
+    workers : int
+        In place of an executor: so many processes of the sweep's own (by loky), which take any function and end with
+        this process. When one dies, only the chunks under way are run again, and only designs that kill their worker by
+        themselves have no numbers.
     chunk : int
         Designs computed together: what bounds the memory.
     folder : path
@@ -103,15 +108,17 @@ def sweep(
     >>> table.iloc[:, 1].round(2).tolist()
     [3.92, 7.56, 50.56]
     """
-    job, engines, compared = _job(source, designs, outputs, variant, reference, angles, engine, executor, chunk)
-    with Workers(executor) as workers:
-        for suitable in workers.survived(suitable_engine, job, designs[:PROBED], engines):
+    job, engines, compared = _job(
+        source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
+    )
+    with Workers(executor, workers) as hands:
+        for suitable in hands.survived(suitable_engine, job, designs[:PROBED], engines):
             job = replace(job, engine=suitable)
         parts = Parts(designs, chunk)
         if folder is not None:
             parts = Dataset(designs, chunk, folder, identity(job, designs, compared, chunk))
         todo = [number for number in parts.numbers if not parts.holds(number)]
-        with _bar(progress, len(designs)) as bar, closing(computed(job, parts.rows, todo, workers)) as found:
+        with _bar(progress, len(designs)) as bar, closing(computed(job, parts.rows, todo, hands)) as found:
             bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
             for number, rows in found:
                 parts.keep(number, rows)
@@ -128,11 +135,15 @@ def _bar(shown, total):
 # What is to be done, checked
 
 
-def _job(source, designs, outputs, variant, reference, angles, engine, executor, chunk):
+def _job(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk):
     """The job, the engines to try, and what is compared: variants of a case, or a function and a variant."""
     if not isinstance(designs, pd.DataFrame):
         raise ParameterError(
             f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
+        )
+    if not isinstance(source, Case) and not callable(source):
+        raise ParameterError(
+            f"sweep: source must be a Case, as of ks.load_case, or a function that makes a Variant, got {source!r}"
         )
     make, known, compared = (
         _of_case(source, variant, reference) if isinstance(source, Case) else _of_function(source, reference)
@@ -144,10 +155,12 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
         *_name_problems(designs.columns, wanted),
         *_type_problems(designs),
         None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
-        *_count_problems(angles=angles, chunk=chunk),
+        checks.count("angles", angles, size=checks.ANGLE),
+        checks.count("chunk", chunk),
         None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         None if len(designs) else "there are no designs",
         _executor_problem(executor),
+        _workers_problem(workers, executor),
         *_order_problems(wanted, angles),
     ]
     ratios = any(item.ratio for item in wanted)
@@ -159,10 +172,16 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
         compiled.require()
     large = len(designs) * angles >= WORTH_COMPILING and compiled.available()
     engines = [engine] if engine else ["compiled", "numpy"] if large else ["numpy"]
-    threads = 1 if executor is not None else compiled.cores()
+    threads = compiled.cores() if executor is None and workers is None else 1
     job = Job(make[0], make[1] if ratios else None, columns, wanted, angles, engines[0], threads)
-    if isinstance(executor, ProcessPoolExecutor):
-        _require_portable(job)
+    if workers:
+        from cloudpickle import dumps
+
+        _require_portable(job, dumps, "give it no open files or locks, or use threads")
+    elif isinstance(executor, ProcessPoolExecutor):
+        _require_portable(
+            job, pickle.dumps, "define the function at the top of a module, or use workers=n, threads or Dask"
+        )
     return job, engines, compared if ratios else compared[:1]
 
 
@@ -197,10 +216,19 @@ def _fixed(variant, values):
     return variant
 
 
+def listed(outputs):
+    """Outputs asked for, one or several."""
+    if isinstance(outputs, str | Output):
+        return [outputs]
+    if not isinstance(outputs, Iterable):
+        raise ParameterError(f'sweep: outputs must be texts such as "largest O", got {outputs!r}')
+    return list(outputs)
+
+
 def _outputs(outputs):
     """The outputs asked for, and what is wrong with them."""
     wanted, problems = [], []
-    for text in [outputs] if isinstance(outputs, str | Output) else outputs:
+    for text in listed(outputs):
         try:
             wanted.append(parsed(text))
         except ParameterError as error:
@@ -230,17 +258,21 @@ def _signature_problem(function, names):
     return None
 
 
-def _count_problems(**counts):
-    for name, value in counts.items():
-        if not isinstance(value, int | np.integer) or value < 1:
-            yield f"{name} must be a whole number of at least 1, got {value!r}"
-
-
 def _executor_problem(executor):
     if isinstance(executor, Executor | None):
         return None
     found = type(executor).__name__
     return f"executor must be an Executor of concurrent.futures (of Dask: client.get_executor()), got {found}"
+
+
+def _workers_problem(workers, executor):
+    """What is wrong with the number of workers; many more than cores only cost memory, some 100 MB each."""
+    most = max(64, 4 * compiled.cores())
+    if workers is None:
+        return None
+    if isinstance(workers, bool) or not isinstance(workers, int | np.integer) or not 1 <= workers <= most:
+        return f"workers must be a whole number of processes from 1 to {most} here, got {workers!r}"
+    return None if executor is None else "give workers or an executor, not both"
 
 
 def _order_problems(wanted, angles):
@@ -249,11 +281,10 @@ def _order_problems(wanted, angles):
             yield f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
 
 
-def _require_portable(job):
+def _require_portable(job, dumps, remedy):
     try:
-        pickle.dumps(job)
+        dumps(job)
     except Exception as error:
         raise ParameterError(
-            f"sweep: the function and its reference cannot go to other processes: {error}; define the function at the "
-            "top of a module, or use threads or Dask, which take any"
+            f"sweep: the function and its reference cannot go to other processes: {error}; {remedy}, which take any"
         ) from error

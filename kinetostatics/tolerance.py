@@ -1,6 +1,7 @@
 """Tolerances: what the spread of parameters does to outputs, and whose spread matters most."""
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,8 @@ from . import checks, designs
 from .case import Case
 from .errors import ParameterError
 from .parameters import paths
-from .reductions import Output, parsed
-from .sweeps import FAILED, chosen, sweep
+from .reductions import parsed
+from .sweeps import FAILED, chosen, listed, sweep
 
 LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 
@@ -39,11 +40,11 @@ class Tolerances:
     spreads: dict[str, str] = field(repr=False)
 
     def quantiles(self, levels=LEVELS):
-        """Quantiles of every output over the designs that have it, a pandas DataFrame."""
+        """Quantiles of every output over the designs, a pandas DataFrame."""
         return self.table[list(self.outputs)].quantile(list(levels)).rename_axis("quantile")
 
     def share(self, output, *, above=-np.inf, below=np.inf):
-        """Share of all designs whose output lies between; a design without it does not."""
+        """Share of all designs whose output lies between."""
         values = self.table[parsed(output).column]
         return float(((values > above) & (values < below)).mean())
 
@@ -66,7 +67,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     folder : path
         Holds a Parquet dataset for each of the sweeps behind a study, from which one that was stopped goes on.
     options
-        As for `sweep`: variant, reference, angles, engine, executor, chunk, progress.
+        As for `sweep`: variant, reference, angles, engine, executor, workers, chunk, progress.
 
     Returns
     -------
@@ -76,36 +77,37 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     ------
     ParameterError
         No spreads, a text that cannot be read, a count that is no power of two, or designs within the spread that
-        cannot be computed or have an infinite output, which makes the indices meaningless.
+        cannot be computed or have an infinite output, which makes quantiles and indices meaningless.
     """
     if spreads is None and isinstance(case, Case):
         known = paths(chosen(case, options.get("variant"), options.get("reference"))[0].table)
         spreads = {name: text for name, text in case.tolerances.items() if name in known}
+    if not isinstance(case, Case) and not callable(case):
+        raise ParameterError(f"tolerances: case must be a Case or a function that makes a Variant, got {case!r}")
     power = isinstance(count, int) and count > 1 and not count & (count - 1)
     checks.require(
         "tolerances",
         None if spreads else 'no spreads are given, nor has the case file any for this variant, in "tolerances"',
+        None
+        if spreads is None or isinstance(spreads, Mapping)
+        else f"spreads must be a dict of parameter to text, got {spreads!r}",
         None if power else f"count must be a power of two, got {count!r}",
     )
     found = designs.distributions(spreads)
-    names = tuple(dict.fromkeys(parsed(item).column for item in _listed(outputs)))
+    names = tuple(dict.fromkeys(parsed(item).column for item in listed(outputs)))
     sweeps = itertools.count()
 
     def run(table):
         place = None if folder is None else Path(folder) / f"sweep-{next(sweeps)}"
-        return sweep(case, table, outputs, folder=place, **options)
+        table = sweep(case, table, outputs, folder=place, **options)
+        _require_finite(table, names)
+        return table
 
     def values(numbers):
-        table = run(pd.DataFrame(numbers.T, columns=designs.columns(found)))
-        _require_finite(table, names)
-        return np.array(table[list(names)]).T
+        return np.array(run(pd.DataFrame(numbers.T, columns=designs.columns(found)))[list(names)]).T
 
     table = run(designs.sobol(spreads, count, seed))
     return Tolerances(table, names, _sensitivity(values, found, names, count, seed), dict(spreads))
-
-
-def _listed(outputs):
-    return [outputs] if isinstance(outputs, str | Output) else outputs
 
 
 def _require_finite(table, names):

@@ -1,9 +1,9 @@
 """Designs of sweeps and functions that make them, in a module that workers are quick to import."""
 
 import math
-import multiprocessing
 import os
 import signal
+import time
 from functools import partial
 from pathlib import Path
 
@@ -52,10 +52,11 @@ def deadly_once(at, marker):
     return partial(_deadly, at=at, marker=str(marker))
 
 
-def note(path):
-    """Start of a worker: how it was started, a line of a file."""
-    with Path(path).open("a", encoding="utf-8") as file:
-        file.write(multiprocessing.get_start_method() + "\n")
+def slow(crank, mass):
+    """The same after a while, with the number of this process written down as the name of a file."""
+    Path(os.environ["KINETOSTATICS_TEST_NOTES"], str(os.getpid())).touch()
+    time.sleep(0.1)
+    return pump(crank, mass)
 
 
 def die():

@@ -325,3 +325,43 @@ def test_unknown_quantity_is_refused_with_those_there_are(saw):
         ks.QuantityError, match=r"'torqe', allowed: 'balancing_torque'.*'guide_force'.*'A', 'B', 'guide', 'O'"
     ):
         ks.needs(saw["plain"], "torqe")
+
+
+# What cannot be simplified
+
+BEYOND = {"before A": -0.2, "behind B": 1.5}
+
+
+@pytest.mark.parametrize("place", BEYOND)
+def test_a_coupler_with_its_mass_beyond_its_joints_is_no_two_masses_and_the_result_says_so(place):
+    """One of them would be negative; all else is tried."""
+    found = ks.needs(solved(cranked(coupler=ks.Link(4.0, (BEYOND[place], 0.06), 0.3))), "O")
+    why = found.left_out["two-mass coupler"]
+    assert why == (
+        f"the mass centre of the coupler, {BEYOND[place]} m along its 1.3 m, lies beyond its joints, so one of two "
+        "masses there would be negative"
+    )
+    assert f"two-mass coupler left out: {why}" in str(found)
+    assert {"massless coupler", "no coupler inertia", "one harmonic"} <= set(alone(found))
+    assert "two-mass coupler" not in alone(found)
+
+
+@pytest.mark.parametrize("place", [0.0, 1.3])
+def test_a_coupler_with_its_mass_at_a_joint_is_still_two_masses(place):
+    found = ks.needs(solved(cranked(coupler=ks.Link(4.0, place, 0.3))), "O")
+    assert "two-mass coupler" in alone(found)
+    assert found.left_out == {}
+
+
+def test_simplifications_left_out_for_their_number_are_told(monkeypatch):
+    monkeypatch.setattr(ingredients, "MOST_MODELS", 2)
+    found = ks.needs(solved(cranked()), "O")
+    assert found.tried <= 2
+    assert "massless slider" in found.left_out
+    assert found.left_out["massless slider"].endswith("and there are more than 2 models")
+
+
+def test_harmonics_of_what_does_not_close_are_told_as_left_out():
+    gapping = ks.crank_slider(1.0, 0.8, slider=ks.Link(1.0))
+    found = ks.needs(solved(gapping, angle=np.linspace(-0.5, 0.5, 12)), "O")
+    assert "does not close all around the turn" in found.left_out["one harmonic"]

@@ -338,3 +338,14 @@ def test_sampled_cam_and_force_by_interpolation_are_named_as_what_cannot_be_cert
     loaded = ks.solve(case.variant("plain").mechanism, turn, crank_speed=3.0, loads=[ks.Gravity(), force])
     with pytest.raises(ks.errors.NotGivenError, match="load 2, ProcessForce on 'slider'"):
         precision.study(loaded)
+
+
+def test_two_masses_are_no_method_for_a_coupler_with_its_mass_beyond_its_joints():
+    """One of them would be negative, and the table says so."""
+    mechanism = ks.crank_slider(0.3, 1.0, coupler=ks.Link(10.0, (-0.2, 0.0), 1.0), slider=ks.Link(5.0))
+    solution = ks.solve(mechanism, np.linspace(0, 2 * np.pi, 12, endpoint=False), crank_speed=10.0)
+    methods = [method for method in METHODS if method.name.startswith("two-mass")]
+    table = precision.study(solution, methods=methods, repeats=1)
+    assert len(table) == 2
+    assert table["error"].isna().all()
+    assert table["not given"].str.contains("lies beyond its joints, so one of two masses there would be negative").all()

@@ -4,12 +4,15 @@ import io
 import json
 import logging
 import multiprocessing
+import os
 import signal
 import subprocess
 import sys
+import threading
+import time
 import tomllib
 import tracemalloc
-from concurrent.futures import BrokenExecutor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
@@ -497,10 +500,6 @@ def tidy():
     assert set(multiprocessing.active_children()) <= before
 
 
-def pool(method):
-    return ProcessPoolExecutor(2, mp_context=multiprocessing.get_context(method))
-
-
 @pytest.mark.parametrize("kind", [ThreadPoolExecutor, ProcessPoolExecutor])
 def test_local_executors_give_the_same_table(expected, kind):
     with kind(2) as executor:
@@ -533,11 +532,15 @@ def test_a_function_that_cannot_travel_is_refused():
         sweep(lambda crank, mass: factories.pump(crank, mass), DESIGNS, OUTPUTS, executor=executor)
 
 
+def test_workers_give_the_same_table_of_any_function(tidy, expected):
+    made = lambda crank, mass: factories.pump(crank, mass)  # noqa: E731
+    assert_equal(sweep(made, DESIGNS, OUTPUTS, workers=2, chunk=7), expected)
+
+
 def test_a_worker_that_dies_costs_nothing(tidy, tmp_path, expected):
     marker = tmp_path / "died"
-    with pool("fork") as executor:
-        function = factories.deadly_once(0.3, marker)
-        assert_equal(sweep(function, DESIGNS, OUTPUTS, executor=executor, chunk=7), expected)
+    function = factories.deadly_once(0.3, marker)
+    assert_equal(sweep(function, DESIGNS, OUTPUTS, workers=2, chunk=7), expected)
     assert marker.exists()
 
 
@@ -550,19 +553,22 @@ def test_a_worker_of_dask_that_dies_costs_nothing(cluster, tmp_path, expected):
     assert marker.exists()
 
 
+def test_cases_go_to_workers(tidy):
+    assert_equal(sweep(SAW, rising(20), OUTPUTS, workers=1, chunk=7), sweep(SAW, rising(20), OUTPUTS))
+
+
 def assert_only_one_lost(found, expected, row):
     assert found[FAILED][row] == "the worker died with this design"
     assert found.loc[row].iloc[2:4].isna().all()
     assert_equal(found.drop(row), expected.drop(row))
 
 
-@pytest.mark.parametrize("row", [0, 20])
+@pytest.mark.parametrize("row", [19, 21])
 def test_only_a_design_that_kills_its_worker_is_given_up(tidy, expected, row):
     """Also if it is the first, on which the sweep is tried."""
-    with pool("fork") as executor:
-        function = factories.deadly(DESIGNS["crank [mm]"][row] * 0.001)
-        found = sweep(function, DESIGNS, OUTPUTS, executor=executor, chunk=7)
-    assert_only_one_lost(found, expected, row)
+    function = factories.deadly(DESIGNS["crank [mm]"][row] * 0.001)
+    found = sweep(function, DESIGNS[19:23], OUTPUTS, workers=1, chunk=2)
+    assert_only_one_lost(found, expected[19:23], row)
 
 
 def test_only_a_design_that_kills_its_worker_is_given_up_by_dask(cluster, expected):
@@ -570,25 +576,88 @@ def test_only_a_design_that_kills_its_worker_is_given_up_by_dask(cluster, expect
     assert_only_one_lost(found, expected[18:22], 20)
 
 
-def test_a_new_pool_is_like_the_one_that_broke(tidy, tmp_path, expected):
-    """Started the same way, with the same preparation."""
-    started = tmp_path / "started"
-    with ProcessPoolExecutor(
-        1, mp_context=multiprocessing.get_context("spawn"), initializer=factories.note, initargs=(str(started),)
-    ) as executor:
-        found = sweep(factories.deadly_once(0.3, tmp_path / "died"), DESIGNS[19:22], OUTPUTS, executor=executor)
-    assert_equal(found, expected[19:22])
-    assert started.read_text(encoding="utf-8").splitlines() == ["spawn", "spawn"]
-
-
 def test_workers_that_die_of_themselves_end_the_sweep(tidy):
-    with pool("fork") as executor, pytest.raises(ks.KinetostaticsError, match="die before they compute anything"):
-        sweep(factories.Poison(), DESIGNS, OUTPUTS, executor=executor, chunk=30)
+    with pytest.raises(ks.KinetostaticsError, match="die before they compute anything"):
+        sweep(factories.Poison(), DESIGNS, OUTPUTS, workers=1, chunk=50)
 
 
-def test_a_broken_executor_of_another_kind_is_left_to_its_owner():
-    with ThreadPoolExecutor(1, initializer=factories.note) as executor, pytest.raises(BrokenExecutor):
-        sweep(factories.pump, DESIGNS, OUTPUTS, executor=executor)
+@pytest.mark.parametrize("death", ["when it starts", "when it computes"])
+def test_an_executor_that_breaks_ends_the_sweep_and_names_workers(tidy, death):
+    """Whoever made it may make it anew; nobody else does."""
+    broken = (
+        ThreadPoolExecutor(1, initializer=factories.pump)
+        if death == "when it starts"
+        else ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("fork"))
+    )
+    with broken as executor, pytest.raises(ks.KinetostaticsError, match=r"the executor broke.*give workers=n"):
+        sweep(factories.deadly(0.3), DESIGNS, OUTPUTS, executor=executor, chunk=7)
+
+
+def test_only_public_names_of_executors_are_used():
+    """Any executor will do: this one has nothing but what the standard promises."""
+
+    class Bare(Executor):
+        def submit(self, function, /, *arguments, **options):
+            made: Future = Future()
+            made.set_result(function(*arguments, **options))
+            return made
+
+    assert_equal(sweep(factories.pump, DESIGNS, OUTPUTS, executor=Bare()), sweep(factories.pump, DESIGNS, OUTPUTS))
+
+
+COUNTS = [0, -1, True, 2.0, "2", int, 10**6, float("nan"), [2]]
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_a_number_of_workers_that_cannot_be_is_refused(count):
+    with pytest.raises(ks.ParameterError, match="workers must be a whole number of processes from 1 to"):
+        sweep(factories.pump, DESIGNS, OUTPUTS, workers=count)
+
+
+def test_workers_and_an_executor_together_are_refused():
+    with ThreadPoolExecutor(1) as executor, pytest.raises(ks.ParameterError, match="workers or an executor, not both"):
+        sweep(factories.pump, DESIGNS, OUTPUTS, executor=executor, workers=1)
+
+
+def test_what_cannot_travel_to_workers_is_refused():
+    lock = threading.Lock()
+    with pytest.raises(ks.ParameterError, match=r"cannot go to other processes.*give it no open files or locks"):
+        sweep(lambda crank, mass: factories.pump(crank, mass) if lock else None, DESIGNS, OUTPUTS, workers=1)
+
+
+WATCHED = """
+import sys; sys.path.insert(0, sys.argv[1])
+import factories, kinetostatics as ks
+ks.sweep(factories.slow, factories.DESIGNS, factories.OUTPUTS, chunk=1, workers=2, progress=False)
+"""
+
+
+def test_workers_end_with_their_parent_however_it_ends(tmp_path, monkeypatch):
+    """Here by a signal that nobody can answer; each worker writes down its process when it computes."""
+    monkeypatch.setenv("KINETOSTATICS_TEST_NOTES", str(tmp_path))
+    parent = subprocess.Popen(
+        [sys.executable, "-c", WATCHED, str(Path(__file__).parent)], stderr=subprocess.DEVNULL, start_new_session=True
+    )
+    processes = waited(lambda: [int(path.name) for path in tmp_path.iterdir()], lambda found: len(found) == 2)
+    parent.kill()
+    assert parent.wait(10) == -signal.SIGKILL
+    assert waited(lambda: list(filter(alive, processes)), lambda found: not found) == []
+
+
+def waited(look, enough, seconds=20):
+    """What a look tells as soon as it is enough, or at last."""
+    end = time.monotonic() + seconds
+    while not enough(found := look()) and time.monotonic() < end:
+        time.sleep(0.05)
+    return found
+
+
+def alive(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 def test_errors_of_the_library_end_the_sweep(monkeypatch):

@@ -99,6 +99,20 @@ def test_designs_that_fail_end_the_study_with_their_reason():
         tolerances(lambda mass, push: ram(0.0 * mass), ["ratio largest B"], SPREADS, count=16, reference=ram(1.0))
 
 
+def test_designs_of_one_parameter_that_fail_end_the_study_too():
+    """Quantiles of those that are left would be of other machines."""
+    with pytest.raises(ks.ParameterError, match=r"1 of 16 designs within the spread cannot be computed.*too much"):
+        tolerances(partial(fragile, mass=1.0), OUTPUT, {"push": "100..300 N"}, count=16)
+    with pytest.raises(ks.ParameterError, match="8 of 16 designs within the spread cannot be computed"):
+        tolerances(ram, OUTPUT, {"mass": "-1..1 kg"}, count=16)
+
+
+def test_workers_give_the_same_study():
+    expected = tolerances(ram, OUTPUT, {"mass": SPREADS["mass"]}, count=16)
+    found = tolerances(ram, OUTPUT, {"mass": SPREADS["mass"]}, count=16, workers=1)
+    pd.testing.assert_frame_equal(found.table, expected.table, check_exact=True)
+
+
 def test_texts_and_outputs_that_cannot_be_read_are_refused():
     with pytest.raises(ks.ParameterError, match=r"cannot read '1 kg' for mass: .*cannot read 'much' for push"):
         tolerances(ram, OUTPUT, {"mass": "1 kg", "push": "much"}, count=16)
