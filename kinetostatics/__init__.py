@@ -33,7 +33,15 @@ figures, cli                figures of a case; command line
 from . import cams
 from .cam_roller import CamRoller
 from .crank import Crank
-from .errors import AssemblyError, CaseError, ConditionWarning, KinetostaticsError, ParameterError, QuantityError
+from .errors import (
+    AssemblyError,
+    CaseError,
+    ConditionWarning,
+    HintWarning,
+    KinetostaticsError,
+    ParameterError,
+    QuantityError,
+)
 from .extremes import extremes
 from .guide import Guide
 from .links import Link
@@ -54,6 +62,7 @@ __all__ = [
     "Crank",
     "Gravity",
     "Guide",
+    "HintWarning",
     "KinetostaticsError",
     "Link",
     "Mechanism",

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from . import checks
+from .chain import Adds
 from .elementary import condition, sqrt
 from .links import Joint, Link, LinkMotion, Wrench
 from .planar import cross, dot, minus, subtracted, vector
@@ -65,12 +66,15 @@ class CamRoller:
     cam: Any
     block: Link = Link()
 
-    def __post_init__(self):
-        checks.require(
-            "cam roller",
-            *checks.links(self.links),
-            None if hasattr(self.cam, "polar") else f"cam must be one of ks.cams or alike, got {self.cam!r}",
-        )
+    __post_init__ = checks.fields(
+        "cam roller",
+        cam=checks.Own(("polar",), "one of ks.cams or alike"),
+        block=checks.Made(Link, "a Link"),
+    )
+
+    @property
+    def adds(self):
+        return Adds(("A",), ("block",), (), ("cam_force", "slot_force"))
 
     @property
     def links(self):

@@ -25,12 +25,9 @@ class Gravity(Batched):
     acceleration: Any = 9.81
     direction: Any = -math.pi / 2
 
-    def __post_init__(self):
-        checks.require(
-            "gravity",
-            checks.not_negative("acceleration", self.acceleration),
-            checks.finite("direction", self.direction),
-        )
+    __post_init__ = checks.fields(
+        "gravity", acceleration=checks.Number("m/s**2", low=0.0), direction=checks.Number("rad")
+    )
 
     @cached_property
     def vector(self):
@@ -57,12 +54,9 @@ class Spring(Batched):
     free_position: Any
     on: str = "slider"
 
-    def __post_init__(self):
-        checks.require(
-            "spring",
-            checks.not_negative("stiffness", self.stiffness),
-            checks.finite("free_position", self.free_position),
-        )
+    __post_init__ = checks.fields(
+        "spring", stiffness=checks.Number("N/m", low=0.0), free_position=checks.Number("m"), on=checks.Name()
+    )
 
     @classmethod
     def balancing(cls, mass, crank_speed, free_position, on="slider"):
@@ -70,6 +64,9 @@ class Spring(Batched):
 
         Its stiffness, mass times crank speed squared, makes spring and inertia force equal and opposite all the way.
         """
+        given = {"mass": mass, "crank_speed": crank_speed}
+        rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
+        mass, crank_speed = checks.examined("balancing spring", rules, given).values()
         return cls(mass * crank_speed * crank_speed, free_position, on)
 
     def push(self, motion):
@@ -94,9 +91,9 @@ class ProcessForce(Batched):
     force: Any
     on: str = "slider"
 
-    def __post_init__(self):
-        if not callable(self.force):
-            checks.require("process force", checks.table("force", self.force))
+    __post_init__ = checks.fields(
+        "process force", force=checks.OrFunction(checks.Number("N", table=True)), on=checks.Name()
+    )
 
     def push(self, motion):
         """Force on the slider along the guide, N."""

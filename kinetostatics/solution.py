@@ -8,16 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from . import assembly, checks
+from . import assembly, checks, hints
 from .batch import wider
-from .elementary import is_foreign_array, read_only
-from .errors import NotGivenError, ParameterError, QuantityError
+from .elementary import read_only
+from .errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from .links import load, virtual_work
-from .loads import Gravity, ProcessForce
+from .loads import Gravity
+from .mechanism import Mechanism
 from .motion import Motion
 from .planar import added, minus, moment, number, plus, product
 from .principal_points import principal_points
 
+ANGLE = checks.Number("rad", "crank_angle", table=True)
+DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
+PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
 
@@ -243,16 +247,17 @@ class Solution(Motion):
 
 
 def _angles(crank_angle):
-    if isinstance(crank_angle, np.ndarray) and crank_angle.dtype.kind in "fcO":
+    if type(crank_angle) is np.ndarray and crank_angle.dtype in PRECISIONS:
         return read_only(crank_angle.copy())
-    if is_foreign_array(crank_angle):
-        return crank_angle
-    checks.require("solve", checks.table("crank_angle", crank_angle))
-    return read_only(np.array(crank_angle, dtype=float))
+    angle, problem = ANGLE.taken(crank_angle)
+    checks.require("solve", problem)
+    return angle if hasattr(angle, "shape") else read_only(np.array(angle))
 
 
-def _array_if_list(value):
-    return np.asarray(value) if isinstance(value, list | tuple) else value
+def _drive(**motion):
+    """Crank speed and acceleration as floats or arrays."""
+    plain = [DRIVE[name].quick(value) for name, value in motion.items()]
+    return checks.examined("solve", DRIVE, motion).values() if checks.UNSURE in plain else plain
 
 
 def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), on_gap="raise", engine=None):
@@ -299,30 +304,30 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     UserWarning
         The crank angles are in single precision.
     """
+    if type(mechanism) is not Mechanism:
+        checks.require("solve", _no_mechanism(mechanism))
     angle = _angles(crank_angle)
-    crank_speed, crank_acceleration = map(_array_if_list, (crank_speed, crank_acceleration))
-    loads = tuple(loads) if isinstance(loads, list | tuple) else (loads,)
+    crank_speed, crank_acceleration = _drive(crank_speed=crank_speed, crank_acceleration=crank_acceleration)
+    loads = tuple(map(checks.kept, loads)) if isinstance(loads, list | tuple) else (checks.kept(loads),)
     checks.require(
         "solve",
         None if math.prod(angle.shape) else "there are no crank angles",
-        checks.table("crank_speed", crank_speed),
-        checks.table("crank_acceleration", crank_acceleration),
+        None if _finite(angle) else "crank angles must be finite; found NaN or infinity",
         checks.choice("on_gap", on_gap, ("raise", "nan")),
         None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
         *(_load_problem(mechanism, item) for item in loads),
-        checks.fitting(
-            crank_angle=angle,
-            crank_speed=crank_speed,
-            crank_acceleration=crank_acceleration,
-            process_force=[item.force for item in loads if isinstance(item, ProcessForce) and not callable(item.force)],
-        ),
     )
+    shapes = {"crank_angle": angle, "crank_speed": crank_speed, "crank_acceleration": crank_acceleration}
+    checks.require("solve", checks.fitting(**dict(_shapes(shapes, mechanism, loads))))
     if angle.dtype == "float32":
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
             stacklevel=2,
         )
+    for text in (*mechanism.hints, hints.of_angles(angle) if isinstance(angle, np.ndarray) else None):
+        if text:
+            warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=2)
     solution = _on_engine(engine, Solution(mechanism, angle, crank_speed, crank_acceleration, loads))
     if on_gap == "raise":
         solution.check()
@@ -347,10 +352,35 @@ def _on_engine(engine, solution):
         return solution
 
 
+def _no_mechanism(found):
+    """What is wrong with what was given for a mechanism, or None."""
+    if isinstance(found, Mechanism):
+        return None
+    whole = hasattr(found, "mechanism") or hasattr(found, "variants")
+    remedy = "; it is solved by its own .solve(angles), with its own drive and loads" if whole else ""
+    return f"mechanism must be a Mechanism, as made by crank_slider or four_bar, got {checks.shown(found)}{remedy}"
+
+
+def _finite(angle):
+    """Whether all crank angles are finite, as far as they can be looked at."""
+    return not (isinstance(angle, np.ndarray) and angle.dtype in PRECISIONS) or np.isfinite(angle).all()
+
+
+def _shapes(values, mechanism, loads):
+    """Shapes that must fit together, by what has them."""
+    for name, value in values.items():
+        yield name, getattr(value, "shape", ())
+    yield mechanism.name, mechanism.batch
+    for number, item in enumerate(loads, 1):
+        kind = f"{type(item).__name__} {number}"
+        yield kind, getattr(item, "batch", ())
+        yield f"{kind} force", getattr(getattr(item, "force", None), "shape", ())
+
+
 def _load_problem(mechanism, item):
     if isinstance(item, Gravity):
         return None
-    if not hasattr(item, "push"):
-        return f"loads must be Gravity, Spring or ProcessForce, got {item!r}"
+    if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):
+        return f"loads must be Gravity, Spring or ProcessForce, got {checks.shown(item)}"
     sliders = [name for name in mechanism.links if name.startswith("slider")]
     return checks.choice(f"{type(item).__name__}: on", item.on, sliders)
