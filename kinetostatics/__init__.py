@@ -23,7 +23,8 @@ tolerance                   spreads, quantiles, Sobol indices
 case, schema, units         case files and what they may hold; text with units
 files                       CSV tables in, results out
 quantities, tables          names and units of results; DataFrames
-checks, errors              what is refused at the door, and how it is said
+checks, errors, hints       what is refused at the door, how it is said, and what looks like a slip
+group_check                 a test of a group of one's own
 substitution, timing        other kinds of numbers in place of floats; how long, and on what machine
 plots, charts               figures of solutions; charts of studies
 drawings, canvas            the mechanism itself; what figures share
@@ -76,6 +77,7 @@ __all__ = [
     "balancing",
     "cam_crank_slider",
     "cams",
+    "check",
     "compare",
     "crank_slider",
     "designs",
@@ -96,6 +98,7 @@ __all__ = [
 
 _LATER = {
     "balancing": None,
+    "check": "group_check",
     "compare": "comparison",
     "designs": None,
     "linkage": None,

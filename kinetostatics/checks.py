@@ -20,8 +20,8 @@ import numpy as np
 
 from .errors import ParameterError
 
-HUGE, TINY = 1e60, 1e-60
-"""Sizes that double precision cannot multiply several times over; no machine has them."""
+HUGE, LONG = 1e150, 1e75
+"""Sizes that double precision cannot square, and lengths (and their reciprocals) that it cannot twice."""
 PLAIN = (int, float, np.integer, np.floating, Fraction, Decimal)
 UNSURE: Any = object()
 """What a quick look at a value answers if it must be examined."""
@@ -106,8 +106,7 @@ def _number(value, table):
     if not table and shape not in ((), (1,)) and (len(shape) < 2 or shape[-1] != 1):
         raise _Unfit(f"of shape {shape}; its last axis would be the crank angle, add one of length 1: [..., None]")
     if shape == () or (shape == (1,) and not table):
-        value = value.item() if isinstance(value, np.ndarray) else value
-        return float(value) if isinstance(value, PLAIN) else value
+        return _number(value.ravel()[0], table) if isinstance(value, np.ndarray) else value
     return _locked(value) if isinstance(value, np.ndarray) else value
 
 
@@ -170,13 +169,14 @@ class Number:
     table: bool = False
 
     def __post_init__(self):
-        above = -HUGE if self.low is None else TINY if self.strict else math.nextafter(self.low, -1.0)
+        above = -HUGE if self.low is None else 1.0 / LONG if self.strict else math.nextafter(self.low, -1.0)
         object.__setattr__(self, "above", above)
+        object.__setattr__(self, "below", LONG if self.strict else HUGE)
 
     def quick(self, value):
-        if type(value) is float and self.above < value < HUGE:
+        if type(value) is float and self.above < value < self.below:
             return value
-        return float(value) if type(value) is int and self.above < value < HUGE else UNSURE
+        return float(value) if type(value) is int and self.above < value < self.below else UNSURE
 
     def taken(self, value, field=""):
         name = self.name or field
@@ -197,9 +197,10 @@ class Number:
             found = number if array.ndim == 0 else f"a smallest value of {extreme:g}"
             words = f"{'greater than' if self.strict else 'at least'} {self.low:g}"
             return Problem(f"{name} must be {words}, got {found}", array <= self.low if self.strict else array < self.low)
-        if size.max() >= HUGE or (self.strict and extreme <= TINY):
-            words = f"{name} must lie between {TINY:g} and {HUGE:g} in size to be computed with, got {shown(number)}"
-            return Problem(words, (size >= HUGE) | (self.strict & (size <= TINY)))
+        beyond = (size >= self.below) | (array <= self.above)
+        if np.any(beyond):
+            words = f"between {self.above:g} and {self.below:g}"
+            return Problem(f"{name} must lie {words} to be computed in double precision, got {shown(number)}", beyond)
         return None
 
 
@@ -429,7 +430,7 @@ def fitting(**shapes):
 
 def choice(name, value, allowed):
     """What is wrong with a name that must be one of `allowed`; names the nearest."""
-    if any(isinstance(value, type(word)) and value == word for word in allowed):
+    if (type(value) is str and value in allowed) or any(value is word for word in allowed):
         return None
     return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed))}{hint(value, allowed)}"
 

@@ -83,7 +83,7 @@ class Mechanism(Batched):
         return sum((group.bars for group in self.groups), self.crank.bars)
 
     @cached_property
-    def _of_library(self):
+    def of_library(self):
         """Whether all groups say what they add, as the library's own do."""
         return all(hasattr(group, "adds") for group in self.groups)
 
@@ -116,7 +116,7 @@ class Mechanism(Batched):
 
     def resolve(self, placement, loads, pushes):
         """All forces, from the last group inwards, for given link loads and pushes on the sliders."""
-        forces = Forces() if self._of_library else Forces(reactions=Once(), scalars=Once())
+        forces = Forces() if self.of_library else Forces(reactions=Once(), scalars=Once())
         for group in reversed(self.groups):
             group.resolve(placement, loads, pushes, forces)
         self.crank.resolve(placement, loads, forces)

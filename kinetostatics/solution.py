@@ -13,7 +13,7 @@ from .batch import wider
 from .elementary import read_only
 from .errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from .links import load, virtual_work
-from .loads import Gravity
+from .loads import Gravity, ProcessForce, Spring
 from .mechanism import Mechanism
 from .motion import Motion
 from .planar import added, minus, moment, number, plus, product
@@ -21,7 +21,12 @@ from .principal_points import principal_points
 
 ANGLE = checks.Number("rad", "crank_angle", table=True)
 DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
+LOADS = (Gravity, Spring, ProcessForce)
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
+UNBALANCED = 1e-6
+"""Part of the largest torque that the two ways to it may differ by in a mechanism with groups of the user's own."""
+TRIED = 64
+"""Crank angles at which such a mechanism is tried before compiled loops take over."""
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
 
@@ -196,7 +201,25 @@ class Solution(Motion):
     @cached_property
     def _forces(self):
         with np.errstate(divide="ignore", invalid="ignore"):
-            return self.mechanism.resolve(self.placement, self._link_loads, self._pushes)
+            forces = self.mechanism.resolve(self.placement, self._link_loads, self._pushes)
+        if not self.mechanism.of_library:
+            self._warn_of_lost_power(forces.scalars["balancing_torque"])
+        return forces
+
+    def _warn_of_lost_power(self, torque):
+        """Warn if a group of the user's own finds forces that do not do the work of the loads."""
+        torque = self._scalar(torque)
+        if not isinstance(torque, np.ndarray) or torque.dtype != float:
+            return
+        lost = self._largest(torque - self.balancing_torque_by_power)
+        scale = np.maximum(self.largest_torque_term, self._largest(torque))
+        if np.any(lost > UNBALANCED * scale):
+            warnings.warn(
+                f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of powers differ "
+                f"by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group of your own places its "
+                "links or resolves its forces wrongly; ks.check(group) says where",
+                stacklevel=2,
+            )
 
     @cached_property
     def _gravity(self):
@@ -249,6 +272,8 @@ class Solution(Motion):
 def _angles(crank_angle):
     if type(crank_angle) is np.ndarray and crank_angle.dtype in PRECISIONS:
         return read_only(crank_angle.copy())
+    if isinstance(crank_angle, list | tuple) and not crank_angle:
+        checks.require("solve", "there are no crank angles")
     angle, problem = ANGLE.taken(crank_angle)
     checks.require("solve", problem)
     return angle if hasattr(angle, "shape") else read_only(np.array(angle))
@@ -308,7 +333,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         checks.require("solve", _no_mechanism(mechanism))
     angle = _angles(crank_angle)
     crank_speed, crank_acceleration = _drive(crank_speed=crank_speed, crank_acceleration=crank_acceleration)
-    loads = tuple(map(checks.kept, loads)) if isinstance(loads, list | tuple) else (checks.kept(loads),)
+    loads = tuple(loads) if isinstance(loads, list | tuple) else (loads,)
     checks.require(
         "solve",
         None if math.prod(angle.shape) else "there are no crank angles",
@@ -317,17 +342,17 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
         *(_load_problem(mechanism, item) for item in loads),
     )
-    shapes = {"crank_angle": angle, "crank_speed": crank_speed, "crank_acceleration": crank_acceleration}
-    checks.require("solve", checks.fitting(**dict(_shapes(shapes, mechanism, loads))))
+    loads = tuple(item if type(item) in LOADS else checks.kept(item) for item in loads)
+    shapes = _shapes(mechanism, loads, crank_angle=angle, crank_speed=crank_speed, crank_acceleration=crank_acceleration)
+    checks.require("solve", checks.fitting(**shapes))
     if angle.dtype == "float32":
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
             stacklevel=2,
         )
-    for text in (*mechanism.hints, hints.of_angles(angle) if isinstance(angle, np.ndarray) else None):
-        if text:
-            warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=2)
+    for text in (*mechanism.hints, *hints.of_angles(angle)):
+        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=2)
     solution = _on_engine(engine, Solution(mechanism, angle, crank_speed, crank_acceleration, loads))
     if on_gap == "raise":
         solution.check()
@@ -345,11 +370,21 @@ def _on_engine(engine, solution):
         raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
     if engine == "compiled":
         compiled.require()
-        return compiled.made_of(solution)
     try:
-        return compiled.made_of(solution) if compiled.available() else solution
+        made = compiled.made_of(solution) if engine == "compiled" or compiled.available() else solution
     except NotGivenError:
+        if engine == "compiled":
+            raise
         return solution
+    if not solution.mechanism.of_library:
+        _tried(solution)
+    return made
+
+
+def _tried(solution):
+    """Compute forces at some angles under gravity, for the warning that compiled loops do not give."""
+    angle = np.ravel(solution.crank_angle)[:: solution.crank_angle.size // TRIED + 1]
+    Solution(solution.mechanism, angle, 1.0, 1.0, (Gravity(),)).scalar("balancing_torque")
 
 
 def _no_mechanism(found):
@@ -363,18 +398,19 @@ def _no_mechanism(found):
 
 def _finite(angle):
     """Whether all crank angles are finite, as far as they can be looked at."""
-    return not (isinstance(angle, np.ndarray) and angle.dtype in PRECISIONS) or np.isfinite(angle).all()
+    return not isinstance(angle, np.ndarray) or angle.dtype == object or np.isfinite(angle).all()
 
 
-def _shapes(values, mechanism, loads):
+def _shapes(mechanism, loads, **arrays):
     """Shapes that must fit together, by what has them."""
-    for name, value in values.items():
-        yield name, getattr(value, "shape", ())
-    yield mechanism.name, mechanism.batch
-    for number, item in enumerate(loads, 1):
-        kind = f"{type(item).__name__} {number}"
-        yield kind, getattr(item, "batch", ())
-        yield f"{kind} force", getattr(getattr(item, "force", None), "shape", ())
+    shapes = {name: value.shape for name, value in arrays.items() if hasattr(value, "shape")}
+    if mechanism.batch:
+        shapes["mechanism"] = mechanism.batch
+    for item in loads:
+        found = getattr(getattr(item, "force", None), "shape", ()) or getattr(item, "batch", ())
+        if found:
+            shapes[f"{type(item).__name__} {len(shapes)}"] = found
+    return shapes
 
 
 def _load_problem(mechanism, item):
