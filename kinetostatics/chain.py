@@ -51,8 +51,8 @@ def added_by(part):
     if hasattr(part, "adds"):
         return part.adds
     fixed = {*part.references.values(), *(bar.start for bar in part.bars)} - {getattr(part, "on", "O"), "O"}
-    ends = [bar.end for bar in part.bars]
-    return Adds((*(fixed - set(ends)), *ends), tuple(part.links))
+    ends = dict.fromkeys(bar.end for bar in part.bars)
+    return Adds((*sorted(fixed - ends.keys()), *ends), tuple(part.links))
 
 
 class Once(dict):

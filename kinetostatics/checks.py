@@ -79,7 +79,7 @@ def _unfit(kind):
 
 def shown(value):
     """How a value looks, short enough for a message."""
-    text = repr(value)
+    text = " ".join(repr(value).split())
     return text if len(text) <= 120 else f"{text[:80]} ... {text[-20:]}"
 
 
@@ -196,7 +196,9 @@ class Number:
         if self.low is not None and not (extreme > self.low if self.strict else extreme >= self.low):
             found = number if array.ndim == 0 else f"a smallest value of {extreme:g}"
             words = f"{'greater than' if self.strict else 'at least'} {self.low:g}"
-            return Problem(f"{name} must be {words}, got {found}", array <= self.low if self.strict else array < self.low)
+            return Problem(
+                f"{name} must be {words}, got {found}", array <= self.low if self.strict else array < self.low
+            )
         beyond = (size >= self.below) | (array <= self.above)
         if np.any(beyond):
             words = f"between {self.above:g} and {self.below:g}"

@@ -55,7 +55,9 @@ class GroupReport:
     def __repr__(self):
         count, wrong = len(self.errors), len(self.problems)
         verdict = f"{wrong} of {count} checks fail" if wrong else f"all {count} checks pass"
-        rows = [f"  {'WRONG' if _wrong(error) else 'right'}  {error:7.1e}  {what}" for what, error in self.errors.items()]
+        rows = [
+            f"  {'WRONG' if _wrong(error) else 'right'}  {error:7.1e}  {what}" for what, error in self.errors.items()
+        ]
         return "\n".join([f"<GroupReport: {self.group}, {verdict}>", *rows])
 
 
@@ -97,7 +99,7 @@ def check(group):
 
 
 class _Stage(NamedTuple):
-    """A group, its size, and places (x, y) of the joint it hangs on and crank angles at which it closes."""
+    """A group, its shortest length, and places (x, y) of the joint it hangs on and crank angles at which it closes."""
 
     group: Any
     size: float
@@ -130,8 +132,9 @@ class _Stage(NamedTuple):
 
 def _stage(group):
     """The group in places where it closes well, evenly chosen from many."""
-    size = max((float(np.max(bar.length)) for bar in group.bars), default=1.0)
-    reach, direction = np.meshgrid(size * np.geomspace(0.02, 30.0, 40), 2 * np.pi * (np.arange(30) + 0.3) / 30)
+    lengths = [float(np.max(bar.length)) for bar in group.bars] or [1.0]
+    size, farthest = min(lengths), 30.0 * max(lengths)
+    reach, direction = np.meshgrid(np.geomspace(0.02 * size, farthest, 40), 2 * np.pi * (np.arange(30) + 0.3) / 30)
     x, y = (reach * np.cos(direction)).ravel(), (reach * np.sin(direction)).ravel()
     whole = _Stage(group, size, (x, y), 2.4 * np.arange(x.size) % (2 * np.pi))
     with np.errstate(all="ignore"):
@@ -142,7 +145,9 @@ def _stage(group):
     closing = np.flatnonzero(margin > 0.1) if np.any(margin > 0.1) else np.flatnonzero(margin > 1e-3)
     if not closing.size:
         name = type(group).__name__
-        raise ParameterError(f"check: {name} closes nowhere within {30 * size:g} m of O, closure is at most {margin.max()}")
+        raise ParameterError(
+            f"check: {name} closes nowhere within {farthest:g} m of O, closure is at most {margin.max()}"
+        )
     chosen = closing[np.linspace(0, closing.size - 1, min(PLACES, closing.size)).astype(int)]
     return whole._replace(position=(x[chosen], y[chosen]), angle=whole.angle[chosen])
 

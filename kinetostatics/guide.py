@@ -29,8 +29,8 @@ class Guide(NamedTuple):
             rules = {"guide_angle": ANGLE, "guide_offset": OFFSET}
             given = {"guide_angle": guide_angle, "guide_offset": guide_offset}
             angle, offset = checks.examined("guide", rules, given).values()
-        if isinstance(angle, float) and angle == 0:
-            return cls((1.0, 0.0), offset)
+        if isinstance(angle, float):
+            return cls((float(cos(angle)), float(sin(angle))) if angle else (1.0, 0.0), offset)
         return cls((cos(angle), sin(angle)), offset)
 
     @classmethod

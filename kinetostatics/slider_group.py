@@ -146,7 +146,9 @@ class SliderGroup:
     def adds(self):
         label = self.label
         reactions = (self.on + label, self.pin, "guide" + label)
-        return Adds((self.pin,), (self._coupler, self._slider), reactions, ("guide_force" + label, "guide_moment" + label))
+        return Adds(
+            (self.pin,), (self._coupler, self._slider), reactions, ("guide_force" + label, "guide_moment" + label)
+        )
 
     @property
     def links(self):

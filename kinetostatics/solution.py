@@ -343,7 +343,9 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         *(_load_problem(mechanism, item) for item in loads),
     )
     loads = tuple(item if type(item) in LOADS else checks.kept(item) for item in loads)
-    shapes = _shapes(mechanism, loads, crank_angle=angle, crank_speed=crank_speed, crank_acceleration=crank_acceleration)
+    shapes = _shapes(
+        mechanism, loads, crank_angle=angle, crank_speed=crank_speed, crank_acceleration=crank_acceleration
+    )
     checks.require("solve", checks.fitting(**shapes))
     if angle.dtype == "float32":
         warnings.warn(
