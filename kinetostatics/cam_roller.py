@@ -52,7 +52,7 @@ def resolve(ray, radius, slope, block_load, demand):
 
 
 @dataclass(frozen=True, eq=False)
-class CamRoller:
+class CamRoller(checks.Checked):
     """Block and roller at joint A, guided by the slotted crank and the fixed `cam`.
 
     Parameters
@@ -66,7 +66,7 @@ class CamRoller:
     cam: Any
     block: Link = Link()
 
-    __post_init__ = checks.fields(
+    RULES = checks.Rules(
         "cam roller",
         cam=checks.Own(("polar",), "one of ks.cams or alike"),
         block=checks.Made(Link, "a Link"),

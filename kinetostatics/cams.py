@@ -82,9 +82,9 @@ class Circle(Cam):
     def __init__(self, radius, centre=(0.0, 0.0)):
         object.__setattr__(self, "pitch_radius", radius)
         object.__setattr__(self, "centre", centre)
-        self._examine()
+        self.RULES.admit(self)
 
-    def _around_O(self):
+    def _around_origin(self):
         """Say where O lies outside the circle, or on it."""
         (x, y), radius = self.centre, self.pitch_radius
         distance = sqrt(x * x + y * y)
@@ -95,9 +95,9 @@ class Circle(Cam):
             )
             yield checks.Problem(text, distance >= radius)
 
-    _examine = checks.fields(
+    RULES = checks.Rules(
         "circle cam",
-        _around_O,
+        _around_origin,
         pitch_radius=checks.Number("m", "radius", low=0.0, strict=True),
         centre=checks.Pair("m"),
     )
@@ -114,7 +114,7 @@ class Circle(Cam):
 
 
 @dataclass(frozen=True, eq=False)
-class CosineLaw(Cam):
+class CosineLaw(checks.Checked, Cam):
     """Cam that moves the slider exactly by x_B = mean + amplitude cos(phi) along a guide through O.
 
     A lies on the ray at the distance of the coupler length L from B, so r = x_B cos(phi) - w, where w is the signed
@@ -153,7 +153,7 @@ class CosineLaw(Cam):
     mean: Any
     guide_angle: float = 0.0
 
-    def _clear_of_O(self):
+    def _clear_of_origin(self):
         """Say where the slider would run over O."""
         mean, amplitude = self.mean, self.amplitude
         if checks.known(mean - amplitude) and np.any(mean <= amplitude):
@@ -163,9 +163,9 @@ class CosineLaw(Cam):
             )
             yield checks.Problem(text, mean <= amplitude)
 
-    __post_init__ = checks.fields(
+    RULES = checks.Rules(
         "cosine-law cam",
-        _clear_of_O,
+        _clear_of_origin,
         amplitude=checks.Number("m", low=0.0, strict=True),
         mean=checks.Number("m", low=0.0, strict=True),
         guide_angle=checks.Number("rad"),

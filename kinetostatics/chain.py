@@ -24,7 +24,6 @@ from .errors import ParameterError
 from .links import Wrench
 from .planar import added
 
-
 MEMBERS = ("links", "references", "bars", "place", "closure", "requirement", "condition", "resolve")
 
 
@@ -61,8 +60,8 @@ class Once(dict):
     def __setitem__(self, name, value):
         if name in self:
             raise ParameterError(
-                f"two parts of the mechanism add a force {name!r}, of which one would be lost; give one of them another "
-                "label or pin"
+                f"two parts of the mechanism add a force {name!r}, of which one would be lost; give one of them "
+                "another label or pin"
             )
         super().__setitem__(name, value)
 

@@ -1,20 +1,21 @@
 """Checks of the values a user hands in. Kernels trust what has passed here.
 
-A dataclass says what its fields must be by a table, field -> rule, and takes `fields` of it as its ``__post_init__``.
-Where every value is a plain number in range nothing more is looked at; otherwise each is examined, all that is wrong is
-said at once, and the object keeps floats and locked copies of arrays, so nothing it holds changes behind its back. A
-traced JAX number or an `arb` enclosure passes as it is.
+A dataclass that is `Checked` says what its fields must be by a table of rules, field -> rule. Where every value is a
+plain number in range nothing more is looked at; otherwise each is examined, all that is wrong is said at once, and the
+object keeps floats and locked copies of arrays, so nothing it holds changes behind its back. A traced JAX number or an
+`arb` enclosure passes as it is.
 """
 
-import datetime
+import datetime as dt
 import math
 import numbers
 from copy import copy
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -38,7 +39,7 @@ class Problem(str):
         return made
 
 
-class _Unfit(Exception):
+class _UnfitError(Exception):
     """A value that is no number; the message says what it is and what to hand in."""
 
 
@@ -52,14 +53,18 @@ def known(value):
     return value is None or isinstance(value, numbers.Real | str | list | tuple)
 
 
+def _kind(value) -> Any:
+    return type(value)
+
+
 @cache
-def _unfit(kind):
+def _unfit(kind: Any):
     """Why no value of this type is a number, and what to hand in; None if it may be one."""
     for kinds, words in (
         ((bool, np.bool_), "a truth value; give a number"),
         ((complex, np.complexfloating), "a complex number; give a real one"),
         ((str, bytes), "a text; write a plain number in SI units, without quotes"),
-        ((datetime.date, datetime.time, datetime.timedelta), "a time; give a number in SI units"),
+        ((dt.date, dt.time, dt.timedelta), "a time; give a number in SI units"),
     ):
         if issubclass(kind, kinds):
             return words
@@ -87,24 +92,24 @@ def _number(value, table):
     """The value as a float or a locked array of floats; as it came if its values cannot be looked at now."""
     if table and hasattr(value, "to_numpy") and np.ndim(value) == 1:
         value = value.to_numpy()
-    if words := _unfit(type(value)):
-        raise _Unfit(words)
+    if words := _unfit(_kind(value)):
+        raise _UnfitError(words)
     if isinstance(value, PLAIN):
         try:
             return float(value)
         except OverflowError:
-            raise _Unfit("too large") from None
+            raise _UnfitError("too large") from None
     if isinstance(value, list | tuple):
         if not table:
-            raise _Unfit("")
+            raise _UnfitError("")
         value = _array(value)
     elif isinstance(value, np.ndarray):
         value = np.asarray(value)
     shape = tuple(getattr(value, "shape", ()))
     if 0 in shape:
-        raise _Unfit(f"of shape {shape}, which holds nothing")
+        raise _UnfitError(f"of shape {shape}, which holds nothing")
     if not table and shape not in ((), (1,)) and (len(shape) < 2 or shape[-1] != 1):
-        raise _Unfit(f"of shape {shape}; its last axis would be the crank angle, add one of length 1: [..., None]")
+        raise _UnfitError(f"of shape {shape}; its last axis would be the crank angle, add one of length 1: [..., None]")
     if shape == () or (shape == (1,) and not table):
         return _number(value.ravel()[0], table) if isinstance(value, np.ndarray) else value
     return _locked(value) if isinstance(value, np.ndarray) else value
@@ -114,11 +119,11 @@ def _array(values):
     """The items of a list as an array."""
     for kind in set(map(type, values)):
         if words := _unfit(kind):
-            raise _Unfit(f"with {words}")
+            raise _UnfitError(f"with {words}")
     try:
         return np.array(values)
     except ValueError:
-        raise _Unfit("of rows of unequal length") from None
+        raise _UnfitError("of rows of unequal length") from None
 
 
 def _locked(array):
@@ -130,10 +135,10 @@ def _locked(array):
         kinds = set(map(type, array.flat))
         for item in kinds:
             if words := _unfit(item):
-                raise _Unfit(f"with {words}")
+                raise _UnfitError(f"with {words}")
         kind = float if all(issubclass(item, PLAIN) for item in kinds) else object
     elif array.dtype.kind not in "iuf":
-        raise _Unfit(f"of {array.dtype}; give real numbers")
+        raise _UnfitError(f"of {array.dtype}; give real numbers")
     array = array.astype(kind)
     array.flags.writeable = False
     return array
@@ -168,6 +173,9 @@ class Number:
     strict: bool = False
     table: bool = False
 
+    above: float = dataclass_field(init=False)
+    below: float = dataclass_field(init=False)
+
     def __post_init__(self):
         above = -HUGE if self.low is None else 1.0 / LONG if self.strict else math.nextafter(self.low, -1.0)
         object.__setattr__(self, "above", above)
@@ -182,7 +190,7 @@ class Number:
         name = self.name or field
         try:
             number = _number(value, self.table)
-        except _Unfit as fault:
+        except _UnfitError as fault:
             words = f", {fault}".format(unit=self.unit or "1") if str(fault) else ""
             kind = "an array of numbers" if self.table else "an array of shape (designs, 1)"
             return value, f"{name} must be a number or {kind}, got {shown(value)}{words}"
@@ -214,6 +222,7 @@ class Pair:
     name: str = ""
     parts: tuple[str, str] = ("x", "y")
     lone: bool = False
+    rule: Number = dataclass_field(init=False)
 
     def __post_init__(self):
         object.__setattr__(self, "rule", Number(self.unit))
@@ -230,7 +239,7 @@ class Pair:
 
     def taken(self, value, field=""):
         name = self.name or field
-        words = _unfit(type(value))
+        words = _unfit(_kind(value))
         if words and not self.lone:
             words = words.format(unit=self.unit or "1")
             return value, f"{name} must be a pair {self._pair}, got {shown(value)}, {words}"
@@ -342,22 +351,33 @@ class Sign:
         return value, f"{field} must be +1 or -1, got {shown(value)}"
 
 
-def fields(owner, also=None, **rules):
-    """``__post_init__`` of a dataclass whose fields keep to rules; `also` finds problems of several fields together."""
-    looks = [(field, rule.quick) for field, rule in rules.items()]
+class Rules:
+    """What the fields of a dataclass must be, field -> rule; `also` finds problems of several fields together."""
 
-    def __post_init__(self):
-        values = vars(self)
-        for field, quick in looks:
+    def __init__(self, owner, also=None, **rules):
+        self.owner, self.also, self.rules = owner, also, rules
+        self._looks = [(field, rule.quick) for field, rule in rules.items()]
+
+    def admit(self, item):
+        """Put into the fields what is to be kept of them, or raise `ParameterError`."""
+        values = vars(item)
+        for field, quick in self._looks:
             found = quick(values[field])
             if found is UNSURE:
-                values.update(examined(owner, rules, values))
+                values.update(examined(self.owner, self.rules, values))
                 break
             values[field] = found
-        if also is not None:
-            require(owner, *also(self))
+        if self.also is not None:
+            require(self.owner, *self.also(item))
 
-    return __post_init__
+
+class Checked:
+    """A dataclass whose fields keep to its table of rules."""
+
+    RULES: ClassVar[Rules]
+
+    def __post_init__(self):
+        self.RULES.admit(self)
 
 
 def examined(owner, rules, values):

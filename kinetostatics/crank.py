@@ -33,7 +33,7 @@ def resolve(own, demand):
 
 
 @dataclass(frozen=True, eq=False)
-class Crank:
+class Crank(checks.Checked):
     """Crank of a given length with pin A at its end; `length=None` makes it the slotted guide of a `CamRoller`.
 
     The angle of the crank ray is the crank angle, from +x, counter-clockwise.
@@ -42,7 +42,7 @@ class Crank:
     length: Any = None
     link: Link = Link()
 
-    __post_init__ = checks.fields(
+    RULES = checks.Rules(
         "crank",
         length=checks.Optional(checks.Number("m", "crank length", low=0.0, strict=True)),
         link=checks.Made(Link, "a Link"),

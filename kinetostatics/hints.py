@@ -1,4 +1,4 @@
-"""What looks like a slip of units, though a machine could have it: said once, as a warning, and computed all the same."""
+"""What looks like a slip of units, though a machine could have it: a warning, and computed all the same."""
 
 import numpy as np
 
@@ -35,8 +35,8 @@ def _inertia(bar, link):
     if thin is False or not np.any(thin):
         return None
     return (
-        f"the inertia of the {bar.link}, {np.min(inertia):.4g} kg m2, is less than a thousandth of that of a uniform rod "
-        f"of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m; is it in kg m2? 0 makes it a point mass"
+        f"the inertia of the {bar.link}, {np.min(inertia):.4g} kg m2, is less than a thousandth of that of a uniform "
+        f"rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m; is it in kg m2? 0 makes it a point mass"
     )
 
 

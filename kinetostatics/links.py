@@ -54,7 +54,7 @@ class Wrench(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Link:
+class Link(checks.Checked):
     """Mass properties of one link.
 
     Parameters
@@ -79,7 +79,7 @@ class Link:
     centre: Any = (0.0, 0.0)
     inertia: Any = 0.0
 
-    __post_init__ = checks.fields(
+    RULES = checks.Rules(
         "Link",
         mass=checks.Number("kg", low=0.0),
         centre=checks.Pair("m", parts=("along", "across"), lone=True),

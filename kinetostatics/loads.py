@@ -11,7 +11,7 @@ from .crank import ray
 
 
 @dataclass(frozen=True, eq=False)
-class Gravity(Batched):
+class Gravity(checks.Checked, Batched):
     """Weight of every link.
 
     Parameters
@@ -25,9 +25,7 @@ class Gravity(Batched):
     acceleration: Any = 9.81
     direction: Any = -math.pi / 2
 
-    __post_init__ = checks.fields(
-        "gravity", acceleration=checks.Number("m/s**2", low=0.0), direction=checks.Number("rad")
-    )
+    RULES = checks.Rules("gravity", acceleration=checks.Number("m/s**2", low=0.0), direction=checks.Number("rad"))
 
     @cached_property
     def vector(self):
@@ -37,7 +35,7 @@ class Gravity(Batched):
 
 
 @dataclass(frozen=True, eq=False)
-class Spring(Batched):
+class Spring(checks.Checked, Batched):
     """Linear spring along the guide, acting at the slider pin.
 
     Parameters
@@ -54,7 +52,7 @@ class Spring(Batched):
     free_position: Any
     on: str = "slider"
 
-    __post_init__ = checks.fields(
+    RULES = checks.Rules(
         "spring", stiffness=checks.Number("N/m", low=0.0), free_position=checks.Number("m"), on=checks.Name()
     )
 
@@ -75,7 +73,7 @@ class Spring(Batched):
 
 
 @dataclass(frozen=True, eq=False)
-class ProcessForce(Batched):
+class ProcessForce(checks.Checked, Batched):
     """Cutting, gas or other force on the slider along the guide, positive in the guide direction.
 
     Parameters
@@ -91,9 +89,7 @@ class ProcessForce(Batched):
     force: Any
     on: str = "slider"
 
-    __post_init__ = checks.fields(
-        "process force", force=checks.OrFunction(checks.Number("N", table=True)), on=checks.Name()
-    )
+    RULES = checks.Rules("process force", force=checks.OrFunction(checks.Number("N", table=True)), on=checks.Name())
 
     def push(self, motion):
         """Force on the slider along the guide, N."""

@@ -58,10 +58,10 @@ class Mechanism(Batched):
     crank: Crank
     groups: tuple[Any, ...]
 
-    _take = checks.fields("mechanism", name=checks.Name(), crank=checks.Made(Crank, "a Crank"), groups=Chain())
+    RULES = checks.Rules("mechanism", name=checks.Name(), crank=checks.Made(Crank, "a Crank"), groups=Chain())
 
     def __post_init__(self):
-        self._take()
+        self.RULES.admit(self)
         checks.require(self.name, *_name_problems((_named(self.crank), *map(_named, self.groups))))
 
     @cached_property

@@ -97,7 +97,7 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load, de
 
 
 @dataclass(frozen=True, eq=False)
-class RockerGroup:
+class RockerGroup(checks.Checked):
     """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
 
     Parameters
@@ -126,7 +126,7 @@ class RockerGroup:
     pivot_name: str = "O2"
     label: str = ""
 
-    __post_init__ = checks.fields(
+    RULES = checks.Rules(
         "rocker group",
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
         rocker_length=checks.Number("m", "rocker length", low=0.0, strict=True),

@@ -104,7 +104,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, dema
 
 
 @dataclass(frozen=True, eq=False)
-class SliderGroup:
+class SliderGroup(checks.Checked):
     """Coupler from joint `on` to a slider at joint `pin` on `guide`.
 
     Parameters
@@ -130,7 +130,7 @@ class SliderGroup:
     pin: str = "B"
     label: str = ""
 
-    __post_init__ = checks.fields(
+    RULES = checks.Rules(
         "slider group",
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
         guide=Line(),

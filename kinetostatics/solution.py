@@ -215,9 +215,9 @@ class Solution(Motion):
         scale = np.maximum(self.largest_torque_term, self._largest(torque))
         if np.any(lost > UNBALANCED * scale):
             warnings.warn(
-                f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of powers differ "
-                f"by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group of your own places its "
-                "links or resolves its forces wrongly; ks.check(group) says where",
+                f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of powers "
+                f"differ by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group of your own "
+                "places its links or resolves its forces wrongly; ks.check(group) says where",
                 stacklevel=2,
             )
 

@@ -69,7 +69,8 @@ def test_arrays_are_kept_as_copies_that_cannot_be_written_to():
         assert kept.dtype == float
         with pytest.raises(ValueError, match="read-only"):
             kept[0] = 1.0
-    assert mass.flags.writeable and speed.flags.writeable
+    assert mass.flags.writeable
+    assert speed.flags.writeable
     assert replace(made.groups[0]).slider.mass is made.links["slider"].mass
 
 
