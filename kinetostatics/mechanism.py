@@ -19,6 +19,8 @@ from .quantities import RATES, UNITS
 from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
 
+NAME = checks.Name()
+
 
 class Chain:
     """Rule of a field that holds groups."""
@@ -34,7 +36,9 @@ class Chain:
         if not isinstance(value, tuple | list):
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
         found = [self.rule.taken(group, "a group") for group in value]
-        return tuple(group for group, _ in found), next((problem for _, problem in found if problem), None)
+        found += [NAME.taken(getattr(group, "on", "O"), f"on of {type(group).__name__}") for group in value]
+        problem = next((problem for _, problem in found if problem), None)
+        return tuple(group for group, _ in found[: len(value)]), problem
 
 
 REMEDY = "give the second group another pin, pivot_name or label"
@@ -58,7 +62,7 @@ class Mechanism(Batched):
     crank: Crank
     groups: tuple[Any, ...]
 
-    RULES = checks.Rules("mechanism", name=checks.Name(), crank=checks.Made(Crank, "a Crank"), groups=Chain())
+    RULES = checks.Rules("mechanism", name=NAME, crank=checks.Made(Crank, "a Crank"), groups=Chain())
 
     def __post_init__(self):
         self.RULES.admit(self)

@@ -297,7 +297,8 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing.
+        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing. Loads of your own, as all
+        arrays, are taken as they are now: what is changed of them later is not seen.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
         give NaN there and exact values elsewhere (no check, as needed under ``jax.jit``).
@@ -326,8 +327,10 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     -----
     ConditionWarning
         A crank angle lies so near a limit position that half the digits are lost.
+    HintWarning
+        Something looks like a slip of units: angles in degrees, a mass centre far outside, hardly any inertia.
     UserWarning
-        The crank angles are in single precision.
+        The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
     """
     if type(mechanism) is not Mechanism:
         checks.require("solve", _no_mechanism(mechanism))
@@ -393,14 +396,16 @@ def _no_mechanism(found):
     """What is wrong with what was given for a mechanism, or None."""
     if isinstance(found, Mechanism):
         return None
-    whole = hasattr(found, "mechanism") or hasattr(found, "variants")
-    remedy = "; it is solved by its own .solve(angles), with its own drive and loads" if whole else ""
+    itself = not isinstance(found, type) and hasattr(found, "solve")
+    remedy = "; it is solved by its own .solve(angles), with its own drive and loads" if itself else ""
     return f"mechanism must be a Mechanism, as made by crank_slider or four_bar, got {checks.shown(found)}{remedy}"
 
 
 def _finite(angle):
     """Whether all crank angles are finite, as far as they can be looked at."""
-    return not isinstance(angle, np.ndarray) or angle.dtype == object or np.isfinite(angle).all()
+    if not isinstance(angle, np.ndarray) or angle.dtype == object:
+        return True
+    return (angle.ndim == 1 and math.isfinite(angle.dot(angle))) or np.isfinite(angle).all()  # dot costs a quarter
 
 
 def _shapes(mechanism, loads, **arrays):

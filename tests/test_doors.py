@@ -240,6 +240,22 @@ def test_a_right_group_of_ones_own_gives_what_the_librarys_gives_without_a_warni
     assert_array_equal(solve(chain(), engine=engine).balancing_torque, solve(right, engine=engine).balancing_torque)
 
 
+@pytest.mark.parametrize("on", [3, None, ["A"], "Q"])
+def test_the_joint_that_a_group_of_ones_own_hangs_on_is_named_by_text_and_there(on):
+    with pytest.raises(ks.ParameterError, match=r"on of Pan must be a name|hangs on joint 'Q'"):
+        ks.Mechanism("pan", ks.Crank(0.1), (Pan(ROD, on=on),))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("on_gap", ["raise", "nan"])
+@pytest.mark.parametrize("shape", [(72,), (2, 36), (72, 1)])
+def test_crank_angles_that_are_not_finite_are_refused_whatever_gaps_do(bad, on_gap, shape):
+    angle = TURN.copy()
+    angle[40] = bad
+    with pytest.raises(ks.ParameterError, match="crank angles must be finite"):
+        solve(angle=angle.reshape(shape), on_gap=on_gap)
+
+
 def test_a_reaction_that_would_overwrite_another_is_refused():
     with pytest.raises(
         ks.ParameterError, match="two parts of the mechanism add a force 'B', of which one would be lost"
