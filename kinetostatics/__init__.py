@@ -23,7 +23,8 @@ tolerance                   spreads, quantiles, Sobol indices
 case, schema, units         case files and what they may hold; text with units
 files                       CSV tables in, results out
 quantities, tables          names and units of results; DataFrames
-checks, errors              what is refused at the door, and how it is said
+checks, errors, hints       what is refused at the door, how it is said, and what looks like a slip
+group_check                 a test of a group of one's own
 substitution, timing        other kinds of numbers in place of floats; how long, and on what machine
 plots, charts               figures of solutions; charts of studies
 drawings, canvas            the mechanism itself; what figures share
@@ -33,7 +34,15 @@ figures, cli                figures of a case; command line
 from . import cams
 from .cam_roller import CamRoller
 from .crank import Crank
-from .errors import AssemblyError, CaseError, ConditionWarning, KinetostaticsError, ParameterError, QuantityError
+from .errors import (
+    AssemblyError,
+    CaseError,
+    ConditionWarning,
+    HintWarning,
+    KinetostaticsError,
+    ParameterError,
+    QuantityError,
+)
 from .extremes import extremes
 from .guide import Guide
 from .links import Link
@@ -54,6 +63,7 @@ __all__ = [
     "Crank",
     "Gravity",
     "Guide",
+    "HintWarning",
     "KinetostaticsError",
     "Link",
     "Mechanism",
@@ -67,6 +77,7 @@ __all__ = [
     "balancing",
     "cam_crank_slider",
     "cams",
+    "check",
     "compare",
     "crank_slider",
     "designs",
@@ -87,6 +98,7 @@ __all__ = [
 
 _LATER = {
     "balancing": None,
+    "check": "group_check",
     "compare": "comparison",
     "designs": None,
     "linkage": None,

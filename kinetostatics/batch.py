@@ -5,6 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from .checks import fitting, require
+
 
 class Batched:
     """A dataclass of parameters, which may be arrays of designs."""
@@ -15,16 +17,21 @@ class Batched:
 
         An array of one axis is a table (of a cam, of a load over the crank angles), not a batch.
         """
-        return np.broadcast_shapes(*_shapes(self))
+        shapes = dict(_shapes(self, ()))
+        require(type(self).__name__, fitting(**{" ".join(path): shape for path, shape in shapes.items()}))
+        return np.broadcast_shapes(*shapes.values())
 
 
-def _shapes(item):
+def _shapes(item, path):
+    """Path and shape of each array of designs."""
     if is_dataclass(item):
-        item = [getattr(item, field.name) for field in fields(item)]
-    if isinstance(item, tuple | list):
-        return [shape for part in item for shape in _shapes(part)]
-    shape = getattr(item, "shape", ())
-    return [shape] if len(shape) > 1 else []
+        for field in fields(item):
+            yield from _shapes(getattr(item, field.name), (*path, field.name))
+    elif isinstance(item, tuple | list):
+        for number, part in enumerate(item, 1):
+            yield from _shapes(part, (*path, str(number)))
+    elif len(shape := getattr(item, "shape", ())) > 1:
+        yield path, shape
 
 
 def wider(shape, *parts):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from . import checks
+from .chain import Adds
 from .elementary import condition, sqrt
 from .links import Joint, Link, LinkMotion, Wrench
 from .planar import cross, dot, minus, subtracted, vector
@@ -51,13 +52,13 @@ def resolve(ray, radius, slope, block_load, demand):
 
 
 @dataclass(frozen=True, eq=False)
-class CamRoller:
+class CamRoller(checks.Checked):
     """Block and roller at joint A, guided by the slotted crank and the fixed `cam`.
 
     Parameters
     ----------
     cam : cams.Circle, cams.CosineLaw, cams.Sampled or alike
-        Anything with ``polar(angle, ray)`` that returns r, r', r'' in m.
+        Anything with ``polar(angle, ray)`` that returns r, r', r'' in m; taken as it is when the group is made.
     block : Link
         Block with roller; reference joint A, along the crank ray.
     """
@@ -65,12 +66,15 @@ class CamRoller:
     cam: Any
     block: Link = Link()
 
-    def __post_init__(self):
-        checks.require(
-            "cam roller",
-            *checks.links(self.links),
-            None if hasattr(self.cam, "polar") else f"cam must be one of ks.cams or alike, got {self.cam!r}",
-        )
+    RULES = checks.Rules(
+        "cam roller",
+        cam=checks.Own(("polar",), "one of ks.cams or alike"),
+        block=checks.Made(Link, "a Link"),
+    )
+
+    @property
+    def adds(self):
+        return Adds(("A",), ("block",), (), ("cam_force", "slot_force"))
 
     @property
     def links(self):

@@ -86,17 +86,27 @@ class Circle(Cam):
     centre: Any
 
     def __init__(self, radius, centre=(0.0, 0.0)):
-        checks.require("circle cam", checks.positive("radius", radius), checks.pair("centre", centre))
-        x, y = centre
+        object.__setattr__(self, "pitch_radius", radius)
+        object.__setattr__(self, "centre", centre)
+        self.RULES.admit(self)
+
+    def _around_origin(self):
+        """Say where O lies outside the circle, or on it."""
+        (x, y), radius = self.centre, self.pitch_radius
         distance = sqrt(x * x + y * y)
         if checks.known(distance - radius) and np.any(distance >= radius):
             text = (
                 f"O must lie inside the pitch circle, but its centre is {np.max(distance):.6g} m from O and its radius "
                 f"{np.min(radius):.6g} m; bring the centre nearer or enlarge the radius"
             )
-            checks.require("circle cam", checks.Problem(text, distance >= radius))
-        object.__setattr__(self, "pitch_radius", radius)
-        object.__setattr__(self, "centre", (x, y))
+            yield checks.Problem(text, distance >= radius)
+
+    RULES = checks.Rules(
+        "circle cam",
+        _around_origin,
+        pitch_radius=checks.Number("m", "radius", low=0.0, strict=True),
+        centre=checks.Pair("m"),
+    )
 
     def polar(self, angle, ray):
         x, y = self.centre
@@ -110,7 +120,7 @@ class Circle(Cam):
 
 
 @dataclass(frozen=True, eq=False)
-class CosineLaw(Cam):
+class CosineLaw(checks.Checked, Cam):
     """Cam that moves the slider exactly by x_B = mean + amplitude cos(phi) along a guide through O.
 
     A lies on the ray at the distance of the coupler length L from B, so r = x_B cos(phi) - w, where w is the signed
@@ -149,19 +159,23 @@ class CosineLaw(Cam):
     mean: Any
     guide_angle: float = 0.0
 
-    def __post_init__(self):
-        checks.require(
-            "cosine-law cam",
-            checks.positive("amplitude", self.amplitude),
-            checks.positive("mean", self.mean),
-            checks.finite("guide_angle", self.guide_angle),
-        )
-        if checks.known(self.mean - self.amplitude) and np.any(self.mean <= self.amplitude):
+    def _clear_of_origin(self):
+        """Say where the slider would run over O."""
+        mean, amplitude = self.mean, self.amplitude
+        if checks.known(mean - amplitude) and np.any(mean <= amplitude):
             text = (
-                f"mean must exceed the amplitude, or the slider would run over O; got mean {self.mean} m and amplitude "
-                f"{self.amplitude} m"
+                f"mean must exceed the amplitude, or the slider would run over O; got mean {mean} m and amplitude "
+                f"{amplitude} m"
             )
-            checks.require("cosine-law cam", checks.Problem(text, self.mean <= self.amplitude))
+            yield checks.Problem(text, mean <= amplitude)
+
+    RULES = checks.Rules(
+        "cosine-law cam",
+        _clear_of_origin,
+        amplitude=checks.Number("m", low=0.0, strict=True),
+        mean=checks.Number("m", low=0.0, strict=True),
+        guide_angle=checks.Number("rad"),
+    )
 
     @cached_property
     def _cosine(self):

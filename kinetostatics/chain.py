@@ -12,14 +12,28 @@ A group is a frozen dataclass with eight members; a new kind of group needs noth
     resolve(placement, loads, pushes, forces)
                             find the forces on its links, demand what they need of the joint it hangs on
 
-A group with a slider may have `elongation(placement, free_position)`, its travel from there without cancellation.
+A group with a slider may have `elongation(placement, free_position)`, its travel from there without cancellation, and
+any group `adds`, the names it adds, so that names given twice are found before anything is computed; `ks.check` tests a
+group of one's own.
 """
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from .errors import ParameterError
 from .links import Wrench
 from .planar import added
+
+MEMBERS = ("links", "references", "bars", "place", "closure", "requirement", "condition", "resolve")
+
+
+class Adds(NamedTuple):
+    """Names that a part of a mechanism adds: joints, links, and in `Forces` its reactions and scalars."""
+
+    joints: tuple[str, ...]
+    links: tuple[str, ...]
+    reactions: tuple[str, ...] = ()
+    scalars: tuple[str, ...] = ()
 
 
 class Bar(NamedTuple):
@@ -29,6 +43,27 @@ class Bar(NamedTuple):
     end: str
     link: str
     length: Any
+
+
+def added_by(part):
+    """Names a part adds: what it says, else what follows from its links; of its forces nothing is known then."""
+    if hasattr(part, "adds"):
+        return part.adds
+    fixed = {*part.references.values(), *(bar.start for bar in part.bars)} - {getattr(part, "on", "O"), "O"}
+    ends = dict.fromkeys(bar.end for bar in part.bars)
+    return Adds((*sorted(fixed - ends.keys()), *ends), tuple(part.links))
+
+
+class Once(dict):
+    """A table in which no name is set twice."""
+
+    def __setitem__(self, name, value):
+        if name in self:
+            raise ParameterError(
+                f"two parts of the mechanism add a force {name!r}, of which one would be lost; give one of them "
+                "another label or pin"
+            )
+        super().__setitem__(name, value)
 
 
 @dataclass

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import checks
-from .chain import Bar, Forces, Placement
+from .chain import Adds, Bar, Forces, Placement
 from .elementary import cos, sin
 from .links import Joint, Link, LinkMotion, Wrench
 from .planar import minus, moment, number, subtracted, vector
@@ -33,7 +33,7 @@ def resolve(own, demand):
 
 
 @dataclass(frozen=True, eq=False)
-class Crank:
+class Crank(checks.Checked):
     """Crank of a given length with pin A at its end; `length=None` makes it the slotted guide of a `CamRoller`.
 
     The angle of the crank ray is the crank angle, from +x, counter-clockwise.
@@ -42,9 +42,16 @@ class Crank:
     length: Any = None
     link: Link = Link()
 
-    def __post_init__(self):
-        length = None if self.length is None else checks.positive("crank length", self.length)
-        checks.require("crank", length, *checks.links(self.links))
+    RULES = checks.Rules(
+        "crank",
+        length=checks.Optional(checks.Number("m", "crank length", low=0.0, strict=True)),
+        link=checks.Made(Link, "a Link"),
+    )
+
+    @property
+    def adds(self):
+        joints = ("O",) if self.length is None else ("O", "A")
+        return Adds(joints, ("crank",), ("O",), ("balancing_torque",))
 
     @property
     def links(self):

@@ -79,6 +79,10 @@ class CaseError(KinetostaticsError, ValueError):
         super().__init__("\n".join([f"{path}: {count}", *(f"  {problem}" for problem in self.problems)]))
 
 
+class HintWarning(UserWarning):
+    """Something looks like a slip, of units for instance; what was asked for is computed all the same."""
+
+
 class ConditionWarning(UserWarning):
     """The result is right for the numbers given, but small changes of them change it much."""
 

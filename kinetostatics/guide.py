@@ -8,6 +8,9 @@ from . import checks
 from .elementary import cos, sin
 from .links import present
 
+ANGLE, OFFSET, POINT = checks.Number("rad"), checks.Number("m"), checks.Pair("m")
+DIRECTION = checks.Pair("1", "guide direction")
+
 
 class Guide(NamedTuple):
     """Guide line by its direction (unit vector) and its signed distance from O along its left normal, m.
@@ -21,10 +24,14 @@ class Guide(NamedTuple):
     @classmethod
     def at(cls, guide_angle=0.0, guide_offset=0.0):
         """Guide at an angle (rad, counter-clockwise from +x) and offset (m)."""
-        checks.require("guide", checks.finite("guide_angle", guide_angle), checks.finite("guide_offset", guide_offset))
-        if isinstance(guide_angle, int | float) and guide_angle == 0:
-            return cls((1.0, 0.0), guide_offset)
-        return cls((cos(guide_angle), sin(guide_angle)), guide_offset)
+        angle, offset = ANGLE.quick(guide_angle), OFFSET.quick(guide_offset)
+        if angle is checks.UNSURE or offset is checks.UNSURE:
+            rules = {"guide_angle": ANGLE, "guide_offset": OFFSET}
+            given = {"guide_angle": guide_angle, "guide_offset": guide_offset}
+            angle, offset = checks.examined("guide", rules, given).values()
+        if isinstance(angle, float):
+            return cls((float(cos(angle)), float(sin(angle))) if angle else (1.0, 0.0), offset)
+        return cls((cos(angle), sin(angle)), offset)
 
     @classmethod
     def through(cls, W1, W2):
@@ -35,14 +42,16 @@ class Guide(NamedTuple):
         ParameterError
             The points coincide or are not finite pairs.
         """
-        checks.require("guide", checks.pair("W1", W1), checks.pair("W2", W2))
+        points = checks.examined("guide", {"W1": POINT, "W2": POINT}, {"W1": W1, "W2": W2})
+        batch = [f"{name} must be one point, not a batch" for name, point in points.items() if any(map(np.ndim, point))]
+        checks.require("guide", *batch)
         from decimal import Decimal, localcontext
 
         with localcontext(prec=50):  # direction and offset are rounded once: what they lose, every position loses
-            (x1, y1), (x2, y2) = ([Decimal(float(part)) for part in point] for point in (W1, W2))
+            (x1, y1), (x2, y2) = ([Decimal(float(part)) for part in point] for point in points.values())
             x, y = x2 - x1, y2 - y1
             length = (x * x + y * y).sqrt()
-            checks.require("guide", None if length else f"W1 and W2 coincide at {tuple(W1)}")
+            checks.require("guide", None if length else f"W1 and W2 coincide at {points['W1']}")
             return cls((float(x / length), float(y / length)), float((x * y1 - y * x1) / length))
 
     @property
@@ -54,3 +63,28 @@ class Guide(NamedTuple):
     def guide_angle(self):
         """Angle of the direction from +x, rad."""
         return np.arctan2(self.direction[1], self.direction[0])[()]
+
+
+class Line:
+    """Rule of a field that is a guide, whose direction must have length 1."""
+
+    words = "made by Guide.at or .through"
+
+    def quick(self, value):
+        if type(value) is not Guide or type(value.direction) is not tuple or len(value.direction) != 2:
+            return checks.UNSURE
+        (x, y), offset = value.direction, value.guide_offset
+        plain = type(x) is float and type(y) is float and OFFSET.quick(offset) is offset
+        return value if plain and abs(x * x + y * y - 1.0) < 1e-9 else checks.UNSURE
+
+    def taken(self, value, field=""):
+        if not isinstance(value, Guide):
+            return value, f"{field} must be {self.words}, got {checks.shown(value)}"
+        direction, problem = DIRECTION.taken(value.direction)
+        offset, other = OFFSET.taken(value.guide_offset, "guide_offset")
+        return Guide(direction, offset), problem or other or self._problem(direction)
+
+    def _problem(self, direction):
+        length = np.hypot(*direction) if all(map(checks.known, direction)) else 1.0
+        right = np.all(np.abs(length - 1.0) < 1e-9)
+        return None if right else f"guide direction must have length 1, got {length}; use Guide.at"

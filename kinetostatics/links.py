@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from . import checks
 from .planar import added, left, minus, moment, plus, product, stretched, subtracted, work
 
@@ -56,7 +54,7 @@ class Wrench(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Link:
+class Link(checks.Checked):
     """Mass properties of one link.
 
     Parameters
@@ -81,17 +79,12 @@ class Link:
     centre: Any = (0.0, 0.0)
     inertia: Any = 0.0
 
-    def __post_init__(self):
-        pair = isinstance(self.centre, tuple | list) or np.shape(self.centre) == (2,)
-        centre = self.centre if pair else (self.centre, 0.0)
-        checks.require(
-            "Link",
-            checks.not_negative("mass", self.mass),
-            *([] if len(centre) == 2 else [f"centre must be (along, across) or a number, got {self.centre!r}"]),
-            *(checks.finite(f"centre {name}", part) for name, part in zip(("along", "across"), centre, strict=False)),
-            checks.not_negative("inertia", self.inertia),
-        )
-        object.__setattr__(self, "centre", tuple(centre))
+    RULES = checks.Rules(
+        "Link",
+        mass=checks.Number("kg", low=0.0),
+        centre=checks.Pair("m", parts=("along", "across"), lone=True),
+        inertia=checks.Number("kg*m**2", low=0.0),
+    )
 
     def joined(self, mass, place):
         """The link with a point mass (kg) fixed to it at place (along, across), m."""

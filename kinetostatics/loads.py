@@ -14,8 +14,22 @@ from .crank import ray
 TURN = 2 * math.pi
 
 
+class WholeTurns:
+    """Rule of a period: 2 pi or a whole multiple of it, but for rounding, which is taken away."""
+
+    def quick(self, value):
+        return value if value is TURN else checks.UNSURE
+
+    def taken(self, value, field=""):
+        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+        turns = value / TURN if number else 0.0
+        if round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns:
+            return round(turns) * TURN, None
+        return value, f"{field} must be 2 pi or a whole multiple of it, got {checks.shown(value)}"
+
+
 @dataclass(frozen=True, eq=False)
-class Gravity(Batched):
+class Gravity(checks.Checked, Batched):
     """Weight of every link.
 
     Parameters
@@ -29,12 +43,7 @@ class Gravity(Batched):
     acceleration: Any = 9.81
     direction: Any = -math.pi / 2
 
-    def __post_init__(self):
-        checks.require(
-            "gravity",
-            checks.not_negative("acceleration", self.acceleration),
-            checks.finite("direction", self.direction),
-        )
+    RULES = checks.Rules("gravity", acceleration=checks.Number("m/s**2", low=0.0), direction=checks.Number("rad"))
 
     @cached_property
     def vector(self):
@@ -44,7 +53,7 @@ class Gravity(Batched):
 
 
 @dataclass(frozen=True, eq=False)
-class Spring(Batched):
+class Spring(checks.Checked, Batched):
     """Linear spring along the guide, acting at the slider pin.
 
     Parameters
@@ -61,12 +70,9 @@ class Spring(Batched):
     free_position: Any
     on: str = "slider"
 
-    def __post_init__(self):
-        checks.require(
-            "spring",
-            checks.not_negative("stiffness", self.stiffness),
-            checks.finite("free_position", self.free_position),
-        )
+    RULES = checks.Rules(
+        "spring", stiffness=checks.Number("N/m", low=0.0), free_position=checks.Number("m"), on=checks.Name()
+    )
 
     @classmethod
     def balancing(cls, mass, crank_speed, free_position, on="slider"):
@@ -74,6 +80,9 @@ class Spring(Batched):
 
         Its stiffness, mass times crank speed squared, makes spring and inertia force equal and opposite all the way.
         """
+        given = {"mass": mass, "crank_speed": crank_speed}
+        rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
+        mass, crank_speed = checks.examined("balancing spring", rules, given).values()
         return cls(mass * crank_speed * crank_speed, free_position, on)
 
     def push(self, motion):
@@ -82,7 +91,7 @@ class Spring(Batched):
 
 
 @dataclass(frozen=True, eq=False)
-class ProcessForce(Batched):
+class ProcessForce(checks.Checked, Batched):
     """Cutting, gas or other force on the slider along the guide, positive in the guide direction.
 
     Parameters
@@ -101,32 +110,23 @@ class ProcessForce(Batched):
     on: str = "slider"
     period: float = field(default=TURN, kw_only=True)
 
-    def __post_init__(self):
+    def _periods(self):
+        """Say where the force has a period of its own."""
         known = getattr(self.force, "period", self.period)
-        checks.require(
-            "process force",
-            None if callable(self.force) else checks.table("force", self.force),
-            turns_problem(self.period),
-            None if known == self.period else f"the period is {self.period!r}, but that of its force {known!r}",
-        )
-        object.__setattr__(self, "period", whole_turns(self.period))
+        if known != self.period:
+            yield f"the period is {self.period!r}, but that of its force {known!r}"
+
+    RULES = checks.Rules(
+        "process force",
+        _periods,
+        force=checks.OrFunction(checks.Number("N", table=True)),
+        on=checks.Name(),
+        period=WholeTurns(),
+    )
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
         return self.force(motion) if callable(self.force) else self.force
-
-
-def turns_problem(period):
-    """What is wrong with a period of the crank angle, or None: it must be whole turns."""
-    number = isinstance(period, int | float) and not isinstance(period, bool) and math.isfinite(period)
-    turns = period / TURN if number else 0.0
-    whole = round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns
-    return None if whole else f"period must be 2 pi or a whole multiple of it, got {period!r}"
-
-
-def whole_turns(period):
-    """The multiple of 2 pi that a period is, but for rounding."""
-    return round(period / TURN) * TURN
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -160,7 +160,7 @@ class Tabulated:
             "table of force",
             checks.table("angle", angle),
             checks.table("force", force),
-            turns_problem(period),
+            WholeTurns().taken(period, "period")[1],
         )
         angle, force = (np.array(values, dtype=float) for values in (angle, force))
         fits = angle.ndim == 1 and angle.shape == force.shape
@@ -173,7 +173,7 @@ class Tabulated:
         for name, values in (("angle", angle), ("force", force)):
             values.setflags(write=False)
             object.__setattr__(self, name, values)
-        object.__setattr__(self, "period", whole_turns(period))
+        object.__setattr__(self, "period", WholeTurns().taken(period)[0])
 
     def __call__(self, motion):
         return np.interp(motion.crank_angle, self.angle, self.force, period=self.period)

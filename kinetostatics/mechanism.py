@@ -2,21 +2,47 @@
 
 import warnings
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import checks
+from . import checks, hints
 from .batch import Batched
 from .cam_roller import CamRoller
 from .cams import CosineLaw
-from .chain import Forces
+from .chain import MEMBERS, Adds, Forces, Once, added_by
 from .crank import Crank
 from .guide import Guide
 from .links import Link, present
+from .quantities import RATES, UNITS
 from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
+
+NAME = checks.Name()
+
+
+class Chain:
+    """Rule of a field that holds groups."""
+
+    rule = checks.Own(MEMBERS, "a group: RockerGroup, SliderGroup, CamRoller or one of your own")
+
+    def quick(self, value):
+        if type(value) is tuple and all(type(group) in LIBRARY for group in value):
+            return value
+        return checks.UNSURE
+
+    def taken(self, value, field=""):
+        if not isinstance(value, tuple | list):
+            return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
+        found = [self.rule.taken(group, "a group") for group in value]
+        found += [NAME.taken(getattr(group, "on", "O"), f"on of {type(group).__name__}") for group in value]
+        problem = next((problem for _, problem in found if problem), None)
+        return tuple(group for group, _ in found[: len(value)]), problem
+
+
+REMEDY = "give the second group another pin, pivot_name or label"
+LIBRARY = (SliderGroup, RockerGroup, CamRoller)
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,19 +62,11 @@ class Mechanism(Batched):
     crank: Crank
     groups: tuple[Any, ...]
 
+    RULES = checks.Rules("mechanism", name=NAME, crank=checks.Made(Crank, "a Crank"), groups=Chain())
+
     def __post_init__(self):
-        joints: set[str] = {"O"}
-        links: set[str] = set()
-        problems: list[str] = []
-        for part in (self.crank, *self.groups):
-            on = getattr(part, "on", "O")
-            if on not in joints:
-                problems.append(f"{type(part).__name__} hangs on joint {on!r}, which no part before it places")
-            added = {*part.references.values(), *(bar.end for bar in part.bars)} - {on, "O"}
-            for kind, known, new in (("joint", joints, added), ("link", links, set(part.links))):
-                problems += [f"{type(part).__name__} adds {kind} {name!r} a second time" for name in known & new]
-                known |= new
-        checks.require(self.name, *problems)
+        self.RULES.admit(self)
+        checks.require(self.name, *_name_problems((_named(self.crank), *map(_named, self.groups))))
 
     @cached_property
     def links(self):
@@ -67,6 +85,16 @@ class Mechanism(Batched):
     def bars(self):
         """Links that keep two joints at a distance, from the crank outwards."""
         return sum((group.bars for group in self.groups), self.crank.bars)
+
+    @cached_property
+    def of_library(self):
+        """Whether all groups say what they add, as the library's own do."""
+        return all(hasattr(group, "adds") for group in self.groups)
+
+    @cached_property
+    def hints(self):
+        """What looks like a slip of units, as sentences."""
+        return hints.of_mechanism(self)
 
     def group(self, kind):
         """First group of a kind, or None."""
@@ -92,7 +120,7 @@ class Mechanism(Batched):
 
     def resolve(self, placement, loads, pushes):
         """All forces, from the last group inwards, for given link loads and pushes on the sliders."""
-        forces = Forces()
+        forces = Forces() if self.of_library else Forces(reactions=Once(), scalars=Once())
         for group in reversed(self.groups):
             group.resolve(placement, loads, pushes, forces)
         self.crank.resolve(placement, loads, forces)
@@ -239,6 +267,42 @@ def _warn_off_law(cam, group):
     ]
     if wrong:
         warnings.warn(f"the slider will not follow the cosine law of its cam: {'; '.join(wrong)}", stacklevel=3)
+
+
+class _Named(NamedTuple):
+    """What a part is, what it hangs on and what it adds, by names."""
+
+    kind: str
+    on: str
+    adds: Adds
+
+
+def _named(part):
+    return _Named(type(part).__name__, getattr(part, "on", "O"), added_by(part))
+
+
+@lru_cache(maxsize=256)
+def _name_problems(parts):
+    """What is wrong with the names in a chain of parts: unknown ones, and ones that two things would have."""
+    points: dict[str, str] = {}
+    forces = dict.fromkeys(("closure", *UNITS), "result of every mechanism")
+    problems = []
+
+    def add(table, what, kind, names):
+        for name in names:
+            if name in table:
+                problems.append(f"{kind} adds {what} {name!r} a second time, after the {table[name]}; {REMEDY}")
+            table[name] = f"{what} of {kind}"
+
+    for kind, on, adds in parts:
+        if on not in points and on != "O":
+            problems.append(f"{kind} hangs on joint {on!r}, which no part before it places")
+        add(points, "joint", kind, adds.joints)
+        add(points, "link", kind, adds.links)
+        add(forces, "reaction", kind, adds.reactions)
+        rates = {f"{link}{ending}" for link in adds.links for ending in RATES}
+        add(forces, "quantity", kind, [name for name in (*adds.scalars, *rates) if name not in UNITS])
+    return problems
 
 
 def _guide(guide, angle, offset):

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import checks
-from .chain import Bar
+from .chain import Adds, Bar
 from .elementary import apart, condition, divisor, root, sqrt
 from .links import Joint, Link, LinkMotion
 from .planar import added, dot, left, length, minus, moment, number, quotient, stretched, subtracted
@@ -97,7 +97,7 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load, de
 
 
 @dataclass(frozen=True, eq=False)
-class RockerGroup:
+class RockerGroup(checks.Checked):
     """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
 
     Parameters
@@ -126,15 +126,24 @@ class RockerGroup:
     pivot_name: str = "O2"
     label: str = ""
 
-    def __post_init__(self):
-        checks.require(
-            "rocker group",
-            *checks.links(self.links),
-            checks.positive("coupler length", self.coupler_length),
-            checks.positive("rocker length", self.rocker_length),
-            checks.pair("rocker pivot", self.pivot),
-            checks.assembly_sign(self.assembly),
-        )
+    RULES = checks.Rules(
+        "rocker group",
+        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
+        rocker_length=checks.Number("m", "rocker length", low=0.0, strict=True),
+        pivot=checks.Pair("m", "rocker pivot"),
+        assembly=checks.Sign(),
+        coupler=checks.Made(Link, "a Link"),
+        rocker=checks.Made(Link, "a Link"),
+        on=checks.Name(),
+        pin=checks.Name(),
+        pivot_name=checks.Name(),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    @property
+    def adds(self):
+        forces = (self.on + self.label, self.pin, self.pivot_name)
+        return Adds((self.pin, self.pivot_name), (self._coupler, self._rocker), forces)
 
     @property
     def links(self):
@@ -161,9 +170,7 @@ class RockerGroup:
 
     def place(self, placement):
         """Add joints B and O2, coupler and rocker."""
-        motion = place(
-            placement.joints[self.on], self.coupler_length, self.rocker_length, tuple(self.pivot), self.assembly
-        )
+        motion = place(placement.joints[self.on], self.coupler_length, self.rocker_length, self.pivot, self.assembly)
         placement.joints[self.pin] = motion.pin
         placement.joints[self.pivot_name] = motion.rocker.joint
         placement.links[self._coupler] = motion.coupler

@@ -7,7 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from .balancing import RATIOS
 from .checks import choice
-from .loads import turns_problem, whole_turns
+from .loads import WholeTurns
 from .units import shown, to_si
 
 
@@ -83,10 +83,10 @@ def _two_points(value):
 
 
 def _period(text):
-    value = to_si(text, "rad")
-    if turns_problem(value):
+    period, problem = WholeTurns().taken(to_si(text, "rad"))
+    if problem:
         raise ValueError(f'must be a whole number of turns, such as "720 deg", found {text!r}')
-    return whole_turns(value)
+    return period
 
 
 Weight = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0)]

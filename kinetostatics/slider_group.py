@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import checks
-from .chain import Bar
+from .chain import Adds, Bar
 from .elementary import condition, divisor, root
-from .guide import Guide
+from .guide import Guide, Line
 from .links import Joint, Link, LinkMotion, present
 from .planar import added, length, minus, number, plus, quotient, subtracted, turned, unturned, vector
 
@@ -104,7 +104,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, dema
 
 
 @dataclass(frozen=True, eq=False)
-class SliderGroup:
+class SliderGroup(checks.Checked):
     """Coupler from joint `on` to a slider at joint `pin` on `guide`.
 
     Parameters
@@ -130,16 +130,24 @@ class SliderGroup:
     pin: str = "B"
     label: str = ""
 
-    def __post_init__(self):
-        checks.require(
-            "slider group",
-            *checks.links(self.links),
-            None
-            if isinstance(self.guide, Guide)
-            else f"guide must be made by Guide.at or .through, got {self.guide!r}",
-            checks.unit_vector("guide direction", self.guide.direction) if isinstance(self.guide, Guide) else None,
-            checks.positive("coupler length", self.coupler_length),
-            checks.assembly_sign(self.assembly),
+    RULES = checks.Rules(
+        "slider group",
+        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
+        guide=Line(),
+        assembly=checks.Sign(),
+        coupler=checks.Made(Link, "a Link"),
+        slider=checks.Made(Link, "a Link"),
+        on=checks.Name(),
+        pin=checks.Name(),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    @property
+    def adds(self):
+        label = self.label
+        reactions = (self.on + label, self.pin, "guide" + label)
+        return Adds(
+            (self.pin,), (self._coupler, self._slider), reactions, ("guide_force" + label, "guide_moment" + label)
         )
 
     @property

@@ -8,16 +8,25 @@ from typing import Any
 
 import numpy as np
 
-from . import assembly, checks
+from . import assembly, checks, hints
 from .batch import wider
-from .elementary import is_foreign_array, read_only
-from .errors import NotGivenError, ParameterError, QuantityError
+from .elementary import read_only
+from .errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from .links import load, virtual_work
-from .loads import Gravity, ProcessForce
+from .loads import Gravity, ProcessForce, Spring
+from .mechanism import Mechanism
 from .motion import Motion
 from .planar import added, minus, moment, number, plus, product
 from .principal_points import principal_points
 
+ANGLE = checks.Number("rad", "crank_angle", table=True)
+DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
+LOADS = (Gravity, Spring, ProcessForce)
+PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
+UNBALANCED = 1e-6
+"""Part of the largest torque that the two ways to it may differ by in a mechanism with groups of the user's own."""
+TRIED = 64
+"""Crank angles at which such a mechanism is tried before compiled loops take over."""
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
 
@@ -192,7 +201,25 @@ class Solution(Motion):
     @cached_property
     def _forces(self):
         with np.errstate(divide="ignore", invalid="ignore"):
-            return self.mechanism.resolve(self.placement, self._link_loads, self._pushes)
+            forces = self.mechanism.resolve(self.placement, self._link_loads, self._pushes)
+        if not self.mechanism.of_library:
+            self._warn_of_lost_power(forces.scalars["balancing_torque"])
+        return forces
+
+    def _warn_of_lost_power(self, torque):
+        """Warn if a group of the user's own finds forces that do not do the work of the loads."""
+        torque = self._scalar(torque)
+        if not isinstance(torque, np.ndarray) or torque.dtype != float:
+            return
+        lost = self._largest(torque - self.balancing_torque_by_power)
+        scale = np.maximum(self.largest_torque_term, self._largest(torque))
+        if np.any(lost > UNBALANCED * scale):
+            warnings.warn(
+                f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of powers "
+                f"differ by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group of your own "
+                "places its links or resolves its forces wrongly; ks.check(group) says where",
+                stacklevel=2,
+            )
 
     @cached_property
     def _gravity(self):
@@ -243,16 +270,19 @@ class Solution(Motion):
 
 
 def _angles(crank_angle):
-    if isinstance(crank_angle, np.ndarray) and crank_angle.dtype.kind in "fcO":
+    if type(crank_angle) is np.ndarray and crank_angle.dtype in PRECISIONS:
         return read_only(crank_angle.copy())
-    if is_foreign_array(crank_angle):
-        return crank_angle
-    checks.require("solve", checks.table("crank_angle", crank_angle))
-    return read_only(np.array(crank_angle, dtype=float))
+    if isinstance(crank_angle, list | tuple) and not crank_angle:
+        checks.require("solve", "there are no crank angles")
+    angle, problem = ANGLE.taken(crank_angle)
+    checks.require("solve", problem)
+    return angle if hasattr(angle, "shape") else read_only(np.array(angle))
 
 
-def _array_if_list(value):
-    return np.asarray(value) if isinstance(value, list | tuple) else value
+def _drive(**motion):
+    """Crank speed and acceleration as floats or arrays."""
+    plain = [DRIVE[name].quick(value) for name, value in motion.items()]
+    return checks.examined("solve", DRIVE, motion).values() if checks.UNSURE in plain else plain
 
 
 def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), on_gap="raise", engine=None):
@@ -267,7 +297,8 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing.
+        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing. Loads of your own, as all
+        arrays, are taken as they are now: what is changed of them later is not seen.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
         give NaN there and exact values elsewhere (no check, as needed under ``jax.jit``).
@@ -296,33 +327,37 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     -----
     ConditionWarning
         A crank angle lies so near a limit position that half the digits are lost.
+    HintWarning
+        Something looks like a slip of units: angles in degrees, a mass centre far outside, hardly any inertia.
     UserWarning
-        The crank angles are in single precision.
+        The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
     """
+    if type(mechanism) is not Mechanism:
+        checks.require("solve", _no_mechanism(mechanism))
     angle = _angles(crank_angle)
-    crank_speed, crank_acceleration = map(_array_if_list, (crank_speed, crank_acceleration))
+    crank_speed, crank_acceleration = _drive(crank_speed=crank_speed, crank_acceleration=crank_acceleration)
     loads = tuple(loads) if isinstance(loads, list | tuple) else (loads,)
     checks.require(
         "solve",
         None if math.prod(angle.shape) else "there are no crank angles",
-        checks.table("crank_speed", crank_speed),
-        checks.table("crank_acceleration", crank_acceleration),
+        None if _finite(angle) else "crank angles must be finite; found NaN or infinity",
         checks.choice("on_gap", on_gap, ("raise", "nan")),
         None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
         *(_load_problem(mechanism, item) for item in loads),
-        checks.fitting(
-            crank_angle=angle,
-            crank_speed=crank_speed,
-            crank_acceleration=crank_acceleration,
-            process_force=[item.force for item in loads if isinstance(item, ProcessForce) and not callable(item.force)],
-        ),
     )
+    loads = tuple(item if type(item) in LOADS else checks.kept(item) for item in loads)
+    shapes = _shapes(
+        mechanism, loads, crank_angle=angle, crank_speed=crank_speed, crank_acceleration=crank_acceleration
+    )
+    checks.require("solve", checks.fitting(**shapes))
     if angle.dtype == "float32":
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
             stacklevel=2,
         )
+    for text in (*mechanism.hints, *hints.of_angles(angle)):
+        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=2)
     solution = _on_engine(engine, Solution(mechanism, angle, crank_speed, crank_acceleration, loads))
     if on_gap == "raise":
         solution.check()
@@ -340,17 +375,55 @@ def _on_engine(engine, solution):
         raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
     if engine == "compiled":
         compiled.require()
-        return compiled.made_of(solution)
     try:
-        return compiled.made_of(solution) if compiled.available() else solution
+        made = compiled.made_of(solution) if engine == "compiled" or compiled.available() else solution
     except NotGivenError:
+        if engine == "compiled":
+            raise
         return solution
+    if not solution.mechanism.of_library:
+        _tried(solution)
+    return made
+
+
+def _tried(solution):
+    """Compute forces at some angles under gravity, for the warning that compiled loops do not give."""
+    angle = np.ravel(solution.crank_angle)[:: solution.crank_angle.size // TRIED + 1]
+    Solution(solution.mechanism, angle, 1.0, 1.0, (Gravity(),)).scalar("balancing_torque")
+
+
+def _no_mechanism(found):
+    """What is wrong with what was given for a mechanism, or None."""
+    if isinstance(found, Mechanism):
+        return None
+    itself = not isinstance(found, type) and hasattr(found, "solve")
+    remedy = "; it is solved by its own .solve(angles), with its own drive and loads" if itself else ""
+    return f"mechanism must be a Mechanism, as made by crank_slider or four_bar, got {checks.shown(found)}{remedy}"
+
+
+def _finite(angle):
+    """Whether all crank angles are finite, as far as they can be looked at."""
+    if not isinstance(angle, np.ndarray) or angle.dtype == object:
+        return True
+    return (angle.ndim == 1 and math.isfinite(angle.dot(angle))) or np.isfinite(angle).all()  # dot costs a quarter
+
+
+def _shapes(mechanism, loads, **arrays):
+    """Shapes that must fit together, by what has them."""
+    shapes = {name: value.shape for name, value in arrays.items() if hasattr(value, "shape")}
+    if mechanism.batch:
+        shapes["mechanism"] = mechanism.batch
+    for item in loads:
+        found = getattr(getattr(item, "force", None), "shape", ()) or getattr(item, "batch", ())
+        if found:
+            shapes[f"{type(item).__name__} {len(shapes)}"] = found
+    return shapes
 
 
 def _load_problem(mechanism, item):
     if isinstance(item, Gravity):
         return None
-    if not hasattr(item, "push"):
-        return f"loads must be Gravity, Spring or ProcessForce, got {item!r}"
+    if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):
+        return f"loads must be Gravity, Spring or ProcessForce, got {checks.shown(item)}"
     sliders = [name for name in mechanism.links if name.startswith("slider")]
     return checks.choice(f"{type(item).__name__}: on", item.on, sliders)

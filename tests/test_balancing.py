@@ -10,6 +10,9 @@ from scipy.optimize import linprog
 import kinetostatics as ks
 from kinetostatics.balancing import Counterweight, counterweight, full, optimal, partial
 
+pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+"""Bodies drawn at random have any inertia."""
+
 TURN = np.linspace(0.0, 2 * np.pi, 360, endpoint=False)
 ROUNDING = 1e-13
 CRANK, COUPLER = ks.Link(3.0, (0.1, 0.04), 0.2), ks.Link(7.0, (0.4, -0.06), 0.9)

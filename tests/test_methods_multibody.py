@@ -10,6 +10,7 @@ from machines import CLOSE, KINDS, LINKS, Machine, largest
 
 import kinetostatics as ks
 from kinetostatics import quantities
+from kinetostatics.chain import MEMBERS
 from kinetostatics.methods import integration, newton
 from kinetostatics.methods.method import NotGivenError
 
@@ -108,7 +109,7 @@ def test_what_no_constraint_equation_gives_is_refused(method):
     setting, s = method.settings[-1], solved("circle", acceleration=0.0)
     designs = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), TURN, crank_speed=1.0)
     short = ks.solve(ks.crank_slider(0.2, 0.1), TURN, crank_speed=1.0, on_gap="nan")
-    gear = SimpleNamespace(links={}, references={}, bars=())
+    gear = SimpleNamespace(links={}, references={}, bars=(), **dict.fromkeys(MEMBERS[3:]))
     foreign = replace(s, mechanism=ks.Mechanism("gear", ks.Crank(0.1), (gear,)))
     for refused, wanted, words in [
         (s, "pressure_angle", "no pressure_angle, but O, balancing_torque, slot_force"),

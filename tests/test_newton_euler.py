@@ -10,6 +10,9 @@ from newton_euler import Body, Scene, pin_by_cosine_law, pin_on_circle, pin_on_c
 
 import kinetostatics as ks
 
+pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+"""Bodies drawn at random have any inertia."""
+
 CLOSE = 1e-13
 """Error allowed relative to the largest of a kind; cos of the coupler stays above 0.49, so rounding grows little."""
 KINDS = ("plain", "circle", "cosine law")

@@ -16,6 +16,9 @@ from test_newton_euler import body, columns, either_sign, errors, number, reprod
 
 import kinetostatics as ks
 
+pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+"""Bodies drawn at random have any inertia."""
+
 CLOSE = 1e-13
 """Error allowed relative to the largest of a kind; the sine of the transmission angle stays above 0.07 or so, and the
 longest link below a few hundred times the shortest.

@@ -10,6 +10,9 @@ from test_newton_euler import body, either_sign, number, reproducible
 
 import kinetostatics as ks
 
+pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+"""Bodies drawn at random have any inertia."""
+
 CLOSE = 1e-13
 """Error allowed relative to the largest force; chains of three dyads leave some digits at either end of a stroke."""
 
