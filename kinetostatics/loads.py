@@ -1,7 +1,7 @@
 """Loads on the links besides inertia: weight, spring, process force."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -89,10 +89,13 @@ class ProcessForce(Batched):
         its constants into the program, so a function with other constants is compiled anew.
     on : str
         The slider it acts on.
+    period : float
+        Crank angle after which a function repeats, rad: 4 pi for a four-stroke load.
     """
 
     force: Any
     on: str = "slider"
+    period: float = field(default=2 * math.pi, kw_only=True)
 
     def __post_init__(self):
         if not callable(self.force):
