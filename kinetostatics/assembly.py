@@ -125,7 +125,13 @@ def require_turn(mechanism):
             angle = np.concatenate([GRID, _lowest(margin, 0.0)])
             found = margin(angle)
         if (found < -ROUNDING).any():
-            raise _error(mechanism, group, mechanism.place(angle), found)
+            where = intervals(mechanism, group)
+            text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in where)
+            raise AssemblyError(
+                f"{mechanism.name} cannot be assembled all round the turn: {group.requirement(mechanism.place(angle))}. "
+                f"It does not close for crank angles {text}",
+                where,
+            )
 
 
 def _margin(mechanism, group, design=()):

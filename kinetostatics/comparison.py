@@ -160,7 +160,7 @@ def mean_absolute_torque(solution):
         if error > PRECISE * mean + floor:
             words.append(f"mean torque: it is right to about {error:.2g} N m of {mean:.6g} only, so uneven is the load")
     for text in filter(None, words):
-        warnings.warn(text, ConditionWarning, stacklevel=3)
+        warnings.warn(text, ConditionWarning, stacklevel=2)
     return mean
 
 
