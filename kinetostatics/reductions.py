@@ -25,6 +25,7 @@ MEAN = 1e-2
 PEAKS = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 SCRATCH = 2**18
 """Bytes of memory for short use that each thread keeps."""
+TINY = np.finfo(float).tiny
 _own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
 _POWERS = np.arange(_AROUND.size)[:, None]
@@ -107,10 +108,24 @@ def _between(near):
         fewer = top - _INNER(place) * (series[-2] + series[-1] * place)
     smooth = (bends < 0).all(axis=0)
     other = np.where(smooth, np.where(fits, fewer, top), here + abs(bend))
-    height = np.where(smooth, np.where(fits, top, height), here)
-    shift = np.where(smooth, np.where(fits, place, shift), 0.0)
-    height, other = (np.where(sign == 0, item, sign * np.sqrt(np.maximum(sign * item, 0.0))) for item in (height, other))
-    return height, shift, abs(height - other)
+    found = np.where(smooth, np.where(fits, top, height), here)
+    height = np.where(sign == 0, found, sign * np.sqrt(np.maximum(sign * found, 0.0)))
+    error = abs(found - other)
+    error = np.where(sign == 0, error, error / np.maximum(np.maximum(abs(height), np.sqrt(error)), TINY))
+    return height, np.where(smooth, np.where(fits, place, shift), 0.0), error
+
+
+def lowest(values, step):
+    """Smallest of values (designs, N) a step apart, between them, how far from the middle one it is, and the bend there.
+
+    The bend is the second derivative.
+    """
+    row, reach = np.arange(len(values)), values.shape[-1] // 2
+    place = np.clip(values.argmin(axis=-1), REACH, values.shape[-1] - 1 - REACH)
+    near = values[row, place + _AROUND[:, None]]
+    bend = (near[REACH - 1] - 2.0 * near[REACH] + near[REACH + 1]) / (step * step)
+    height, shift, _ = _between(1.0 - near)  # no margin exceeds 1, so that none of these changes its sign
+    return np.minimum(1.0 - height, near.min(axis=0)), (place + shift - reach) * step, bend
 
 
 def _mean(values):

@@ -32,6 +32,8 @@ GROWING = 1.15
 """How much more a quantity must change each time the distance is halved to grow without bound."""
 SAME = 1e-9
 """Crank angles this near, rad, are the same."""
+LONGEST = 6
+"""Periods after which a function is looked at that does not repeat after one."""
 SMALLEST = 2.0**-50
 """Step of a crank angle that changes it, rad."""
 ALIKE = 1e-6
@@ -192,30 +194,38 @@ def require_single(solution, owner, name):
 
 def require_repeating(solution):
     """Raise `ParameterError` if a load that is a function gives other forces after its period."""
+    problem = repeating_problem(solution)
+    if problem:
+        raise ParameterError(problem)
+
+
+def repeating_problem(solution):
+    """What is wrong with the period of the loads that are functions of one design, or None."""
     for item in solution.loads:
         if is_given(item):
             continue
         period = getattr(item, "period", TURN)
         angle = np.linspace(0.0, period, round(SAMPLES * period / TURN), endpoint=False) + 1e-3
-        first, *later = (
-            np.broadcast_to(pushed(item, solution.at(angle + turns * period)), angle.shape) for turns in range(5)
-        )
-        same = [_alike(first, other) for other in later]
-        if same[0]:
+
+        def push(turns, item=item, angle=angle, period=period):
+            return np.broadcast_to(pushed(item, solution.at(angle + turns * period)), angle.shape)
+
+        first, other = push(0), push(1)
+        if _alike(first, other):
             continue
-        place = int(np.nanargmax(np.abs(later[0] - first)))
-        owner = f"{type(item).__name__} on {item.on!r}"
+        place = int(np.nanargmax(np.abs(other - first)))
         found = (
-            f"its function gives {first[place]:.6g} N at crank angle {np.degrees(angle[place]):.6g} deg, but "
-            f"{later[0][place]:.6g} N at {np.degrees(angle[place] + period):.6g} deg"
+            f"{type(item).__name__} on {item.on!r}: its function gives {first[place]:.6g} N at crank angle "
+            f"{np.degrees(angle[place]):.6g} deg, but {other[place]:.6g} N at {np.degrees(angle[place] + period):.6g} deg"
         )
-        if any(same):
-            turns = (1 + same.index(True)) * round(period / TURN)
-            raise ParameterError(f"{owner}: {found}, and repeats after {turns} turns only: give period={2 * turns}*pi")
-        raise ParameterError(
-            f"{owner}: {found}; a force must repeat after its period of {period / TURN:.6g} turns: take its crank "
-            f"angle as np.mod(motion.crank_angle, period), or give another period"
-        )
+        turns = next((turns for turns in range(2, LONGEST + 1) if _alike(first, push(turns))), None)
+        if turns is None:
+            return (
+                f"{found}; a force must repeat after its period of {period / TURN:.6g} turns: take its crank angle as "
+                "np.mod(motion.crank_angle, period), or give the period it has"
+            )
+        return f"{found}, and repeats after {turns * period / TURN:.6g} turns only: give period={turns * period / np.pi:.6g}*pi"
+    return None
 
 
 def _alike(first, other):
