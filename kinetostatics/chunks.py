@@ -259,7 +259,7 @@ def _near_limits(make, job, frame, nearest, outputs):
     angle = np.broadcast_to(nearest[:, None], shape) + step * np.linspace(-1.5, 1.5, 25)
     around = np.broadcast_arrays(*_solved(variant, angle).closure)
     margin, place, bend = lowest(np.array(around).min(axis=0), step / 8)
-    place = angle[:, 12] + place
+    place = np.round(angle[:, 12] + place, 9) % period_of(variant.loads)
     reasons = np.full(len(frame), "", dtype=object)
     for row in np.flatnonzero(margin < -ROUNDING):
         where = f"between the crank angles, at {np.degrees(place[row]):.6g} deg"

@@ -14,15 +14,17 @@ from .turn import require_single
 
 ORDER = 8
 """Nodes of a panel of the quadrature."""
+SPLIT = 0.4
+"""Where a panel is parted: not in the middle, on both sides of which nodes lie alike, so that jumps there hide."""
 CLOSE = 1e-14
-"""Share of the integral, divided by the panels, that halving a panel may change for it to be done."""
+"""Share of the integral, divided by the panels, that parting a panel may change for it to be done."""
 PRECISE = 1e-9
 """Error of a mean, relative to it, from which a warning tells."""
 SMALLEST = 1e-14
-"""Panel, in periods, that is not halved any more."""
+"""Panel, in periods, that is not parted any more."""
 LARGEST = 2**17
 """Crank angles evaluated at a time."""
-WORK = 2**19
+WORK = 2**17
 """Panels after which the quadrature stops."""
 
 
@@ -131,7 +133,7 @@ def compare(reference, balanced):
 def mean_absolute_torque(solution):
     """Integral mean of the absolute balancing torque over the period of the solution, N m.
 
-    By Gauss quadrature between changes of sign, on panels that are halved where the halves do not agree with the whole,
+    By Gauss quadrature between changes of sign, on panels that are parted where the parts do not agree with the whole,
     which closes in on jumps, corners and narrow pulses of a load. The nodes of the first panels are a fiftieth of a degree apart at
     most where a load is a function; a pulse between them may pass unseen.
 
@@ -186,19 +188,19 @@ def _mean_absolute(function, turn, floor):
     start, width = edges[:-1], np.diff(edges)
     whole, total, wrong, room = integrals(start, width), 0.0, 0.0, WORK
     while start.size:
-        half = width / 2
-        both = integrals(np.concatenate([start, start + half]), np.concatenate([half, half])).reshape(2, -1)
+        left, right = SPLIT * width, (1.0 - SPLIT) * width
+        both = integrals(np.concatenate([start, start + left]), np.concatenate([left, right])).reshape(2, -1)
         error = np.abs(both.sum(axis=0) - whole)
         room -= both.size
         size = np.abs(total) + np.abs(both).sum()
         rough = error > width * floor + 1e-16 * size
-        rough &= (half > SMALLEST * turn.period) & (error > CLOSE * size / start.size)
+        rough &= (left > SMALLEST * turn.period) & (error > CLOSE * size / start.size)
         if room < 0:
             rough[:] = False
         total += both[:, ~rough].sum()
         wrong += error[~rough].sum()
-        start = np.concatenate([start[rough], start[rough] + half[rough]])
-        width, whole = np.tile(half[rough], 2), both[:, rough].ravel()
+        start = np.concatenate([start[rough], start[rough] + left[rough]])
+        width, whole = np.concatenate([left[rough], right[rough]]), both[:, rough].ravel()
     return float(total) / turn.period, float(wrong) / turn.period
 
 

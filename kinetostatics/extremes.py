@@ -236,10 +236,11 @@ def _turning_points(path):
     turning[-1:] &= period > 0
     before, after = moving[turning], following[turning]
     places, maximum = np.array([before, (before + after + 1) // 2, after + 1]), direction[before] > 0
-    if not period and moving.size:
+    if not period:
         places = np.column_stack([[0] * 3, places, [count - 1] * 3])
         maximum = np.concatenate([direction[moving[:1]] < 0, maximum, direction[moving[-1:]] > 0])
-    while maximum.size > 1 and (not period or np.all(maximum != np.roll(maximum, 1))):
+        maximum = maximum if moving.size else np.array([True, False])
+    while maximum.size > 2 - bool(period) and (not period or np.all(maximum != np.roll(maximum, 1))):
         middle = places[1] % count
         height, rounding = value[middle], floor[middle]
         change = np.abs(np.roll(height, -1) - height) / np.maximum(rounding, np.roll(rounding, -1))
@@ -247,7 +248,7 @@ def _turning_points(path):
         if change[least] > 1:
             break
         pair = [least, (least + 1) % maximum.size]
-        if not period and maximum.size > 2 and (least == 0 or least == maximum.size - 2):  # the end stays, as the other kind
+        if not period and (least == 0 or least == maximum.size - 2):  # the end stays, as the other kind
             end = pair.pop(-1 if least else 0)
             maximum[end] = ~maximum[end]
         kept = np.delete(np.arange(maximum.size), pair)

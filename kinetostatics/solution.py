@@ -276,18 +276,18 @@ def pushed(item, motion):
     found = item.push(motion)
     if is_given(item) or is_foreign_array(found) or getattr(found, "dtype", None) == object:
         return found
-    wanted = f"must return its force in N, a number or an array of shape {motion.shape}"
-    found = found if found is None else np.asarray(found)
     owner = f"{type(item).__name__} on {item.on!r}: its function"
-    if found is None or found.dtype.kind not in "fiuO" or (found.dtype == object and not hasattr(found[()], "__mul__")):
-        raise ParameterError(f"{owner} {wanted}, one for each crank angle, got {'None' if found is None else found!r}")
-    if found.dtype == object:
-        return found[()]
-    if not _fits(found.shape, motion.shape):
-        raise ParameterError(f"{owner} {wanted}, one for each crank angle, got shape {found.shape}")
-    if not np.isfinite(found).all():
-        _require_finite(owner, found, motion)
-    return found if found.dtype.kind == "f" else found.astype(float)
+    wanted = f"must return its force in N, a number or an array of shape {motion.shape}, one for each crank angle"
+    array = np.asarray(found)
+    if array.dtype == object and array.ndim == 0 and hasattr(found, "__mul__"):  # a recorded number, an enclosure
+        return found
+    if array.dtype.kind not in "fiu":
+        raise ParameterError(f"{owner} {wanted}, got {str(found)[:60]}")
+    if not _fits(array.shape, motion.shape):
+        raise ParameterError(f"{owner} {wanted}, got shape {array.shape}")
+    if not np.isfinite(array).all():
+        _require_finite(owner, array, motion)
+    return array if array.dtype.kind == "f" else array.astype(float)
 
 
 def _fits(shape, wanted):

@@ -127,13 +127,20 @@ class Turn:
         """Values of a function of a solution at any crank angles."""
         return function(self.at.at(np.mod(angle, self.period)))
 
+    @cached_property
+    def _approached(self):
+        """Solutions beside limit positions, by the crank angle of these and the side."""
+        return {}
+
     def limit(self, function, angle, side, size=0.0):
         """What a function of a solution tends to at a limit position from one side (+1: from greater crank angles).
 
         `size` is how large it is elsewhere. Infinite if it grows without bound, NaN if no correct digits are near enough to tell.
         """
-        angle, distance = angle % self.period, APPROACH
-        near = self.at.at(np.mod(angle + side * distance, self.period))
+        angle, distance = float(angle % self.period), APPROACH
+        if (angle, side) not in self._approached:
+            self._approached[angle, side] = self.at.at(np.mod(angle + side * distance, self.period))
+        near = self._approached[angle, side]
         values = np.asarray(function(near), dtype=float)
         with np.errstate(invalid="ignore"):
             trusted = np.isfinite(values) & (near.condition < TRUSTED)
@@ -148,7 +155,8 @@ class Turn:
             return np.copysign(np.inf, change[-1])
         edge = np.isclose(angle, self.edges, rtol=0, atol=SAME).any()
         place = np.sqrt(distance) if edge else distance  # by the root of the distance rates change at the end of a gap
-        fit = np.polynomial.Polynomial.fit(place, values, min(8, count - 3), domain=[0.0, place[0]])(0.0)
+        weight = 1.0 / (1e-10 + 1e-16 * near.condition[:count])
+        fit = np.polynomial.Polynomial.fit(place, values, min(6, count - 3), domain=[0.0, place[0]], w=weight)(0.0)
         there = self._outermost(angle, side) if edge else angle
         direct = float(self.evaluate(function, np.array([there]))[0])
         if abs(direct - fit) <= 1e-3 * size and (edge or abs(direct - values[-1]) <= 2 * steps[-1]):
