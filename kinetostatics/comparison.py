@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from .errors import ConditionWarning, ParameterError, QuantityError
-from .extremes import extrema, extremes, warning
+from .extremes import UNIT, extrema, extremes, warning
 from .quantities import label, magnitude, unit
 from .solution import Solution
-from .turn import require_single
+from .turn import USABLE, require_single
 
 ORDER = 8
 """Nodes of a panel of the quadrature."""
@@ -185,6 +185,7 @@ def _mean_absolute(function, turn, floor):
             parts.append(np.abs(function(angle.ravel())).reshape(angle.shape) @ weights)
         return width * np.concatenate(parts)
 
+    noise = np.abs(samples).max() * UNIT * np.fmin(turn.condition, USABLE) * (turn.limits.size > 0)
     start, width = edges[:-1], np.diff(edges)
     whole, total, wrong, room = integrals(start, width), 0.0, 0.0, WORK
     while start.size:
@@ -193,7 +194,7 @@ def _mean_absolute(function, turn, floor):
         error = np.abs(both.sum(axis=0) - whole)
         room -= both.size
         size = np.abs(total) + np.abs(both).sum()
-        rough = error > width * floor + 1e-16 * size
+        rough = error > width * (floor + np.interp(start, turn.angle, noise)) + 1e-16 * size
         rough &= (left > SMALLEST * turn.period) & (error > CLOSE * size / start.size)
         if room < 0:
             rough[:] = False

@@ -166,9 +166,7 @@ def extrema(solution, quantity):
         if inner.any():
             minimised = _minimised(evaluate, brackets[:, inner], sign[inner])
             angle[inner] = _polished(evaluate, minimised, sign[inner], floor[inner])
-        angle = np.where(
-            inner, np.maximum(np.mod(angle + SAME, turn.period) - SAME, 0.0), np.mod(angle, turn.period)
-        )
+        angle = np.where(inner, np.maximum(np.mod(angle + SAME, turn.period) - SAME, 0.0), np.mod(angle, turn.period))
         if inner.any():
             value[inner] = evaluate(angle[inner])
         order = np.argsort(angle, kind="stable")
