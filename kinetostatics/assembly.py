@@ -128,8 +128,8 @@ def require_turn(mechanism):
             where = intervals(mechanism, group)
             text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in where)
             raise AssemblyError(
-                f"{mechanism.name} cannot be assembled all round the turn: {group.requirement(mechanism.place(angle))}. "
-                f"It does not close for crank angles {text}",
+                f"{mechanism.name} cannot be assembled all round the turn: "
+                f"{group.requirement(mechanism.place(angle))}. It does not close for crank angles {text}",
                 where,
             )
 

@@ -134,8 +134,8 @@ def mean_absolute_torque(solution):
     """Integral mean of the absolute balancing torque over the period of the solution, N m.
 
     By Gauss quadrature between changes of sign, on panels that are parted where the parts do not agree with the whole,
-    which closes in on jumps, corners and narrow pulses of a load. The nodes of the first panels are a fiftieth of a degree apart at
-    most where a load is a function; a pulse between them may pass unseen.
+    which closes in on jumps, corners and narrow pulses of a load. The nodes of the first panels are a fiftieth of a
+    degree apart at most where a load is a function; a pulse between them may pass unseen.
 
     Raises
     ------

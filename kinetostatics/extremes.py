@@ -67,11 +67,11 @@ class Extremes:
 def extremes(solution, quantity):
     """All extrema of one quantity over the period of the solution: the turn, or several for a load that takes them.
 
-    Brackets come from samples a quarter of a degree apart, a twentieth where a load is a function, and closer near limit
-    positions; each extremum is then found by minimisation (scipy.optimize.elementwise) of the quantity evaluated by the
-    mechanism itself. As a minimum fixes its place only to half the digits, the angle is last read from the slope of a
-    Chebyshev fit through nearby evaluations, and kept if the value there is as good. Where a load jumps, the extremum is
-    that of the samples.
+    Brackets come from samples a quarter of a degree apart, a twentieth where a load is a function, and closer near
+    limit positions; each extremum is then found by minimisation (scipy.optimize.elementwise) of the quantity evaluated
+    by the mechanism itself. As a minimum fixes its place only to half the digits, the angle is last read from the slope
+    of a Chebyshev fit through nearby evaluations, and kept if the value there is as good. Where a load jumps, the
+    extremum is that of the samples.
 
     Values with less than two correct digits, by `Solution.condition`, do not count. In their place, and at the ends of
     gaps, stands what the quantity tends to there, from each side.
@@ -221,8 +221,8 @@ def _open_paths(turn, function, samples, good, floor, size):
 def _turning_points(path):
     """Crank angles around each extremum (3, K), its value, rounding, and whether it is a maximum (K,).
 
-    The middle of a level stretch counts once. The ends of an open path are extrema too, with no angles around. Rises and
-    falls that are no more than rounding are taken out, least first.
+    The middle of a level stretch counts once. The ends of an open path are extrema too, with no angles around. Rises
+    and falls that are no more than rounding are taken out, least first.
     """
     angle, value, floor, period = path
     count = value.size

@@ -21,7 +21,7 @@ REACH = 4
 PEAK = 1e-4
 """Error of a peak, relative to it, from which so many samples do not tell it; or a hundredth of that of the range."""
 MEAN = 1e-2
-"""Error of a mean, relative to it, from which so many samples do not tell it; and a tenth of that of the largest value."""
+"""Error of a mean, relative to it, from which so many samples do not tell it; and a tenth of that of the peak."""
 PEAKS = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 SCRATCH = 2**18
 """Bytes of memory for short use that each thread keeps."""
@@ -116,7 +116,7 @@ def _between(near):
 
 
 def lowest(values, step):
-    """Smallest of values (designs, N) a step apart, between them, how far from the middle one it is, and the bend there.
+    """Smallest of values (designs, N) a step apart, between them; how far it is from the middle one; the bend there.
 
     The bend is the second derivative.
     """

@@ -274,7 +274,7 @@ def pushed(item, motion):
         It is no array of numbers, one for each crank angle, or not finite where the mechanism closes.
     """
     found = item.push(motion)
-    if is_given(item) or is_foreign_array(found) or getattr(found, "dtype", None) == object:
+    if is_given(item) or is_foreign_array(found) or (isinstance(found, np.ndarray) and found.dtype == object):
         return found
     owner = f"{type(item).__name__} on {item.on!r}: its function"
     wanted = f"must return its force in N, a number or an array of shape {motion.shape}, one for each crank angle"

@@ -55,8 +55,8 @@ def _warn_of_rows_without_digits(solution):
         angle = np.unique(np.broadcast_to(solution.crank_angle, solution.shape)[lost])
         places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3])) + (" ..." if angle.size > 3 else "")
         warnings.warn(
-            f"{solution.mechanism.name}: rates and forces have no correct digit in {int(lost.sum())} of {lost.size} rows, "
-            f"at crank angles {places} deg (solution.condition)",
+            f"{solution.mechanism.name}: rates and forces have no correct digit in {int(lost.sum())} of {lost.size} "
+            f"rows, at crank angles {places} deg (solution.condition)",
             ConditionWarning,
             stacklevel=4,
         )

@@ -135,7 +135,8 @@ class Turn:
     def limit(self, function, angle, side, size=0.0):
         """What a function of a solution tends to at a limit position from one side (+1: from greater crank angles).
 
-        `size` is how large it is elsewhere. Infinite if it grows without bound, NaN if no correct digits are near enough to tell.
+        `size` is how large it is elsewhere. Infinite if it grows without bound, NaN if no correct digits are near
+        enough to tell.
         """
         angle, distance = float(angle % self.period), APPROACH
         if (angle, side) not in self._approached:
@@ -222,9 +223,10 @@ def repeating_problem(solution):
         if _alike(first, other):
             continue
         place = int(np.nanargmax(np.abs(other - first)))
+        here, there = (f"{np.degrees(place):.6g} deg" for place in (angle[place], angle[place] + period))
         found = (
-            f"{type(item).__name__} on {item.on!r}: its function gives {first[place]:.6g} N at crank angle "
-            f"{np.degrees(angle[place]):.6g} deg, but {other[place]:.6g} N at {np.degrees(angle[place] + period):.6g} deg"
+            f"{type(item).__name__} on {item.on!r}: its function gives {first[place]:.6g} N at crank angle {here}, "
+            f"but {other[place]:.6g} N at {there}"
         )
         turns = next((turns for turns in range(2, LONGEST + 1) if _alike(first, push(turns))), None)
         if turns is None:
@@ -232,7 +234,8 @@ def repeating_problem(solution):
                 f"{found}; a force must repeat after its period of {period / TURN:.6g} turns: take its crank angle as "
                 "np.mod(motion.crank_angle, period), or give the period it has"
             )
-        return f"{found}, and repeats after {turns * period / TURN:.6g} turns only: give period={turns * period / np.pi:.6g}*pi"
+        whole = turns * period / TURN
+        return f"{found}, and repeats after {whole:.6g} turns only: give period={2 * whole:.6g}*pi"
     return None
 
 
