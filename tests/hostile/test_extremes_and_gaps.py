@@ -1,4 +1,4 @@
-"""Extremes, means, comparisons, sweeps and tables where results have no correct digit, gaps hide, or loads misbehave."""
+"""Extremes, means, comparisons, sweeps and tables where digits are lost, gaps hide, or loads misbehave."""
 
 import re
 import warnings
@@ -247,7 +247,7 @@ def test_what_is_no_force_is_refused_by_name(name, way):
 
 @pytest.mark.parametrize("name", WRONG)
 def test_sweeps_give_what_is_no_force_as_the_reason(name):
-    function, message = WRONG[name]
+    function, _ = WRONG[name]
     made = lambda mass: Variant(SAW, 33.5, 0.0, (ks.ProcessForce(function),))  # noqa: E731
     with np.errstate(all="ignore"):
         table = swept(made, {"mass": [1.0, 2.0]}, ["rms O"], angles=36)
