@@ -74,8 +74,9 @@ class Turn:
         grid = np.linspace(0.0, solution.period, count, endpoint=False)
         first = solution.at(grid)
         require_repeating(solution)
-        gaps = assembly.gaps(solution.mechanism)
-        near = np.concatenate([assembly.near_limits(solution.mechanism, NEAR), *gaps, np.empty(0)])
+        near = assembly.near_limits(solution.mechanism, NEAR)
+        gaps = assembly.gaps(solution.mechanism) if near.size else ()
+        near = np.concatenate([near, *gaps])
         near = np.unique(np.mod(near + SAME, TURN) - SAME)
         near = near[np.diff(near, prepend=-1.0) > 2 * SAME]
         limits = np.ravel(near + TURN * np.arange(turns)[:, None])
