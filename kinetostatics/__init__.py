@@ -12,6 +12,7 @@ balancing, counterweights   static balancing, the counterweights it takes, and t
 linkage                     swing and class of four-bars
 principal_points            common mass centre and shaking force from the link masses
 assembly                    where it can be put together
+turn                        the period results are reduced over, and where they have no correct digit
 extremes, comparison        true extrema; dynamic coefficients
 ingredients, rerouted       how much model a quantity needs; motion found in other ways
 precision, stability        every method's time against error; where methods fail

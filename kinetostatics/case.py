@@ -12,7 +12,7 @@ from types import MappingProxyType
 import numpy as np
 import pydantic
 
-from . import balancing, cams, checks, designs, linkage, parameters, schema
+from . import assembly, balancing, cams, checks, designs, linkage, parameters, schema
 from .comparison import Comparison
 from .errors import AssemblyError, CaseError, KinetostaticsError, ParameterError
 from .files import read_columns, read_text
@@ -21,7 +21,7 @@ from .links import Link
 from .loads import TURN, Gravity, ProcessForce, Spring, Tabulated
 from .mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
 from .quantities import label
-from .solution import Solution, solve
+from .solution import Solution, period_of, solve
 from .tables import balancing_table
 from .units import base_factor, shown
 
@@ -76,11 +76,14 @@ class Variant:
         return [self.folder / name for name in named if name]
 
     def solve(self, angles=720) -> Solution:
-        """Solution at so many crank angles, evenly over one turn from 0, end excluded."""
+        """Solution at so many crank angles, evenly over the period of the loads from 0, one turn unless they take more.
+
+        The end of the period is left out.
+        """
         checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
         return solve(
             self.mechanism,
-            np.linspace(0.0, 2 * np.pi, angles, endpoint=False),
+            np.linspace(0.0, period_of(self.loads), angles, endpoint=False),
             crank_speed=self.crank_speed,
             crank_acceleration=self.crank_acceleration,
             loads=self.loads,
@@ -129,7 +132,7 @@ class Case:
         return self.variants[name]
 
     def solve(self, name, angles=720) -> Solution:
-        """Solution of a variant at so many crank angles, evenly over one turn from 0, end excluded."""
+        """Solution of a variant at so many crank angles, evenly over the period of its loads from 0, end excluded."""
         return self.variant(name).solve(angles)
 
     def compare(self, reference, balanced) -> Comparison:
@@ -334,6 +337,7 @@ def _variant(name, own, common, folder, problems):
     try:
         variant = _built(table, folder, _tabulated(table, folder))
         variant.solve(angles=720)
+        assembly.require_turn(variant.mechanism)
     except CaseError as error:
         problems += [f"variants.{name}: {error.path}: {problem}" for problem in error.problems]
     except AssemblyError as error:

@@ -8,19 +8,20 @@ import math
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from . import compiled
+from . import checks, compiled
 from .case import Variant
 from .elementary import ROUNDING
 from .errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from .quantities import components, sizes
-from .reductions import Output
-from .solution import solve
+from .quantities import components, sizes, unit
+from .reductions import Output, lowest
+from .solution import TURN, period_of, solve
+from .turn import NEAR, repeating_problem
 
 VALUES = 100_000
 """Values over designs and angles computed at a time on each core: about what its cache holds."""
@@ -28,6 +29,14 @@ PROBED = 64
 """Designs among which one that can be built is looked for, to try a sweep before it begins."""
 NEGLIGIBLE = 1e-12
 """Share of the reference's number below which a design's counts as zero, as in `comparison`."""
+FEWEST = 12
+"""Crank angles below which a sweep is refused."""
+MOST = 5760
+"""Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
+SETTLED = 1e-3
+"""Relative change of an output, when the crank angles are doubled, that is none."""
+NO_DIGIT = 1e16
+"""Condition from which rates and forces have no correct digit."""
 FAILED = "failed"
 """Column with the reason why a design has no numbers; empty for the others."""
 
@@ -93,8 +102,10 @@ def suitable_engine(job, designs, engines):
 
     Raises what would otherwise be the reason of every design: `QuantityError` for a quantity that the mechanism does
     not have, `ParameterError` for a function that makes something else than a variant, `NotGivenError` if no engine
-    takes it.
+    takes it. The same for fewer crank angles than tell anything, and loads that do not repeat after their period.
     """
+    few = None if job.angles >= FEWEST else f"angles must be at least {FEWEST}, got {job.angles}: they miss every peak"
+    checks.require("sweep", few)
     for row in range(len(designs)):
         *_, plain = job.values(designs.iloc[row : row + 1])
         try:
@@ -109,10 +120,12 @@ def suitable_engine(job, designs, engines):
             for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
                 for name in _quantities(outputs):
                     components(solution, name)
+            problems = [repeating_problem(solution) for solution in solutions]
         except QuantityError:
             raise
         except Exception:
             continue
+        checks.require("sweep", *problems)
         return _engine(job, solutions, engines)
     return engines[-1]
 
@@ -136,7 +149,11 @@ def _quantities(outputs):
 
 
 def _solution(variant, angles):
-    turn = np.linspace(0.0, 2 * np.pi, angles, endpoint=False)
+    turn = np.linspace(0.0, period_of(variant.loads), angles, endpoint=False)
+    return _solved(variant, turn)
+
+
+def _solved(variant, turn):
     drive = {"crank_speed": variant.crank_speed, "crank_acceleration": variant.crank_acceleration}
     return solve(variant.mechanism, turn, **drive, loads=variant.loads, on_gap="nan", engine="numpy")
 
@@ -160,11 +177,14 @@ def _compared(job, frame):
     return numbers, reasons
 
 
-def _reduced(make, job, frame, outputs):
-    """Numbers of a variant (outputs, designs) and reasons (designs,) why it cannot be made or solved."""
+def _reduced(make, job, frame, outputs, earlier=None):
+    """Numbers of a variant (outputs, designs) and reasons (designs,) why it cannot be made or solved.
+
+    `earlier` are the numbers from half as many crank angles.
+    """
     count = len(frame)
     if count == 1:
-        return _alone(make, job, frame, outputs)
+        return _alone(make, job, frame, outputs, earlier)
     (values,) = job.values(frame)
     try:
         variant = make(values)
@@ -176,7 +196,7 @@ def _reduced(make, job, frame, outputs):
         parts = [np.delete(np.arange(count), apart), *apart[:, None]]
     else:
         try:
-            return _run(variant, job, count, outputs)
+            return _settled(make, job, frame, outputs, _run(variant, job, count, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -186,20 +206,72 @@ def _reduced(make, job, frame, outputs):
     numbers, reasons = np.empty((len(outputs), count)), np.empty(count, dtype=object)
     for part in parts:
         if part.size:
-            numbers[:, part], reasons[part] = _reduced(make, job, frame.iloc[part], outputs)
+            known = None if earlier is None else earlier[:, part]
+            numbers[:, part], reasons[part] = _reduced(make, job, frame.iloc[part], outputs, known)
     return numbers, reasons
 
 
-def _alone(make, job, frame, outputs):
+def _alone(make, job, frame, outputs, earlier):
     """The same for a single design, as an array of one, so that it does not matter which designs come together."""
     for values in job.values(frame):
         try:
-            return _run(make(values), job, 1, outputs)
+            return _settled(make, job, frame, outputs, _run(make(values), job, 1, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
             reason = str(error) or type(error).__name__
     return np.full((len(outputs), 1), np.nan), np.array([reason], dtype=object)
+
+
+def _settled(make, job, frame, outputs, found, earlier):
+    """Numbers and reasons, those of designs that so many crank angles do not tell from twice as many."""
+    numbers, reasons, rough, nearest = found
+    numbers, reasons, rough = np.array(numbers), np.array(reasons), np.array(rough)
+    near = np.flatnonzero(~np.isnan(nearest) & (reasons == ""))
+    narrow = np.zeros(len(frame), dtype=bool)
+    if near.size:
+        reasons[near], narrow[near] = _near_limits(make, job, frame.iloc[near], nearest[near], outputs)
+    if earlier is not None:
+        with np.errstate(invalid="ignore"):
+            rough &= abs(numbers - earlier) > SETTLED * abs(numbers)
+    again = np.flatnonzero((rough.any(axis=0) | narrow) & (reasons == ""))
+    if again.size and (earlier is None or 2 * job.angles <= MOST):
+        finer = replace(job, angles=2 * job.angles)
+        numbers[:, again], reasons[again] = _reduced(make, finer, frame.iloc[again], outputs, numbers[:, again])
+    else:
+        for row in again:
+            wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]
+            reasons[row] = f"{', '.join(wrong)} is not resolved by {job.angles} crank angles" + (
+                f": it passes so near a limit position at {np.degrees(nearest[row]):.6g} deg" if narrow[row] else ""
+            )
+    return numbers, reasons
+
+
+def _near_limits(make, job, frame, nearest, outputs):
+    """Reasons of designs that do not close, or lose all digits, between crank angles, and whether peaks hide there.
+
+    Looked at anew around the crank angle at which each is nearest to a limit position.
+    """
+    values = job.values(frame)[-1]
+    variant = make(values)
+    step = period_of(variant.loads) / job.angles
+    shape = len(frame), 1
+    angle = np.broadcast_to(nearest[:, None], shape) + step * np.linspace(-1.5, 1.5, 25)
+    around = np.broadcast_arrays(*_solved(variant, angle).closure)
+    margin, place, bend = lowest(np.array(around).min(axis=0), step / 8)
+    place = np.round(angle[:, 12] + place, 9) % period_of(variant.loads)
+    reasons = np.full(len(frame), "", dtype=object)
+    for row in np.flatnonzero(margin < -ROUNDING):
+        where = f"between the crank angles, at {np.degrees(place[row]):.6g} deg"
+        reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
+    if all(unit(item.quantity) == "m" for item in outputs):
+        return reasons, np.zeros(len(frame), dtype=bool)
+    with np.errstate(all="ignore"):
+        lost = _solved(variant, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
+        narrow = step > np.sqrt(2.0 * np.maximum(margin, 0.0) / bend)
+    for row in np.flatnonzero(np.ravel(lost) & (reasons == "")):
+        reasons[row] = f"has no correct digit at crank angle {np.degrees(place[row]):.6g} deg, a limit position"
+    return reasons, narrow
 
 
 def _told(error, count):
@@ -226,7 +298,11 @@ def _unbuildable(make, job, frame):
 
 
 def _run(variant, job, count, outputs):
-    """Numbers (outputs, designs), and the reasons (designs,) of those that do not close."""
+    """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
+
+    That is which numbers so many crank angles do not tell (outputs, designs), and the crank angle at which a design is
+    nearest to a limit position (designs,), NaN if it is not near.
+    """
     solution = _solution(variant, job.angles)
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
@@ -237,6 +313,8 @@ def _run(variant, job, count, outputs):
     names = _quantities(outputs)
     evaluate = (_by_loop if job.engine == "compiled" else _by_numpy)(solution, [*names, "closure"], made)
     numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
+    rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
+    turns = round(period_of(variant.loads) / TURN)
     step = max(1, VALUES // job.angles)
 
     def fill(start):
@@ -245,9 +323,13 @@ def _run(variant, job, count, outputs):
             *found, closure = evaluate(block)
             values = {name: parts[0] for name, parts in zip(names, found, strict=True)}
             for row, item in enumerate(outputs):
-                numbers[row, block] = item.reduced(values[item.quantity])
-            gaping = ~(closure.min(axis=-1) >= -ROUNDING).all(axis=0)
+                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity], turns)
+            margin = closure.min(axis=-1)
+            gaping = ~(margin >= -ROUNDING).all(axis=0)
             gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
+            near = ~gaping & (margin < NEAR).any(axis=0)
+            if near.any():
+                nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
 
     starts = range(0, made, step)
     if min(job.threads, len(starts)) == 1:
@@ -259,7 +341,9 @@ def _run(variant, job, count, outputs):
     for row in np.flatnonzero(gaps):
         where = f"at {gaps[row]} of {job.angles} crank angles"
         reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
-    return np.broadcast_to(numbers, (len(outputs), count)), np.broadcast_to(reasons, count)
+    shape = len(outputs), count
+    rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
+    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
 
 
 def _by_loop(solution, quantities, count):

@@ -22,7 +22,7 @@ from .elementary import ROUNDING, read_only
 from .errors import MissingLibraryError, NotGivenError
 from .loads import Gravity, ProcessForce, Spring
 from .machine_code import load
-from .solution import Solution
+from .solution import Solution, is_given
 from .tracing import BY_ANGLE, Node, Trace, trace
 
 SHARE = 100_000
@@ -345,6 +345,8 @@ class CompiledSolution(Solution):
         if math.prod(angle.shape[:-1]) > 1:
             angle = np.broadcast_to(angle, (*self.shape[:-1], angle.shape[-1])).reshape(-1, angle.shape[-1])
         rows = read_only(made(angle, made.tabulated(self)).reshape(-1, *self.shape))
+        if not all(map(is_given, self.loads)) and np.isnan(rows).any():
+            self._pushes  # noqa: B018  raises an error if a load is no number where the mechanism closes
         edges = np.cumsum(made.trace.widths)
         for name, stop, width in zip(quantities, edges, made.trace.widths, strict=True):
             self._found[name] = rows[stop - width : stop]

@@ -18,30 +18,41 @@ from .quantities import label, unit
 
 REACH = 4
 """Samples on either side of a peak that tell how high it is between them."""
+PEAK = 1e-4
+"""Error of a peak, relative to it, from which so many samples do not tell it; or a hundredth of that of the range."""
+MEAN = 1e-2
+"""Error of a mean, relative to it, from which so many samples do not tell it; and a tenth of that of the peak."""
+PEAKS = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 SCRATCH = 2**18
 """Bytes of memory for short use that each thread keeps."""
+TINY = np.finfo(float).tiny
 _own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
 _POWERS = np.arange(_AROUND.size)[:, None]
+_INNER = polynomial.Polynomial.fromroots(_AROUND[1:-1])
 _THROUGH = np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True))
 
 
 def _peak(values, sign=1.0):
-    """Largest value, times a sign, and its crank angle, rad: of all peaks of the samples the highest between them."""
+    """Largest value, times a sign, of each design: of all peaks of the samples the highest between them.
+
+    Also where it is, in periods, and about how much it may be wrong.
+    """
     count = values.shape[-1]
     tops = [first * count + _tops(some, sign) for first, some in _pieces(values, 2)]
     design, place = np.divmod(np.concatenate(tops), count)
     if count < _AROUND.size:
         height, shift = sign * values[design, place], 0.0 * place
+        error = height
     else:
         rivals = _rivals(sign * _around(values, design, place, 1), design, len(values))
         design, place = design[rivals], place[rivals]
-        height, shift = _between(sign * _around(values, design, place, REACH))
+        height, shift, error = _between(sign * _around(values, design, place, REACH))
     highest = _highest(height, design, len(values))
     _, first = np.unique(np.where(height < highest[design], -1, design), return_index=True)
     first = first[-len(values) :]
-    where = 2 * np.pi * ((place + shift)[first] % count) / count
-    return highest, np.where(np.isnan(highest), np.nan, where)
+    where = ((place + shift)[first] % count) / count
+    return highest, np.where(np.isnan(highest), np.nan, where), _highest(error, design, len(values))
 
 
 def _tops(values, sign):
@@ -77,7 +88,7 @@ def _between(near):
 
     By the polynomial through all of them, by the parabola through three if others spoil it, as beyond a jump, and that
     of the sample if not even three go together. What does not change its sign may be a magnitude, which has a corner at
-    zero, but its square has none.
+    zero, but its square has none. About how much the height may be wrong is what two samples less make of it.
     """
     sign = np.where((near >= 0).all(axis=0), 1.0, np.where((near <= 0).all(axis=0), -1.0, 0.0))
     curve = np.where(sign == 0, near, near * abs(near))
@@ -94,15 +105,39 @@ def _between(near):
             place = place - polynomial.polyval(place, slope, tensor=False) / polynomial.polyval(place, change, False)
         top = polynomial.polyval(place, series, tensor=False)
         fits = (abs(top - height) < 0.05 * abs(bend)) & (abs(place) < 1)
+        fewer = top - _INNER(place) * (series[-2] + series[-1] * place)
     smooth = (bends < 0).all(axis=0)
-    height = np.where(smooth, np.where(fits, top, height), here)
-    shift = np.where(smooth, np.where(fits, place, shift), 0.0)
-    return np.where(sign == 0, height, sign * np.sqrt(np.maximum(sign * height, 0.0))), shift
+    other = np.where(smooth, np.where(fits, fewer, top), here + abs(bend))
+    found = np.where(smooth, np.where(fits, top, height), here)
+    height = np.where(sign == 0, found, sign * np.sqrt(np.maximum(sign * found, 0.0)))
+    error = abs(found - other)
+    error = np.where(sign == 0, error, error / np.maximum(np.maximum(abs(height), np.sqrt(error)), TINY))
+    return height, np.where(smooth, np.where(fits, place, shift), 0.0), error
+
+
+def lowest(values, step):
+    """Smallest of values (designs, N) a step apart, between them; how far it is from the middle one; the bend there.
+
+    The bend is the second derivative.
+    """
+    row, reach = np.arange(len(values)), values.shape[-1] // 2
+    place = np.clip(values.argmin(axis=-1), REACH, values.shape[-1] - 1 - REACH)
+    near = values[row, place + _AROUND[:, None]]
+    bend = (near[REACH - 1] - 2.0 * near[REACH] + near[REACH + 1]) / (step * step)
+    height, shift, _ = _between(1.0 - near)  # no margin exceeds 1, so that none of these changes its sign
+    return np.minimum(1.0 - height, near.min(axis=0)), (place + shift - reach) * step, bend
+
+
+def _mean(values):
+    """Mean of each design, and how far that of every other sample is from it."""
+    found = values.mean(axis=-1)
+    return found, np.abs(values[:, ::2].mean(axis=-1) - found) * (values.shape[-1] % 2 == 0)
 
 
 def _mean_absolute(values):
-    sizes = (np.abs(some, out=_scratch(float, *some.shape)) for _, some in _pieces(values, 8))
-    return np.concatenate([size.mean(axis=-1) for size in sizes])
+    parts = (_mean(np.abs(some, out=_scratch(float, *some.shape))) for _, some in _pieces(values, 8))
+    found, error = zip(*parts, strict=True)
+    return np.concatenate(found), np.concatenate(error)
 
 
 def _pieces(values, size):
@@ -127,21 +162,63 @@ def _harmonic(order):
         parts = (np.einsum("dn,n->d", values, wave(angle)) for wave in (np.cos, np.sin))
         return np.hypot(*parts) * ((1.0 if order == 0 else 2.0) / values.shape[-1])
 
-    return amplitude
+    return lambda values: (amplitude(values), np.abs(amplitude(values[:, ::2]) - amplitude(values)))
 
 
-REDUCTIONS = {
-    "largest": lambda values: _peak(values)[0],
-    "largest_at": lambda values: _peak(values)[1],
-    "smallest": lambda values: -_peak(values, -1.0)[0],
-    "smallest_at": lambda values: _peak(values, -1.0)[1],
-    "largest_absolute": lambda values: np.maximum(_peak(values)[0], _peak(values, -1.0)[0]),
-    "range": lambda values: _peak(values)[0] + _peak(values, -1.0)[0],
-    "mean": lambda values: values.mean(axis=-1),
+def _rms(values):
+    def size(some):
+        return np.sqrt(np.einsum("dn,dn->d", some, some) / some.shape[-1])
+
+    found = size(values)
+    return found, np.abs(size(values[:, ::2]) - found) * (values.shape[-1] % 2 == 0)
+
+
+def _highest_at(sign):
+    def place(values):
+        highest, where, error = _peak(values, sign)
+        return 2 * np.pi * where, np.where(error > PEAK * np.abs(highest), np.inf, 0.0)
+
+    return place
+
+
+def _largest(values):
+    highest, _, error = _peak(values)
+    return highest, error
+
+
+def _smallest(values):
+    lowest, _, error = _peak(values, -1.0)
+    return -lowest, error
+
+
+def _both(joined):
+    def found(values):
+        (high, above), (low, below) = _largest(values), _smallest(values)
+        return joined(high, low), np.maximum(above, below)
+
+    return found
+
+
+FOUND = {
+    "largest": _largest,
+    "largest_at": _highest_at(1.0),
+    "smallest": _smallest,
+    "smallest_at": _highest_at(-1.0),
+    "largest_absolute": _both(lambda high, low: np.maximum(high, -low)),
+    "range": _both(np.subtract),
+    "mean": _mean,
     "mean_absolute": _mean_absolute,
-    "rms": lambda values: np.sqrt(np.einsum("dn,dn->d", values, values) / values.shape[-1]),
+    "rms": _rms,
 }
-"""By name: function of values (designs, N) at crank angles evenly over the turn; extremes are found between them."""
+"""By name: function of values (designs, N) evenly over the period to numbers and about how much they may be wrong."""
+
+
+def _alone(estimated):
+    return lambda values: estimated(values)[0]
+
+
+REDUCTIONS = {name: _alone(estimated) for name, estimated in FOUND.items()}
+"""By name: function of values (designs, N) evenly over a turn; extremes are found between them, places in turns."""
 
 
 @dataclass(frozen=True)
@@ -184,8 +261,20 @@ class Output:
         return int(found[1]) if found else None
 
     def reduced(self, values):
-        """Numbers (designs,) from values (designs, N); NaN where a value is."""
-        return (REDUCTIONS[self.reduction] if self.order is None else _harmonic(self.order))(values)
+        """Numbers (designs,) from values (designs, N) evenly over a turn; NaN where a value is."""
+        return self.estimated(values)[0]
+
+    def estimated(self, values, turns=1):
+        """Numbers (designs,) from values (designs, N) evenly over some turns, and whether so many do not tell them."""
+        found, error = FOUND[self.reduction](values) if self.order is None else _harmonic(self.order * turns)(values)
+        mean = self.reduction not in PEAKS
+        with np.errstate(invalid="ignore"):
+            rough = error > (MEAN if mean else PEAK) * np.abs(found)
+        if rough.any():
+            some = values[rough]
+            size = np.abs(some).max(axis=-1) if mean else np.ptp(some, axis=-1)
+            rough[rough] = error[rough] > (MEAN / 10 if mean else PEAK / 100) * size
+        return found * turns if self.reduction.endswith("_at") else found, rough
 
 
 def parsed(text) -> Output:
@@ -202,10 +291,10 @@ def parsed(text) -> Output:
     ratio = words[:1] == ["ratio"]
     reduction, *quantity = words[ratio:] or [""]
     found = Output(" ".join(quantity), reduction, ratio)
-    if quantity and (reduction in REDUCTIONS or found.order is not None):
+    if quantity and (reduction in FOUND or found.order is not None):
         return found
-    names = ", ".join((*REDUCTIONS, "harmonic_1", "harmonic_2 ..."))
+    names = ", ".join((*FOUND, "harmonic_1", "harmonic_2 ..."))
     raise ParameterError(
         f'output {text!r} must be a reduction and a quantity, such as "largest O" or "ratio mean_absolute '
-        f'balancing_torque"; reductions: {names}{checks.hint(reduction, REDUCTIONS)}'
+        f'balancing_torque"; reductions: {names}{checks.hint(reduction, FOUND)}'
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import assembly, checks, hints
 from .batch import wider
-from .elementary import read_only
+from .elementary import is_foreign_array, read_only
 from .errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from .links import load, virtual_work
 from .loads import Gravity, ProcessForce, Spring
@@ -27,6 +27,7 @@ UNBALANCED = 1e-6
 """Part of the largest torque that the two ways to it may differ by in a mechanism with groups of the user's own."""
 TRIED = 64
 """Crank angles at which such a mechanism is tried before compiled loops take over."""
+TURN = 2 * math.pi
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
 
@@ -76,6 +77,18 @@ class Solution(Motion):
     def shape(self):
         """Shape (..., N) of a scalar result: batch axes of designs and loads, then the crank angles."""
         return wider(super().shape, *self.loads)
+
+    @property
+    def period(self):
+        """Crank angle after which motion and loads repeat, rad: what extremes, means and tables run over."""
+        return period_of(self.loads)
+
+    @cached_property
+    def sampled(self):
+        """The solution over its period as extremes and means look at it (`turn.Turn`), whatever its crank angles."""
+        from .turn import Turn
+
+        return Turn.of(self)
 
     @property
     def reactions(self):
@@ -245,7 +258,7 @@ class Solution(Motion):
         pushes: dict[str, Any] = {}
         for item in self.loads:
             if not isinstance(item, Gravity):
-                pushes[item.on] = plus(pushes.get(item.on), item.push(self))
+                pushes[item.on] = plus(pushes.get(item.on), pushed(item, self))
         return pushes
 
     @cached_property
@@ -267,6 +280,61 @@ class Solution(Motion):
         links = self.placement.links
         works = [virtual_work(links[name], wrench) for name, wrench in self._link_loads.items()]
         return works + [product(push, self._travel(name).first) for name, push in self._pushes.items()]
+
+
+def period_of(loads):
+    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, one at least."""
+    return TURN * math.lcm(*(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
+
+
+def is_given(item):
+    """Whether a load is numbers, checked when it was made, and no code of the user's."""
+    return isinstance(item, Gravity | Spring) or (isinstance(item, ProcessForce) and not callable(item.force))
+
+
+def pushed(item, motion):
+    """Force of a load on its slider, N; what a function of the user's returns is checked.
+
+    Raises
+    ------
+    ParameterError
+        It is no array of numbers, one for each crank angle, or not finite where the mechanism closes.
+    """
+    found = item.push(motion)
+    if is_given(item) or is_foreign_array(found) or (isinstance(found, np.ndarray) and found.dtype == object):
+        return found
+    owner = f"{type(item).__name__} on {item.on!r}: its function"
+    wanted = f"must return its force in N, a number or an array of shape {motion.shape}, one for each crank angle"
+    array = np.asarray(found)
+    if array.dtype == object and array.ndim == 0 and hasattr(found, "__mul__"):  # a recorded number, an enclosure
+        return found
+    if array.dtype.kind not in "fiu":
+        raise ParameterError(f"{owner} {wanted}, got {str(found)[:60]}")
+    if not _fits(array.shape, motion.shape):
+        raise ParameterError(f"{owner} {wanted}, got shape {array.shape}")
+    if not np.isfinite(array).all():
+        _require_finite(owner, array, motion)
+    return array if array.dtype.kind == "f" else array.astype(float)
+
+
+def _fits(shape, wanted):
+    try:
+        return np.broadcast_shapes(shape, wanted) == wanted
+    except ValueError:
+        return False
+
+
+def _require_finite(owner, push, motion):
+    """Raise an error for a push that is not finite where the mechanism closes."""
+    wrong = np.broadcast_to(~np.isfinite(push) & motion._closed, motion.shape)
+    if wrong.any():
+        angle = np.broadcast_to(motion.crank_angle, motion.shape)[wrong]
+        places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3]))
+        raise ParameterError(
+            f"{owner} must return finite forces, got {np.broadcast_to(push, motion.shape)[wrong][0]} at {angle.size} "
+            f"crank angles, the first {places} deg",
+            wrong.any(axis=-1) if wrong.ndim > 1 else None,
+        )
 
 
 def _angles(crank_angle):

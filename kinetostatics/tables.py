@@ -1,16 +1,29 @@
 """Tables: a solution, its extremes, and counterweights as pandas DataFrames."""
 
+import warnings
+
 import numpy as np
 
-from .errors import QuantityError
-from .extremes import extremes
+from .errors import ConditionWarning, QuantityError
+from .extremes import extrema, extremes, warning
 from .quantities import RATES, UNITS, VECTORS, label, unit
+from .turn import NEAR
+
+NO_DIGIT = 1e16
+"""Condition from which rates and forces have no correct digit."""
 
 
 def solution_frame(solution):
-    """One row for each crank angle (and design), units in the column names."""
+    """One row for each crank angle (and design), units in the column names.
+
+    Warns
+    -----
+    ConditionWarning
+        Rates and forces have no correct digit at some of the crank angles.
+    """
     import pandas as pd
 
+    _warn_of_rows_without_digits(solution)
     columns = {"crank_angle [deg]": np.degrees(solution.crank_angle)}
     for joint in solution.placement.joints:
         columns |= _components(joint, "m", solution.position(joint))
@@ -33,6 +46,22 @@ def solution_frame(solution):
     return table
 
 
+def _warn_of_rows_without_digits(solution):
+    with np.errstate(invalid="ignore"):
+        if not any(np.any(margin < NEAR) for margin in solution.closure):
+            return
+        lost = solution.condition >= NO_DIGIT
+    if lost.any():
+        angle = np.unique(np.broadcast_to(solution.crank_angle, solution.shape)[lost])
+        places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3])) + (" ..." if angle.size > 3 else "")
+        warnings.warn(
+            f"{solution.mechanism.name}: rates and forces have no correct digit in {int(lost.sum())} of {lost.size} "
+            f"rows, at crank angles {places} deg (solution.condition)",
+            ConditionWarning,
+            stacklevel=4,
+        )
+
+
 def _components(name, measure, vector):
     return {f"{name}_x [{measure}]": vector[0], f"{name}_y [{measure}]": vector[1]}
 
@@ -50,17 +79,27 @@ def available(solution):
 
 
 def extremes_frame(solution):
-    """Smallest and largest true extremum of every quantity, with its crank angle."""
+    """Smallest and largest true extremum of every quantity over the period, with its crank angle.
+
+    Warns
+    -----
+    ConditionWarning
+        Values around some crank angles have no correct digit, or quantities grow without bound there; once for all.
+    """
     import pandas as pd
 
-    rows = []
+    rows, several = [], []
     links = (link for link, motion in solution.placement.links.items() if motion.ratio_slope is not None)
     rates = [f"{link}{ending}" for link in links for ending in RATES]
     for name in (*available(solution), *rates):
-        found = extremes(solution, name)
+        found = extrema(solution, name)
+        several.append(found)
         places = [found.angle[find(found.value)] if len(found) else np.nan for find in (np.argmin, np.argmax)]
         ends = zip(found.range, np.degrees(places), strict=True)
         rows.append((label(name), unit(name), *(item for end in ends for item in end)))
+    text = warning(solution, several)
+    if text:
+        warnings.warn(text, ConditionWarning, stacklevel=2)
     columns = ["quantity", "unit", "smallest", "smallest at [deg]", "largest", "largest at [deg]"]
     return pd.DataFrame(rows, columns=columns).set_index("quantity")
 

@@ -18,7 +18,7 @@ from .elementary import APART
 from .loads import Gravity, ProcessForce
 from .quantities import components
 from .quantities import sizes as sizes_of
-from .solution import Solution
+from .solution import Solution, pushed
 from .substitution import with_fields, with_numbers
 
 BY_DESIGN, BY_ANGLE = range(2)
@@ -252,7 +252,7 @@ class _Recorder:
                 self._require_elementwise(lambda angle: [copied.push(replace(motion, crank_angle=angle))])
         except Exception:  # whatever fails on recorded numbers
             del self.parameters[known:]
-            (values,) = self._tabled(1, lambda solution: [solution.loads[number].push(solution)])
+            (values,) = self._tabled(1, lambda solution: [pushed(solution.loads[number], solution)])
             return ProcessForce(values, item.on)
         return copied
 

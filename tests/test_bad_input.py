@@ -264,11 +264,12 @@ def test_interval_that_runs_through_zero_ends_beyond_a_turn():
 
 
 def test_a_gap_narrower_than_any_grid_is_found_at_the_angle_that_falls_into_it():
-    """Coupler a billionth shorter than the crank: a gap of 5 thousandths of a degree, square to the guide."""
+    """Coupler a billionth shorter than the crank: gaps of 5 thousandths of a degree, square to the guide, both told."""
     middle, half = 0.4 + np.pi / 2, np.arccos(1.0 - 1e-9)
     mechanism = ks.crank_slider(1.0, 1.0 - 1e-9, guide_angle=0.4)
-    (interval,) = gaps(mechanism, np.array([0.3, middle])).intervals
-    assert_allclose(interval, [middle - half, middle + half], rtol=0, atol=1e-11)
+    first, second = gaps(mechanism, np.array([0.3, middle])).intervals
+    assert_allclose(first, [middle - half, middle + half], rtol=0, atol=1e-11)
+    assert_allclose(np.array(second) - np.pi, [middle - half, middle + half], rtol=0, atol=1e-11)
 
 
 def test_a_mechanism_that_never_closes_has_the_whole_turn_as_its_gap():

@@ -96,10 +96,6 @@ def test_power_residual_shows_a_torque_that_is_wrong():
     assert 1e-5 < solution.power_residual < 1e-4
 
 
-def test_power_residual_of_an_unknown_load_is_unknown():
-    assert np.isnan(solved(loads=[ks.ProcessForce(lambda motion: motion.crank_angle * np.nan)]).power_residual)
-
-
 def test_results_cannot_be_written_to_and_follow_no_later_change_of_the_angles():
     turn = TURN.copy()
     solution = solved(turn)

@@ -186,15 +186,15 @@ def test_rows_equal_case_files_with_these_values(tmp_path, case, reference, name
     """What the file derives from them follows: centres, springs that balance the slider, the cosine law's coupler."""
     outputs = ["mean_absolute balancing_torque", "rms O", "ratio rms shaking_force"]
     chosen = written(tmp_path, case, [reference, name])
-    table = sweep(chosen, pd.DataFrame({f"{path} [{unit}]": values}), outputs, variant=name, angles=48)
+    table = sweep(chosen, pd.DataFrame({f"{path} [{unit}]": values}), outputs, variant=name, angles=360)
     assert table[FAILED].tolist() == ["", ""]
     expected = []
     for value in values:
-        single = written(tmp_path, case, [reference, name], path, f"{value!r} {unit}").solve(name, 48)
+        single = written(tmp_path, case, [reference, name], path, f"{value!r} {unit}").solve(name, 360)
         base = chosen.variant(reference)
         if path in paths(base.table):
             base = base.varied({path: value * base_factor(unit)})
-        force, torque = (np.hypot(*s.shaking_force) for s in (single, base.solve(48))), single.balancing_torque
+        force, torque = (np.hypot(*s.shaking_force) for s in (single, base.solve(360))), single.balancing_torque
         own, compared = (np.sqrt((size**2).mean()) for size in force)
         reaction = np.sqrt((single.reaction("O") ** 2).sum(axis=0).mean())
         expected.append([np.abs(torque).mean(), reaction, compared / own])
