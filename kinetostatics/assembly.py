@@ -1,31 +1,51 @@
 """Where a mechanism can be assembled: the check behind `solve`, and the crank-angle intervals for its message."""
 
+import math
 import warnings
+from functools import reduce
 
 import numpy as np
 
 from .elementary import ROUNDING
 from .errors import AssemblyError, ConditionWarning, ParameterError
 
-NEAR_LIMIT = 1e-8
-"""Closure margin below which half the digits of velocities and forces are gone."""
+HALF = 1e8
+"""Condition from which half of the digits are lost."""
+WORST = 100.0
+"""Largest condition of a mechanism times margin^2 / (proportion^2 times crank angle)."""
 
 
-def check(mechanism, placement):
-    """Raise `AssemblyError` if the mechanism does not close at some angle; warn if it nearly does not."""
-    for group in mechanism.groups:
+def check(solution):
+    """Raise `AssemblyError` if the mechanism does not close at some angle; warn where half of the digits are lost."""
+    placement, margins = solution.placement, []
+    for group in solution.mechanism.groups:
         margin = _looked_at(group.closure(placement))
         if margin is None:
             continue
+        margins.append(margin)
         smallest = margin.min()
-        if smallest >= NEAR_LIMIT:
+        if smallest >= 0.0:
             continue
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
-        if smallest >= -ROUNDING:
-            _warn_near_limit(mechanism, placement, margin, smallest)
-        else:
-            raise _error(mechanism, group, placement, margin)
+        if smallest < -ROUNDING:
+            raise _error(solution.mechanism, group, placement, margin)
+    if margins and not surely_well(solution, margins):
+        _warn_where_digits_are_lost(solution, margins)
+
+
+def surely_well(solution, margins):
+    """Whether the margins of closure alone tell that no crank angle loses half of its digits."""
+    least = 1.0
+    for margin in margins:
+        least = least * min(margin.min(), 1.0)
+    return least >= _enough(solution)
+
+
+def _enough(solution):
+    """Product of all groups' margins from which the condition is below `HALF`, however they lie."""
+    farthest = max(1.0, float(np.abs(np.asarray(solution.crank_angle)).max()))
+    return solution.mechanism.proportion * np.sqrt(WORST * farthest / HALF)
 
 
 def _looked_at(margin):
@@ -38,15 +58,23 @@ def _looked_at(margin):
         return None
 
 
-def _warn_near_limit(mechanism, placement, margin, smallest):
-    angle = np.broadcast_to(placement.angle, margin.shape).flat[int(np.argmin(margin))]
-    smallest = max(smallest, 0.0)
-    lost = np.inf if smallest == 0 else -np.log10(smallest)
+def _warn_where_digits_are_lost(solution, margins):
+    from .sensitivity import condition
+
+    product = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins))
+    suspect = np.flatnonzero(np.broadcast_to(product, solution.shape) < _enough(solution))
+    found = condition(solution, suspect)
+    lost = found > HALF
+    if not lost.any():
+        return
+    worst = int(np.argmax(np.where(lost, found, 0.0)))
+    angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[suspect[worst]]
+    count, digits = int(lost.sum()), max(0.0, 16.0 - np.log10(found[worst]))
     warnings.warn(
-        f"{mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position: the sine "
-        f"or cosine that divides rates and forces is {np.sqrt(smallest):.3g} (squared {smallest:.3g}); they have about "
-        f"{max(0.0, 16 - lost):.0f} correct digits there and grow without bound (solution.condition says how many "
-        "times errors are magnified, angle by angle)",
+        f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position or change "
+        f"point: errors of its lengths, rounding among them, are magnified {found[worst]:.3g} times, so rates and "
+        f"forces have about {digits:.0f} correct digits there; {count} of {math.prod(solution.shape)} crank angles "
+        "lose half of their digits or more (solution.condition tells it angle by angle)",
         ConditionWarning,
         stacklevel=5,
     )

@@ -68,6 +68,19 @@ class Mechanism(Batched):
         """Links that keep two joints at a distance, from the crank outwards."""
         return sum((group.bars for group in self.groups), self.crank.bars)
 
+    @cached_property
+    def proportion(self):
+        """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
+        whole, shortest = 0.0, np.inf
+        for part in (self.crank, *self.groups):
+            for length in getattr(part, "lengths", ()):
+                whole = whole + abs(length)
+            for bar in part.bars:
+                shortest = _smaller(shortest, bar.length)
+            if isinstance(part, CamRoller):
+                shortest = _smaller(shortest, part.smallest_radius)
+        return float(np.max(whole / shortest))
+
     def group(self, kind):
         """First group of a kind, or None."""
         return next((group for group in self.groups if isinstance(group, kind)), None)
@@ -239,6 +252,11 @@ def _warn_off_law(cam, group):
     ]
     if wrong:
         warnings.warn(f"the slider will not follow the cosine law of its cam: {'; '.join(wrong)}", stacklevel=3)
+
+
+def _smaller(a, b):
+    plain = isinstance(a, float) and isinstance(b, float | int)
+    return min(a, b) if plain else np.minimum(a, b)
 
 
 def _guide(guide, angle, offset):

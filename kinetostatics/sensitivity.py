@@ -268,11 +268,14 @@ class _Seeded:
     def _tabled(self, cam, plain):
         """Radius and derivatives of a cam that takes plain numbers only, by its size and by the crank angle."""
         angle = self._plain.crank_angle
-        third = (cam.polar(angle + STEP, ray(angle + STEP))[2] - cam.polar(angle - STEP, ray(angle - STEP))[2]) / 2 / STEP
+        third = (
+            (cam.polar(angle + STEP, ray(angle + STEP))[2] - cam.polar(angle - STEP, ray(angle - STEP))[2]) / 2 / STEP
+        )
         values = [self._value(part) for part in (*plain, third)]
         by_angle, by_size = self._angle[0].slopes, self._slopes(1.0)
         return [
-            _array(Dual(value, by_size * value + by_angle * slope)) for value, slope in zip(values, values[1:], strict=False)
+            _array(Dual(value, by_size * value + by_angle * slope))
+            for value, slope in zip(values, values[1:], strict=False)
         ]
 
     def _load(self, item, idle):
