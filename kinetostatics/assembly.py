@@ -30,7 +30,7 @@ def check(solution):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
         if smallest < -ROUNDING:
             raise _error(solution.mechanism, group, placement, margin)
-    if margins and not surely_well(solution, margins):
+    if margins and _in_double_precision(solution) and not surely_well(solution, margins):
         _warn_where_digits_are_lost(solution, margins)
 
 
@@ -48,6 +48,11 @@ def _enough(solution):
     return solution.mechanism.proportion * np.sqrt(WORST * farthest / HALF)
 
 
+def _in_double_precision(solution):
+    """Whether it is: numbers of any precision lose what they lose."""
+    return getattr(solution.crank_angle, "dtype", None) != object
+
+
 def _looked_at(margin):
     """The margin as a NumPy array; None where it has no value yet, as under ``jax.jit``."""
     if isinstance(margin, np.ndarray) and margin.dtype == float:
@@ -63,7 +68,7 @@ def _warn_where_digits_are_lost(solution, margins):
 
     product = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins))
     suspect = np.flatnonzero(np.broadcast_to(product, solution.shape) < _enough(solution))
-    found = condition(solution, suspect)
+    found = condition(solution, suspect) if suspect.size else np.zeros(1)
     lost = found > HALF
     if not lost.any():
         return

@@ -14,6 +14,7 @@ what was computed says nothing.
 import math
 from dataclasses import dataclass, replace
 from functools import reduce
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -188,6 +189,7 @@ def condition(solution, points=None):
         A group of the user's own does more than arithmetic and comparisons.
     """
     points = np.arange(math.prod(solution.shape)) if points is None else np.asarray(points)
+    points = np.arange(math.prod(solution.shape)) if points is None else points
     with np.errstate(all="ignore"):
         blocks = [_at(solution, points[start : start + BLOCK]) for start in range(0, points.size, BLOCK)]
     return np.concatenate(blocks)
@@ -273,10 +275,7 @@ class _Seeded:
         )
         values = [self._value(part) for part in (*plain, third)]
         by_angle, by_size = self._angle[0].slopes, self._slopes(1.0)
-        return [
-            _array(Dual(value, by_size * value + by_angle * slope))
-            for value, slope in zip(values, values[1:], strict=False)
-        ]
+        return [_array(Dual(value, by_size * value + by_angle * slope)) for value, slope in pairwise(values)]
 
     def _load(self, item, idle):
         if isinstance(item, Gravity):
@@ -291,7 +290,7 @@ class _Seeded:
         except Exception:  # whatever fails on numbers that are not plain
             self._seeds = known
             found = self._constant(push)
-        return ProcessForce(_array(found), item.on)
+        return ProcessForce(_array(found) if isinstance(found, Dual) else found, item.on)
 
     def _require_equal(self, parts, plain):
         for part, value in zip(parts, plain, strict=True):
