@@ -50,7 +50,7 @@ def _enough(solution):
 
 def _in_double_precision(solution):
     """Whether it is: numbers of any precision lose what they lose."""
-    return getattr(solution.crank_angle, "dtype", None) != object
+    return getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
 
 
 def _looked_at(margin):

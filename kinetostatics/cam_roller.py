@@ -16,7 +16,6 @@ from .elementary import sqrt
 from .links import Joint, Link, LinkMotion, Wrench
 from .planar import cross, dot, minus, subtracted, vector
 
-
 GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 """Crank angles at which cams of the user's own are looked at, rad."""
 

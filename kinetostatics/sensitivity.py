@@ -210,7 +210,8 @@ class _Seeded:
     """`solution`: one at some points, with numbers that carry derivatives in place of its own."""
 
     def __init__(self, plain, points):
-        self._plain, self._points, self._places = plain, points, np.unravel_index(points, plain.shape)
+        self._plain, self._points, self._shape = plain, points, plain.shape or (1,)
+        self._places = np.unravel_index(points, self._shape)
         lengths: list[Any] = []
         self._geometry(plain.mechanism, lengths.append)
         self._seeds, self._count = 0, len(lengths) + len(plain.loads) + 2
@@ -243,7 +244,7 @@ class _Seeded:
         """Values at the points, one for all of a plain number."""
         if not np.ndim(value):
             return float(value)
-        return np.broadcast_to(np.asarray(value, dtype=float), self._plain.shape)[self._places]
+        return np.broadcast_to(np.asarray(value, dtype=float), self._shape)[self._places]
 
     def _seed(self, value):
         value = self._value(value)
@@ -414,7 +415,7 @@ def _of_forces(solution, links, largest_pushes):
     forces, torques = [0.0], [0.0]
     for name, wrench in solution._link_loads.items():
         link = links[name]
-        forces += [PASSING * link.force, PASSING * link.moment / link.length]
+        forces += [PASSING * link.force, PASSING**2 * link.moment / link.length]
         torques.append(PASSING * (link.force * link.speed + link.moment * link.rate))
         forces.append(0.0 if wrench.force is None else _Sized(wrench.force).certain)
         torques.append(_Sized(virtual_work(solution.placement.links[name], wrench)).certain)
