@@ -63,23 +63,44 @@ def _looked_at(margin):
         return None
 
 
-def _warn_where_digits_are_lost(solution, margins):
+def ill_conditioned(solution, margins=None):
+    """Crank angles that lose half of their digits or more, found without the condition of all others.
+
+    Parameters
+    ----------
+    solution : Solution
+    margins : sequence of arrays, optional
+        Its `closure`.
+
+    Returns
+    -------
+    points : array of int (M,)
+        Their places in the flattened shape of the solution.
+    condition : array (M,)
+        Above `HALF`, infinite where no rounding is small enough.
+    """
     from .sensitivity import condition
 
-    product = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins))
-    suspect = np.flatnonzero(np.broadcast_to(product, solution.shape) < _enough(solution))
-    found = condition(solution, suspect) if suspect.size else np.zeros(1)
-    lost = found > HALF
-    if not lost.any():
+    margins = solution.closure if margins is None else margins
+    product = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins), np.ones(()))
+    closed = reduce(np.minimum, margins, np.ones(())) >= -ROUNDING
+    points = np.flatnonzero(np.broadcast_to(closed & (product < _enough(solution)), solution.shape))
+    found = condition(solution, points) if points.size else np.zeros(0)
+    return points[found > HALF], found[found > HALF]
+
+
+def _warn_where_digits_are_lost(solution, margins):
+    points, found = ill_conditioned(solution, margins)
+    if not points.size:
         return
-    worst = int(np.argmax(np.where(lost, found, 0.0)))
-    angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[suspect[worst]]
-    count, digits = int(lost.sum()), max(0.0, 16.0 - np.log10(found[worst]))
+    worst = int(np.argmax(found))
+    angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[points[worst]]
     warnings.warn(
         f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position or change "
         f"point: errors of its lengths, rounding among them, are magnified {found[worst]:.3g} times, so rates and "
-        f"forces have about {digits:.0f} correct digits there; {count} of {math.prod(solution.shape)} crank angles "
-        "lose half of their digits or more (solution.condition tells it angle by angle)",
+        f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {points.size} of "
+        f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
+        "angle by angle)",
         ConditionWarning,
         stacklevel=5,
     )

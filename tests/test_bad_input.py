@@ -355,7 +355,7 @@ def test_a_pitch_curve_that_does_not_go_around_the_pivot_is_refused_where_its_ra
 
 @pytest.mark.parametrize(("margin", "digits"), [(1e-6, 6), (1e-9, 2), (1e-12, 0)])
 def test_a_crank_angle_near_a_limit_position_is_warned_of_with_a_number(margin, digits):
-    """Coupler longer than the crank by a hair: cos is sqrt(2 margin) at 90 degrees, reactions lose three times its digits."""
+    """Coupler longer than the crank by a hair: cos is sqrt(2 margin) at 90 degrees, and reactions lose it thrice."""
     mechanism = ks.crank_slider(1.0, 1.0 + margin, slider=ks.Link(1.0))
     with pytest.warns(ks.ConditionWarning, match=f"at crank angle 90 deg .* about {digits} correct") as caught:
         solve(mechanism, np.array([0.3, np.pi / 2]))

@@ -9,7 +9,7 @@ from machines import ANGLES, planar
 
 import kinetostatics as ks
 from kinetostatics import sensitivity
-from kinetostatics.assembly import HALF, surely_well
+from kinetostatics.assembly import HALF, ill_conditioned, surely_well
 
 UNIT = 2.0**-53
 TURN = np.linspace(0.0, 2 * np.pi, 1441)
@@ -436,3 +436,13 @@ def test_no_loss_of_half_the_digits_passes_the_first_look_at_margins(kind):
     assert 100 < lost.sum() < 300
     assert sum(passed) > 40
     assert not np.any(lost & passed)
+
+
+@pytest.mark.parametrize("kind", RANDOM)
+def test_angles_that_lose_half_their_digits_are_those_whose_condition_says_so_in_gaps_too(kind):
+    draw = Draw(29, 12)
+    s = ks.Solution(RANDOM[kind](draw), TURN[::4], 7.0, 0.0, (ks.Gravity(),))
+    points, condition = ill_conditioned(s)
+    whole = s.condition.ravel()
+    assert np.array_equal(points, np.flatnonzero(whole > HALF))
+    np.testing.assert_array_equal(condition, whole[points])
