@@ -1,6 +1,7 @@
 """What travels along the chain of groups: placed joints and links outward, forces inward.
 
-A group is a frozen dataclass with eight members; a new kind of group needs nothing else:
+A group is a frozen dataclass with eight members; a new kind of group needs nothing else. Kernels in `place` and
+`resolve` that are arithmetic have their condition found by differentiation:
 
     links                   name -> `Link` of the links it adds
     references              name -> reference joint of these links

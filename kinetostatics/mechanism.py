@@ -73,7 +73,7 @@ class Mechanism(Batched):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
         whole, shortest = 0.0, np.inf
         for part in (self.crank, *self.groups):
-            for length in getattr(part, "lengths", ()):
+            for length in getattr(part, "lengths", [bar.length for bar in part.bars]):
                 whole = whole + abs(length)
             for bar in part.bars:
                 shortest = _smaller(shortest, bar.length)
