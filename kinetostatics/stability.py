@@ -1,8 +1,8 @@
 """Stability: what every method does near the places where it should hurt, against a certified reference.
 
 A place is a family of scenes with one number that leads toward it: the distance from a dead centre, a mass ratio, the
-size of the mechanism. The error of a method counts as exact while it is below a hundred times the rounding unit times
-the condition of the problem, which the library reports itself, at crank angles counted from the last full turn.
+size of the mechanism. The error of a method counts as exact while it is below the rounding unit times the condition of
+the problem, which the library reports itself, at crank angles counted from the last full turn.
 """
 
 import math
@@ -25,8 +25,6 @@ from .timing import circumstances
 
 UNIT = 2.0**-53
 """Rounding unit of double precision."""
-ALLOWED = 100.0
-"""Multiple of condition times rounding unit that still counts as exact."""
 ORDINARY = 1e-12
 """Error up to which a result is called exact without mention of the condition."""
 SPEED = 320 * math.pi / 30
@@ -259,13 +257,13 @@ def _at(place, number, methods):
     with np.errstate(all="ignore"):
         solution = place.scene(number)
         reference = enclosure(solution, place.quantity, digits=20)
-        bound = ALLOWED * UNIT * _within_a_turn(solution).condition_of(place.quantity)
+        bound = UNIT * _within_a_turn(solution).condition_of(place.quantity)
         other = _other_assembly(solution, place.quantity)
     common = {"place": place.name, "axis": place.axis, "number": number, "quantity": place.quantity}
     return [
         {
             **common,
-            "condition": np.max(bound) / (ALLOWED * UNIT),
+            "condition": np.max(bound) / UNIT,
             **_behaviour(method, solution, place.quantity, reference, bound, other),
         }
         for method in methods
