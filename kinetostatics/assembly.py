@@ -1,6 +1,8 @@
 """Where a mechanism can be assembled: the check behind `solve`, and the crank-angle intervals for its message."""
 
+import math
 import warnings
+from functools import reduce
 
 import numpy as np
 
@@ -9,25 +11,48 @@ from .errors import AssemblyError, ConditionWarning, ParameterError
 
 TURN = 2 * np.pi
 GRID = np.linspace(0.0, TURN, 721)[:-1]
-NEAR_LIMIT = 1e-8
-"""Closure margin below which half the digits of velocities and forces are gone."""
+HALF = 1e8
+"""Condition from which half of the digits are lost."""
+WORST = 100.0
+"""Largest condition of a mechanism times margin^2 / (proportion^2 times crank angle)."""
 
 
-def check(mechanism, placement):
-    """Raise `AssemblyError` if the mechanism does not close at some angle; warn if it nearly does not."""
-    for group in mechanism.groups:
+def check(solution):
+    """Raise `AssemblyError` if the mechanism does not close at some angle; warn where half of the digits are lost."""
+    placement, margins = solution.placement, []
+    for group in solution.mechanism.groups:
         margin = _looked_at(group.closure(placement))
         if margin is None:
             continue
+        margins.append(margin)
         smallest = margin.min()
-        if smallest >= NEAR_LIMIT:
+        if smallest >= 0.0:
             continue
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
-        if smallest >= -ROUNDING:
-            _warn_near_limit(mechanism, placement, margin, smallest)
-        else:
-            raise _error(mechanism, group, placement, margin)
+        if smallest < -ROUNDING:
+            raise _error(solution.mechanism, group, placement, margin)
+    if margins and _in_double_precision(solution) and not surely_well(solution, margins):
+        _warn_where_digits_are_lost(solution, margins)
+
+
+def surely_well(solution, margins):
+    """Whether the margins of closure alone tell that no crank angle loses half of its digits."""
+    least = 1.0
+    for margin in margins:
+        least = least * min(margin.min(), 1.0)
+    return least >= _enough(solution)
+
+
+def _enough(solution):
+    """Product of all groups' margins from which the condition is below `HALF`, however they lie."""
+    farthest = max(1.0, float(np.abs(np.asarray(solution.crank_angle)).max()))
+    return solution.mechanism.proportion * np.sqrt(WORST * farthest / HALF)
+
+
+def _in_double_precision(solution):
+    """Whether it is: numbers of any precision lose what they lose."""
+    return getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
 
 
 def _looked_at(margin):
@@ -40,15 +65,44 @@ def _looked_at(margin):
         return None
 
 
-def _warn_near_limit(mechanism, placement, margin, smallest):
-    angle = np.broadcast_to(placement.angle, margin.shape).flat[int(np.argmin(margin))]
-    smallest = max(smallest, 0.0)
-    lost = np.inf if smallest == 0 else -np.log10(smallest)
+def ill_conditioned(solution, margins=None):
+    """Crank angles that lose half of their digits or more, found without the condition of all others.
+
+    Parameters
+    ----------
+    solution : Solution
+    margins : sequence of arrays, optional
+        Its `closure`.
+
+    Returns
+    -------
+    points : array of int (M,)
+        Their places in the flattened shape of the solution.
+    condition : array (M,)
+        Above `HALF`, infinite where no rounding is small enough.
+    """
+    from .sensitivity import condition
+
+    margins = solution.closure if margins is None else margins
+    product = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins), np.ones(()))
+    closed = reduce(np.minimum, margins, np.ones(())) >= -ROUNDING
+    points = np.flatnonzero(np.broadcast_to(closed & (product < _enough(solution)), solution.shape))
+    found = condition(solution, points) if points.size else np.zeros(0)
+    return points[found > HALF], found[found > HALF]
+
+
+def _warn_where_digits_are_lost(solution, margins):
+    points, found = ill_conditioned(solution, margins)
+    if not points.size:
+        return
+    worst = int(np.argmax(found))
+    angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[points[worst]]
     warnings.warn(
-        f"{mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position: the sine "
-        f"or cosine that divides rates and forces is {np.sqrt(smallest):.3g} (squared {smallest:.3g}); they have about "
-        f"{max(0.0, 16 - lost):.0f} correct digits there and grow without bound (solution.condition says how many "
-        "times errors are magnified, angle by angle)",
+        f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position or change "
+        f"point: errors of its lengths, rounding among them, are magnified {found[worst]:.3g} times, so rates and "
+        f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {points.size} of "
+        f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
+        "angle by angle)",
         ConditionWarning,
         stacklevel=5,
     )

@@ -8,11 +8,17 @@ pushes across the ray. Equilibrium of the block gives both, and what the slot gi
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from . import checks
 from .chain import Adds
-from .elementary import condition, sqrt
+from .crank import ray
+from .elementary import sqrt
 from .links import Joint, Link, LinkMotion, Wrench
 from .planar import cross, dot, minus, subtracted, vector
+
+GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+"""Crank angles at which cams of the user's own are looked at, rad."""
 
 
 class RollerForces(NamedTuple):
@@ -85,6 +91,16 @@ class CamRoller(checks.Checked):
         return {"block": "A"}
 
     @property
+    def lengths(self):
+        return (*getattr(self.cam, "lengths", ()), *self.block.centre)
+
+    @property
+    def smallest_radius(self):
+        """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
+        found = getattr(self.cam, "smallest_radius", None)
+        return np.min(self.cam.polar(GRID, ray(GRID))[0]) if found is None else found
+
+    @property
     def bars(self):
         return ()
 
@@ -102,9 +118,6 @@ class CamRoller(checks.Checked):
 
     def requirement(self, placement):
         return f"the pitch curve must go around O, but its radius falls to {placement.details['cam'][0].min():.6g} m"
-
-    def condition(self, placement):
-        return condition(self.closure(placement))
 
     def resolve(self, placement, loads, pushes, forces):
         radius, slope, _ = placement.details["cam"]

@@ -108,6 +108,17 @@ class Circle(Cam):
         centre=checks.Pair("m"),
     )
 
+    @property
+    def lengths(self):
+        """What the pitch curve is made of, m."""
+        return (self.pitch_radius, *self.centre)
+
+    @property
+    def smallest_radius(self):
+        """Smallest distance of the roller centre from O, m."""
+        x, y = self.centre
+        return self.pitch_radius - sqrt(x * x + y * y)
+
     def polar(self, angle, ray):
         x, y = self.centre
         along = x * ray[0] + y * ray[1]
@@ -188,6 +199,16 @@ class CosineLaw(checks.Checked, Cam):
         a, b, c = self.amplitude, self.mean, self._cosine
         p = 2.0 * a * (b + a * c)
         return a * a, p, (b - a) * (b + a) + 2.0 * c * p - (c * a) ** 2
+
+    @property
+    def lengths(self):
+        """What the pitch curve is made of, m."""
+        return (self.amplitude, self.mean)
+
+    @property
+    def smallest_radius(self):
+        """A bound of the distance of the roller centre from O, m: 0.70 amplitudes, where the mean is as small as it."""
+        return 0.7 * self.amplitude
 
     @property
     def singular_angle(self):
@@ -279,6 +300,16 @@ class Sampled(Cam):
         from .files import read_columns
 
         return cls(*read_columns(path, {"angle": "rad", "radius": "m"}))
+
+    @property
+    def lengths(self):
+        """What the pitch curve is made of, m: its largest radius."""
+        return (self.samples.max(),)
+
+    @property
+    def smallest_radius(self):
+        """Smallest distance of the roller centre from O in the table, m."""
+        return self.samples.min()
 
     @cached_property
     def _splines(self):

@@ -1,14 +1,15 @@
 """What travels along the chain of groups: placed joints and links outward, forces inward.
 
-A group is a frozen dataclass with eight members; a new kind of group needs nothing else:
+A group is a frozen dataclass with eight members; a new kind of group needs nothing else. Kernels in `place` and
+`resolve` that are arithmetic have their condition found by differentiation:
 
     links                   name -> `Link` of the links it adds
     references              name -> reference joint of these links
+    lengths                 all lengths it has, places of mass centres among them, for a first look at the condition
     bars                    `Bar` for each link that keeps two joints at a distance
     place(placement)        read the joint it hangs on, add its own joints, links and details
-    closure(placement)      margin: negative where the group cannot be assembled, small near a limit position
+    closure(placement)      margin, 1 at most: negative where the group cannot be assembled, small near a limit position
     requirement(placement)  what must hold for it to be assembled, with its numbers, for the error message
-    condition(placement)    how many times it magnifies relative errors of its lengths in rates and forces
     resolve(placement, loads, pushes, forces)
                             find the forces on its links, demand what they need of the joint it hangs on
 
@@ -24,7 +25,7 @@ from .errors import ParameterError
 from .links import Wrench
 from .planar import added
 
-MEMBERS = ("links", "references", "bars", "place", "closure", "requirement", "condition", "resolve")
+MEMBERS = ("links", "references", "bars", "place", "closure", "requirement", "resolve")
 
 
 class Adds(NamedTuple):

@@ -281,7 +281,7 @@ class CompiledSolution(Solution):
     """
 
     def _surely_closes(self):
-        return np.min(self._kept("closure")) >= assembly.NEAR_LIMIT
+        return assembly.surely_well(self, self._kept("closure"))
 
     @property
     def reactions(self):

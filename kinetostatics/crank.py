@@ -62,6 +62,10 @@ class Crank(checks.Checked):
         return {"crank": "O"}
 
     @property
+    def lengths(self):
+        return (*self.link.centre, 0.0 if self.length is None else self.length)
+
+    @property
     def bars(self):
         return () if self.length is None else (Bar("O", "A", "crank", self.length),)
 

@@ -89,23 +89,6 @@ def _each(method, x, unit, exactly):
     return np.frompyfunc(of_one, 2, 1)(x, unit)
 
 
-def condition(margin, proportion=1.0, terms=None, result=None):
-    """How many times errors are magnified where rates and forces are divided by a root whose square is `margin`.
-
-    That makes 1 / margin, times how much the group's surroundings are larger than its links (`proportion`). Where the
-    `terms` of an acceleration cancel to a small `result`, as they do at change points, their errors stay: up to
-    1 / margin once more. A result below its own rounding counts as zero.
-    """
-    xp = namespace(margin)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        vanishing = 1.0 / xp.where(margin < -ROUNDING, xp.nan, xp.maximum(margin, 0.0))
-        found = xp.maximum(xp.maximum(proportion, ROUNDING) * vanishing, xp.sqrt(vanishing))
-        if terms is None:
-            return found
-        cancelled = terms / xp.maximum(abs(result) - ROUNDING * found * terms, 0.0)
-        return found * xp.where(cancelled < vanishing, cancelled, vanishing)
-
-
 def stack(arrays):
     """Arrays of one shape as one array, along a new first axis."""
     xp = namespace(arrays[0])

@@ -96,6 +96,19 @@ class Mechanism(Batched):
         """What looks like a slip of units, as sentences."""
         return hints.of_mechanism(self)
 
+    @cached_property
+    def proportion(self):
+        """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
+        whole, shortest = 0.0, np.inf
+        for part in (self.crank, *self.groups):
+            for length in getattr(part, "lengths", [bar.length for bar in part.bars]):
+                whole = whole + abs(length)
+            for bar in part.bars:
+                shortest = _smaller(shortest, bar.length)
+            if isinstance(part, CamRoller):
+                shortest = _smaller(shortest, part.smallest_radius)
+        return float(np.max(whole / shortest))
+
     def group(self, kind):
         """First group of a kind, or None."""
         return next((group for group in self.groups if isinstance(group, kind)), None)
@@ -303,6 +316,11 @@ def _name_problems(parts):
         rates = {f"{link}{ending}" for link in adds.links for ending in RATES}
         add(forces, "quantity", kind, [name for name in (*adds.scalars, *rates) if name not in UNITS])
     return problems
+
+
+def _smaller(a, b):
+    plain = isinstance(a, float) and isinstance(b, float | int)
+    return min(a, b) if plain else np.minimum(a, b)
 
 
 def _guide(guide, angle, offset):

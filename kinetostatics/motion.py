@@ -1,7 +1,7 @@
 """Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link."""
 
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import cached_property
 from typing import Any
 
 from . import checks
@@ -109,13 +109,14 @@ class Motion:
     def condition(self):
         """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
 
-        About 1 where nothing is lost, infinite at a limit position, toggle or change point, NaN where the mechanism
-        does not close; a result has about 16 - log10(condition) correct digits of its largest value. It is the product
-        over the groups: 1 / cos^2 of coupler against guide, 1 / sin^2 of the transmission angle, 1 / cos^2 of the
-        pressure angle, and once more as much where the terms of the angular acceleration cancel.
+        A bound of the true magnification: the sum over all lengths and the crank angle p of |p dq/dp|, over the largest
+        term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
+        at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
+        16 - log10(condition) correct digits of its largest term, or more.
         """
-        parts = (group.condition(self.placement) for group in self.mechanism.groups)
-        return self._scalar(reduce(product, parts, 1.0))
+        from .sensitivity import condition
+
+        return read_only(condition(self).reshape(self.shape))
 
     @cached_property
     def accelerating(self) -> tuple[Any, Any]:

@@ -13,9 +13,9 @@ import numpy as np
 
 from . import checks
 from .chain import Adds, Bar
-from .elementary import apart, condition, divisor, root, sqrt
+from .elementary import apart, divisor, root, sqrt
 from .links import Joint, Link, LinkMotion
-from .planar import added, dot, left, length, minus, moment, number, quotient, stretched, subtracted
+from .planar import added, dot, left, minus, moment, number, quotient, stretched, subtracted
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
@@ -161,6 +161,10 @@ class RockerGroup(checks.Checked):
         )
 
     @property
+    def lengths(self):
+        return (self.coupler_length, self.rocker_length, *self.pivot, *self.coupler.centre, *self.rocker.centre)
+
+    @property
     def _coupler(self):
         return "coupler" + self.label
 
@@ -190,15 +194,6 @@ class RockerGroup(checks.Checked):
             f"must lie between the difference and the sum of coupler and rocker lengths, {np.min(low):.6g} and "
             f"{np.max(high):.6g} m"
         )
-
-    def condition(self, placement):
-        motion = placement.details[self._rocker]
-        c, h = self.coupler_length, self.rocker_length
-        lag, swing_lag = c * motion.coupler.ratio**2, h * motion.rocker.ratio**2
-        result = motion.sine * abs(c * motion.coupler.ratio_slope) + motion.sine * abs(h * motion.rocker.ratio_slope)
-        inner = placement.joints[self.on].position
-        span, sizes = length(subtracted(self.pivot, inner)), length(inner) + length(self.pivot) + c + h
-        return condition(motion.closure, span * sizes / (c * h), lag + swing_lag + abs(result), result)
 
     def resolve(self, placement, loads, pushes, forces):
         """Add the reactions at A, B and O2, and demand the inner one of the joint it hangs on."""

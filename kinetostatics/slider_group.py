@@ -13,10 +13,10 @@ import numpy as np
 
 from . import checks
 from .chain import Adds, Bar
-from .elementary import condition, divisor, root
+from .elementary import divisor, root
 from .guide import Guide, Line
 from .links import Joint, Link, LinkMotion, present
-from .planar import added, length, minus, number, plus, quotient, subtracted, turned, unturned, vector
+from .planar import added, minus, number, plus, quotient, subtracted, turned, unturned, vector
 
 SMALLEST = 2.0**-27
 """Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
@@ -163,6 +163,10 @@ class SliderGroup(checks.Checked):
         return (Bar(self.on, self.pin, self._coupler, self.coupler_length),)
 
     @property
+    def lengths(self):
+        return (self.coupler_length, self.guide.guide_offset, *self.coupler.centre, *self.slider.centre)
+
+    @property
     def _coupler(self):
         return "coupler" + self.label
 
@@ -202,13 +206,6 @@ class SliderGroup(checks.Checked):
             f"the distance from {self.on} to the guide, up to {distance.max():.6g} m here, must not exceed the "
             f"{self._coupler} length, {_span(self.coupler_length)} m"
         )
-
-    def condition(self, placement):
-        motion = placement.details[self._slider]
-        lag = motion.coupler.ratio * motion.coupler.ratio * motion.sine
-        result = motion.coupler.ratio_slope * motion.cosine
-        proportion = 1.0 + length(placement.joints[self.on].position) / self.coupler_length
-        return condition(motion.closure, proportion, abs(lag) + abs(lag - result), result)
 
     def resolve(self, placement, loads, pushes, forces):
         """Add pin reactions, guide force and moment, and demand the inner reaction of the joint it hangs on."""

@@ -42,9 +42,9 @@ class Solution(Motion):
     loads: tuple = ()
 
     def check(self):
-        """Raise `AssemblyError` where the mechanism does not close; warn where it nearly does not."""
+        """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""
         if not self._surely_closes():
-            assembly.check(self.mechanism, self.placement)
+            assembly.check(self)
 
     def _surely_closes(self):
         """Whether that is known without a look at the placement."""
@@ -394,7 +394,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     Warns
     -----
     ConditionWarning
-        A crank angle lies so near a limit position that half the digits are lost.
+        Half of the digits are lost at some crank angle: `Solution.condition` exceeds 1e8.
     HintWarning
         Something looks like a slip of units: angles in degrees, a mass centre far outside, hardly any inertia.
     UserWarning

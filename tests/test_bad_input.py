@@ -354,18 +354,18 @@ def test_a_pitch_curve_that_does_not_go_around_the_pivot_is_refused_where_its_ra
     assert "pitch curve must go around O, but its radius falls to -0.1 m" in str(error)
 
 
-@pytest.mark.parametrize("margin", [1e-9, 1e-12])
-def test_a_crank_angle_near_a_limit_position_is_warned_of_with_a_number(margin):
-    """Coupler longer than the crank by a hair: cos squared is 2 margin at 90 degrees, 8 digits gone from 5e-9 on."""
+@pytest.mark.parametrize(("margin", "digits"), [(1e-6, 6), (1e-9, 2), (1e-12, 0)])
+def test_a_crank_angle_near_a_limit_position_is_warned_of_with_a_number(margin, digits):
+    """Coupler longer than the crank by a hair: cos is sqrt(2 margin) at 90 degrees, and reactions lose it thrice."""
     mechanism = ks.crank_slider(1.0, 1.0 + margin, slider=ks.Link(1.0))
-    with pytest.warns(ks.ConditionWarning, match=f"at crank angle 90 deg .*{2 * margin:.0e}") as caught:
+    with pytest.warns(ks.ConditionWarning, match=f"at crank angle 90 deg .* about {digits} correct") as caught:
         solve(mechanism, np.array([0.3, np.pi / 2]))
     assert len(caught) == 1
     assert caught[0].filename == __file__
 
 
 def test_no_warning_while_half_the_digits_are_left():
-    solve(ks.crank_slider(1.0, 1.0 + 1e-7, slider=ks.Link(1.0)), np.array([np.pi / 2]))
+    solve(ks.crank_slider(1.0, 1.0 + 1e-4, slider=ks.Link(1.0)), np.array([np.pi / 2]))
 
 
 @pytest.mark.parametrize("tilt", [-2.9, 0.7, 1.3])

@@ -22,6 +22,7 @@ COARSE = {SINGLE: ["lost"], SECOND: ["lost"], FOURTH: ["lost"], SERIES: ["lost"]
 """What never has all digits of a force."""
 LIMIT = COARSE | {SECOND: ["lost", "nan"], FOURTH: ["lost", "nan"], SERIES: []}
 """Differences reach over the limit; a series needs a mechanism that closes all around."""
+FOLDING = LIMIT | {SERIES: ["lost"]}
 FAILURES = {
     "dead centres, inclined guide": {PAPERS: ["flipped"], SINGLE: ["lost"], SERIES: ["lost"]},
     "limit position": LIMIT,
@@ -30,6 +31,11 @@ FAILURES = {
     "pressure angle toward 90 deg": COARSE | {SINGLE: ["lost", "nan"], NEWTON: ["lost"]},
     "four-bar toggle": LIMIT,
     "four-bar change point": LIMIT | {PAPERS: ["nan"], NEWTON: ["given up"], SERIES: ["lost"]},
+    "rhombus": FOLDING | {PAPERS: ["nan"], NEWTON: ["flipped"], MASSES: []},
+    "kite": FOLDING | {NEWTON: ["given up"]},
+    "kite, A passing O2": COARSE | {PAPERS: ["nan"], NEWTON: ["raised"], SERIES: ["lost", "nan"]},
+    "parallelogram, folded": FOLDING | {NEWTON: ["given up"]},
+    "coupler as long as the crank": FOLDING | {KANE: ["nan"], NEWTON: ["given up"], MASSES: []},
     "size": COARSE,
     "unequal masses": COARSE,
     "many turns": COARSE | {NEWTON: ["lost"]},
@@ -44,21 +50,24 @@ CHANCY = {
     ("coupler barely long enough", FOURTH, "nan"),
     ("four-bar toggle", SINGLE, "nan"),
     ("four-bar change point", SINGLE, "nan"),
+    ("four-bar change point", NEWTON, "raised"),
+    ("rhombus", SINGLE, "nan"),
+    ("rhombus", SERIES, "nan"),
+    ("rhombus", KANE, "nan"),
+    ("rhombus", NEWTON, "given up"),
+    ("rhombus", NEWTON, "raised"),
+    ("kite", SINGLE, "nan"),
+    ("kite, A passing O2", KANE, "nan"),
+    ("parallelogram, folded", SINGLE, "nan"),
     ("many turns", NEWTON, "given up"),
     ("nearly balanced", PAPERS, "lost"),
     ("nearly balanced", KANE, "lost"),
 }
 """What a few angles or one number decide, by their rounding: neither demanded nor wondered at."""
-WORDS = {"lost": "loses digits", "flipped": "flips assembly", "nan": "NaN", "given up": "gives up"}
+WORDS = {"lost": "loses digits", "flipped": "flips assembly", "nan": "NaN", "given up": "gives up", "raised": "raises"}
 EXPECTED = [(place, method, how) for place, row in FAILURES.items() for method, ways in row.items() for how in ways]
-HARMLESS = {
-    "dead centres, inclined guide": 1.2,
-    "singular angle of the cosine cam": 4.0,
-    "size": 1.3,
-    "unequal masses": 1.3,
-    "many turns": 1.3,
-}
-"""Largest condition of places that hurt methods, not the problem."""
+HARMLESS = ("dead centres, inclined guide", "singular angle of the cosine cam", "size", "unequal masses", "many turns")
+"""Places that hurt methods, not the problem."""
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +97,7 @@ def test_ours_never_lose_digits_flip_turn_nan_or_raise_at_any_place(table):
     assert len(given) > 100
     assert not given[["lost", "flipped", "nan"]].any(axis=None)
     assert set(ours["raised"]) == {""}
-    assert np.all(given["error"] <= 100 * given["condition"] * 2.0**-53)
+    assert np.all(given["error"] <= given["condition"] * 2.0**-53)
 
 
 def test_ours_is_given_everywhere_but_for_reactions_by_powers(table):
@@ -100,7 +109,7 @@ def test_ours_is_given_everywhere_but_for_reactions_by_powers(table):
 @pytest.mark.parametrize("place", HARMLESS)
 def test_ours_are_exact_where_the_problem_is_harmless_and_the_condition_says_that_it_is(table, place):
     ours = table[table["ours"] & (table["place"] == place) & (table["not given"] == "")]
-    assert np.all(ours["condition"] <= HARMLESS[place])
+    assert np.all(ours["condition"] < 2e3)
     assert np.all(ours["error"] < 2e-15)
 
 
@@ -126,7 +135,6 @@ def test_failure_of_another_method_is_reproduced_and_counted(summary, place, met
 def test_no_other_failure_is_in_the_table(summary):
     found = {(*index, how) for index, row in summary.iterrows() for how in WORDS if row[how]}
     assert found - CHANCY == set(EXPECTED)
-    assert not summary["raised"].any()
 
 
 def test_verdict_of_methods_without_failures_is_exact_or_as_near_as_the_condition_allows(summary):
@@ -201,7 +209,7 @@ def test_planted_failure_is_counted_as_what_it_is(name):
     place = stability.Place("anywhere", "number [1]", (0.0,), scene, "slider_position")
     table = stability.study([place], [planted(way)])
     (row,) = stability.summary(table).to_dict("records")
-    assert {how: row[how] for how in (*WORDS, "raised") if row[how]} == counts
+    assert {how: row[how] for how in WORDS if row[how]} == counts
     assert verdict in row["does"]
     assert ("ZeroDivisionError: no pivot" in set(table["raised"])) == (name == "raises")
     assert ("not in the mood" in set(table["not given"])) == (name == "refuses")
@@ -275,7 +283,7 @@ def test_chart_of_a_place_has_units_a_line_a_method_and_the_condition_dashed(tab
     assert ax.get_ylabel().startswith("error of ")
     assert ax.get_ylabel().endswith("[1]")
     lines = {line.get_label(): line for line in ax.lines}
-    given = rows[rows["error"].notna()]
+    given = rows[rows["not given"] == ""]
     assert set(lines) == {*given["method"], "condition x rounding"}
     dashed = [name for name, line in lines.items() if line.get_linestyle() == "--"]
     assert dashed == ["condition x rounding"]
