@@ -32,9 +32,6 @@ drawings, canvas            the mechanism itself; what figures share
 figures, cli                figures of a case; command line
 """
 
-from . import cams
-from .cam_roller import CamRoller
-from .crank import Crank
 from .errors import (
     AssemblyError,
     CaseError,
@@ -44,15 +41,18 @@ from .errors import (
     ParameterError,
     QuantityError,
 )
-from .extremes import extremes
-from .guide import Guide
-from .links import Link
-from .loads import Gravity, ProcessForce, Spring
-from .mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
-from .principal_points import principal_points
-from .rocker_group import RockerGroup
-from .slider_group import SliderGroup
-from .solution import Solution, solve
+from .machine import cams
+from .machine.cam_roller import CamRoller
+from .machine.crank import Crank
+from .machine.guide import Guide
+from .machine.links import Link
+from .machine.loads import Gravity, ProcessForce, Spring
+from .machine.mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
+from .machine.rocker_group import RockerGroup
+from .machine.slider_group import SliderGroup
+from .mechanics.principal_points import principal_points
+from .results.extremes import extremes
+from .solution.solution import Solution, solve
 
 __version__ = "0.1.0"
 
@@ -98,20 +98,20 @@ __all__ = [
 
 
 _LATER = {
-    "balancing": None,
-    "check": "group_check",
-    "compare": "comparison",
-    "designs": None,
-    "linkage": None,
-    "load_case": "case",
-    "needs": "ingredients",
-    "plots": None,
-    "precision": None,
-    "stability": None,
-    "sweep": "sweeps",
-    "tolerances": "tolerance",
+    "balancing": "design.balancing:",
+    "check": "solution.group_check:check",
+    "compare": "results.comparison:compare",
+    "designs": "sweeps.designs:",
+    "linkage": "design.linkage:",
+    "load_case": "casefile.case:load_case",
+    "needs": "studies.needs:needs",
+    "plots": "views.plots:",
+    "precision": "studies.precision:",
+    "stability": "studies.stability:",
+    "sweep": "sweeps.sweeps:sweep",
+    "tolerances": "sweeps.tolerance:tolerances",
 }
-"""Names loaded, with the libraries they need, only when used: modules, and functions with the module they are in."""
+"""Names loaded, with the libraries they need, only when used: where each is, "module:function" or "module:"."""
 
 
 def __getattr__(name):
@@ -119,5 +119,6 @@ def __getattr__(name):
 
     if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module = importlib.import_module(f".{_LATER[name] or name}", __name__)
-    return getattr(module, name) if _LATER[name] else module
+    path, _, attribute = _LATER[name].partition(":")
+    module = importlib.import_module(f".{path}", __name__)
+    return getattr(module, attribute) if attribute else module

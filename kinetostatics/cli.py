@@ -8,8 +8,9 @@ import threading
 from contextlib import contextmanager
 from pathlib import Path
 
-from . import __version__, checks, files
+from . import __version__
 from .errors import CaseError, KinetostaticsError, ParameterError
+from .numbers import checks, files
 
 SWEEP_OUTPUTS = ("mean_absolute balancing_torque", "largest O")
 """What a sweep tells unless asked for something else."""
@@ -184,8 +185,8 @@ def _designs(text):
 def _run(options):
     import pandas as pd
 
-    from .case import load_case
-    from .tables import extremes_frame
+    from .casefile.case import load_case
+    from .results.tables import extremes_frame
 
     case = load_case(options.case)
     _require_writable(case, "--csv", options.csv, (".csv",))
@@ -207,7 +208,7 @@ def _run(options):
 
 
 def _compare(options):
-    from .case import load_case
+    from .casefile.case import load_case
 
     case = load_case(options.case)
     others = [name for name in case.variants if name != case.reference]
@@ -234,8 +235,8 @@ def _compare(options):
 
 
 def _plot(options):
-    from .case import load_case
-    from .figures import draw_case
+    from .casefile.case import load_case
+    from .views.figures import draw_case
 
     for path in draw_case(load_case(options.case), options.out, options.format, options.only):
         print(path)
@@ -244,8 +245,8 @@ def _plot(options):
 def _precision(options):
     import pandas as pd
 
-    from . import precision
-    from .case import load_case
+    from .casefile.case import load_case
+    from .studies import precision
 
     case = load_case(options.case)
     quantities = options.quantity or [precision.QUANTITY]
@@ -266,7 +267,7 @@ def _precision(options):
 def _stability(options):
     import pandas as pd
 
-    from . import stability
+    from .studies import stability
 
     paths = stability.write(options.out, progress=_tell)
     _print(pd.read_csv(paths[1]).drop(columns=["machine", "versions"]).set_index("place"))
@@ -274,10 +275,10 @@ def _stability(options):
 
 
 def _sweep(options):
-    from . import designs
-    from .case import load_case
-    from .reductions import parsed
-    from .sweeps import FAILED, sweep
+    from .casefile.case import load_case
+    from .results.reductions import parsed
+    from .sweeps import designs
+    from .sweeps.sweeps import FAILED, sweep
 
     case = load_case(options.case)
     folder = options.out if options.out and not Path(options.out).suffix else None
@@ -311,7 +312,7 @@ def _sweep(options):
     if options.out and folder is None:
         _write_table(found, options.out)
     if options.plot:
-        from .charts import sweep_page
+        from .views.charts import sweep_page
 
         print(sweep_page(found, list(table.columns), outputs, options.plot))
 

@@ -21,7 +21,7 @@ def programs(tmp_path_factory):
 @pytest.fixture
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    from kinetostatics import compiled, machine_code
+    from kinetostatics.engines import compiled, machine_code
 
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function

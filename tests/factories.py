@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 import kinetostatics as ks
-from kinetostatics.case import Variant
+from kinetostatics.casefile.case import Variant
 
 OUTPUTS = ["largest O", "mean_absolute balancing_torque"]
 DESIGNS = pd.DataFrame({"crank [mm]": np.linspace(100.0, 500.0, 41), "mass": np.linspace(1.0, 9.0, 41)})

@@ -11,10 +11,10 @@ import flint
 import numpy as np
 
 from kinetostatics import Gravity, Link, Spring
-from kinetostatics.guide import Guide
-from kinetostatics.links import arm, first_at
-from kinetostatics.methods.enclosures import on_arb
-from kinetostatics.substitution import with_fields, with_numbers
+from kinetostatics.machine.guide import Guide
+from kinetostatics.machine.links import arm, first_at
+from kinetostatics.numbers.substitution import with_fields, with_numbers
+from kinetostatics.studies.methods.enclosures import on_arb
 
 BITS = 270
 STEP = "1e-30"

@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import linprog
 
 import kinetostatics as ks
-from kinetostatics.balancing import Counterweight, counterweight, full, optimal, partial
+from kinetostatics.design.balancing import Counterweight, counterweight, full, optimal, partial
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 """Bodies drawn at random have any inertia."""

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.case import shipped_cases
-from kinetostatics.units import to_si
+from kinetostatics.casefile.case import shipped_cases
+from kinetostatics.numbers.units import to_si
 
 PLAIN = """
 title = "test"

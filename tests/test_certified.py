@@ -8,11 +8,11 @@ import pytest
 from machines import ANGLES, KINDS, Machine
 
 import kinetostatics as ks
-from kinetostatics import cam_roller, rocker_group, slider_group
 from kinetostatics.errors import KinetostaticsError, MissingLibraryError, QuantityError
-from kinetostatics.methods.certified import Enclosure, certified, enclosure, independent, relative_errors
-from kinetostatics.methods.method import NotGivenError
-from kinetostatics.quantities import components
+from kinetostatics.machine import cam_roller, rocker_group, slider_group
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.studies.methods.certified import Enclosure, certified, enclosure, independent, relative_errors
+from kinetostatics.studies.methods.method import NotGivenError
 
 flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 mp = pytest.importorskip("mpmath", reason="mpmath is not installed (extra: precision)").mp

@@ -14,9 +14,9 @@ from sympy import QQ
 from sympy.polys.fields import field
 from sympy.polys.orderings import lex
 
-from kinetostatics import rocker_group
-from kinetostatics.links import Joint
-from kinetostatics.methods import papers
+from kinetostatics.machine import rocker_group
+from kinetostatics.machine.links import Joint
+from kinetostatics.studies.methods import papers
 
 FIELD, S, a, s, k, r, c, h, b = field("S, a, s, k, r, c, h, b", QQ, lex)
 HERON = (a + c + h) * (a + c - h) * (a - c + h) * (c + h - a)

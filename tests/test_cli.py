@@ -7,7 +7,7 @@ import sys
 import pandas as pd
 import pytest
 
-from kinetostatics.case import shipped_cases
+from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
 
 

@@ -8,8 +8,8 @@ from four_bars import turning
 from machines import ANGLES, planar
 
 import kinetostatics as ks
-from kinetostatics import sensitivity
-from kinetostatics.assembly import HALF, ill_conditioned, surely_well
+from kinetostatics.mechanics import sensitivity
+from kinetostatics.mechanics.assembly import HALF, ill_conditioned, surely_well
 
 UNIT = 2.0**-53
 TURN = np.linspace(0.0, 2 * np.pi, 1441)
@@ -420,7 +420,7 @@ def near_limits(draw, kind):
 
 def rows(item, number):
     """One design of a batch."""
-    from kinetostatics.substitution import with_numbers
+    from kinetostatics.numbers.substitution import with_numbers
 
     return with_numbers(item, lambda value: float(np.broadcast_to(value, (400, 1))[number, 0]))
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.methods.papers import slider_by_double_cross
+from kinetostatics.studies.methods.papers import slider_by_double_cross
 
 DIGITS = 50
 ULPS = 4

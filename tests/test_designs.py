@@ -6,7 +6,8 @@ import pytest
 from scipy import stats
 
 import kinetostatics as ks
-from kinetostatics import designs, parameters, schema
+from kinetostatics.casefile import parameters, schema
+from kinetostatics.sweeps import designs
 
 SPREADS = {
     "spring.stiffness": "normal 700 kN/m +- 5000 N/m",

@@ -10,7 +10,7 @@ from numpy.testing import assert_array_equal
 from test_engines import Pan
 
 import kinetostatics as ks
-from kinetostatics.links import Joint
+from kinetostatics.machine.links import Joint
 
 TURN = 2 * np.pi * np.arange(72) / 72
 ROD = ks.Link(2.0, (0.2, 0.05), 0.03)

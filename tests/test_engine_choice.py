@@ -9,10 +9,10 @@ import pytest
 from test_engines import ANGLES, BATCHES, FORCES, OWN, SAMPLES, SCENES, SIZES, Pan, everything, solve, with_group
 
 import kinetostatics as ks
-from kinetostatics import compiled
-from kinetostatics import solution as solutions
+from kinetostatics.engines import compiled
 from kinetostatics.errors import NotGivenError
-from kinetostatics.quantities import components
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.solution import solution as solutions
 
 ULP = 2.0**-52
 SHIPPED = {name: ks.load_case(name) for name in ("sawframe_2r63", "chain_unit", "mower_drive")}

@@ -15,9 +15,9 @@ from four_bars import FourBar
 from test_six_bar import six_bar
 
 import kinetostatics as ks
-from kinetostatics import compiled, tracing
-from kinetostatics.links import LinkMotion
-from kinetostatics.quantities import components
+from kinetostatics.engines import compiled, tracing
+from kinetostatics.machine.links import LinkMotion
+from kinetostatics.mechanics.quantities import components
 
 SPEED = 320 * 2 * math.pi / 60
 ANGLES = np.linspace(0, 2 * math.pi, 360, endpoint=False)

@@ -15,8 +15,8 @@ import pytest
 from machines import largest
 
 import kinetostatics as ks
-from kinetostatics.linkage import chain_unit, chain_unit_angle, rocker_angle, swing
-from kinetostatics.methods.papers import chain_unit_by_atan_acos
+from kinetostatics.design.linkage import chain_unit, chain_unit_angle, rocker_angle, swing
+from kinetostatics.studies.methods.papers import chain_unit_by_atan_acos
 
 RHO = (0.1, 0.5)
 LAMBDA = 2 / 3

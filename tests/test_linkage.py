@@ -11,7 +11,7 @@ from test_newton_euler import number, reproducible
 from test_rocker_group import four_bars
 
 import kinetostatics as ks
-from kinetostatics.linkage import (
+from kinetostatics.design.linkage import (
     chain_unit,
     chain_unit_angle,
     grashof,
@@ -19,7 +19,7 @@ from kinetostatics.linkage import (
     swing,
     transmission_angle,
 )
-from kinetostatics.methods.papers import chain_unit_by_atan_acos
+from kinetostatics.studies.methods.papers import chain_unit_by_atan_acos
 
 JOINTS = ("O", "A", "B", "O2")
 TURN = np.linspace(0.0, 2 * np.pi, 721) + 0.001

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.loads import Tabulated
+from kinetostatics.machine.loads import Tabulated
 
 TURN = 2 * np.pi
 STROKES = np.radians([0, 170, 180, 190, 360, 720])

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from kinetostatics import machine_code, programs_folder
+from kinetostatics.engines import machine_code, programs_folder
+from kinetostatics.engines.machine_code import load
+from kinetostatics.engines.programs_folder import CHECKSUMS, new_entry, sealed
 from kinetostatics.errors import CacheWarning
-from kinetostatics.machine_code import load
-from kinetostatics.programs_folder import CHECKSUMS, new_entry, sealed
 
 TEXT = """
 from numba import njit
@@ -127,7 +127,7 @@ def test_an_entry_that_is_not_finished_leaves_nothing(tmp_path):
 
 
 def test_processes_that_start_together_share_the_folder(numba, folder):
-    code = f"from kinetostatics.machine_code import load; print(load({TEXT!r}, keep=True).twice(2.1))"
+    code = f"from kinetostatics.engines.machine_code import load; print(load({TEXT!r}, keep=True).twice(2.1))"
     command = [sys.executable, "-W", "error::kinetostatics.errors.CacheWarning", "-c", code]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     assert [(process.communicate()[0], process.returncode) for process in started] == [("4.2\n", 0)] * 2

@@ -9,10 +9,10 @@ import pytest
 from machines import CLOSE, KINDS, LINKS, Machine, largest
 
 import kinetostatics as ks
-from kinetostatics import quantities
-from kinetostatics.chain import MEMBERS
-from kinetostatics.methods import integration, newton
-from kinetostatics.methods.method import NotGivenError
+from kinetostatics.machine.chain import MEMBERS
+from kinetostatics.mechanics import quantities
+from kinetostatics.studies.methods import integration, newton
+from kinetostatics.studies.methods.method import NotGivenError
 
 (NEWTON,) = newton.METHODS
 TURN = np.linspace(0.2, 0.2 + 2 * np.pi, 72, endpoint=False)

@@ -8,10 +8,10 @@ from four_bars import FourBar
 from machines import ANGLES, CLOSE, Machine, largest
 
 import kinetostatics as ks
-from kinetostatics import quantities
-from kinetostatics.linkage import chain_unit, chain_unit_angle
-from kinetostatics.methods import kane, papers
-from kinetostatics.methods.method import NotGivenError
+from kinetostatics.design.linkage import chain_unit, chain_unit_angle
+from kinetostatics.mechanics import quantities
+from kinetostatics.studies.methods import kane, papers
+from kinetostatics.studies.methods.method import NotGivenError
 
 METHODS = [*kane.METHODS, *papers.METHODS]
 COSINE_LAW = Machine("cosine law")

@@ -10,7 +10,7 @@ from test_case import case_file, problems
 
 import kinetostatics as ks
 from kinetostatics.cli import main
-from kinetostatics.figures import draw_case
+from kinetostatics.views.figures import draw_case
 
 BARE = """
 title = "test"

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics import ingredients
-from kinetostatics.ingredients import INGREDIENTS, two_mass_coupler
-from kinetostatics.quantities import components
-from kinetostatics.rerouted import harmonic_series, rerouted
-from kinetostatics.tracing import trace
+from kinetostatics.engines.rerouted import harmonic_series, rerouted
+from kinetostatics.engines.tracing import trace
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.studies import needs as ingredients
+from kinetostatics.studies.needs import INGREDIENTS, two_mass_coupler
 
 TURN = np.linspace(0.0, 2 * np.pi, 72, endpoint=False)
 SPEED = 30.0

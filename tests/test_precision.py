@@ -11,9 +11,11 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics import charts, cli, precision
-from kinetostatics.methods import METHODS
-from kinetostatics.methods.certified import enclosure, relative_errors
+from kinetostatics import cli
+from kinetostatics.studies import precision
+from kinetostatics.studies.methods import METHODS
+from kinetostatics.studies.methods.certified import enclosure, relative_errors
+from kinetostatics.views import charts
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 

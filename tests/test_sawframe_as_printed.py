@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.methods import METHODS, papers
-from kinetostatics.quantities import components, magnitude
+from kinetostatics.mechanics.quantities import components, magnitude
+from kinetostatics.studies.methods import METHODS, papers
 
 CASE = ks.load_case("sawframe_2r63")
 PLAIN, CIRCLE, COSINE = (CASE.solve(name) for name in ("plain", "cam-circle", "cam-cosine"))

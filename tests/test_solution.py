@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.mechanism import Mechanism
+from kinetostatics.machine.mechanism import Mechanism
 
 TURN = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))

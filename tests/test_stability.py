@@ -9,9 +9,11 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics import charts, cli, stability
-from kinetostatics.methods import METHODS, Method
-from kinetostatics.quantities import components
+from kinetostatics import cli
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.studies import stability
+from kinetostatics.studies.methods import METHODS, Method
+from kinetostatics.views import charts
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 

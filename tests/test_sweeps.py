@@ -25,12 +25,15 @@ from test_engine_choice import OneSided
 from test_engines import with_group
 
 import kinetostatics as ks
-from kinetostatics import chunks, compiled, dataset, dispatch, quantities, sweeps
-from kinetostatics.case import Variant, shipped_cases
-from kinetostatics.parameters import paths
-from kinetostatics.reductions import REDUCTIONS, parsed
-from kinetostatics.sweeps import FAILED
-from kinetostatics.units import base_factor
+from kinetostatics.casefile.case import Variant, shipped_cases
+from kinetostatics.casefile.parameters import paths
+from kinetostatics.engines import compiled
+from kinetostatics.mechanics import quantities
+from kinetostatics.numbers.units import base_factor
+from kinetostatics.results.reductions import REDUCTIONS, parsed
+from kinetostatics.sweeps import chunks, dataset, sweeps
+from kinetostatics.sweeps import workers as dispatch
+from kinetostatics.sweeps.sweeps import FAILED
 
 SAW = ks.load_case("sawframe_2r63")
 sweep = partial(ks.sweep, progress=False)
@@ -280,7 +283,13 @@ WRONG = {
         {},
         'unit "x" is not known',
     ),
-    "no variant": (lambda crank, mass: 3, DESIGNS, OUTPUTS, {}, "must return a kinetostatics.case.Variant, got 3"),
+    "no variant": (
+        lambda crank, mass: 3,
+        DESIGNS,
+        OUTPUTS,
+        {},
+        "must return a kinetostatics.casefile.case.Variant, got 3",
+    ),
 }
 
 

@@ -9,7 +9,7 @@ from scipy import stats
 from test_sweeps import written
 
 import kinetostatics as ks
-from kinetostatics.case import Variant
+from kinetostatics.casefile.case import Variant
 
 SPREADS = {"mass": "normal 1 kg +- 0.1 kg", "push": "100..300 N"}
 OUTPUT = "largest B"
@@ -73,7 +73,7 @@ def test_a_study_goes_on_from_its_folder(tmp_path, monkeypatch):
     found = tolerances(ram, OUTPUT, SPREADS, count=16, folder=tmp_path)
     pd.testing.assert_frame_equal(found.sensitivity, expected.sensitivity, check_exact=True)
     assert len(list(tmp_path.glob("sweep-*/part-*.parquet"))) == 4
-    monkeypatch.setattr("kinetostatics.dispatch.run_chunk", None)
+    monkeypatch.setattr("kinetostatics.sweeps.workers.run_chunk", None)
     again = tolerances(ram, OUTPUT, SPREADS, count=16, folder=tmp_path)
     pd.testing.assert_frame_equal(again.sensitivity, expected.sensitivity, check_exact=True)
 

@@ -32,8 +32,9 @@ from test_speed import (
 )
 
 import kinetostatics as ks
-from kinetostatics import compiled, timing
-from kinetostatics.methods import kane
+from kinetostatics.engines import compiled
+from kinetostatics.studies import timing
+from kinetostatics.studies.methods import kane
 
 SAW = ks.load_case("sawframe_2r63")
 FORCES = ("O", "A", "B", "guide_force", "guide_moment", "balancing_torque")

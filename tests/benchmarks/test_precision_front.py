@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.methods import METHODS
-from kinetostatics.methods.certified import enclosure, relative_errors
-from kinetostatics.precision import BETTER_THAN
+from kinetostatics.studies.methods import METHODS
+from kinetostatics.studies.methods.certified import enclosure, relative_errors
+from kinetostatics.studies.precision import BETTER_THAN
 
 ANGLES = 360
 NOISE = 1.15

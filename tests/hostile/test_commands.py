@@ -17,9 +17,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import kinetostatics as ks
-from kinetostatics import files
 from kinetostatics.cli import main
-from kinetostatics.figures import draw_case
+from kinetostatics.numbers import files
+from kinetostatics.views.figures import draw_case
 
 mpl.use("agg")
 TEXT = """
@@ -64,9 +64,9 @@ def idle(monkeypatch):
     def work(*_, **options):
         raise AssertionError("work began")
 
-    monkeypatch.setattr("kinetostatics.case.Case.solve", lambda case, name, *_: work(case.variant(name)))
-    monkeypatch.setattr("kinetostatics.sweeps.suitable_engine", work)
-    monkeypatch.setattr("kinetostatics.stability.study", work)
+    monkeypatch.setattr("kinetostatics.casefile.case.Case.solve", lambda case, name, *_: work(case.variant(name)))
+    monkeypatch.setattr("kinetostatics.sweeps.sweeps.suitable_engine", work)
+    monkeypatch.setattr("kinetostatics.studies.stability.study", work)
 
 
 def refused(arguments, capsys):
@@ -354,7 +354,7 @@ def test_memory_that_runs_out_is_told_in_a_line(saw, monkeypatch, capsys):
     def solve(*_):
         raise MemoryError("Unable to allocate 8 GiB")
 
-    monkeypatch.setattr("kinetostatics.case.Case.solve", solve)
+    monkeypatch.setattr("kinetostatics.casefile.case.Case.solve", solve)
     assert "there is not enough memory; take fewer" in refused(["run", saw], capsys)
 
 

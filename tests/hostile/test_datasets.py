@@ -13,9 +13,9 @@ import pytest
 from pyarrow import parquet
 
 import kinetostatics as ks
-from kinetostatics.case import Variant
-from kinetostatics.dataset import MANIFEST, Dataset
+from kinetostatics.casefile.case import Variant
 from kinetostatics.errors import CacheWarning, KinetostaticsError
+from kinetostatics.sweeps.dataset import MANIFEST, Dataset
 
 DESIGNS = pd.DataFrame({"crank": np.linspace(0.1, 0.3, 9)}, index=[f"design {row}" for row in range(9)])
 OUTPUT = "rms O"
@@ -300,7 +300,7 @@ def test_a_full_disk_is_told_and_the_sweep_goes_on_later(tmp_path, expected):
 
 def together(monkeypatch, other):
     """Let another sweep begin in the folder just before this one writes down that it is its own."""
-    from kinetostatics import dataset
+    from kinetostatics.sweeps import dataset
 
     create = dataset._create
 

@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics import assembly, quantities
-from kinetostatics.case import Variant
-from kinetostatics.comparison import mean_absolute_torque
-from kinetostatics.tables import extremes_frame
+from kinetostatics.casefile.case import Variant
+from kinetostatics.mechanics import assembly, quantities
+from kinetostatics.results.comparison import mean_absolute_torque
+from kinetostatics.results.tables import extremes_frame
 
 GRAVITY = (ks.Gravity(),)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.methods import METHODS
-from kinetostatics.quantities import components
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.studies.methods import METHODS
 
 TURN = 2 * np.pi * np.arange(24) / 24
 BODIES = {"coupler": ks.Link(2.0, 0.2, 0.03), "slider": ks.Link(5.0)}

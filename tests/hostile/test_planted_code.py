@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from kinetostatics import machine_code
+from kinetostatics.engines import machine_code
+from kinetostatics.engines.machine_code import load
+from kinetostatics.engines.programs_folder import CHECKSUMS, UntrustedError, require_private, sealed
 from kinetostatics.errors import CacheWarning
-from kinetostatics.machine_code import load
-from kinetostatics.programs_folder import CHECKSUMS, UntrustedError, require_private, sealed
 
 pytestmark = [
     pytest.mark.slow_start,

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings, strategies
 
 import kinetostatics as ks
-from kinetostatics import designs
 from kinetostatics.cli import main
-from kinetostatics.files import read_columns
-from kinetostatics.units import factor, to_si
+from kinetostatics.numbers.files import read_columns
+from kinetostatics.numbers.units import factor, to_si
+from kinetostatics.sweeps import designs
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -1,0 +1,232 @@
+"""A counterweight on a link, the mechanism with it, and what it did: masses, arms, and the price elsewhere."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..machine.mechanism import Mechanism
+from ..machine.slider_group import SliderGroup
+from ..mechanics.principal_points import principal_points
+from ..mechanics.quantities import label
+from ..numbers import checks
+from ..results.extremes import extremes
+from ..solution.solution import solve
+
+
+@dataclass(frozen=True)
+class Counterweight:
+    """What is fixed of a counterweight before its unbalance is known: its mass or its arm, and its limits.
+
+    Parameters
+    ----------
+    mass : float, optional
+        kg; the arm follows.
+    arm : float, optional
+        Distance of its mass centre from the link's reference joint, m; negative on the extension behind the joint. The
+        mass follows.
+    whole_link : bool
+        Mass and arm are those of the link together with its counterweight, as for a new link.
+    largest_mass, largest_arm : float, optional
+        Limits, kg and m.
+    keep_out : float, optional
+        Radius around the reference joint that it must stay outside of, m.
+
+    Raises
+    ------
+    ParameterError
+        Both mass and arm are given, or neither, or a value is not possible.
+    """
+
+    mass: float | None = None
+    arm: float | None = None
+    whole_link: bool = False
+    largest_mass: float | None = None
+    largest_arm: float | None = None
+    keep_out: float | None = None
+
+    def __post_init__(self):
+        given = [name for name in ("mass", "arm") if getattr(self, name) is not None]
+        checks.require(
+            "counterweight",
+            None if len(given) == 1 else f"give either mass or arm, not {'both' if given else 'neither'}",
+            *(
+                checks.positive(name, getattr(self, name))
+                for name in ("mass", "largest_mass", "largest_arm", "keep_out")
+                if getattr(self, name) is not None
+            ),
+            None if self.arm is None else checks.finite("arm", self.arm) or (self.arm == 0 and "arm must not be 0"),
+        )
+
+    def placed(self, unbalance):
+        """Mass and position (along, across) that give an unbalance (along, across), kg m."""
+        size = float(np.hypot(*unbalance))
+        if self.mass is not None:
+            return self.mass, (unbalance[0] / self.mass, unbalance[1] / self.mass)
+        if size == 0 or self.arm is None:
+            return 0.0, (0.0, 0.0)
+        if self.arm * unbalance[0] < 0:
+            raise ParameterError(
+                f"counterweight: at the arm {self.arm:g} m its mass would have to be {unbalance[0] / self.arm:.6g} kg; "
+                f"it belongs on the other side of the joint: arm {-self.arm:g} m"
+            )
+        reach = abs(self.arm) / size
+        return 1.0 / reach, (reach * unbalance[0], reach * unbalance[1])
+
+    def unbalances(self):
+        """Smallest and largest unbalance within the limits, kg m."""
+        mass, arm = (self.largest_mass, self.arm) if self.mass is None else (self.mass, self.largest_arm)
+        largest = np.inf if mass is None or arm is None else mass * abs(arm)
+        return (self.mass or 0.0) * (self.keep_out or 0.0), largest
+
+    def problems(self, link, mass, arm):
+        """How a counterweight found breaks its limits, beyond rounding."""
+        if mass == 0:
+            return
+        for limit, found, unit, sign, words in [
+            (self.largest_mass, mass, "kg", 1, "exceeds the largest mass"),
+            (self.largest_arm, arm, "m", 1, "exceeds the largest arm"),
+            (self.keep_out, arm, "m", -1, "lies inside the keep-out radius"),
+        ]:
+            if limit is not None and sign * (found - limit) > 1e-12 * limit:
+                yield f"{link}: the counterweight needed, {found:.6g} {unit}, {words} {limit:g} {unit}"
+
+
+@dataclass(frozen=True, eq=False)
+class Balanced:
+    """A balanced mechanism and what was done to it.
+
+    Attributes
+    ----------
+    bare, mechanism : Mechanism
+        Before, and with its counterweights, ready for `solve`.
+    counterweights : dict of link to (mass, (along, across))
+        kg and m.
+    """
+
+    bare: Mechanism
+    mechanism: Mechanism
+    counterweights: dict = field(default_factory=dict)
+
+    @property
+    def ratio(self):
+        """Ratio (h1 / L_OA) / (h2 / L_AB) reached; NaN where it has no meaning, as after full balancing."""
+        found = principal_points(self.mechanism).static_moments
+        lengths = {bar.link: bar.length for bar in self.mechanism.bars}
+        slider = self.mechanism.group(SliderGroup)
+        if slider is None or "crank" not in lengths:
+            return np.nan
+        if abs(found["coupler"][0]) <= 1e-12 * principal_points(self.mechanism).mass * lengths["coupler"]:
+            return np.nan
+        return (found["crank"][0] / lengths["crank"]) / (found["coupler"][0] / lengths["coupler"])
+
+    @property
+    def added_mass(self):
+        """Mass of all counterweights, kg."""
+        return sum(mass for mass, _ in self.counterweights.values())
+
+    def report(self):
+        """Counterweights and links before and after, as a pandas DataFrame with a row for each link."""
+        import pandas as pd
+
+        moduli = principal_points(self.mechanism).moduli
+        rows = {}
+        for name, (mass, place) in self.counterweights.items():
+            bare, new = self.bare.links[name], self.mechanism.links[name]
+            rows[name] = {
+                "modulus h [m]": moduli[name],
+                "counterweight mass [kg]": mass,
+                "counterweight arm [m]": _signed(place),
+                "counterweight phase [deg]": np.degrees(np.arctan2(place[1], place[0])),
+                "counterweight unbalance [kg m]": mass * np.hypot(*place),
+                "link mass before [kg]": bare.mass,
+                "link mass after [kg]": new.mass,
+                "link centre after [m]": _signed(new.centre),
+                "link unbalance before [kg m]": bare.mass * np.hypot(*bare.centre),
+                "link unbalance after [kg m]": new.mass * np.hypot(*new.centre),
+            }
+        return pd.DataFrame.from_dict(rows, orient="index").rename_axis("link")
+
+    def effect(self, *, crank_speed, crank_acceleration=0.0, loads=()):
+        """The price and the gain: largest forces, moments and torque before and after, as a pandas DataFrame."""
+        import pandas as pd
+
+        angle = np.zeros(1)
+        drive = {"crank_speed": crank_speed, "crank_acceleration": crank_acceleration, "loads": loads}
+        before, after = (solve(item, angle, **drive) for item in (self.bare, self.mechanism))
+        rows = {"mass of links [kg]": [principal_points(item.mechanism).mass for item in (before, after)]}
+        for name, unit, quantity in [
+            ("largest shaking force", "N", "shaking_force"),
+            ("largest shaking force along guide", "N", along_guide),
+            ("largest shaking force across guide", "N", across_guide),
+            ("largest shaking moment", "N m", "shaking_moment"),
+            *((f"largest {label(joint)}", "N", joint) for joint in before.reactions),
+            ("largest balancing torque", "N m", "balancing_torque"),
+        ]:
+            rows[f"{name} [{unit}]"] = [abs(extremes(item, quantity).largest) for item in (before, after)]
+        table = pd.DataFrame.from_dict(rows, orient="index", columns=["before", "after"])
+        table["change [%]"] = 100 * (table["after"] / table["before"] - 1)
+        return table
+
+
+def counterweight(mechanism, link, unbalance, weight):
+    """Mechanism with a counterweight of given unbalance added to one link.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    link : str
+    unbalance : float or (along, across)
+        Unbalance of the counterweight, mass times arm, kg m; of the link with it if ``weight.whole_link``.
+    weight : Counterweight
+        Its mass or arm, and its limits.
+
+    Returns
+    -------
+    Balanced
+
+    Raises
+    ------
+    ParameterError
+        No such link, or the counterweight needed breaks its limits; with the numbers.
+    """
+    checks.require(
+        "counterweight",
+        checks.choice("link", link, tuple(mechanism.links)),
+        checks.pair("unbalance", unbalance) if np.ndim(unbalance) else checks.finite("unbalance", unbalance),
+    )
+    bare = mechanism.links[link]
+    wanted = np.array(unbalance if np.ndim(unbalance) else (unbalance, 0.0), dtype=float)
+    own = bare.mass * np.array(bare.centre)
+    if weight.whole_link:
+        whole, _ = weight.placed(wanted)
+        mass, added = whole - bare.mass, wanted - own
+        if mass <= 0 and np.any(added != 0):
+            raise ParameterError(
+                f"counterweight: the {link} with its counterweight would weigh {whole:.6g} kg, less than the "
+                f"{bare.mass:g} kg it has; choose a shorter arm or a larger mass"
+            )
+        place = tuple(added / mass) if mass > 0 else (0.0, 0.0)
+    else:
+        mass, place = weight.placed(wanted)
+    checks.require("counterweight", *weight.problems(link, mass, float(np.hypot(*place))))
+    return Balanced(mechanism, mechanism.with_link(link, bare.joined(mass, place)), {link: (mass, place)})
+
+
+def _signed(place):
+    """Distance of a point from the joint, negative behind it."""
+    return float(np.copysign(np.hypot(*place), place[0]))
+
+
+def along_guide(solution):
+    return np.tensordot(_guide_direction(solution), solution.shaking_force, 1)
+
+
+def across_guide(solution):
+    x, y = _guide_direction(solution)
+    return np.tensordot((-y, x), solution.shaking_force, 1)
+
+
+def _guide_direction(solution):
+    group = solution.mechanism.group(SliderGroup)
+    return (1.0, 0.0) if group is None else group.guide.direction

@@ -1,0 +1,317 @@
+"""Characteristics of the four-bar: where it closes, which joints turn fully, how far and how evenly it swings.
+
+The chain unit of the Belarusian study counts its crank angle from +y, clockwise, and starts with the rocker at rest
+angle zero; `chain_unit` builds it and `chain_unit_angle` turns its crank angle into the library's.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import asin, atan2, pi, sqrt
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..machine.mechanism import four_bar
+from ..machine.rocker_group import RockerGroup
+from ..numbers import checks
+from ..results.extremes import extremes
+
+QUARTER = pi / 2
+CHANGE_POINT = 1e-12
+"""Difference of the sums of lengths, relative to them, below which a four-bar can reach a change point."""
+
+
+def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **links):
+    """Four-bar of the chain unit, with the crank's pivot at O and the rocker's at (pivot_x, -rocker_length).
+
+    Parameters
+    ----------
+    crank_length, coupler_length, rocker_length : float or array
+        m; in the relative form rho, 1, lambda.
+    pivot_x : float or array, optional
+        Free start (the study's variant 2). Without it parallel start (variant 1): crank and rocker are parallel when
+        the crank points along +y, so pivot_x = sqrt(coupler_length^2 - crank_length^2).
+    **links
+        Links crank, coupler, rocker, and assembly, as for `four_bar`.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        The coupler is shorter than the crank, so the parallel start is not possible.
+    """
+    checks.require(
+        "chain unit",
+        checks.positive("crank length", crank_length),
+        checks.positive("coupler length", coupler_length),
+        checks.positive("rocker length", rocker_length),
+        None if pivot_x is None else checks.finite("pivot_x", pivot_x),
+    )
+    if pivot_x is None:
+        square = (coupler_length - crank_length) * (coupler_length + crank_length)
+        if np.any(square <= 0):
+            raise ParameterError(
+                f"chain unit: parallel start needs a coupler longer than the crank, got {np.min(coupler_length)} m and "
+                f"{np.max(crank_length)} m; give pivot_x for a free start"
+            )
+        pivot_x = np.sqrt(square)
+    return four_bar(crank_length, coupler_length, rocker_length, rocker_pivot=(pivot_x, -rocker_length), **links)
+
+
+def chain_unit_angle(angle):
+    """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad."""
+    checks.require("chain unit", checks.table("angle", angle))
+    return QUARTER - np.asarray(angle)
+
+
+def rocker_angle(solution, start=QUARTER):
+    """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad."""
+    _require_four_bar(solution)
+    checks.require("rocker_angle", checks.finite("start", start))
+    x, y = _rocker(solution)
+    x0, y0 = _rocker(solution.at(start))
+    return np.arctan2(x * y0 - y * x0, x * x0 + y * y0)
+
+
+def _rocker(solution):
+    return solution.placement.links["rocker"].direction
+
+
+def transmission_angle(solution):
+    """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi."""
+    _require_four_bar(solution)
+    motion = solution.placement.details["rocker"]
+    return np.arctan2(abs(motion.sine), motion.cosine)
+
+
+@dataclass(frozen=True)
+class Swing:
+    """Swing of the rocker over a turn, clockwise from its start.
+
+    Attributes
+    ----------
+    largest, smallest : float
+        Extreme rocker angles psi, rad.
+    largest_at, smallest_at : float
+        Crank angles where they are reached, rad, as the library counts them.
+    """
+
+    largest: float
+    smallest: float
+    largest_at: float
+    smallest_at: float
+
+    @property
+    def range(self):
+        """Whole angle swept, rad."""
+        return self.largest - self.smallest
+
+    @property
+    def asymmetry(self):
+        """Asymmetry coefficient eta = |psi_min| / psi_max of the study."""
+        return abs(self.smallest) / self.largest
+
+
+def swing(solution, start=QUARTER):
+    """Swing of the rocker, from the true extremes of its angle.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of a four-bar whose crank turns fully.
+    start : float
+        Crank angle at which the rocker angle is zero, rad; +y as in the study.
+
+    Returns
+    -------
+    Swing
+    """
+    _require_four_bar(solution)
+    found_class = grashof(solution.mechanism)
+    whole = found_class.intervals == ((0.0, 2 * pi),)
+    if not whole or "O2" in found_class.turning_joints:
+        raise ParameterError(
+            "swing is for four-bars whose crank turns fully and whose rocker does not; this one is a "
+            f"{found_class.kind}{'' if whole else ' that does not close all round'}"
+        )
+    found = extremes(solution, lambda at: rocker_angle(at, start))
+    high, low = int(np.argmax(found.value)), int(np.argmin(found.value))
+    return Swing(*map(float, (found.value[high], found.value[low], found.angle[high], found.angle[low])))
+
+
+@dataclass(frozen=True)
+class Grashof:
+    """Class of a four-bar by Grashof's rule.
+
+    Attributes
+    ----------
+    kind : str
+        "crank-rocker", "double-crank", "double-rocker", "rocker-crank" (Grashof linkages, by the shortest link),
+        "change-point", or "triple-rocker".
+    turning_joints : tuple of str
+        Joints whose two links turn fully against each other.
+    intervals : tuple of (float, float)
+        Crank-angle intervals in which it closes, rad, start in [0, 2 pi); one whole turn if the crank turns fully.
+    """
+
+    kind: str
+    turning_joints: tuple[str, ...]
+    intervals: tuple[tuple[float, float], ...]
+
+
+KINDS = {
+    "crank": ("crank-rocker", ("O", "A")),
+    "coupler": ("double-rocker", ("A", "B")),
+    "rocker": ("rocker-crank", ("B", "O2")),
+    "frame": ("double-crank", ("O2", "O")),
+}
+"""Kind of a Grashof linkage and the joints that turn fully, by its shortest link."""
+
+
+def grashof(mechanism):
+    """Grashof class of a four-bar, the joints that turn fully, and the crank angles at which it closes.
+
+    The shortest link turns fully against its neighbours if it and the longest are together shorter than the other two
+    (Grashof's rule, as in Uicker, Pennock and Shigley). Equality makes a change-point linkage: there the links come to
+    lie in one line, velocities at that angle are undefined, and on both sides of it the assembly is the chosen one.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        A four-bar of one design.
+
+    Returns
+    -------
+    Grashof
+    """
+    group = _four_bar(mechanism)
+    frame = np.hypot(*group.pivot)
+    lengths = {
+        "crank": mechanism.crank.length,
+        "coupler": group.coupler_length,
+        "rocker": group.rocker_length,
+        "frame": frame,
+    }
+    if any(np.ndim(length) for length in lengths.values()):
+        raise ParameterError("Grashof's rule is for one design at a time, got a batch of lengths")
+    if frame == 0:
+        raise ParameterError("Grashof's rule needs a frame: the rocker's pivot lies at O")
+    ordered = sorted(lengths, key=lambda name: lengths[name])
+    outer = lengths[ordered[0]] + lengths[ordered[3]]
+    inner = lengths[ordered[1]] + lengths[ordered[2]]
+    kind: str
+    joints: tuple[str, ...]
+    kind, joints = KINDS[ordered[0]]
+    change_point = abs(outer - inner) <= CHANGE_POINT * inner
+    if change_point:
+        kind = "change-point"
+        shortest = (name for name in ordered if lengths[name] <= lengths[ordered[0]] * (1 + CHANGE_POINT))
+        joints = tuple(dict.fromkeys(joint for name in shortest for joint in KINDS[name][1]))
+    elif outer > inner:
+        kind, joints = "triple-rocker", ()
+    slack = 8 * CHANGE_POINT if change_point else 0.0
+    return Grashof(kind, joints, _closed_intervals(lengths, atan2(group.pivot[1], group.pivot[0]), slack))
+
+
+def _four_bar(mechanism):
+    """The rocker group of a four-bar; an error for any other mechanism."""
+    checks.require("linkage", checks.mechanism("mechanism", mechanism))
+    group = mechanism.groups[0]
+    if len(mechanism.groups) > 1 or not isinstance(group, RockerGroup) or mechanism.crank.length is None:
+        raise ParameterError(f"this is for four-bars, not for a {mechanism.name}")
+    return group
+
+
+def _require_four_bar(solution):
+    checks.require("linkage", checks.solution("solution", solution))
+    _four_bar(solution.mechanism)
+
+
+def _closed_intervals(lengths, frame_angle, slack):
+    """Crank angles at which A is no nearer to O2 than the difference of coupler and rocker and no farther than the sum.
+
+    At the distance D the crank stands at theta from the frame line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b);
+    within `slack` of 0 or 1, as rounding of the lengths of a change-point linkage makes it, it is 0 or 1.
+    """
+    r, b = lengths["crank"], lengths["frame"]
+
+    def at_distance(distance):
+        square = (distance - (r - b)) * (distance + (r - b)) / (4 * r * b)
+        return 2 * asin(sqrt(0.0 if square <= slack else 1.0 if square >= 1 - slack else square))
+
+    near = at_distance(abs(lengths["coupler"] - lengths["rocker"]))
+    far = at_distance(lengths["coupler"] + lengths["rocker"])
+    turn = 2 * pi
+    if far <= near:
+        return ()
+    if near == 0 and far == pi:
+        return ((0.0, turn),)
+    if near == 0:
+        pieces = [(frame_angle - far, frame_angle + far)]
+    elif far == pi:
+        pieces = [(frame_angle + near, frame_angle + turn - near)]
+    else:
+        pieces = [(frame_angle + near, frame_angle + far), (frame_angle - far, frame_angle - near)]
+    return tuple(sorted((start % turn, start % turn + end - start) for start, end in pieces))
+
+
+def _standing(name, solution):
+    """What is wrong with a solution whose speeds are to be compared with the crank's."""
+    problem = checks.solution(name, solution)
+    if problem is None and np.any(np.asarray(solution.crank_speed) == 0):
+        return f"{name}: the crank speed is 0, but speeds are compared with it; give one"
+    return problem
+
+
+def characteristics(solutions, reference):
+    """Swing, unevenness and transmission of four-bars, side by side as a pandas DataFrame.
+
+    Parameters
+    ----------
+    solutions : dict of name to Solution
+        Four-bars whose crank turns fully.
+    reference : str
+        Name of the one that amplitudes and speeds are compared with.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column for each mechanism; speeds relative to the crank's.
+
+    Raises
+    ------
+    ParameterError
+        There is no such reference, or a solution is of something else or of a crank that stands still.
+    """
+    import pandas as pd
+
+    named = isinstance(solutions, Mapping)
+    checks.require(
+        "characteristics",
+        None if named and solutions else f"solutions must be a dict of name to Solution, got {solutions!r}",
+        checks.choice("reference", reference, tuple(solutions)) if named and solutions else None,
+        *(_standing(name, solution) for name, solution in (solutions.items() if named else ())),
+    )
+    columns = {}
+    for name, solution in solutions.items():
+        found = swing(solution)
+        fastest = abs(extremes(solution, "rocker_rate").largest / solution.crank_speed)
+        transmission = np.degrees(extremes(solution, transmission_angle).range)
+        columns[name] = {
+            "largest rocker angle psi [deg]": np.degrees(found.largest),
+            "smallest rocker angle psi [deg]": np.degrees(found.smallest),
+            "asymmetry |psi_min| / psi_max": found.asymmetry,
+            "largest relative rocker speed": fastest,
+            "smallest transmission angle [deg]": transmission[0],
+            "largest transmission angle [deg]": transmission[1],
+        }
+    table = pd.DataFrame(columns).rename_axis("quantity")
+    for ratio, quantity in [
+        ("amplitude ratio", "largest rocker angle psi [deg]"),
+        ("speed ratio", "largest relative rocker speed"),
+    ]:
+        table.loc[f"{ratio} to {reference}"] = table.loc[quantity] / table.loc[quantity, reference]
+    return table

@@ -1,0 +1,127 @@
+"""Cam roller: a block slides in the slotted crank and carries a roller at A that runs on a fixed cam.
+
+The cam gives the radius r(phi) of the roller centre A along the crank ray (the pitch curve in polar form). The cam
+pushes along the normal of the pitch curve, which leans from the ray by the pressure angle, tan = r'/r; the slot
+pushes across the ray. Equilibrium of the block gives both, and what the slot gives the crank must bear.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numbers import checks
+from ..numbers.elementary import sqrt
+from ..numbers.planar import cross, dot, minus, subtracted, vector
+from .chain import Adds
+from .crank import ray
+from .links import Joint, Link, LinkMotion, Wrench
+
+GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+"""Crank angles at which cams of the user's own are looked at, rad."""
+
+
+class RollerForces(NamedTuple):
+    """`cam`: cam on roller along the inward normal; `slot`: crank on block, positive with growing crank angle;
+    `crank_demand`: wrench about O that the crank must supply to the block.
+    """
+
+    cam: Any
+    slot: Any
+    crank_demand: Wrench
+
+
+def place(ray, radius, slope, curvature):
+    """Roller centre A on the ray, from r, r' and r'' (kernel)."""
+    x, y = ray
+    outward = curvature - radius
+    sideways = 2.0 * slope
+    return Joint(
+        (radius * x, radius * y),
+        (slope * x - radius * y, slope * y + radius * x),
+        (outward * x - sideways * y, outward * y + sideways * x),
+    )
+
+
+def resolve(ray, radius, slope, block_load, demand):
+    """Cam and slot force on the block (kernel).
+
+    `block_load` is the wrench of the block about A, `demand` the force it must supply to the coupler.
+    """
+    force = vector(subtracted(block_load.force, demand))
+    lean = slope / radius
+    outward = dot(force, ray)
+    cam = outward * sqrt(1.0 + lean * lean)
+    slot = -(cross(ray, force) + outward * lean)
+    crank_demand = Wrench((-slot * ray[1], slot * ray[0]), minus(slot * radius, block_load.moment))
+    return RollerForces(cam, slot, crank_demand)
+
+
+@dataclass(frozen=True, eq=False)
+class CamRoller(checks.Checked):
+    """Block and roller at joint A, guided by the slotted crank and the fixed `cam`.
+
+    Parameters
+    ----------
+    cam : cams.Circle, cams.CosineLaw, cams.Sampled or alike
+        Anything with ``polar(angle, ray)`` that returns r, r', r'' in m; taken as it is when the group is made.
+    block : Link
+        Block with roller; reference joint A, along the crank ray.
+    """
+
+    cam: Any
+    block: Link = Link()
+
+    RULES = checks.Rules(
+        "cam roller",
+        cam=checks.Own(("polar",), "one of ks.cams or alike"),
+        block=checks.Made(Link, "a Link"),
+    )
+
+    @property
+    def adds(self):
+        return Adds(("A",), ("block",), (), ("cam_force", "slot_force"))
+
+    @property
+    def links(self):
+        return {"block": self.block}
+
+    @property
+    def references(self):
+        return {"block": "A"}
+
+    @property
+    def lengths(self):
+        return (*getattr(self.cam, "lengths", ()), *self.block.centre)
+
+    @property
+    def smallest_radius(self):
+        """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
+        found = getattr(self.cam, "smallest_radius", None)
+        return np.min(self.cam.polar(GRID, ray(GRID))[0]) if found is None else found
+
+    @property
+    def bars(self):
+        return ()
+
+    def place(self, placement):
+        polar = self.cam.polar(placement.angle, placement.ray)
+        joint = place(placement.ray, *polar)
+        placement.joints["A"] = joint
+        placement.links["block"] = LinkMotion(joint, placement.ray, 1.0, None)
+        placement.details["cam"] = polar
+
+    def closure(self, placement):
+        """Squared cosine of the pressure angle, negative where the radius is."""
+        radius, slope, _ = placement.details["cam"]
+        return radius * abs(radius) / (radius * radius + slope * slope)
+
+    def requirement(self, placement):
+        return f"the pitch curve must go around O, but its radius falls to {placement.details['cam'][0].min():.6g} m"
+
+    def resolve(self, placement, loads, pushes, forces):
+        radius, slope, _ = placement.details["cam"]
+        found = resolve(placement.ray, radius, slope, loads["block"], forces.demand.get("A"))
+        forces.scalars["cam_force"] = found.cam
+        forces.scalars["slot_force"] = found.slot
+        forces.crank_demand = found.crank_demand

@@ -1,0 +1,62 @@
+"""What looks like a slip of units, though a machine could have it: a warning, and computed all the same."""
+
+import numpy as np
+
+from ..numbers import checks
+
+FAR = 20.0
+"""Lengths of the longest link beyond which nobody puts a mass centre: millimetres beside metres make 1000."""
+THIN = 1000.0
+"""How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
+
+
+def of_mechanism(mechanism):
+    """Sentences on mass centres and inertias that look like those of another unit."""
+    bars = [bar for bar in mechanism.bars if checks.known(bar.length)]
+    if not bars:
+        return ()
+    longest, found = max(_most(bar.length) for bar in bars), []
+    for name, link in mechanism.links.items():
+        away = max((_most(abs(part)) for part in link.centre if checks.known(part)), default=0.0)
+        if away > FAR * longest:
+            found.append(
+                f"the mass centre of the {name} is {away:.4g} m from its reference joint, {away / longest:.3g} times "
+                f"the longest link ({longest:.4g} m); is it in mm?"
+            )
+    return (*found, *(text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link)))))
+
+
+def _inertia(bar, link):
+    """What is odd about a link's inertia beside its mass and length; none at all makes a point mass."""
+    if link is None or not (checks.known(link.mass) and checks.known(link.inertia)):
+        return None
+    inertia, unit = link.inertia, link.mass * bar.length * bar.length
+    thin = (inertia > 0) & (THIN * 12.0 * inertia < unit)
+    if thin is False or not np.any(thin):
+        return None
+    return (
+        f"the inertia of the {bar.link}, {np.min(inertia):.4g} kg m2, is less than a thousandth of that of a uniform "
+        f"rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m; is it in kg m2? 0 makes it a point mass"
+    )
+
+
+def of_angles(angle):
+    """Say if crank angles look like degrees: an even grid over quarters of a turn counted in them."""
+    if not isinstance(angle, np.ndarray) or angle.dtype == object or angle.size < 3:
+        return ()
+    if -4 * np.pi < angle.item(0) < 4 * np.pi and -4 * np.pi < angle.item(-1) < 4 * np.pi:
+        return ()
+    row = np.ravel(angle)
+    step, reach = row[1] - row[0], row[-1] - row[0]
+    even = abs(step) >= 0.25 and _whole(360.0 / step) and np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))
+    if not even or not (_whole(reach / 90.0) or _whole((reach + step) / 90.0)):
+        return ()
+    return (f"crank angles from {row[0]:g} to {row[-1]:g} by {step:g} look like degrees; they are taken as radians",)
+
+
+def _whole(number):
+    return abs(number - round(number)) < 1e-9
+
+
+def _most(values):
+    return values if isinstance(values, float) else float(np.max(values))

@@ -1,0 +1,167 @@
+"""A rigid link: its mass, its motion, and the load it carries.
+
+Motion is kept as kinematic coefficients, the derivatives with respect to the crank angle phi (Uicker, Pennock and
+Shigley, *Theory of Machines and Mechanisms*, on first- and second-order kinematic coefficients). With crank speed
+omega and crank acceleration alpha
+
+    velocity = omega * first                acceleration = omega**2 * second + alpha * first
+
+so geometry is computed once whatever the crank does, and a force at rest is no special case.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from ..numbers import checks
+from ..numbers.planar import added, left, minus, moment, plus, product, stretched, subtracted, work
+
+
+class Joint(NamedTuple):
+    """A moving point: position and its first and second derivatives by crank angle (None: it does not move)."""
+
+    position: Any
+    first: Any
+    second: Any
+
+
+class LinkMotion(NamedTuple):
+    """A link: its reference joint, direction (unit vector), angular velocity ratio to the crank and that ratio's slope.
+
+    The ratio is d theta / d phi, its slope d2 theta / d phi2; both None for a link that does not turn.
+    """
+
+    joint: Joint
+    direction: Any
+    ratio: Any
+    ratio_slope: Any
+
+
+class Body(NamedTuple):
+    """What a link weighs, as kernels take it; zero is None."""
+
+    mass: Any
+    along: Any
+    across: Any
+    inertia: Any
+
+
+class Wrench(NamedTuple):
+    """A force and its moment about the link's reference joint, either of which may be absent."""
+
+    force: Any
+    moment: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Link(checks.Checked):
+    """Mass properties of one link.
+
+    Parameters
+    ----------
+    mass : float or array
+        kg; an array of shape (designs, 1) makes a batch.
+    centre : (along, across) or float
+        Mass centre in m from the link's reference joint (O for the crank, A for block and coupler, B for the slider,
+        O2 for the rocker). `along` runs along the crank ray for crank and block, A -> B for the coupler, O2 -> B for
+        the rocker, the guide direction for the slider; `across` a quarter turn counter-clockwise from it. A number
+        means (number, 0).
+    inertia : float or array
+        Moment of inertia about the mass centre, kg m2.
+
+    Raises
+    ------
+    ParameterError
+        A mass or inertia is negative, or a value is not finite.
+    """
+
+    mass: Any = 0.0
+    centre: Any = (0.0, 0.0)
+    inertia: Any = 0.0
+
+    RULES = checks.Rules(
+        "Link",
+        mass=checks.Number("kg", low=0.0),
+        centre=checks.Pair("m", parts=("along", "across"), lone=True),
+        inertia=checks.Number("kg*m**2", low=0.0),
+    )
+
+    def joined(self, mass, place):
+        """The link with a point mass (kg) fixed to it at place (along, across), m."""
+        if mass == 0:
+            return self
+        whole = self.mass + mass
+        x, y = ((self.mass * own + mass * new) / whole for own, new in zip(self.centre, place, strict=True))
+        apart = (place[0] - self.centre[0]) ** 2 + (place[1] - self.centre[1]) ** 2
+        return Link(whole, (x, y), self.inertia + self.mass * mass / whole * apart)
+
+    @cached_property
+    def body(self):
+        return Body(*map(present, (self.mass, *self.centre, self.inertia)))
+
+
+def present(value):
+    """The value, or None for a plain number that is zero."""
+    return None if isinstance(value, int | float) and value == 0 else value
+
+
+def arm(direction, along, across):
+    """Vector from a link's reference joint to the point (along, across) of it; None for the joint itself."""
+    if across is None:
+        return stretched(along, direction)
+    return added(stretched(along, direction), stretched(across, left(direction)))
+
+
+def first_at(link, arm):
+    """First kinematic coefficient of the point of a link at `arm` from its reference joint."""
+    return added(link.joint.first, _turned(arm, link.ratio))
+
+
+def second_at(link, arm):
+    """Second kinematic coefficient of the point of a link at `arm` from its reference joint."""
+    turning = subtracted(_turned(arm, link.ratio_slope), stretched(product(link.ratio, link.ratio), arm))
+    return added(link.joint.second, turning)
+
+
+def _turned(arm, rate):
+    if arm is None or rate is None:
+        return None
+    return (-rate * arm[1], rate * arm[0])
+
+
+def accelerated(first, second, speed_squared, crank_acceleration):
+    """Acceleration of a point from its kinematic coefficients; None when it has none."""
+    return added(stretched(speed_squared, second), stretched(crank_acceleration, first))
+
+
+def angular_acceleration(ratio, ratio_slope, speed_squared, crank_acceleration):
+    """Angular acceleration of a link; None when it has none."""
+    return plus(product(speed_squared, ratio_slope), product(crank_acceleration, ratio))
+
+
+def load(link, body, speed_squared, crank_acceleration, gravity):
+    """Wrench of inertia (d'Alembert) and weight of a link about its reference joint; None for a massless link."""
+    to_centre = arm(link.direction, body.along, body.across)
+    force = _mass_force(link, to_centre, body.mass, speed_squared, crank_acceleration, gravity)
+    inertia = body.inertia
+    turning = angular_acceleration(
+        link.ratio, link.ratio_slope, product(inertia, speed_squared), product(inertia, crank_acceleration)
+    )
+    return Wrench(force, minus(moment(to_centre, force), turning))
+
+
+def _mass_force(link, to_centre, mass, speed_squared, crank_acceleration, gravity):
+    if mass is None:
+        return None
+    inertia = accelerated(
+        first_at(link, to_centre) if crank_acceleration is not None else None,
+        second_at(link, to_centre),
+        mass * speed_squared,
+        product(mass, crank_acceleration),
+    )
+    return subtracted(stretched(mass, gravity), inertia)
+
+
+def virtual_work(link, wrench):
+    """Work of a wrench per unit of crank angle: the torque at the crank that does the same."""
+    return plus(work(wrench.force, link.joint.first), product(wrench.moment, link.ratio))

@@ -1,0 +1,211 @@
+"""Rocker group (RRR): coupler from a pin to a rocker about a fixed pivot, in either assembly.
+
+With d the vector from joint A to the pivot O2, a = |d|, coupler length c and rocker length h, joint B stands from A at
+(a^2 + c^2 - h^2) / (2 a^2) d +- area / (2 a^2) left(d), where area = sqrt((a+c+h)(a+c-h)(a-c+h)(c+h-a)) is four times
+that of the triangle A B O2 (Heron). The sine of the transmission angle, which divides all rates and forces, is
+area / (2 c h): a product of lengths, so no digit is lost near a toggle, where it vanishes.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numbers import checks
+from ..numbers.elementary import apart, divisor, root, sqrt
+from ..numbers.planar import added, dot, left, minus, moment, number, quotient, stretched, subtracted
+from .chain import Adds, Bar
+from .links import Joint, Link, LinkMotion
+
+SMALLEST = 2.0**-53
+"""Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
+
+
+class RockerMotion(NamedTuple):
+    """A placed rocker group, with sine and cosine of the transmission angle; `closure` is sine squared.
+
+    `divisor` is the sine to divide by, which never vanishes.
+    """
+
+    coupler: LinkMotion
+    rocker: LinkMotion
+    pin: Joint
+    sine: Any
+    cosine: Any
+    divisor: Any
+    closure: Any
+
+
+class RockerForces(NamedTuple):
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the rocker; `pivot`: ground on rocker."""
+
+    inner: Any
+    pin: Any
+    pivot: Any
+
+
+def place(joint, coupler_length, rocker_length, pivot, assembly):
+    """Coupler and rocker for a given inner joint (kernel)."""
+    c, h = coupler_length, rocker_length
+    d = (apart(pivot[0] - joint.position[0], c + h), pivot[1] - joint.position[1])
+    square = dot(d, d)
+    a = sqrt(square)
+    gap = c - h
+    heron = (a + c + h) * (a + gap) * (a - gap) * (c + h - a)
+    product = 2.0 * c * h
+    unit = product * product
+    size = root(heron, unit)
+    area, divided = assembly * size, assembly * divisor(size, SMALLEST * product) / product
+    along, across = (square + gap * (c + h)) / (2.0 * square), area / (2.0 * square)
+    reach = (along * d[0] - across * d[1], along * d[1] + across * d[0])
+    q = (reach[0] / c, reach[1] / c)
+    p = ((reach[0] - d[0]) / h, (reach[1] - d[1]) / h)
+    sine = area / product
+    cosine = (c * c + h * h - square) / product
+
+    ratio = -dot(joint.first, p) / (c * divided)
+    swing = -dot(joint.first, q) / (h * divided)
+    lag, swing_lag = c * ratio * ratio, h * swing * swing
+    ratio_slope = (lag * cosine - swing_lag - dot(joint.second, p)) / (c * divided)
+    swing_slope = (lag - swing_lag * cosine - dot(joint.second, q)) / (h * divided)
+
+    arm = stretched(h, p)
+    aside = left(arm)
+    pin = Joint(
+        added(pivot, arm),
+        stretched(swing, aside),
+        subtracted(stretched(swing_slope, aside), stretched(swing * swing, arm)),
+    )
+    coupler = LinkMotion(joint, q, ratio, ratio_slope)
+    rocker = LinkMotion(Joint(pivot, None, None), p, swing, swing_slope)
+    return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
+
+
+def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load, demand):
+    """Forces on rocker and coupler (kernel).
+
+    `demand` is the force the pin B must supply to further groups; loads are wrenches about the links' reference
+    joints. Moments of the coupler about A and of the rocker about O2 give the pin force by its parts along both links.
+    """
+    q, p = motion.coupler.direction, motion.rocker.direction
+    on_rocker = minus(quotient(rocker_load.moment, rocker_length), moment(p, demand))
+    along_coupler = number(on_rocker) / motion.divisor
+    along_rocker = number(quotient(coupler_load.moment, coupler_length)) / motion.divisor
+    pin = added(stretched(along_coupler, q), stretched(along_rocker, p))
+    pivot = subtracted(subtracted(demand, pin), rocker_load.force)
+    return RockerForces(subtracted(pin, coupler_load.force), pin, pivot)
+
+
+@dataclass(frozen=True, eq=False)
+class RockerGroup(checks.Checked):
+    """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
+
+    Parameters
+    ----------
+    coupler_length, rocker_length : float or array
+        m.
+    pivot : (x, y)
+        Fixed pivot O2, m.
+    assembly : +1 or -1
+        +1: the pin to the left of the direction from the inner joint to the pivot.
+    coupler, rocker : Link
+    on, pin, pivot_name : str
+        Names of the joint it hangs on and of the joints it adds.
+    label : str
+        Put behind the names of links and forces of a second rocker group in one mechanism.
+    """
+
+    coupler_length: Any
+    rocker_length: Any
+    pivot: Any
+    assembly: int = 1
+    coupler: Link = Link()
+    rocker: Link = Link()
+    on: str = "A"
+    pin: str = "B"
+    pivot_name: str = "O2"
+    label: str = ""
+
+    RULES = checks.Rules(
+        "rocker group",
+        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
+        rocker_length=checks.Number("m", "rocker length", low=0.0, strict=True),
+        pivot=checks.Pair("m", "rocker pivot"),
+        assembly=checks.Sign(),
+        coupler=checks.Made(Link, "a Link"),
+        rocker=checks.Made(Link, "a Link"),
+        on=checks.Name(),
+        pin=checks.Name(),
+        pivot_name=checks.Name(),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    @property
+    def adds(self):
+        forces = (self.on + self.label, self.pin, self.pivot_name)
+        return Adds((self.pin, self.pivot_name), (self._coupler, self._rocker), forces)
+
+    @property
+    def links(self):
+        return {self._coupler: self.coupler, self._rocker: self.rocker}
+
+    @property
+    def references(self):
+        return {self._coupler: self.on, self._rocker: self.pivot_name}
+
+    @property
+    def bars(self):
+        return (
+            Bar(self.on, self.pin, self._coupler, self.coupler_length),
+            Bar(self.pivot_name, self.pin, self._rocker, self.rocker_length),
+        )
+
+    @property
+    def lengths(self):
+        return (self.coupler_length, self.rocker_length, *self.pivot, *self.coupler.centre, *self.rocker.centre)
+
+    @property
+    def _coupler(self):
+        return "coupler" + self.label
+
+    @property
+    def _rocker(self):
+        return "rocker" + self.label
+
+    def place(self, placement):
+        """Add joints B and O2, coupler and rocker."""
+        motion = place(placement.joints[self.on], self.coupler_length, self.rocker_length, self.pivot, self.assembly)
+        placement.joints[self.pin] = motion.pin
+        placement.joints[self.pivot_name] = motion.rocker.joint
+        placement.links[self._coupler] = motion.coupler
+        placement.links[self._rocker] = motion.rocker
+        placement.details[self._rocker] = motion
+
+    def closure(self, placement):
+        return placement.details[self._rocker].closure
+
+    def requirement(self, placement):
+        """Say what distances must hold for B to be reached, with their numbers."""
+        x, y = (end - start for end, start in zip(self.pivot, placement.joints[self.on].position, strict=True))
+        distance = np.hypot(x, y)
+        low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
+        return (
+            f"the distance from {self.on} to {self.pivot_name}, {distance.min():.6g} to {distance.max():.6g} m here, "
+            f"must lie between the difference and the sum of coupler and rocker lengths, {np.min(low):.6g} and "
+            f"{np.max(high):.6g} m"
+        )
+
+    def resolve(self, placement, loads, pushes, forces):
+        """Add the reactions at A, B and O2, and demand the inner one of the joint it hangs on."""
+        found = resolve(
+            placement.details[self._rocker],
+            self.coupler_length,
+            self.rocker_length,
+            loads[self._coupler],
+            loads[self._rocker],
+            forces.demand.get(self.pin),
+        )
+        forces.reactions[self.on + self.label] = found.inner
+        forces.reactions[self.pin] = found.pin
+        forces.reactions[self.pivot_name] = found.pivot
+        forces.require(self.on, found.inner)

@@ -1,0 +1,231 @@
+"""Slider group (RRP): coupler from a pin to a slider on a straight guide, in either assembly.
+
+With the guide along the unit vector u, left normal n, at offset e, a coupler of length l from joint A reaches
+d = e - A.n across the guide and +-sqrt((l - d)(l + d)) along it; no angle is ever formed, so nothing happens at the
+dead centres, whatever the inclination of the guide.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numbers import checks
+from ..numbers.elementary import divisor, root
+from ..numbers.planar import added, minus, number, plus, quotient, subtracted, turned, unturned, vector
+from .chain import Adds, Bar
+from .guide import Guide, Line
+from .links import Joint, Link, LinkMotion, present
+
+SMALLEST = 2.0**-27
+"""Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
+
+
+class SliderMotion(NamedTuple):
+    """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
+
+    `divisor` is the cosine to divide by, which never vanishes.
+    """
+
+    coupler: LinkMotion
+    slider: LinkMotion
+    sine: Any
+    cosine: Any
+    divisor: Any
+    closure: Any
+    travel: Joint
+
+
+class SliderForces(NamedTuple):
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide_*`: ground on slider."""
+
+    inner: Any
+    pin: Any
+    guide_force: Any
+    guide_moment: Any
+
+
+def place(joint, coupler_length, guide, assembly):
+    """Coupler and slider for a given inner joint (kernel); a guide direction of None is +x, an offset of None zero."""
+    position = unturned(joint.position, guide.direction)
+    first = unturned(joint.first, guide.direction)
+    second = unturned(joint.second, guide.direction)
+
+    across = minus(guide.guide_offset, position[1])
+    square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
+    reach = root(square, unit)
+    along, divided = assembly * reach, assembly * divisor(reach, SMALLEST * coupler_length)
+    sine, cosine = across / coupler_length, along / coupler_length
+
+    ratio = -first[1] / divided
+    lag = ratio * ratio
+    ratio_slope = (lag * across - second[1]) / divided
+
+    travel = Joint(
+        position[0] + along,
+        first[0] - ratio * across,
+        second[0] - ratio_slope * across - lag * along,
+    )
+    pin = Joint(
+        _on_guide(joint.position, travel.position, (along, across), guide),
+        turned((travel.first, 0.0), guide.direction),
+        turned((travel.second, 0.0), guide.direction),
+    )
+    coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
+    slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
+    return SliderMotion(coupler, slider, sine, cosine, divided / coupler_length, square / unit, travel)
+
+
+def _on_guide(position, travel, reach, guide):
+    """Slider pin, by the shorter sum: along a level guide from O, else from the inner joint."""
+    if guide.direction is None:
+        return (travel, number(guide.guide_offset))
+    return added(position, turned(reach, guide.direction))
+
+
+def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, demand):
+    """Forces on slider and coupler, from the slider inwards (kernel).
+
+    `push` is the applied force along the guide, `demand` the force the slider pin must supply to further groups; loads
+    are wrenches about the links' reference joints. The slider's balance along the guide gives the pin force along it,
+    moments of the coupler about its inner joint the pin force across; the guide carries the rest.
+    """
+    on_slider = unturned(vector(subtracted(slider_load.force, demand)), guide.direction)
+    along = -plus(on_slider[0], push)
+    across = (number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along) / motion.divisor
+    pin = turned((along, across), guide.direction)
+    return SliderForces(
+        inner=subtracted(pin, coupler_load.force),
+        pin=pin,
+        guide_force=-(on_slider[1] + across),
+        guide_moment=number(minus(None, slider_load.moment)),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SliderGroup(checks.Checked):
+    """Coupler from joint `on` to a slider at joint `pin` on `guide`.
+
+    Parameters
+    ----------
+    coupler_length : float or array
+        m.
+    guide : Guide
+    assembly : +1 or -1
+        +1: slider ahead of the inner joint along the guide.
+    coupler, slider : Link
+    on, pin : str
+        Names of the joint it hangs on and of the joint it adds.
+    label : str
+        Put behind the names of links and forces of a second slider group in one mechanism.
+    """
+
+    coupler_length: Any
+    guide: Guide = Guide((1.0, 0.0))
+    assembly: int = 1
+    coupler: Link = Link()
+    slider: Link = Link()
+    on: str = "A"
+    pin: str = "B"
+    label: str = ""
+
+    RULES = checks.Rules(
+        "slider group",
+        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
+        guide=Line(),
+        assembly=checks.Sign(),
+        coupler=checks.Made(Link, "a Link"),
+        slider=checks.Made(Link, "a Link"),
+        on=checks.Name(),
+        pin=checks.Name(),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    @property
+    def adds(self):
+        label = self.label
+        reactions = (self.on + label, self.pin, "guide" + label)
+        return Adds(
+            (self.pin,), (self._coupler, self._slider), reactions, ("guide_force" + label, "guide_moment" + label)
+        )
+
+    @property
+    def links(self):
+        return {self._coupler: self.coupler, self._slider: self.slider}
+
+    @property
+    def references(self):
+        return {self._coupler: self.on, self._slider: self.pin}
+
+    @property
+    def bars(self):
+        return (Bar(self.on, self.pin, self._coupler, self.coupler_length),)
+
+    @property
+    def lengths(self):
+        return (self.coupler_length, self.guide.guide_offset, *self.coupler.centre, *self.slider.centre)
+
+    @property
+    def _coupler(self):
+        return "coupler" + self.label
+
+    @property
+    def _slider(self):
+        return "slider" + self.label
+
+    @cached_property
+    def _line(self):
+        """The guide as kernels take it: None for a direction along +x and for no offset."""
+        direction, offset = self.guide
+        return Guide(None if self.guide.is_level else direction, present(offset))
+
+    def place(self, placement):
+        motion = place(placement.joints[self.on], self.coupler_length, self._line, self.assembly)
+        placement.joints[self.pin] = motion.slider.joint
+        placement.links[self._coupler] = motion.coupler
+        placement.links[self._slider] = motion.slider
+        placement.details[self._slider] = motion
+
+    def closure(self, placement):
+        return placement.details[self._slider].closure
+
+    def elongation(self, placement, free_position):
+        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate.
+
+        The coupler reaches its length along the guide less l (1 - cos) = l sin^2 / (1 + cos), all small beside it.
+        """
+        motion = placement.details[self._slider]
+        along = unturned(placement.joints[self.on].position, self._line.direction)[0]
+        shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
+        return along + (self.assembly * self.coupler_length - free_position) - self.assembly * shortfall
+
+    def requirement(self, placement):
+        distance = abs(placement.details[self._slider].sine * self.coupler_length)
+        return (
+            f"the distance from {self.on} to the guide, up to {distance.max():.6g} m here, must not exceed the "
+            f"{self._coupler} length, {_span(self.coupler_length)} m"
+        )
+
+    def resolve(self, placement, loads, pushes, forces):
+        """Add pin reactions, guide force and moment, and demand the inner reaction of the joint it hangs on."""
+        found = resolve(
+            placement.details[self._slider],
+            self.coupler_length,
+            self._line,
+            loads[self._coupler],
+            loads[self._slider],
+            pushes.get(self._slider),
+            forces.demand.get(self.pin),
+        )
+        forces.reactions[self.on + self.label] = found.inner
+        forces.reactions[self.pin] = found.pin
+        forces.reactions["guide" + self.label] = turned((0.0, found.guide_force), self._line.direction)
+        forces.scalars["guide_force" + self.label] = found.guide_force
+        forces.scalars["guide_moment" + self.label] = found.guide_moment
+        forces.require(self.on, found.inner)
+
+
+def _span(length):
+    low, high = np.min(length), np.max(length)
+    return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"

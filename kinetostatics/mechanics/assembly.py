@@ -1,0 +1,230 @@
+"""Where a mechanism can be assembled: the check behind `solve`, and the crank-angle intervals for its message."""
+
+import math
+import warnings
+from functools import reduce
+
+import numpy as np
+
+from ..errors import AssemblyError, ConditionWarning, ParameterError
+from ..numbers.elementary import ROUNDING
+
+TURN = 2 * np.pi
+GRID = np.linspace(0.0, TURN, 721)[:-1]
+HALF = 1e8
+"""Condition from which half of the digits are lost."""
+WORST = 100.0
+"""Largest condition of a mechanism times margin^2 / (proportion^2 times crank angle)."""
+
+
+def check(solution):
+    """Raise `AssemblyError` if the mechanism does not close at some angle; warn where half of the digits are lost."""
+    placement, margins = solution.placement, []
+    for group in solution.mechanism.groups:
+        margin = _looked_at(group.closure(placement))
+        if margin is None:
+            continue
+        margins.append(margin)
+        smallest = margin.min()
+        if smallest >= 0.0:
+            continue
+        if not np.all(np.isfinite(placement.angle)):
+            raise ParameterError("crank angles must be finite; found NaN or infinity")
+        if smallest < -ROUNDING:
+            raise _error(solution.mechanism, group, placement, margin)
+    if margins and _in_double_precision(solution) and not surely_well(solution, margins):
+        _warn_where_digits_are_lost(solution, margins)
+
+
+def surely_well(solution, margins):
+    """Whether the margins of closure alone tell that no crank angle loses half of its digits."""
+    least = 1.0
+    for margin in margins:
+        least = least * min(margin.min(), 1.0)
+    return least >= _enough(solution)
+
+
+def _enough(solution):
+    """Product of all groups' margins from which the condition is below `HALF`, however they lie."""
+    farthest = max(1.0, float(np.abs(np.asarray(solution.crank_angle)).max()))
+    return solution.mechanism.proportion * np.sqrt(WORST * farthest / HALF)
+
+
+def _in_double_precision(solution):
+    """Whether it is: numbers of any precision lose what they lose."""
+    return getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
+
+
+def _looked_at(margin):
+    """The margin as a NumPy array; None where it has no value yet, as under ``jax.jit``."""
+    if isinstance(margin, np.ndarray) and margin.dtype == float:
+        return margin
+    try:
+        return np.asarray(margin, dtype=float)
+    except (TypeError, ValueError):
+        return None
+
+
+def ill_conditioned(solution, margins=None):
+    """Crank angles that lose half of their digits or more, found without the condition of all others.
+
+    Parameters
+    ----------
+    solution : Solution
+    margins : sequence of arrays, optional
+        Its `closure`.
+
+    Returns
+    -------
+    points : array of int (M,)
+        Their places in the flattened shape of the solution.
+    condition : array (M,)
+        Above `HALF`, infinite where no rounding is small enough.
+    """
+    from .sensitivity import condition
+
+    margins = solution.closure if margins is None else margins
+    product = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins), np.ones(()))
+    closed = reduce(np.minimum, margins, np.ones(())) >= -ROUNDING
+    points = np.flatnonzero(np.broadcast_to(closed & (product < _enough(solution)), solution.shape))
+    found = condition(solution, points) if points.size else np.zeros(0)
+    return points[found > HALF], found[found > HALF]
+
+
+def _warn_where_digits_are_lost(solution, margins):
+    points, found = ill_conditioned(solution, margins)
+    if not points.size:
+        return
+    worst = int(np.argmax(found))
+    angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[points[worst]]
+    warnings.warn(
+        f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position or change "
+        f"point: errors of its lengths, rounding among them, are magnified {found[worst]:.3g} times, so rates and "
+        f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {points.size} of "
+        f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
+        "angle by angle)",
+        ConditionWarning,
+        stacklevel=5,
+    )
+
+
+def _error(mechanism, group, placement, margin):
+    open_ = margin < 0
+    count = int(open_.sum())
+    design = ""
+    where: tuple[int, ...] = ()
+    if margin.ndim > 1:
+        where = tuple(int(i) for i in np.argwhere(open_.any(axis=-1))[0])
+        design = f" (first in design {where[0] if len(where) == 1 else where})"
+    gaps = intervals(mechanism, group, where, np.ravel(placement.angle))
+    text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(end):.6g} deg" for start, end in gaps)
+    return AssemblyError(
+        f"{mechanism.name} cannot be assembled at {count} of {margin.size} crank angles{design}: "
+        f"{group.requirement(placement)}. It does not close for crank angles {text}",
+        gaps,
+    )
+
+
+def intervals(mechanism, group, design=(), angles=()):
+    """Crank-angle intervals within one turn where a group does not close, to rounding accuracy.
+
+    Found on a grid of half a degree, at the given angles and where the closure margin is smallest between them, each
+    end by root finding on the margin.
+    """
+    from scipy.optimize import elementwise
+
+    margin = _margin(mechanism, group, design)
+    grid = np.concatenate([GRID, np.mod(angles, TURN)])
+    with np.errstate(invalid="ignore"):
+        grid = np.unique(np.concatenate([grid, np.mod(_lowest(margin, 0.0), TURN)]))
+        gap = margin(grid) < 0
+        if gap.all():
+            return ((0.0, TURN),)
+        ends = np.append(grid, grid[0] + TURN)
+        change = np.flatnonzero(gap != np.roll(gap, -1))
+        if not change.size:
+            return tuple((float(angle), float(angle)) for angle in angles[margin(angles) < 0])
+        root = elementwise.find_root(margin, (ends[change], ends[change + 1]))
+    edges = root.x
+    starts, stops = edges[~gap[change]], edges[gap[change]]
+    if stops.size and stops[0] < starts[0]:
+        stops = np.roll(stops, -1)
+        stops[-1] += TURN
+    return tuple((float(start), float(stop)) for start, stop in zip(starts, stops, strict=True))
+
+
+def near_limits(mechanism, below):
+    """Crank angles within one turn, rad, where the closure margin of a group is smallest, and less than `below`."""
+    found = [_lowest(_margin(mechanism, group), below) for group in mechanism.groups]
+    return np.unique(np.mod(np.concatenate([np.empty(0), *found]), TURN))
+
+
+def gaps(mechanism):
+    """Crank-angle intervals within one turn where some group does not close, in order; they do not overlap."""
+    found = []
+    for group in mechanism.groups:
+        margin = _margin(mechanism, group)
+        with np.errstate(invalid="ignore"):
+            angle = np.concatenate([GRID, _lowest(margin, 0.0)])
+            if (margin(angle) < -ROUNDING).any():
+                found += intervals(mechanism, group)
+    return _united(found)
+
+
+def require_turn(mechanism):
+    """Raise `AssemblyError` if the mechanism does not close somewhere in the turn, be it between any samples."""
+    for group in mechanism.groups:
+        margin = _margin(mechanism, group)
+        with np.errstate(invalid="ignore"):
+            angle = np.concatenate([GRID, _lowest(margin, 0.0)])
+            found = margin(angle)
+        if (found < -ROUNDING).any():
+            where = intervals(mechanism, group)
+            text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in where)
+            raise AssemblyError(
+                f"{mechanism.name} cannot be assembled all round the turn: "
+                f"{group.requirement(mechanism.place(angle))}. It does not close for crank angles {text}",
+                where,
+            )
+
+
+def _margin(mechanism, group, design=()):
+    """Closure margin of a group, of one design of a batch, as a function of the crank angle."""
+
+    def margin(angle):
+        found = group.closure(mechanism.place(angle))
+        return np.broadcast_to(found, np.broadcast_shapes(np.shape(found), angle.shape))[design]
+
+    return margin
+
+
+def _lowest(margin, below):
+    """Crank angles of the local minima of a margin that may be less than `below`, found between half degrees."""
+    from scipy.optimize import elementwise
+
+    samples = margin(GRID)
+    before, after = np.roll(samples, 1), np.roll(samples, -1)
+    bend = np.abs(before - 2.0 * samples + after)
+    place = GRID[(samples <= before) & (samples <= after) & (samples - bend < below) & (bend > 0)]
+    if not place.size:
+        return place
+    step = TURN / GRID.size
+    with np.errstate(invalid="ignore"):
+        found = elementwise.find_minimum(margin, (place - step, place, place + step))
+    lowest = np.where(margin(found.x) < margin(place) - ROUNDING, found.x, place)
+    return lowest[margin(lowest) < below]
+
+
+def _united(intervals):
+    """The same intervals in order, those that overlap as one."""
+    united: list[tuple[float, float]] = []
+    for start, stop in sorted(intervals):
+        if united and start <= united[-1][1]:
+            united[-1] = united[-1][0], max(stop, united[-1][1])
+        else:
+            united.append((start, stop))
+    if len(united) > 1 and united[-1][1] >= united[0][0] + TURN:
+        start, stop = united.pop()
+        united[0] = start - TURN, max(united[0][1], stop - TURN)
+        united = [(united[0][0] + TURN, united[0][1] + TURN), *united[1:]]
+    return tuple(sorted(united))

@@ -1,0 +1,166 @@
+"""Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from ..errors import QuantityError
+from ..machine.links import accelerated, angular_acceleration, arm, first_at, present, second_at
+from ..machine.mechanism import Mechanism
+from ..numbers import checks
+from ..numbers.batch import wider
+from ..numbers.elementary import namespace, read_only, stack
+from ..numbers.planar import added, number, plus, product, stretched, vector
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What the mechanism does; made by `solve`.
+
+    Arrays end with the crank angle, batch axes of designs come before it; a vector has (x, y) as its first axis.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    crank_angle : array (..., N)
+        rad.
+    crank_speed, crank_acceleration : float or array
+        rad/s, rad/s2.
+    """
+
+    mechanism: Mechanism
+    crank_angle: Any
+    crank_speed: Any
+    crank_acceleration: Any
+
+    @cached_property
+    def shape(self):
+        """Shape (..., N) of a scalar result: batch axes of the designs, then the crank angles."""
+        parts = (self.mechanism, self.crank_speed, self.crank_acceleration)
+        return wider(self.crank_angle.shape, *parts)
+
+    @cached_property
+    def placement(self):
+        """Joints and links by name, as kinematic coefficients."""
+        return self.mechanism.place(self.crank_angle)
+
+    def position(self, point):
+        """Position of a joint ("O", "A", "B" ...) or of a link's mass centre (its name), (2, ..., N), m."""
+        joint, to_point, _ = self._point(point)
+        return self.as_vector(added(joint.position, to_point))
+
+    def velocity(self, point):
+        """Velocity of a joint or of a link's mass centre, (2, ..., N), m/s."""
+        joint, to_point, link = self._point(point)
+        first = joint.first if link is None else first_at(link, to_point)
+        return self.as_vector(stretched(self.crank_speed, first))
+
+    def acceleration(self, point):
+        """Acceleration of a joint or of a link's mass centre, (2, ..., N), m/s2."""
+        joint, to_point, link = self._point(point)
+        first = joint.first if link is None else first_at(link, to_point)
+        second = joint.second if link is None else second_at(link, to_point)
+        return self.as_vector(accelerated(first, second, *self.accelerating))
+
+    def rate(self, link):
+        """Angular velocity of a link, (..., N), rad/s."""
+        return self._scalar(product(self.crank_speed, self._link(link).ratio))
+
+    def angular_acceleration(self, link):
+        """Angular acceleration of a link, (..., N), rad/s2."""
+        found = self._link(link)
+        return self._scalar(angular_acceleration(found.ratio, found.ratio_slope, *self.accelerating))
+
+    def travel(self, slider="slider"):
+        """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m."""
+        return self._scalar(self._travel(slider).position)
+
+    def elongation(self, free_position, slider="slider"):
+        """Coordinate of a slider's pin along its guide less a free position (m), free of cancellation, (..., N), m."""
+        travel = self._travel(slider)
+        group = next(group for group in self.mechanism.groups if slider in group.links)
+        if not hasattr(group, "elongation"):
+            return self._scalar(travel.position - free_position)
+        return self._scalar(group.elongation(self.placement, free_position))
+
+    @property
+    def slider_position(self):
+        """Coordinate of B along the guide, m."""
+        return self.travel()
+
+    @property
+    def slider_velocity(self):
+        """Velocity of the slider along the guide, m/s."""
+        return self._scalar(self.crank_speed * self._travel("slider").first)
+
+    @property
+    def slider_acceleration(self):
+        """Acceleration of the slider along the guide, m/s2."""
+        travel = self._travel("slider")
+        square, alpha = self.accelerating
+        return self._scalar(plus(square * travel.second, product(alpha, travel.first)))
+
+    @property
+    def closure(self):
+        """Margin of each group, a tuple of (..., N): negative where it cannot be assembled, 0 at a limit position."""
+        return tuple(self._scalar(group.closure(self.placement)) for group in self.mechanism.groups)
+
+    @cached_property
+    def condition(self):
+        """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
+
+        A bound of the true magnification: the sum over all lengths and the crank angle p of |p dq/dp|, over the largest
+        term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
+        at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
+        16 - log10(condition) correct digits of its largest term, or more.
+        """
+        from .sensitivity import condition
+
+        return read_only(condition(self).reshape(self.shape))
+
+    @cached_property
+    def accelerating(self) -> tuple[Any, Any]:
+        """Crank speed squared, and the crank acceleration or None: what kinematic coefficients are multiplied by."""
+        return self.crank_speed * self.crank_speed, present(self.crank_acceleration)
+
+    def _link(self, name):
+        return self._look_up("link", name, self.placement.links)
+
+    def _travel(self, slider):
+        sliders = {key: found for key, found in self.placement.details.items() if hasattr(found, "travel")}
+        return self._look_up("slider", slider, sliders).travel
+
+    def _point(self, name):
+        """Reference joint, arm from it and link of a mass centre; joint, None, None of a joint."""
+        points = {**self.placement.joints, **self.placement.links}
+        found = self._look_up("joint or link", name, points)
+        if name in self.placement.joints:
+            return found, None, None
+        body = self.mechanism.links[name].body
+        return found.joint, arm(found.direction, body.along, body.across), found
+
+    def _look_up(self, kind, name, table):
+        if name not in table:
+            raise QuantityError(checks.choice(f"{self.mechanism.name}: {kind}", name, table))
+        return table[name]
+
+    def as_vector(self, parts):
+        """Components as one array (2, ..., N); None is the zero vector."""
+        x, y = vector(parts)
+        if not hasattr(x, "shape"):
+            x = x + 0.0 * y  # a constant component is NaN where the other one is
+        if not hasattr(y, "shape"):
+            y = y + 0.0 * x
+        return read_only(stack(self._full(x, y)))
+
+    def _scalar(self, part):
+        return read_only(self._full(number(part))[0])
+
+    def _full(self, *parts):
+        """The parts with the shape of crank angles and designs together."""
+        shape = self.shape
+        return [part if getattr(part, "shape", None) == shape else self._spread(part) for part in parts]
+
+    def _spread(self, part):
+        xp = namespace(self.crank_angle)
+        return xp.broadcast_to(part if hasattr(part, "shape") else xp.full_like(self.crank_angle, part), self.shape)

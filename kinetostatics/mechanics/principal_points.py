@@ -1,0 +1,140 @@
+"""Principal points: the common mass centre as a sum of vectors along the links, and the shaking force from it.
+
+Going from joint to joint along the links, the position of every mass is a sum of vectors of constant length fixed in
+the links. Collected link by link and divided by the whole mass m, they are the principal-point vectors h of each link
+(Fischer's method; mower study, Kotov 2024): of a crank-slider
+
+    h1 = (m1 L_OS1 + (m2 + m3) L_OA) / m,   h2 = (m2 L_AS2 + m3 L_AB) / m,   h3 = m3 L_BS3 / m
+
+Their sum is the common mass centre, and F = -m a_S the shaking force. A joint that no link holds at a constant
+distance takes part by itself: a fixed pivot adds a constant vector, a cam-guided pin A the mass hanging on it times
+its own motion, in place of a modulus along the crank.
+"""
+
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+from ..errors import ParameterError
+from ..machine.links import accelerated, arm, first_at, present, second_at
+from ..numbers import checks
+from ..numbers.planar import added, stretched
+
+
+@dataclass(frozen=True, eq=False)
+class PrincipalPoints:
+    """Principal points of a mechanism; made by `principal_points`.
+
+    Attributes
+    ----------
+    mass : float or array
+        Mass of all moving links, kg.
+    static_moments : dict of link to (along, across)
+        m h of each link, in its own axes, kg m: what a counterweight on the link must meet.
+    carried : dict of joint to mass
+        Mass, kg, that moves with a joint no link holds at a constant distance: pin A of a cam-guided block, a fixed
+        pivot.
+    """
+
+    mass: Any
+    static_moments: dict
+    carried: dict
+
+    @property
+    def moduli(self):
+        """Modulus h by link, signed along the link, m; 0 for a link without effect."""
+        return {link: along / self._present_mass() for link, (along, _) in self.static_moments.items()}
+
+    @property
+    def offsets(self):
+        """Part of the principal-point vector across the link, by link, m: 0 while mass centres lie on the links."""
+        return {link: across / self._present_mass() for link, (_, across) in self.static_moments.items()}
+
+    def vectors(self, motion):
+        """Principal-point vector of each link, and of each joint that takes part by itself, (2, ..., N), m."""
+        mass = self._present_mass()
+        links = {
+            name: motion.as_vector(stretched(1.0 / mass, arm_in))
+            for name, (_, arm_in) in self._arms(motion.placement).items()
+            if arm_in is not None
+        }
+        joints = {name: part / mass * motion.position(name) for name, part in self.carried.items()}
+        return {**joints, **links}
+
+    def contour(self, motion):
+        """Corners of the chain of principal-point vectors from O to the common mass centre, (K + 1, 2, ..., N), m."""
+        corners = [motion.position("O")]
+        for vector in self.vectors(motion).values():
+            corners.append(corners[-1] + vector)
+        return corners
+
+    def mass_centre(self, motion):
+        """Position of the common mass centre, (2, ..., N), m."""
+        return self.contour(motion)[-1]
+
+    def mass_centre_velocity(self, motion):
+        """Velocity of the common mass centre, (2, ..., N), m/s."""
+        moving = [first_at(link, lever) for link, lever in self._arms(motion.placement).values()]
+        moving += [stretched(part, motion.placement.joints[name].first) for name, part in self.carried.items()]
+        total = stretched(motion.crank_speed / self._present_mass(), reduce(added, moving, None))
+        return motion.as_vector(total)
+
+    def mass_centre_acceleration(self, motion):
+        """Acceleration of the common mass centre, (2, ..., N), m/s2."""
+        return -self.shaking_force(motion) / self._present_mass()
+
+    def shaking_force(self, motion):
+        """Force of the inertia of all moving masses on the frame, minus mass times a_S, (2, ..., N), N."""
+        return motion.as_vector(stretched(-1.0, reduce(added, self._inertia(motion), None)))
+
+    def _inertia(self, motion):
+        for link, lever in self._arms(motion.placement).values():
+            yield accelerated(first_at(link, lever), second_at(link, lever), *motion.accelerating)
+        for name, part in self.carried.items():
+            joint = motion.placement.joints[name]
+            yield stretched(part, accelerated(joint.first, joint.second, *motion.accelerating))
+
+    def _arms(self, placement):
+        """By link: the link as if it turned in place, and its static moment turned into the frame's axes."""
+        arms = {}
+        for name, (along, across) in self.static_moments.items():
+            link = placement.links[name]
+            in_place = link._replace(joint=link.joint._replace(first=None, second=None))
+            arms[name] = in_place, arm(link.direction, present(along), present(across))
+        return arms
+
+    def _present_mass(self):
+        if isinstance(self.mass, int | float) and self.mass == 0:
+            raise ParameterError("the mechanism has no mass, so no mass centre; give at least one link a mass")
+        return self.mass
+
+
+def principal_points(mechanism):
+    """Principal points of any mechanism, from its link masses and the way its links hang together.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+
+    Returns
+    -------
+    PrincipalPoints
+        `.moduli` (h by link, m), `.vectors`, `.contour`, `.mass_centre`, `.mass_centre_velocity`,
+        `.mass_centre_acceleration` and `.shaking_force` of a solution.
+    """
+    checks.require("principal_points", checks.mechanism("mechanism", mechanism))
+    links = mechanism.links.items()
+    static_moments = {name: (link.mass * link.centre[0], link.mass * link.centre[1]) for name, link in links}
+    carried: dict[str, Any] = {}
+    held = {bar.end: bar for bar in reversed(mechanism.bars)}
+    for name, link in links:
+        joint = mechanism.references[name]
+        while joint in held:
+            bar = held[joint]
+            along, across = static_moments[bar.link]
+            static_moments[bar.link] = (along + link.mass * bar.length, across)
+            joint = bar.start
+        if joint != "O" and present(link.mass) is not None:
+            carried[joint] = carried.get(joint, 0.0) + link.mass
+    mass = sum(link.mass for _, link in links)
+    return PrincipalPoints(mass, static_moments, carried)

@@ -1,0 +1,431 @@
+"""How many times relative errors of lengths and crank angle are magnified in rates, reactions and torque.
+
+The kernels run once on numbers that carry their derivatives along (forward differentiation). Each derivative is by the
+logarithm of a length or of the crank angle, so the magnification of a quantity q at a crank angle is
+
+    sum over lengths and crank angle p of |p dq/dp|, over the largest term of q
+
+The largest term of a rate is that rate, of a reaction the largest load on a link, of the torque the largest torque that
+one load alone would take; terms that pass through zero count as a tenth of what they are if speeds and accelerations
+have their worst direction. Only as much of a term counts as is certain with rounded lengths: where no digit is left,
+what was computed says nothing.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import reduce
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import NotGivenError
+from ..machine.cam_roller import CamRoller
+from ..machine.cams import Cam
+from ..machine.crank import ray
+from ..machine.guide import Guide
+from ..machine.links import Link, arm, first_at, second_at, virtual_work
+from ..machine.loads import Gravity, ProcessForce, Spring
+from ..numbers.elementary import APART, ROUNDING
+from ..numbers.planar import product, vector
+from ..numbers.substitution import with_fields, with_numbers
+from ..solution.solution import Solution
+
+UNIT = 2.0**-53
+SAFETY = 3.0
+"""Factor that makes a bound of a magnification: other signs of errors, and rounding of the derivatives."""
+CERTAIN = 4.0
+"""Roundings of all lengths and the crank angle that a value is uncertain by."""
+BESIDES = ("cam_force", "slot_force")
+"""Scalars that are reactions and not among the vectors."""
+PASSING = 0.1
+"""Share of its worst case that a term counts as where it passes through zero."""
+BLOCK = 4096
+"""Crank angles differentiated at a time."""
+STEP = 1e-4
+"""Step of the crank angle for the third derivative of a cam that takes plain numbers only, rad."""
+
+
+class Dual:
+    """Values at some crank angles (B,) or one for all, with derivatives by the seeds (seeds, B); None: they are zero.
+
+    What kernels do with the elements of object arrays, as with recorded numbers (`tracing.Node`).
+    """
+
+    __slots__ = ("slopes", "value")
+
+    def __init__(self, value, slopes=None):
+        self.value, self.slopes = value, slopes
+
+    def _chained(self, value, factor):
+        return Dual(value, None if self.slopes is None else self.slopes * factor)
+
+    def __add__(self, other):
+        if isinstance(other, np.ndarray):
+            return NotImplemented
+        other = _dual(other)
+        return Dual(self.value + other.value, _sum(self.slopes, other.slopes))
+
+    __radd__ = __add__
+
+    def __neg__(self):
+        return self._chained(-self.value, -1.0)
+
+    def __sub__(self, other):
+        return NotImplemented if isinstance(other, np.ndarray) else self + -_dual(other)
+
+    def __rsub__(self, other):
+        return NotImplemented if isinstance(other, np.ndarray) else -self + other
+
+    def __mul__(self, other):
+        if isinstance(other, np.ndarray):
+            return NotImplemented
+        other = _dual(other)
+        value = self.value * other.value
+        return Dual(value, _sum(_scaled(self.slopes, other.value), _scaled(other.slopes, self.value)))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other):
+        if isinstance(other, np.ndarray):
+            return NotImplemented
+        other = _dual(other)
+        value = np.divide(self.value, other.value)
+        return Dual(
+            value, _sum(_scaled(self.slopes, np.divide(1.0, other.value)), _scaled(other.slopes, -value / other.value))
+        )
+
+    def __rtruediv__(self, other):
+        return NotImplemented if isinstance(other, np.ndarray) else _dual(other) / self
+
+    def __pow__(self, exponent):
+        if exponent != 2:
+            raise TypeError(f"only squares are differentiated, not powers of {exponent}")
+        return self * self
+
+    def __abs__(self):
+        return self._chained(np.abs(self.value), np.copysign(1.0, self.value))
+
+    def sin(self):
+        """Called by `numpy.sin` for an array of objects, as `cos`, `sqrt` and `arctan` are."""
+        return self._chained(np.sin(self.value), np.cos(self.value))
+
+    def cos(self):
+        return self._chained(np.cos(self.value), -np.sin(self.value))
+
+    def sqrt(self):
+        root = np.sqrt(self.value)
+        return self._chained(root, np.divide(0.5, root))
+
+    def arctan(self):
+        return self._chained(np.arctan(self.value), 1.0 / (1.0 + self.value * self.value))
+
+    def forgiving_root(self, unit):
+        """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
+        closed = self.value >= -ROUNDING * _dual(unit).value
+        root = np.where(closed, np.sqrt(np.maximum(self.value, 0.0)), np.nan)
+        return self._chained(root, np.divide(0.5, root))
+
+    def kept_off_zero(self, unit):
+        return Dual(np.maximum(self.value, _dual(unit).value), self.slopes)
+
+    def moved_apart(self, unit):
+        return self + APART * unit
+
+    def _one(self):
+        if np.size(self.value) != 1:
+            raise TypeError("a kernel that looks at values takes one crank angle at a time")
+        return float(np.ravel(self.value)[0])
+
+    __float__ = _one
+
+    def __bool__(self):
+        return bool(self._one())
+
+    def __lt__(self, other):
+        return self._one() < float(other)
+
+    def __le__(self, other):
+        return self._one() <= float(other)
+
+    def __gt__(self, other):
+        return self._one() > float(other)
+
+    def __ge__(self, other):
+        return self._one() >= float(other)
+
+
+def _dual(value):
+    return value if isinstance(value, Dual) else Dual(value)
+
+
+def _sum(a, b):
+    if a is None or b is None:
+        return a if b is None else b
+    return a + b
+
+
+def _scaled(slopes, factor):
+    return None if slopes is None else slopes * factor
+
+
+def condition(solution, points=None):
+    """Bound of the magnification at each crank angle, NaN where the mechanism does not close.
+
+    Parameters
+    ----------
+    solution : Solution
+    points : array of int, optional
+        Places in the flattened shape of the solution; all unless told.
+
+    Returns
+    -------
+    array (N,)
+        Of the points; infinite where rounding of lengths or crank angle may keep the mechanism from closing.
+
+    Raises
+    ------
+    NotGivenError
+        A group of the user's own does more than arithmetic and comparisons.
+    """
+    points = np.arange(math.prod(solution.shape)) if points is None else np.asarray(points)
+    points = np.arange(math.prod(solution.shape)) if points is None else points
+    with np.errstate(all="ignore"):
+        blocks = [_at(solution, points[start : start + BLOCK]) for start in range(0, points.size, BLOCK)]
+    return np.concatenate(blocks)
+
+
+def _at(solution, points):
+    try:
+        seeded = _Seeded(solution, points)
+        return _magnified(seeded.solution, seeded.largest_pushes, points.size)
+    except (TypeError, ValueError, AttributeError) as error:
+        if points.size == 1:
+            name = solution.mechanism.name
+            raise NotGivenError(f"{name}: no condition, its kernels cannot be differentiated ({error})") from error
+    return np.concatenate([_at(solution, points[number : number + 1]) for number in range(points.size)])
+
+
+class _Seeded:
+    """`solution`: one at some points, with numbers that carry derivatives in place of its own."""
+
+    def __init__(self, plain, points):
+        self._plain, self._points, self._shape = plain, points, plain.shape or (1,)
+        self._places = np.unravel_index(points, self._shape)
+        lengths: list[Any] = []
+        self._geometry(plain.mechanism, lengths.append)
+        self._seeds, self._count = 0, len(lengths) + len(plain.loads) + 2
+        self._angle = _array(self._seed(plain.crank_angle))
+        mechanism = self._geometry(plain.mechanism, self._seed, {CamRoller: self._roller})
+        drive = with_numbers((plain.crank_speed, plain.crank_acceleration), self._constant)
+        idle = Solution(mechanism, self._angle, *drive)
+        self.solution = replace(idle, loads=tuple(self._load(item, idle) for item in plain.loads))
+        self.largest_pushes = {
+            name: self._value(np.asarray(plain._largest(push))[..., None]) for name, push in plain._pushes.items()
+        }
+
+    def _geometry(self, item, number, special=None):
+        """The item with its masses as they are, and other numbers in place of its lengths."""
+
+        def link(own):
+            mass, inertia = with_numbers((own.mass, own.inertia), self._constant)
+            return with_fields(own, mass=mass, centre=with_numbers(own.centre, number), inertia=inertia)
+
+        def guide(line):
+            direction = line.direction if line.is_level else with_numbers(line.direction, self._constant)
+            return Guide(direction, with_numbers(line.guide_offset, number))
+
+        return with_numbers(item, number, {Link: link, Guide: guide, **(special or {})})
+
+    def _constant(self, value):
+        return Dual(self._value(value)) if np.ndim(value) else value
+
+    def _value(self, value):
+        """Values at the points, one for all of a plain number."""
+        if not np.ndim(value):
+            return float(value)
+        return np.broadcast_to(np.asarray(value, dtype=float), self._shape)[self._places]
+
+    def _seed(self, value):
+        value = self._value(value)
+        return Dual(value, self._slopes(value))
+
+    def _slopes(self, by_seed):
+        """Derivatives by the next seed alone."""
+        slopes = np.zeros((self._count, self._points.size))
+        slopes[self._seeds] = by_seed
+        self._seeds += 1
+        return slopes
+
+    def _roller(self, roller):
+        block = self._geometry(roller.block, self._seed)
+        known, plain = self._seeds, self._plain.placement.details["cam"]
+        try:
+            cam = self._geometry(roller.cam, self._seed)
+            self._require_equal(cam.polar(self._angle, ray(self._angle)), plain)
+        except Exception:  # whatever fails on numbers that are not plain
+            self._seeds = known
+            cam = _Values(self._tabled(roller.cam, plain))
+        return with_fields(roller, cam=cam, block=block)
+
+    def _tabled(self, cam, plain):
+        """Radius and derivatives of a cam that takes plain numbers only, by its size and by the crank angle."""
+        angle = self._plain.crank_angle
+        third = (
+            (cam.polar(angle + STEP, ray(angle + STEP))[2] - cam.polar(angle - STEP, ray(angle - STEP))[2]) / 2 / STEP
+        )
+        values = [self._value(part) for part in (*plain, third)]
+        by_angle, by_size = self._angle[0].slopes, self._slopes(1.0)
+        return [_array(Dual(value, by_size * value + by_angle * slope)) for value, slope in pairwise(values)]
+
+    def _load(self, item, idle):
+        if isinstance(item, Gravity):
+            return with_numbers(item, self._constant)
+        push, known = item.push(self._plain), self._seeds
+        try:
+            copied = with_numbers(item, self._constant)
+            if isinstance(item, Spring):
+                copied = with_fields(copied, free_position=with_numbers(item.free_position, self._seed))
+            found = copied.push(idle)
+            self._require_equal([found], [push])
+        except Exception:  # whatever fails on numbers that are not plain
+            self._seeds = known
+            found = self._constant(push)
+        return ProcessForce(_array(found) if isinstance(found, Dual) else found, item.on)
+
+    def _require_equal(self, parts, plain):
+        for part, value in zip(parts, plain, strict=True):
+            own = _number(part).value
+            if not np.allclose(own, self._value(value), rtol=1e-6, atol=0.0, equal_nan=True):
+                raise ValueError("another value than by plain numbers")
+
+
+@dataclass(frozen=True, eq=False)
+class _Values(Cam):
+    """A cam whose radius and derivatives are handed in."""
+
+    values: Any
+
+    def polar(self, angle, ray):
+        return self.values
+
+
+def _array(value):
+    """The form in which kernels take numbers that are not plain."""
+    found = np.empty(1, dtype=object)
+    found[0] = value
+    return found
+
+
+def _number(part):
+    """The number in what a kernel gives; an absent one is zero."""
+    part = np.ravel(part)[0] if isinstance(part, np.ndarray) else part
+    return part if isinstance(part, Dual) else Dual(0.0 if part is None else float(part))
+
+
+class _Sized:
+    """Magnitude of a number or vector, sum of the magnitudes of its changes, and how much of it is certain."""
+
+    def __init__(self, part):
+        parts = [_number(one) for one in (part if isinstance(part, tuple) else (part,))]
+        slopes = [np.zeros((1, 1)) if one.slopes is None else one.slopes for one in parts]
+        self.size, changes = reduce(np.hypot, [abs(one.value) for one in parts]), np.abs(reduce(np.hypot, slopes))
+        self.change = changes.sum(axis=0)
+        self.certain = np.fmax(self.size - CERTAIN * UNIT * self.change, 0.0)
+
+
+class _Terms(NamedTuple):
+    """Sizes of a link's motion and loads if every direction is the worst: what they are terms of."""
+
+    speed: Any
+    acceleration: Any
+    rate: Any
+    rate_change: Any
+    force: Any
+    moment: Any
+    length: Any
+
+
+def _magnified(solution, largest_pushes, count):
+    """Bound at the points of a solution with derivatives."""
+    placement, links = solution.placement, _terms(solution)
+    speed = reduce(np.maximum, (link.speed for link in links.values()))
+    acceleration = reduce(np.maximum, (link.acceleration for link in links.values()))
+    shares = [_share(group.closure(placement)) for group in solution.mechanism.groups]
+    for joint in placement.joints.values():
+        shares += [_over(joint.first, PASSING * speed), _over(joint.second, PASSING * acceleration)]
+    for name, link in links.items():
+        motion = placement.links[name]
+        shares.append(_over(motion.ratio, PASSING * link.rate))
+        shares.append(_over(motion.ratio_slope, PASSING * link.rate_change))
+    shares += _of_forces(solution, links, largest_pushes)
+    found = np.maximum(SAFETY * reduce(np.maximum, shares, np.zeros(count)), 1.0)
+    positions = [_number(part).value for joint in placement.joints.values() for part in joint.position]
+    closed = np.isfinite(reduce(np.add, positions))
+    return np.where(closed, np.where(np.isnan(found), np.inf, found), np.nan)
+
+
+def _share(margin):
+    """Infinite where rounding may open the mechanism, else 0."""
+    found = _Sized(margin)
+    return np.where((found.certain > 0.0) & (_number(margin).value > 0.0), 0.0, np.inf)
+
+
+def _over(part, terms):
+    """Change of a quantity over its value, or its terms where they are larger; 0 where nothing changes."""
+    if part is None:
+        return 0.0
+    found = _Sized(part)
+    return _quotient(found.change, np.maximum(found.certain, terms))
+
+
+def _quotient(change, size):
+    return np.where(change == 0.0, 0.0, np.divide(change, size))
+
+
+def _terms(solution):
+    """Terms of every link by name."""
+    placement, bodies = solution.placement, {name: link.body for name, link in solution.mechanism.links.items()}
+    square, alpha = (abs(_number(part).value) for part in solution.accelerating)
+    gravity = 0.0 if solution._gravity is None else _Sized(solution._gravity).size
+    found = {}
+    for part in (solution.mechanism.crank, *solution.mechanism.groups):
+        joints = [placement.joints[name] for bar in part.bars for name in (bar.start, bar.end)]
+        lengths = {bar.link: _number(bar.length).value for bar in part.bars}
+        for name in part.links:
+            link, body = placement.links[name], bodies[name]
+            to_centre = arm(link.direction, body.along, body.across)
+            firsts = [first_at(link, to_centre), *(joint.first for joint in joints)]
+            seconds = [second_at(link, to_centre), *(joint.second for joint in joints)]
+            speed, acceleration = (
+                reduce(np.maximum, (_Sized(vector(one)).certain for one in ones)) for ones in (firsts, seconds)
+            )
+            length = lengths.get(name, np.inf)
+            rate = np.maximum(_Sized(link.ratio).certain, speed / length)
+            rate_change = np.maximum(rate * rate, acceleration / length)
+            mass, inertia = _number(body.mass).value, _number(body.inertia).value
+            force = mass * (gravity + square * acceleration + alpha * speed)
+            moment = inertia * (square * rate_change + alpha * rate)
+            found[name] = _Terms(speed, acceleration, rate, rate_change, force, moment, length)
+    return found
+
+
+def _of_forces(solution, links, largest_pushes):
+    """Magnification in reactions and torque; nothing without loads."""
+    forces, torques = [0.0], [0.0]
+    for name, wrench in solution._link_loads.items():
+        link = links[name]
+        forces += [PASSING * link.force, PASSING**2 * link.moment / link.length]
+        torques.append(PASSING * (link.force * link.speed + link.moment * link.rate))
+        forces.append(0.0 if wrench.force is None else _Sized(wrench.force).certain)
+        torques.append(_Sized(virtual_work(solution.placement.links[name], wrench)).certain)
+    for name, push in solution._pushes.items():
+        work = product(push, solution._travel(name).first)
+        size = np.maximum(_Sized(push).certain, PASSING * largest_pushes[name])
+        forces.append(size)
+        torques += [_Sized(work).certain, PASSING * size * links[name].speed]
+    force, torque = reduce(np.maximum, forces), reduce(np.maximum, torques)
+    found = solution._forces
+    supports = [*found.reactions.values(), *(found.scalars[name] for name in BESIDES if name in found.scalars)]
+    shares = [_quotient(_Sized(vector(part) if part is None else part).change, force) for part in supports]
+    return [*shares, _quotient(_Sized(found.scalars["balancing_torque"]).change, torque)]

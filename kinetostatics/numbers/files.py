@@ -1,0 +1,225 @@
+"""Files: CSV tables read to SI, and results written whole or not at all."""
+
+import csv
+import io
+import os
+import re
+import secrets
+import stat
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import CaseError, FileError
+from . import checks
+from .units import NUMBER, factor, shown
+
+LARGEST_TABLE = 10_000_000
+"""Bytes that a table may have: half a million rows."""
+_HEADING = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")
+_NUMBER = re.compile(NUMBER)
+
+
+def read_text(path, largest):
+    """Text of a file in UTF-8, looked at before it is read: no pipe, device or folder, no more than `largest` bytes.
+
+    Raises
+    ------
+    CaseError
+        It is none of these, or no text.
+    """
+    try:
+        found = Path(path).stat()
+        if not stat.S_ISREG(found.st_mode):
+            kind = "folder" if stat.S_ISDIR(found.st_mode) else "pipe or device"
+            raise CaseError(path, [f"cannot be read: it is a {kind}, not a file"])
+        with Path(path).open("rb") as file:
+            content = file.read(largest + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, CaseError):
+            raise
+        raise CaseError(path, [f"cannot be read: {getattr(error, 'strerror', None) or error}"]) from None
+    if len(content) > largest:
+        raise CaseError(path, [f"cannot be read: it is larger than {largest / 1e6:g} MB, which such files never are"])
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise CaseError(path, ["is not UTF-8 text, but UTF-16; save it as UTF-8"])
+    if b"\0" in content:
+        raise CaseError(path, [f"is not text: it has a zero byte at {content.index(0)}"])
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise CaseError(path, [f"is not UTF-8 text: {error.reason} at byte {error.start}; save it as UTF-8"]) from None
+
+
+def read_columns(path, wanted):
+    """Columns of a CSV file in SI.
+
+    Parameters
+    ----------
+    path : path
+        Its first line names each column with its unit: ``angle [deg], radius [mm]``. Commas stand between the columns,
+        numbers have a decimal point, and every row has as many fields as the heading; empty lines are left out.
+    wanted : dict
+        Column name to SI unit.
+
+    Returns
+    -------
+    list of arrays, in the order wanted
+
+    Raises
+    ------
+    CaseError
+        The file cannot be read, a column is missing, there twice, has no unit or one that does not convert, a row is of
+        another length, or holds no number.
+    """
+    headings, rows = _rows(path)
+    for line, cells in rows:
+        if len(cells) != len(headings):
+            comma = "; if a comma is meant for a decimal point, write a point" if len(cells) > len(headings) else ""
+            raise CaseError(path, [f"line {line} has {len(cells)} fields, but the heading {len(headings)}{comma}"])
+    problems, columns = [], []
+    for name, unit in wanted.items():
+        try:
+            columns.append(_column(headings, rows, name, unit))
+        except ValueError as error:
+            problems.append(str(error))
+    if problems:
+        raise CaseError(path, problems)
+    return columns
+
+
+def _column(headings, rows, name, wanted):
+    """Values of a column in the SI unit wanted; `ValueError` says what is wrong with it."""
+    named = [_HEADING.fullmatch(heading) for heading in headings]
+    names = [found[1].strip() if found else heading for found, heading in zip(named, headings, strict=True)]
+    places = [place for place, found in enumerate(names) if found == name]
+    if len(places) != 1:
+        there = ", ".join(map(repr, headings[:20]))
+        twice = f"{len(places)} columns are {name!r}, of {there}; keep one"
+        raise ValueError(twice if places else f"no column {name!r}; it has {there}{checks.hint(name, names)}")
+    (place,) = places
+    heading, found = headings[place], named[place]
+    if not found or not found[2]:
+        raise ValueError(f'column {heading!r}: has no unit; head it for example "{name} [{wanted}]"')
+    try:
+        scale = factor(found[2].strip(), wanted)
+    except ValueError as error:
+        raise ValueError(f"column {heading!r}: {error}") from None
+    for line, cells in rows:
+        if not _is_number(cells[place]):
+            raise ValueError(f"column {heading!r}, line {line}: not a number: {shown(cells[place])}")
+    return np.array([cells[place] for _, cells in rows], dtype=float) * scale
+
+
+def _is_number(cell):
+    return _NUMBER.fullmatch(cell) is not None and abs(float(cell)) < np.inf
+
+
+def _rows(path):
+    """Headings, and each row that is not empty with the number of its line."""
+    text = read_text(path, LARGEST_TABLE)
+    lines = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
+    try:
+        rows = [(lines.line_num, [cell.strip() for cell in cells]) for cells in lines if any(map(str.strip, cells))]
+    except csv.Error as error:
+        raise CaseError(path, [f"cannot be read as CSV: line {lines.line_num}: {error}"]) from None
+    if not rows:
+        raise CaseError(path, ["is empty: a heading and rows of numbers are needed"])
+    (_, headings), *rows = rows
+    if len(headings) == 1 and (other := next((sign for sign in ";\t" if sign in headings[0]), None)):
+        name = {";": "semicolons", "\t": "tabs"}[other]
+        raise CaseError(path, [f"has {name} between its columns; write commas there, and decimal points in numbers"])
+    if not rows:
+        raise CaseError(path, [f"has a heading, {', '.join(headings)[:80]!r}, but no rows"])
+    return headings, rows
+
+
+@contextmanager
+def written_whole(path):
+    """Path of a temporary file that takes the place of `path` when the block ends without an error.
+
+    What stands there keeps its permissions and, where that is allowed, its owner; through a symbolic link its target is
+    written. A file that may not be written is refused.
+    """
+    path = Path(os.path.realpath(path))
+    if path.exists() and not path.is_file():  # a pipe or a device takes what is written as it comes
+        yield path
+        return
+    problem = unwritable(path)
+    if problem:
+        raise FileError(problem)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    before = path.stat() if path.exists() else None
+    temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
+    try:
+        _create(temporary, 0o600 if before else 0o666, path)
+        yield str(temporary)
+        if before is not None:
+            _resembling(temporary, before)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _create(temporary, mode, path):
+    """An empty file that is new; errors name what it is for."""
+    try:
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
+    except OSError as error:
+        error.filename = str(path)
+        raise
+
+
+def _resembling(path, before):
+    """Give a file the permissions that another had, and its owner where this process may."""
+    own = path.stat()
+    if hasattr(os, "chown") and (own.st_uid, own.st_gid) != (before.st_uid, before.st_gid):
+        with suppress(PermissionError):
+            os.chown(path, before.st_uid, before.st_gid)
+    path.chmod(stat.S_IMODE(before.st_mode))
+
+
+def unwritable(path, *, inputs=(), endings=()):
+    """Why a result cannot be written to this file, as a sentence, or None; to ask before the work that it takes.
+
+    Parameters
+    ----------
+    path : path
+    inputs : sequence of paths
+        What is read and so must not be replaced, under whatever name.
+    endings : sequence of str
+        Those a file may have; pipes and devices have none.
+    """
+    path = Path(path)
+    try:
+        if path.is_dir():
+            return f"{path} is a folder; give the name of a file in it"
+        if any(path.exists() and item.exists() and path.samefile(item) for item in map(Path, inputs)):
+            return f"{path} is read as input and would be replaced; give another name"
+        if path.exists() and not path.is_file():
+            return None
+        if endings and path.suffix.lower() not in endings:
+            return checks.choice(f"{path}: the ending", path.suffix, endings)
+        target = Path(os.path.realpath(path))
+        if target.is_symlink():
+            return f"{path} is a symbolic link that leads in a circle"
+        if target.exists() and not (target.stat().st_mode & 0o222 and os.access(target, os.W_OK)):
+            return f"{path} is read-only; allow writing, or give another name"
+        return unwritable_folder(target.parent)
+    except (OSError, ValueError) as error:
+        return f"{str(path)!r} is no name of a file here: {getattr(error, 'strerror', None) or error}"
+
+
+def unwritable_folder(path):
+    """Why results cannot be written into this folder, as a sentence, or None; it need not exist."""
+    path = Path(path)
+    try:
+        standing = next(place for place in (path.absolute(), *path.absolute().parents) if os.path.lexists(place))
+        if not standing.is_dir():
+            return f"{standing} is no folder, so nothing can be written to {path}"
+        if not os.access(standing, os.W_OK | os.X_OK):
+            return f"folder {standing} may not be written to; give another place"
+    except (OSError, ValueError) as error:
+        return f"{str(path)!r} is no name of a folder here: {getattr(error, 'strerror', None) or error}"
+    return None

@@ -1,0 +1,301 @@
+"""True extrema of a result over the turn, found between samples by evaluating the mechanism itself."""
+
+import warnings
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import ConditionWarning, ParameterError
+from ..mechanics.quantities import scale, unit, values
+from ..numbers import checks
+from .turn import SAME, require_single, runs
+
+ROUNDING = 1e-13
+"""Rise and fall, relative to the terms a quantity is made of, below which it is rounding and no extremum."""
+UNIT = 2.0**-53
+CALM = 1e6
+"""Condition up to which values are of ordinary size, and rounding is small beside them."""
+CONTINUED = 1e-4
+"""Difference of what a quantity tends to from both sides of a limit position, relative to its size, that is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Extremes:
+    """Extrema of one quantity over the period of the solution, one turn as a rule, in order of crank angle.
+
+    Attributes
+    ----------
+    quantity : str
+    angle : array (K,)
+        Crank angles in [0, period), rad.
+    value : array (K,)
+        Values of the quantity, SI; at a limit position or the end of a gap what it tends to there, infinite if it grows
+        without bound.
+    maximum : array (K,) of bool
+        Whether each is a maximum.
+    constant : float
+        The value of a quantity that has no extremum because it does not change; NaN otherwise.
+    left_out : array (L,)
+        Crank angles around which no value has a correct digit, rad.
+    """
+
+    quantity: str
+    angle: np.ndarray
+    value: np.ndarray
+    maximum: np.ndarray
+    constant: float = np.nan
+    left_out: np.ndarray = field(default_factory=lambda: np.empty(0), repr=False)
+
+    @property
+    def range(self):
+        """Smallest and largest value over the turn; both are the constant if it has no extremum."""
+        return (self.value.min(), self.value.max()) if len(self) else (self.constant, self.constant)
+
+    @property
+    def largest(self):
+        """Value of largest magnitude over the turn, with its sign."""
+        return max(self.range, key=abs)
+
+    def __len__(self):
+        return len(self.angle)
+
+    def __repr__(self):
+        rows = (f"{np.degrees(a):12.6f} deg  {v: .9g}" for a, v in zip(self.angle, self.value, strict=True))
+        return "\n".join([f"{len(self)} extremes of {self.quantity}", *rows])
+
+
+def extremes(solution, quantity):
+    """All extrema of one quantity over the period of the solution: the turn, or several for a load that takes them.
+
+    Brackets come from samples a quarter of a degree apart, a twentieth where a load is a function, and closer near
+    limit positions; each extremum is then found by minimisation (scipy.optimize.elementwise) of the quantity evaluated
+    by the mechanism itself. As a minimum fixes its place only to half the digits, the angle is last read from the slope
+    of a Chebyshev fit through nearby evaluations, and kept if the value there is as good. Where a load jumps, the
+    extremum is that of the samples.
+
+    Values with less than two correct digits, by `Solution.condition`, do not count. In their place, and at the ends of
+    gaps, stands what the quantity tends to there, from each side.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design; its own crank angles do not matter.
+    quantity : str or function
+        A scalar attribute ("balancing_torque"), a joint (magnitude of its reaction), a vector attribute
+        ("shaking_force": its magnitude), or a function of a solution that returns an array over its crank angles.
+
+    Returns
+    -------
+    Extremes
+        `.angle` and `.value` in order of angle; empty for a constant, or what is constant but for rounding.
+
+    Raises
+    ------
+    QuantityError
+        The solution has no such quantity.
+    ParameterError
+        The solution is a batch of designs, or depends on a table over its own crank angles, or a load that is a
+        function does not repeat after its period.
+
+    Warns
+    -----
+    ConditionWarning
+        Values around some crank angles have no correct digit, or the quantity grows without bound there.
+    """
+    checks.require("extremes", checks.solution("solution", solution), checks.quantity(quantity, function=True))
+    found = extrema(solution, quantity)
+    text = warning(solution, [found])
+    if text:
+        warnings.warn(text, ConditionWarning, stacklevel=2)
+    return found
+
+
+def warning(solution, several):
+    """What must be said about extremes of a solution, as a sentence, or None."""
+    unbounded = [item for item in several if np.isinf(item.value).any()]
+    left_out = np.unique(np.concatenate([item.left_out for item in several]))
+    sentences = []
+    if left_out.size:
+        sentences.append(f"around crank angles {_degrees(left_out)} deg no value has a correct digit, so none counts")
+    for item in unbounded:
+        angle = np.unique(item.angle[np.isinf(item.value)])
+        sentences.append(f"{item.quantity} grows without bound at {_degrees(angle)} deg")
+    unknown = [item.quantity for item in several if not len(item) and np.isnan(item.constant)]
+    if unknown:
+        sentences.append(f"{', '.join(unknown)} has no value with a correct digit at all")
+    return f"{solution.mechanism.name}: {'; '.join(sentences)} (solution.condition)" if sentences else None
+
+
+def _degrees(angles):
+    return ", ".join(f"{np.degrees(angle):.6g}" for angle in angles)
+
+
+def extrema(solution, quantity):
+    """The extrema without a warning."""
+
+    def function(at):
+        return values(at, quantity)
+
+    require_single(solution, "extremes", quantity)
+    turn = solution.sampled
+    position = not callable(quantity) and unit(quantity) == "m"
+    left_out = np.empty(0) if position else turn.lost
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        samples = np.asarray(function(turn.at))
+        if samples.shape != turn.angle.shape:
+            raise ParameterError(
+                f"extremes: {quantity!r} has shape {samples.shape}, not one value for each of {turn.angle.shape} crank "
+                "angles"
+            )
+        good = np.isfinite(samples) & (position | turn.usable)
+        size, floor = _sizes(turn, quantity, samples, good, position)
+        paths = [_Path(turn.angle, samples, floor, turn.period)]
+        if not good.all():
+            paths = list(_open_paths(turn, function, samples, good, floor, size))
+        found = [_turning_points(path) for path in paths]
+        if not any(maximum.size for *_, maximum in found):
+            constant = float(np.max(samples[good])) if good.any() else np.nan
+            nothing = np.empty(0)
+            return Extremes(str(quantity), nothing, nothing, nothing.astype(bool), constant, left_out)
+        brackets, value, floor, maximum = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
+        angle, sign = brackets[1], np.where(maximum, -1.0, 1.0)
+        inner = brackets[0] < brackets[2]
+
+        def evaluate(angle):
+            return turn.evaluate(function, angle)
+
+        if inner.any():
+            minimised = _minimised(evaluate, brackets[:, inner], sign[inner])
+            angle[inner] = _polished(evaluate, minimised, sign[inner], floor[inner])
+        angle = np.where(inner, np.maximum(np.mod(angle + SAME, turn.period) - SAME, 0.0), np.mod(angle, turn.period))
+        if inner.any():
+            value[inner] = evaluate(angle[inner])
+        order = np.argsort(angle, kind="stable")
+        angle, value, maximum, inner = angle[order], value[order], maximum[order], inner[order]
+        kept = _kept(angle, value, maximum, inner, CONTINUED * size)
+    return Extremes(str(quantity), angle[kept], value[kept], maximum[kept], np.nan, left_out)
+
+
+def _sizes(turn, quantity, samples, good, position):
+    """Largest value of a quantity but for its growth at limit positions, and the rounding of it at each sample."""
+    calm = good & (turn.condition < CALM)
+    calm = calm if calm.any() else good
+    size = float(np.max(np.abs(samples[calm]), initial=0.0))
+    terms = scale(turn.at if calm.all() else turn.at.at(turn.angle[calm]), quantity) if calm.any() else 0.0
+    floor = np.full(samples.shape, ROUNDING * max(terms, size))
+    if calm.all():
+        return size, floor
+    condition = np.sqrt(np.minimum(turn.condition, 1 / UNIT)) if position else turn.condition
+    return size, np.fmax(floor, UNIT * condition * np.maximum(np.abs(samples), size))
+
+
+class _Path(NamedTuple):
+    """Samples of a quantity and their rounding, periodic; with a period of 0 open, from one limit to the next."""
+
+    angle: np.ndarray
+    value: np.ndarray
+    floor: np.ndarray
+    period: float
+
+
+def _open_paths(turn, function, samples, good, floor, size):
+    """Paths between samples that do not count, from limit to limit where the quantity tends to a value."""
+    limits = np.concatenate([turn.limits + shift for shift in (-turn.period, 0.0, turn.period)])
+    found = runs(good)
+    for run, earlier, later in zip(found, found[-1:] + found[:-1], found[1:] + found[:1], strict=True):
+        angle = turn.angle[run]
+        angle = np.where(angle < angle[0], angle + turn.period, angle)
+        before = angle[0] - (angle[0] - turn.angle[earlier[-1]]) % turn.period
+        after = angle[-1] + (turn.angle[later[0]] - angle[-1]) % turn.period
+        left = limits[(limits >= before - SAME) & (limits <= angle[0] + SAME)][-1:]
+        right = limits[(limits <= after + SAME) & (limits >= angle[-1] - SAME)][:1]
+        inside = (angle > np.append(left, -np.inf)[0] + SAME) & (angle < np.append(right, np.inf)[0] - SAME)
+        parts = [(angle[inside], samples[run][inside], floor[run][inside])]
+        for place, side, row in ((left, 1, 0), (right, -1, -1)):
+            tended = [turn.limit(function, end, side, size) for end in place]
+            parts.insert(row % 2 * len(parts), (place, tended, floor[run][[row] * place.size]))
+        angle, value, rounding = (np.concatenate(part) for part in zip(*parts, strict=True))
+        known = ~np.isnan(value)
+        yield _Path(angle[known], value[known], rounding[known], 0.0)
+
+
+def _turning_points(path):
+    """Crank angles around each extremum (3, K), its value, rounding, and whether it is a maximum (K,).
+
+    The middle of a level stretch counts once. The ends of an open path are extrema too, with no angles around. Rises
+    and falls that are no more than rounding are taken out, least first.
+    """
+    angle, value, floor, period = path
+    count = value.size
+    direction = np.sign(np.roll(value, -1) - value)
+    direction[-1:] = direction[-1:] if period else 0.0
+    moving = np.flatnonzero(direction)
+    following = np.append(moving[1:], moving[:1] + count)
+    turning = direction[moving] * direction[following % count] == -1
+    turning[-1:] &= period > 0
+    before, after = moving[turning], following[turning]
+    places, maximum = np.array([before, (before + after + 1) // 2, after + 1]), direction[before] > 0
+    if not period:
+        places = np.column_stack([[0] * 3, places, [count - 1] * 3])
+        maximum = np.concatenate([direction[moving[:1]] < 0, maximum, direction[moving[-1:]] > 0])
+        maximum = maximum if moving.size else np.array([True, False])
+    while maximum.size > 2 - bool(period) and (not period or np.all(maximum != np.roll(maximum, 1))):
+        middle = places[1] % count
+        height, rounding = value[middle], floor[middle]
+        change = np.abs(np.roll(height, -1) - height) / np.maximum(rounding, np.roll(rounding, -1))
+        least = int(np.argmin(change[: None if period else -1]))
+        if change[least] > 1:
+            break
+        pair = [least, (least + 1) % maximum.size]
+        if not period and (least == 0 or least == maximum.size - 2):  # the end stays, as the other kind
+            end = pair.pop(-1 if least else 0)
+            maximum[end] = ~maximum[end]
+        kept = np.delete(np.arange(maximum.size), pair)
+        places, maximum = places[:, kept], maximum[kept]
+    middle = places[1] % count
+    return angle[places % count] + period * (places // count), value[middle], floor[middle], maximum
+
+
+def _kept(angle, value, maximum, inner, near):
+    """Which extrema, in order of angle, stay: what goes on smoothly through a limit position has none there."""
+    same = (np.abs(angle - np.roll(angle, -1)) <= SAME) & ~inner & ~np.roll(inner, -1)
+    level = (value == np.roll(value, -1)) | (np.abs(value - np.roll(value, -1)) <= near)
+    pair = same & level & (np.arange(angle.size) < angle.size - 1)
+    through = pair & (maximum != np.roll(maximum, -1))
+    return ~(np.roll(pair, 1) | through)
+
+
+def _minimised(evaluate, brackets, sign):
+    from scipy.optimize import elementwise
+
+    found = elementwise.find_minimum(
+        lambda angle, sign: sign * evaluate(angle),
+        tuple(brackets),
+        args=(sign,),
+        tolerances={"xatol": 0.0, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
+    )
+    better = sign * evaluate(found.x) <= sign * evaluate(brackets[1])  # False where no bracket held, as at a jump
+    return np.where(better, found.x, brackets[1])
+
+
+def _polished(evaluate, angle, sign, floor, half_width=0.01, degree=8):
+    """Zero of the slope of a local Chebyshev fit, where its value is as good as the one it replaces."""
+    from numpy.polynomial import chebyshev
+
+    nodes = chebyshev.chebpts1(degree + 1)
+    samples = evaluate((angle[:, None] + half_width * nodes).ravel()).reshape(angle.size, -1)
+    series = chebyshev.chebfit(nodes, np.nan_to_num(samples).T, degree)
+    slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
+    place = np.zeros_like(angle)
+    for _ in range(3):
+        place -= _series(place, slope) / _series(place, bend)
+    refined = np.where(np.abs(place) < 1e-3, angle + half_width * place, angle)
+    return np.where(sign * evaluate(refined) <= sign * evaluate(angle) + 0.1 * floor, refined, angle)
+
+
+def _series(place, coefficients):
+    """Value of each column's Chebyshev series at its own place."""
+    from numpy.polynomial import chebyshev
+
+    return chebyshev.chebval(place, coefficients, tensor=False)

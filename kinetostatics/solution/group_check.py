@@ -1,0 +1,262 @@
+"""A test of a group of one's own, by what does not use its formulas: differences of positions, and virtual work.
+
+The group hangs on a joint that is moved by hand from many places in which it closes. What it says of velocities and
+accelerations is compared with differences of what it says of positions; the force it asks of the joint must do the work
+that its loads do, whichever way the joint is moved (d'Alembert and Lagrange; holds for any ideal constraint).
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..machine.chain import MEMBERS, Forces, Once, Placement
+from ..machine.crank import ORIGIN, ray
+from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
+from ..numbers import checks
+from ..numbers.planar import length, number, plus, product, subtracted, vector, work
+
+TOLERANCE = 1e-6
+"""Largest relative error that passes; right groups reach 1e-10, a wrong term is of the order of 1."""
+STEP = 2.0**-8
+WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
+"""Of a central difference of the eighth order, with steps of so many rad."""
+PLACES = 24
+
+
+@dataclass(frozen=True, repr=False)
+class GroupReport:
+    """What a check of a group found.
+
+    Attributes
+    ----------
+    group : str
+    errors : dict of str to float
+        By what was checked, the largest error relative to the largest value.
+    """
+
+    group: str
+    errors: dict[str, float]
+
+    @property
+    def problems(self):
+        """A sentence for each thing that is wrong."""
+        return tuple(f"{what}: off by {error:.2g} of its size" for what, error in self.errors.items() if _wrong(error))
+
+    @property
+    def ok(self):
+        """Whether nothing is wrong."""
+        return not self.problems
+
+    def __bool__(self):
+        return self.ok
+
+    def __repr__(self):
+        count, wrong = len(self.errors), len(self.problems)
+        verdict = f"{wrong} of {count} checks fail" if wrong else f"all {count} checks pass"
+        rows = [
+            f"  {'WRONG' if _wrong(error) else 'right'}  {error:7.1e}  {what}" for what, error in self.errors.items()
+        ]
+        return "\n".join([f"<GroupReport: {self.group}, {verdict}>", *rows])
+
+
+def _wrong(error):
+    return not error <= TOLERANCE
+
+
+def check(group):
+    """Test a group, of one's own above all: its derivatives, its forces and its power.
+
+    Parameters
+    ----------
+    group : SliderGroup, RockerGroup, CamRoller or alike
+        With the members that `kinetostatics.chain` lists; a single design.
+
+    Returns
+    -------
+    GroupReport
+        True if all is right; its text has a line for each check, `problems` a sentence for each that fails. Reactions
+        inside the group are seen as far as they make up the force it asks of the joint it hangs on.
+
+    Raises
+    ------
+    ParameterError
+        A member is missing, or the group closes nowhere near its own size.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> report = ks.check(ks.RockerGroup(0.4, 0.3, (0.35, 0.1)))
+    >>> report.ok
+    True
+    """
+    _, problem = checks.Own(MEMBERS, "a group").taken(group, "group")
+    checks.require("check", problem)
+    stage = _stage(group)
+    errors = _of_shape(stage) | _of_derivatives(stage) | _of_forces(stage)
+    return GroupReport(type(group).__name__, errors)
+
+
+class _Stage(NamedTuple):
+    """A group, its shortest length, and places (x, y) of the joint it hangs on and crank angles at which it closes."""
+
+    group: Any
+    size: float
+    position: Any
+    angle: Any
+
+    @property
+    def on(self):
+        return getattr(self.group, "on", "O")
+
+    def placed(self, turn=0.0, way=(0.5, 0.3), bend=(0.2, -0.4)):
+        """Placement with the crank turned from there, the joint on a curve that starts along `way`."""
+        angle = self.angle + turn
+        sine, cosine = np.sin(turn), np.cos(turn)
+        along, across = (self.size * np.array(part)[:, None] for part in (way, bend))
+        first = along * cosine - across * sine + 0.0 * angle
+        position = np.array(self.position) + along * sine + across * (cosine - 1.0)
+        joint = Joint(tuple(position), tuple(first), tuple(-along * sine - across * cosine + 0.0 * angle))
+        direction = ray(angle)
+        joints = {"O": ORIGIN} | ({} if self.on == "O" else {self.on: joint})
+        placement = Placement(angle, direction, joints, {"crank": LinkMotion(ORIGIN, direction, 1.0, None)})
+        with np.errstate(all="ignore"):
+            try:
+                self.group.place(placement)
+            except KeyError as error:
+                name = type(self.group).__name__
+                raise ParameterError(f"check: {name} hangs on {self.on!r}, but its place asks for {error}") from error
+        return placement
+
+
+def _stage(group):
+    """The group in places where it closes well, evenly chosen from many."""
+    lengths = [float(np.max(bar.length)) for bar in group.bars] or [1.0]
+    size, farthest = min(lengths), 30.0 * max(lengths)
+    reach, direction = np.meshgrid(np.geomspace(0.02 * size, farthest, 40), 2 * np.pi * (np.arange(30) + 0.3) / 30)
+    x, y = (reach * np.cos(direction)).ravel(), (reach * np.sin(direction)).ravel()
+    whole = _Stage(group, size, (x, y), 2.4 * np.arange(x.size) % (2 * np.pi))
+    with np.errstate(all="ignore"):
+        margin = np.asarray(group.closure(whole.placed()), dtype=float)
+    if margin.ndim > 1:
+        raise ParameterError("check: give a group of one design, not a batch")
+    margin = np.broadcast_to(margin, x.shape)
+    closing = np.flatnonzero(margin > 0.1) if np.any(margin > 0.1) else np.flatnonzero(margin > 1e-3)
+    if not closing.size:
+        name = type(group).__name__
+        raise ParameterError(
+            f"check: {name} closes nowhere within {farthest:g} m of O, closure is at most {margin.max()}"
+        )
+    chosen = closing[np.linspace(0, closing.size - 1, min(PLACES, closing.size)).astype(int)]
+    return whole._replace(position=(x[chosen], y[chosen]), angle=whole.angle[chosen])
+
+
+def _of_shape(stage):
+    """Errors of bars that must keep their lengths, unit vectors, and links that must begin at their joints."""
+    group, placement = stage.group, stage.placed()
+    errors = {}
+    for bar in group.bars:
+        ends = (vector(placement.joints[name].position) for name in (bar.end, bar.start))
+        errors[f"length of {bar.link}"] = _error(length(subtracted(*ends)), bar.length, stage.size)
+    for name, joint in group.references.items():
+        motion = placement.links[name]
+        errors[f"direction of {name}"] = _error(length(motion.direction), 1.0, 1.0)
+        pairs = zip(motion.joint.position, placement.joints[joint].position, strict=True)
+        errors[f"reference joint of {name}"] = max(_error(*pair, stage.size) for pair in pairs)
+    for name, detail in placement.details.items():
+        if hasattr(detail, "travel") and hasattr(group, "elongation"):
+            free = 0.7 * stage.size
+            elongation = group.elongation(placement, free)
+            errors[f"elongation of {name}"] = _error(elongation, detail.travel.position - free, stage.size)
+    return errors
+
+
+def _of_derivatives(stage):
+    """Errors of derivatives by crank angle against differences of what they are derivatives of."""
+    steps = range(1, len(WEIGHTS) + 1)
+    beside = {k: _rates(stage.placed(k * STEP), stage) for step in steps for k in (step, -step)}
+    errors = {}
+    for what, (_, claimed, unit) in _rates(stage.placed(), stage).items():
+        slope = sum(
+            weight * (beside[step][what][0] - beside[-step][what][0]) / STEP
+            for step, weight in zip(steps, WEIGHTS, strict=True)
+        )
+        errors[what] = _error(claimed, slope, unit)
+    return errors
+
+
+def _rates(placement, stage):
+    """By name: a value, what is claimed to be its derivative, and a size below which neither counts."""
+    found = {}
+
+    def add(name, joint):
+        first, second = (0.0 if part is None else part for part in (joint.first, joint.second))
+        found[f"first derivative of {name}"] = joint.position, first, stage.size
+        found[f"second derivative of {name}"] = first, second, stage.size
+
+    for name in placement.joints.keys() - {"O", stage.on}:
+        add(f"joint {name}", placement.joints[name])
+    for name, detail in placement.details.items():
+        if hasattr(detail, "travel"):
+            add(f"travel of {name}", detail.travel)
+    for name in stage.group.links:
+        motion = placement.links[name]
+        x, y = motion.direction
+        ratio, slope = number(motion.ratio), number(motion.ratio_slope)
+        found[f"ratio of {name}"] = (x, y), (-ratio * y, ratio * x), 1.0
+        found[f"ratio_slope of {name}"] = ratio, slope, 1.0
+    shape = np.shape(placement.angle)
+    return {
+        name: (*(np.array([np.broadcast_to(part, shape) for part in _parts(value)]) for value in values), unit)
+        for name, (*values, unit) in sorted(found.items())
+    }
+
+
+def _parts(value):
+    return value if isinstance(value, tuple) else (value, value)
+
+
+def _of_forces(stage):
+    """Errors of the forces, by the work they and the loads do on small motions of the joint, whichever way it goes."""
+    random = np.random.default_rng(0)
+
+    def any_vector():
+        return tuple(random.uniform(-1.0, 1.0, (2, stage.angle.size)))
+
+    still = stage.placed()
+    wrenches = {name: Wrench(any_vector(), stage.size * any_vector()[0]) for name in stage.group.links}
+    pushes = {name: any_vector()[0] for name, detail in still.details.items() if hasattr(detail, "travel")}
+    demand = {name: any_vector() for name in still.joints.keys() - {"O", stage.on}}
+    ways = {"x": {"way": (1.0, 0.0)}, "y": {"way": (0.0, 1.0)}} if stage.on != "O" else {"the turn": {}}
+    errors = {
+        f"work of the forces along {name}": _work_missing(stage, stage.placed(**way), wrenches, pushes, demand)
+        for name, way in ways.items()
+    }
+    inertia = {
+        name: load(still.links[name], link.body, 9.81 / stage.size, 2.0 / stage.size, (3.0, -9.3))
+        for name, link in stage.group.links.items()
+    }
+    if any(wrench.force is not None or wrench.moment is not None for wrench in inertia.values()):
+        errors["power of weight and inertia"] = _work_missing(stage, still, inertia, {}, {})
+    return errors
+
+
+def _work_missing(stage, placement, wrenches, pushes, demand):
+    """Work that is left over, relative to the largest part of it."""
+    forces = Forces(dict(demand), reactions=Once(), scalars=Once())
+    stage.group.resolve(placement, wrenches, pushes, forces)
+    joints, asked = placement.joints, forces.demand.get(stage.on)
+    parts = [virtual_work(placement.links[name], wrench) for name, wrench in wrenches.items()]
+    parts += [product(push, placement.details[name].travel.first) for name, push in pushes.items()]
+    parts += [-number(work(force, joints[name].first)) for name, force in demand.items()]
+    parts += [plus(work(asked, joints[stage.on].first), forces.crank_demand.moment)]
+    sizes = [np.max(np.abs(number(part))) for part in parts]
+    return _error(sum(number(part) for part in parts), 0.0, max(sizes) or 1.0)
+
+
+def _error(found, expected, unit):
+    """Largest difference relative to the largest value, or to a size that counts; infinite if it is no number."""
+    found, expected = (np.asarray(values, dtype=float) for values in (found, expected))
+    error = np.max(np.abs(found - expected)) / max(np.max(np.abs(found)), np.max(np.abs(expected)), unit)
+    return float(error) if np.isfinite(error) else np.inf

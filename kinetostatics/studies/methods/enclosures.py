@@ -1,0 +1,201 @@
+"""Enclosures: the library's own kernels on `arb` numbers, intervals that hold what exact arithmetic would give.
+
+(Johansson 2017, *Arb: efficient arbitrary-precision midpoint-radius interval arithmetic*.) The mechanism is the one
+whose numbers are the doubles that the solution holds, each taken exactly. Of the stored direction of a guide only the
+direction counts: its length is 1 but for rounding, and no guide has any other.
+"""
+
+import importlib
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...errors import MissingLibraryError, NotGivenError
+from ...machine.cam_roller import CamRoller
+from ...machine.crank import ray
+from ...machine.guide import Guide
+from ...machine.loads import Gravity, ProcessForce
+from ...mechanics.quantities import components
+from ...numbers.substitution import with_numbers
+from ...solution.solution import Solution
+
+FEWEST_BITS, MOST_BITS = 128, 4096
+
+
+@dataclass(frozen=True, eq=False)
+class Enclosure:
+    """A quantity at the crank angles of a solution, enclosed.
+
+    Attributes
+    ----------
+    middle : tuple of arrays (N,)
+        Components of the quantity (see `quantities.components`) in its SI unit: midpoints of the enclosures, rounded to
+        the nearest double.
+    exact : tuple of arrays (N,) of `flint.arb`
+        The midpoints unrounded, as arb numbers of radius 0; `mpmath.mpf` takes them too.
+    radius : float
+        Largest radius of an enclosure, relative to the largest value.
+    bits : int
+        Working precision.
+    agreement : float or None
+        Largest difference from the independent path at the angles checked, relative to the largest value.
+    """
+
+    middle: tuple[Any, ...]
+    exact: tuple[Any, ...]
+    radius: float
+    bits: int
+    agreement: float | None = None
+
+    @property
+    def largest(self):
+        """Largest magnitude over the crank angles."""
+        return float(np.max(magnitude(self.middle)))
+
+
+def require_one_design(solution):
+    if np.ndim(solution.crank_angle) > 1 or solution.shape != np.shape(solution.crank_angle):
+        raise NotGivenError(
+            f"{solution.mechanism.name}: a certificate is of one design at a time, this solution has shape "
+            f"{solution.shape}"
+        )
+
+
+def enclosure(solution, quantity, digits=30) -> Enclosure:
+    """A quantity enclosed by the library's own kernels on arb numbers, at as many bits as it takes.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design.
+    quantity : str
+        As for `quantities.components`.
+    digits : int
+        No radius may exceed 10^-digits of the largest value.
+
+    Raises
+    ------
+    NotGivenError
+        A load or cam is computed in double precision only, or a crank angle lies at a limit position, or beyond.
+    MissingLibraryError
+        python-flint is not installed.
+    """
+    flint = library("flint")
+    require_one_design(solution)
+    bits = FEWEST_BITS
+    while True:
+        with flint.ctx.workprec(bits):
+            run = on_arb(flint.arb, solution)
+            closing = _closing(run, solution)
+            values = _attempted(quantity, lambda run=run: components(run, quantity))
+            values = [np.array([flint.arb(value) for value in part], dtype=object) for part in values]
+            exact = tuple(np.array([value.mid() for value in part], dtype=object) for part in values)
+            middle = tuple(part.astype(float) for part in exact)
+            radii = magnitude([np.array([float(value.rad()) for value in part]) for part in values])
+        radii = np.where(closing & np.isfinite(magnitude(middle)), radii, np.inf)
+        found = Enclosure(middle, exact, float(radii.max()), bits)
+        if all(value.is_zero() for part in values for value in part):
+            return found
+        if found.largest and found.radius <= 10.0**-digits * found.largest:
+            return replace(found, radius=found.radius / found.largest)
+        if bits >= MOST_BITS:
+            raise NotGivenError(
+                f"{place_of(solution, int(np.argmax(radii)))}: no enclosure of {quantity} as narrow as 1e-{digits} of "
+                f"its largest value, even with {bits} bits: it is at a limit position, or the quantity is zero "
+                "throughout"
+            )
+        bits *= 2
+
+
+def _closing(run, solution):
+    """Whether each group certainly closes at each angle; an error where one certainly does not."""
+    closing = np.ones(run.crank_angle.shape, dtype=bool)
+    for group in run.mechanism.groups:
+        margin = group.closure(run.placement)
+        failing = np.flatnonzero(margin <= 0)
+        if failing.size:
+            raise NotGivenError(
+                f"{place_of(solution, failing[0])}: {type(group).__name__} is at a limit position or does not close "
+                f"(its closure margin is {margin[failing[0]].str(5)}), so there is nothing to certify"
+            )
+        closing &= margin > 0
+    return closing
+
+
+def on_arb(arb, solution) -> Solution:
+    """The solution with arb numbers in place of its own, every push on a slider evaluated."""
+    angle = _copied(np.atleast_1d(np.asarray(solution.crank_angle, dtype=float)), arb)
+    mechanism = _copied(solution.mechanism, arb)
+    cam = getattr(mechanism.group(CamRoller), "cam", None)
+    if cam is not None:
+        what = f"cam {type(cam).__name__}"
+        for values in _attempted(what, lambda: cam.polar(angle, ray(angle))):
+            _require_exact(what, values, arb)
+    drive = _copied((solution.crank_speed, solution.crank_acceleration), arb)
+    idle = Solution(mechanism, angle, *drive)
+    loads = (_load_on_arb(arb, item, place, idle) for place, item in enumerate(solution.loads, 1))
+    return replace(idle, loads=tuple(loads))
+
+
+def _load_on_arb(arb, item, place, motion):
+    exact = _copied(item, arb)
+    if isinstance(item, Gravity):
+        return exact
+    what = f"load {place}, {type(item).__name__} on {item.on!r},"
+    push = _attempted(what, lambda: exact.push(motion))
+    _require_exact(what, push, arb)
+    return ProcessForce(push, item.on)
+
+
+def _copied(item, arb):
+    """The item with arb numbers in place of its own, a guide direction of length 1."""
+
+    def number(value):
+        if isinstance(value, np.ndarray):
+            return np.frompyfunc(lambda part: arb(float(part)), 1, 1)(value)
+        return arb(value) if isinstance(value, int) else arb(float(value))
+
+    def guide(line):
+        return Guide(_direction(line.direction, arb), with_numbers(line.guide_offset, number))
+
+    return with_numbers(item, number, {Guide: guide})
+
+
+def _direction(pair, arb):
+    if pair == (1.0, 0.0):
+        return pair
+    x, y = (arb(float(part)) for part in pair)
+    length = (x * x + y * y).sqrt()
+    return x / length, y / length
+
+
+def _attempted(what, compute):
+    try:
+        return compute()
+    except (TypeError, ValueError) as error:
+        raise NotGivenError(f"no certificate: {what} cannot be computed on arb numbers ({error})") from error
+
+
+def _require_exact(what, values, arb):
+    """Raise if values are neither enclosures nor one constant: on the way the angles were rounded to doubles."""
+    if np.ndim(values) and not all(isinstance(value, arb) for value in np.ravel(values)):
+        raise NotGivenError(f"no certificate: {what} is computed in double precision, whatever numbers it is given")
+
+
+def magnitude(parts):
+    return np.abs(parts[0]) if len(parts) == 1 else np.hypot(*parts)
+
+
+def place_of(solution, index):
+    angle = float(np.ravel(solution.crank_angle)[index])
+    return f"{solution.mechanism.name} at crank angle {angle!r} rad ({np.degrees(angle):.9g} deg)"
+
+
+def library(name):
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise MissingLibraryError(
+            'the certified reference needs python-flint and mpmath: pip install "kinetostatics[precision]"'
+        ) from error

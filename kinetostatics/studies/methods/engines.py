@@ -1,0 +1,81 @@
+"""The library's own path under study: NumPy, compiled, JAX; single precision; torque by powers alone."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from ...engines import compiled
+from ...errors import MissingLibraryError
+from ...mechanics.quantities import components
+from ...solution.solution import solve
+from .method import Method, NotGivenError
+
+
+def _solved(solution, angle):
+    return solve(
+        solution.mechanism,
+        angle,
+        crank_speed=solution.crank_speed,
+        crank_acceleration=solution.crank_acceleration,
+        loads=solution.loads,
+        on_gap="nan",
+        engine="numpy",
+    )
+
+
+def _numpy(solution, quantity, setting):
+    return lambda: components(_solved(solution, solution.crank_angle), quantity)
+
+
+def compiled_run(solution, quantity):
+    """Function that computes a quantity by a compiled loop."""
+    made = compiled.program(solution, [quantity])
+    return lambda: tuple(made(solution.crank_angle, made.tabulated(solution))[:, 0])
+
+
+def _compiled(solution, quantity, setting):
+    return compiled_run(solution, quantity)
+
+
+def _jax(solution, quantity, setting):
+    try:
+        import jax
+    except ImportError:
+        raise MissingLibraryError('JAX is not installed: pip install "kinetostatics[grad]"') from None
+
+    with jax.enable_x64(True):
+        angle = jax.numpy.asarray(solution.crank_angle)
+        compute = jax.jit(lambda angle: components(_solved(solution, angle), quantity))
+        try:
+            jax.block_until_ready(compute(angle))
+        except (TypeError, ValueError) as error:
+            raise NotGivenError(f"a load or cam that JAX cannot trace: {str(error).splitlines()[0]}") from error
+        compiled_once = compute.lower(angle).compile()
+    return lambda: tuple(jax.block_until_ready(compiled_once(angle)))
+
+
+def _single(solution, quantity, setting):
+    angle = solution.crank_angle.astype(np.float32)
+
+    def run():
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return components(_solved(solution, angle), quantity)
+
+    return run
+
+
+def _by_power(solution, quantity, setting):
+    if quantity != "balancing_torque":
+        raise NotGivenError("virtual power gives the torque of the drive, no reactions")
+    return lambda: (replace(solution).balancing_torque_by_power,)
+
+
+METHODS = (
+    Method("ours, NumPy", _numpy, ours=True),
+    Method("ours, compiled", _compiled, ours=True),
+    Method("ours, JAX jit", _jax, ours=True),
+    Method("ours, torque by powers", _by_power, ours=True),
+    Method("single precision", _single),
+)

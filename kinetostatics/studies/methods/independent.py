@@ -1,0 +1,274 @@
+"""The independent path of the certified reference: mpmath, other formulas, all forces from one linear system.
+
+It knows of the mechanism only its joints and bodies: positions by angles, velocities and accelerations as difference
+quotients of positions, all forces at once from the Newton-Euler equations.
+"""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from ...errors import NotGivenError
+from ...machine.cam_roller import CamRoller
+from ...machine.cams import Circle, CosineLaw
+from ...machine.loads import Gravity, ProcessForce, Spring
+from ...machine.rocker_group import RockerGroup
+from ...machine.slider_group import SliderGroup
+from ...mechanics.quantities import RATES
+from ...numbers import checks
+from .enclosures import library, on_arb, require_one_design
+
+SLIDER_MOTION = ("slider_position", "slider_velocity", "slider_acceleration")
+
+
+def independent(solution, quantity, indices: Iterable[int], digits=30):
+    """A quantity at some of the crank angles by mpmath and other formulas, all forces from one linear system.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design; of `Crank`, `CamRoller` with `Circle` or `CosineLaw`, `SliderGroup` and `RockerGroup`.
+    quantity : str
+        Balancing torque, a reaction, force or moment, rate or angular acceleration of a link, motion of the slider,
+        shaking force or moment; named as for `quantities.components`.
+    indices : iterable of int
+        Which of the solution's crank angles.
+    digits : int
+        Digits wanted; far more are carried, for derivatives are difference quotients.
+
+    Returns
+    -------
+    tuple of arrays (n,) of `mpmath.mpf`
+        Components of the quantity.
+
+    Raises
+    ------
+    NotGivenError
+        There are no such formulas for a group or cam, or no such quantity.
+    MissingLibraryError
+        mpmath is not installed.
+    """
+    mp = library("mpmath").mp
+    require_one_design(solution)
+    with mp.workdps(working_digits(digits)):
+        found = [_Machine(mp, solution, index, digits).components(quantity) for index in indices]
+    return tuple(np.array(part, dtype=object) for part in zip(*found, strict=True))
+
+
+def working_digits(digits):
+    """Enough for second differences with a step of 10^-(2 digits), which lose 4 digits for each, even near a limit."""
+    return 6 * digits + 60
+
+
+class _Machine:
+    """A mechanism at one crank angle in mpmath numbers; a planar vector is a complex number.
+
+    `position`, `velocity` and `acceleration` are tables by kind ("joint", "centre" of mass, "direction") and name.
+    """
+
+    def __init__(self, mp, solution, index, digits):
+        self.mp, self.solution, self.index = mp, solution, index
+        self.mechanism = solution.mechanism
+        self.angle = self.number(solution.crank_angle)
+        self.step = h = mp.mpf(10) ** (-2 * digits)
+        speed, slope = self.number(solution.crank_speed), self.number(solution.crank_acceleration)
+        back, here, ahead = (self.table(self.angle + speed * t + slope * t**2 / 2) for t in (-h, mp.mpf(0), h))
+        self.position = here
+        self.velocity = {key: (ahead[key] - back[key]) / (2 * h) for key in here}
+        self.acceleration = {key: (ahead[key] - 2 * here[key] + back[key]) / h**2 for key in here}
+
+    def number(self, value):
+        values = np.ravel(value)
+        return self.mp.mpf(float(values[self.index if values.size > 1 else 0]))
+
+    def vector(self, pair):
+        return self.mp.mpc(*map(self.number, pair))
+
+    # Positions, by angles
+
+    def table(self, angle):
+        """Joints, mass centres and directions of links at a crank angle."""
+        ray = self.mp.expj(angle)
+        joints, links = {"O": self.mp.mpc(0)}, {"crank": ("O", ray)}
+        if self.mechanism.crank.length is not None:
+            joints["A"] = self.number(self.mechanism.crank.length) * ray
+        for group in self.mechanism.groups:
+            if isinstance(group, CamRoller):
+                joints["A"], links["block"] = self.roller(group.cam, angle), ("A", ray)
+            elif isinstance(group, SliderGroup):
+                self.add_slider(group, joints, links)
+            elif isinstance(group, RockerGroup):
+                self.add_rocker(group, joints, links)
+            else:
+                raise NotGivenError(f"there is no independent formula for a {type(group).__name__}")
+        found = {("joint", name): place for name, place in joints.items()}
+        for name, (joint, direction) in links.items():
+            found["centre", name] = joints[joint] + self.vector(self.mechanism.links[name].centre) * direction
+            found["direction", name] = direction
+        return found
+
+    def add_slider(self, group, joints, links):
+        mp = self.mp
+        coupler, slider = group.links
+        start, length = joints[group.on], self.number(group.coupler_length)
+        along = self.vector(group.guide.direction)
+        along /= abs(along)
+        lean = mp.asin((self.number(group.guide.guide_offset) - _cross(along, start)) / length)
+        direction = mp.expj(mp.arg(along) + (lean if group.assembly > 0 else mp.pi - lean))
+        joints[group.pin] = start + length * direction
+        links[coupler], links[slider] = (group.on, direction), (group.pin, along)
+
+    def add_rocker(self, group, joints, links):
+        mp = self.mp
+        coupler, rocker = group.links
+        start, pivot = joints[group.on], self.vector(group.pivot)
+        c, h, a = self.number(group.coupler_length), self.number(group.rocker_length), abs(pivot - start)
+        opening = mp.acos((a * a + c * c - h * h) / (2 * a * c))
+        direction = mp.expj(mp.arg(pivot - start) + group.assembly * opening)
+        joints[group.pin], joints[group.pivot_name] = start + c * direction, pivot
+        links[coupler], links[rocker] = (group.on, direction), (group.pivot_name, (joints[group.pin] - pivot) / h)
+
+    def roller(self, cam, angle):
+        """Roller centre A on the crank ray."""
+        mp = self.mp
+        if isinstance(cam, Circle):  # sine rule in the triangle of O, centre and A
+            centre, radius = self.vector(cam.centre), self.number(cam.pitch_radius)
+            return centre + radius * mp.expj(angle - mp.asin(_cross(mp.expj(angle), centre) / radius))
+        if isinstance(cam, CosineLaw):  # at the critical length from B: radicand as it stands, root with a sign
+            a, b = self.number(cam.amplitude), self.number(cam.mean)
+            turning = mp.acos((mp.sqrt(b * b + 8 * a * a) - b) / (4 * a))
+            length = (b + a * mp.cos(turning)) * mp.sin(turning)
+            from_guide = angle - self.number(cam.guide_angle)
+            slider = b + a * mp.cos(from_guide)
+            root = mp.sqrt(length**2 - (slider * mp.sin(from_guide)) ** 2)
+            side = mp.sign(mp.cos(from_guide) - mp.cos(turning))
+            return (slider * mp.cos(from_guide) - side * root) * mp.expj(angle)
+        raise NotGivenError(f"there is no independent formula for cam {type(cam).__name__}")
+
+    def components(self, quantity):
+        """Components of a quantity."""
+        links = self.mechanism.links
+        ending = next((ending for ending in RATES if quantity.endswith(ending)), "")
+        link = quantity.removesuffix(ending)
+        if quantity in SLIDER_MOTION and "slider" in links:
+            table = (self.position, self.velocity, self.acceleration)[SLIDER_MOTION.index(quantity)]
+            pin = next(group.pin for group in self.mechanism.groups if "slider" in group.links)
+            found = _dot(self.position["direction", "slider"], table["joint", pin])
+        elif ending and link in links:
+            table = self.velocity if ending == "_rate" else self.acceleration
+            found = _cross(self.position["direction", link], table["direction", link])
+        else:
+            forces = self.forces()
+            if quantity not in forces:
+                raise NotGivenError(checks.choice("quantity of the independent path", quantity, tuple(forces)))
+            found = forces[quantity]
+        return (found.real, found.imag) if isinstance(found, self.mp.mpc) else (found,)
+
+    # Forces, from the equations of all bodies at once
+
+    def forces(self):
+        """Reactions, complex, and scalar forces and moments by name."""
+        mp, links, unknowns = self.mp, self.mechanism.links, self.unknowns()
+        matrix, right = mp.matrix(3 * len(links), len(unknowns)), mp.matrix(3 * len(links), 1)
+        for column, (_, force, moment, at, on, by) in enumerate(unknowns):
+            self.enter(matrix, column, on, at, force, moment)
+            self.enter(matrix, column, by, at, -force, -moment)
+        shaking = {}
+        for name, link in links.items():
+            mass, at = self.number(link.mass), self.position["centre", name]
+            turning = _cross(self.position["direction", name], self.acceleration["direction", name])
+            shaking[name] = -mass * self.acceleration["centre", name], -self.number(link.inertia) * turning
+            self.enter(right, 0, name, at, -shaking[name][0] - mass * self.gravity(), -shaking[name][1])
+        sliders = [group for group in self.mechanism.groups if isinstance(group, SliderGroup)]
+        for group in sliders:
+            name, pin = "slider" + group.label, self.position["joint", group.pin]
+            along = self.position["direction", name]
+            self.enter(right, 0, name, pin, -self.push(name, _dot(along, pin)) * along, 0)
+
+        found: dict[str, Any] = {}
+        for (name, force, *_), size in zip(unknowns, mp.lu_solve(matrix, right), strict=True):
+            found[name] = found.get(name, 0) + size * force if name in self.solution.reactions else size
+        for group in sliders:
+            normal = _left(self.position["direction", "slider" + group.label])
+            found["guide" + group.label] = found["guide_force" + group.label] * normal
+        turning = (_cross(self.position["centre", name], force) + moment for name, (force, moment) in shaking.items())
+        return found | {
+            "balancing_torque_by_power": found["balancing_torque"],
+            "shaking_force": sum(force for force, _ in shaking.values()),
+            "shaking_moment": sum(turning),
+        }
+
+    def enter(self, matrix, column, link, at, force, moment):
+        """Add a wrench to the three equations of a link, of moments about its mass centre; None is the ground."""
+        if link is not None:
+            row = 3 * list(self.mechanism.links).index(link)
+            matrix[row, column] += self.mp.re(force)
+            matrix[row + 1, column] += self.mp.im(force)
+            matrix[row + 2, column] += moment + _cross(at - self.position["centre", link], force)
+
+    def unknowns(self):
+        """Unit wrenches: name, force, moment, point, link it acts on, link it comes from (None: ground)."""
+        none, parts = self.mp.mpc(0), (self.mp.mpc(1), self.mp.mpc(1j))
+        at = {name: place for (kind, name), place in self.position.items() if kind == "joint"}
+        found: list[tuple[Any, ...]] = [("O", part, 0, at["O"], "crank", None) for part in parts]
+        found.append(("balancing_torque", none, 1, at["O"], "crank", None))
+        carrier = {"A": "crank"}
+        for group in self.mechanism.groups:
+            if isinstance(group, CamRoller):
+                carrier["A"] = "block"
+                ahead, back = (self.roller(group.cam, self.angle + step) for step in (self.step, -self.step))
+                inward = _left((ahead - back) / abs(ahead - back))
+                found.append(("slot_force", _left(self.position["direction", "crank"]), 0, at["A"], "block", "crank"))
+                found.append(("slot_moment", none, 1, at["A"], "block", "crank"))
+                found.append(("cam_force", inward, 0, at["A"], "block", None))
+                continue
+            coupler, end = group.links
+            found += [(group.on + group.label, part, 0, at[group.on], coupler, carrier[group.on]) for part in parts]
+            found += [(group.pin, part, 0, at[group.pin], end, coupler) for part in parts]
+            carrier[group.pin] = end
+            if isinstance(group, SliderGroup):
+                normal = _left(self.position["direction", end])
+                found.append(("guide_force" + group.label, normal, 0, at[group.pin], end, None))
+                found.append(("guide_moment" + group.label, none, 1, at[group.pin], end, None))
+            else:
+                found += [(group.pivot_name, part, 0, at[group.pivot_name], end, None) for part in parts]
+        return found
+
+    def gravity(self):
+        items = (item for item in self.solution.loads if isinstance(item, Gravity))
+        pulls = (self.number(item.acceleration) * self.mp.expj(self.number(item.direction)) for item in items)
+        return sum(pulls, self.mp.mpc(0))
+
+    def push(self, slider, coordinate):
+        """Force on a slider along its guide."""
+        total = self.mp.mpf(0)
+        for place, item in enumerate(self.solution.loads):
+            if isinstance(item, Gravity) or item.on != slider:
+                continue
+            if isinstance(item, Spring):
+                total += self.number(item.stiffness) * (self.number(item.free_position) - coordinate)
+            elif isinstance(item, ProcessForce) and not callable(item.force):
+                total += self.number(item.force)
+            else:
+                total += self.given(place)
+        return total
+
+    def given(self, place):
+        """Value of a load that is a function of the motion, which no formula but the user's own can give."""
+        flint = library("flint")
+        with flint.ctx.workprec(int(3.33 * self.mp.dps)):
+            values = np.ravel(on_arb(flint.arb, self.solution).loads[place].force)
+            return self.mp.mpf(values[self.index if values.size > 1 else 0])
+
+
+def _left(a):
+    return a * 1j
+
+
+def _dot(a, b):
+    return (a.conjugate() * b).real
+
+
+def _cross(a, b):
+    return (a.conjugate() * b).imag

@@ -1,0 +1,44 @@
+"""What a method under study is: one way to a quantity, to be measured against the library's own."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...errors import NotGivenError
+
+__all__ = ["Method", "NotGivenError", "require_one_design"]
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to the quantities of a solution.
+
+    Attributes
+    ----------
+    name : str
+        What charts and tables call it.
+    prepare : function
+        ``prepare(solution, quantity, setting)`` does whatever is done once for a mechanism and returns a function
+        without arguments that computes the quantity at the solution's crank angles, as a tuple of its components (see
+        `quantities.components`). It raises `NotGivenError` for what the method cannot give.
+    setting : str
+        What can be set, with its unit; empty if nothing.
+    settings : tuple
+        Values of the setting, from coarse to fine.
+    ours : bool
+        Whether it is the library's own path.
+    """
+
+    name: str
+    prepare: Callable[[Any, str, Any], Callable[[], tuple[Any, ...]]]
+    setting: str = ""
+    settings: tuple[Any, ...] = (None,)
+    ours: bool = False
+
+
+def require_one_design(solution):
+    """Raise `NotGivenError` for a batch of designs, and for crank angles that are no row."""
+    if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:
+        raise NotGivenError(f"one mechanism at crank angles (N,) is needed, not a batch of shape {solution.shape}")

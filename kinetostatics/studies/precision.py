@@ -1,0 +1,125 @@
+"""Work against precision: what every method takes in time, and how near it comes to a certified reference."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import MissingLibraryError, NotGivenError
+from ..mechanics.quantities import components
+from ..numbers import checks
+from .methods import METHODS
+from .methods.certified import certified, relative_errors
+from .timing import circumstances, seconds
+
+QUANTITY = "balancing_torque"
+BETTER_THAN = 1e-6
+"""Accuracy from which on no method may be both faster and nearer than the library's own."""
+
+
+def study(solution, quantity=QUANTITY, *, methods=METHODS, repeats=5, progress=None):
+    """Time and error of every method for one quantity.
+
+    Parameters
+    ----------
+    solution : Solution
+        A single design at its crank angles, a turn of 360 for instance.
+    quantity : str
+        "balancing_torque", a joint (its reaction), "slider_acceleration" ...
+    methods : sequence of Method
+    repeats : int
+        Of each timing; the median counts, what a method does once for a mechanism does not.
+    progress : function, optional
+        Called with the name of each method before it runs.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each method and setting: time [ns/angle], largest error over the crank angles relative to the
+        quantity's largest value, and for what a method cannot give the reason, with NaN for both.
+
+    Raises
+    ------
+    MissingLibraryError
+        The `precision` extra is not installed.
+    NotGivenError
+        The scene holds something that cannot be certified: a sampled cam, a process force by a function.
+    """
+    import pandas as pd
+
+    checks.require("precision", checks.solution("solution", solution), checks.quantity(quantity))
+    reference = certified(solution, quantity)
+    rows: list[dict] = []
+    runs = {}
+    for method in methods:
+        if progress:
+            progress(method.name)
+        for setting in method.settings:
+            row = {"method": method.name, "ours": method.ours, "setting": method.setting, "value": setting}
+            try:
+                run = method.prepare(solution, quantity, setting)
+                row |= {"error": float(np.max(relative_errors(run(), reference))), "not given": ""}
+                runs[len(rows)] = run
+            except (NotGivenError, MissingLibraryError) as why:
+                row |= {"error": np.nan, "not given": str(why)}
+            rows.append(row)
+    table = pd.DataFrame(rows).assign(quantity=quantity, angles=solution.crank_angle.size)
+    times = pd.Series(seconds(*runs.values(), repeats=repeats), index=list(runs), dtype=float)
+    table.insert(4, "time [ns/angle]", 1e9 * times / solution.crank_angle.size)
+    return table
+
+
+def front(table):
+    """Rows that no other row beats in both time and error, in order of time."""
+    given = table.dropna(subset=["error"]).sort_values(["time [ns/angle]", "error"])
+    return given[given["error"] < given["error"].cummin().shift(fill_value=np.inf)]
+
+
+def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=360, progress=None):
+    """Study a case: one CSV and one chart, as PNG and SVG, into a folder; returns their paths.
+
+    Parameters
+    ----------
+    case : Case
+    folder : path
+    variants : sequence of str, optional
+        One of each kind of mechanism unless told.
+    quantities : sequence of str
+    angles : int
+        Crank angles over the turn.
+
+    Raises
+    ------
+    ParameterError
+        Before any work: the files cannot be written there, or would replace what the case is read from.
+    """
+    import pandas as pd
+
+    from ..numbers.files import unwritable, written_whole
+    from ..views.charts import precision_page
+
+    checks.require("precision", checks.case("case", case))
+    path = Path(folder) / f"{case.path.stem}_precision.csv"
+    written = [path, *(path.with_suffix(ending) for ending in (".png", ".svg"))]
+    checks.require("precision", *dict.fromkeys(unwritable(item, inputs=case.files) for item in written))
+    names = list(variants or kinds(case))
+    for name in names:
+        for quantity in quantities:
+            components(case.solve(name, 8), quantity)
+    tables = [
+        study(case.solve(name, angles), quantity, progress=progress).assign(case=case.path.stem, variant=name)
+        for name in names
+        for quantity in quantities
+    ]
+    table = pd.concat(tables, ignore_index=True).assign(**circumstances())
+    with written_whole(path) as temporary:
+        table.to_csv(temporary, index=False)
+    return [path, *precision_page(table, path.with_suffix(""))]
+
+
+def kinds(case):
+    """First variant of each kind of mechanism and cam in a case."""
+    found: dict[tuple, str] = {}
+    for name, variant in case.variants.items():
+        cams = tuple(type(getattr(group, "cam", None)) for group in variant.mechanism.groups)
+        found.setdefault((variant.mechanism.name, cams), name)
+    return list(found.values())

@@ -1,0 +1,379 @@
+"""What a worker of a sweep does: a chunk of designs built as one batch, and reduced to a row of numbers for each.
+
+The loop over designs and crank angles runs block by block, so that values over the turn never leave the cache. Designs
+that cannot be built are set apart, each with its reason, and the others go on together.
+"""
+
+import math
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from ..casefile.case import Variant
+from ..engines import compiled
+from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
+from ..mechanics.quantities import components, sizes, unit
+from ..numbers import checks
+from ..numbers.elementary import ROUNDING
+from ..results.reductions import Output, lowest
+from ..results.turn import NEAR, repeating_problem
+from ..solution.solution import TURN, period_of, solve
+
+VALUES = 100_000
+"""Values over designs and angles computed at a time on each core: about what its cache holds."""
+PROBED = 64
+"""Designs among which one that can be built is looked for, to try a sweep before it begins."""
+NEGLIGIBLE = 1e-12
+"""Share of the reference's number below which a design's counts as zero, as in `comparison`."""
+FEWEST = 12
+"""Crank angles below which a sweep is refused."""
+MOST = 5760
+"""Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
+SETTLED = 1e-3
+"""Relative change of an output, when the crank angles are doubled, that is none."""
+NO_DIGIT = 1e16
+"""Condition from which rates and forces have no correct digit."""
+FAILED = "failed"
+"""Column with the reason why a design has no numbers; empty for the others."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """What to do with a chunk of designs; goes to the workers.
+
+    Attributes
+    ----------
+    make, make_reference : function
+        From values in SI by name to a `Variant`; the reference's is None without ratios.
+    columns : tuple of (column, name, factor)
+        Where the values stand in the table of designs.
+    threads : int
+        Cores to use for a chunk.
+    """
+
+    make: Callable[[dict], Variant]
+    make_reference: Callable[[dict], Variant] | None
+    columns: tuple[tuple[str, str, float], ...]
+    outputs: tuple[Output, ...]
+    angles: int
+    engine: str
+    threads: int
+
+    @property
+    def ratios(self):
+        """Places of the outputs that are ratios to the reference."""
+        return [place for place, item in enumerate(self.outputs) if item.ratio]
+
+    @property
+    def sides(self):
+        """Functions that make variants, each with the outputs wanted of what it makes."""
+        own = [(self.make, self.outputs)]
+        return [*own, (self.make_reference, [self.outputs[place] for place in self.ratios])] if self.ratios else own
+
+    def values(self, frame):
+        """What to call the functions with for some designs, in turn: arrays, and plain numbers for a single design."""
+        arrays = {name: frame[column].to_numpy(dtype=float)[:, None] * scale for column, name, scale in self.columns}
+        return [arrays] if len(frame) > 1 else [arrays, {name: float(value[0, 0]) for name, value in arrays.items()}]
+
+
+def run_chunk(job, frame) -> pd.DataFrame:
+    """Outputs of some designs, with the reason for those that have none."""
+    numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
+    step = max(1, VALUES // job.angles if job.engine == "numpy" else len(frame))
+    for start in range(0, len(frame), step):
+        part = slice(start, start + step)
+        numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])
+    return rows(job, frame, numbers, reasons)
+
+
+def rows(job, frame, numbers, reasons):
+    """Table of outputs (outputs, designs) and reasons; no numbers where there is a reason."""
+    numbers[:, reasons != ""] = np.nan
+    found = {item.column: row for item, row in zip(job.outputs, numbers, strict=True)}
+    return pd.DataFrame({**found, FAILED: pd.Series(reasons, frame.index, dtype=str)}, index=frame.index)
+
+
+def suitable_engine(job, designs, engines):
+    """First of the engines that takes the mechanism, tried on the first design that can be built.
+
+    Raises what would otherwise be the reason of every design: `QuantityError` for a quantity that the mechanism does
+    not have, `ParameterError` for a function that makes something else than a variant, `NotGivenError` if no engine
+    takes it. The same for fewer crank angles than tell anything, and loads that do not repeat after their period.
+    """
+    few = None if job.angles >= FEWEST else f"angles must be at least {FEWEST}, got {job.angles}: they miss every peak"
+    checks.require("sweep", few)
+    for row in range(len(designs)):
+        *_, plain = job.values(designs.iloc[row : row + 1])
+        try:
+            variants = [make(plain) for make, _ in job.sides]
+        except Exception:
+            continue
+        for variant in variants:
+            if not isinstance(variant, Variant):
+                raise ParameterError(f"sweep: the function must return a kinetostatics.case.Variant, got {variant!r}")
+        try:
+            solutions = [_solution(variant, job.angles) for variant in variants]
+            for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
+                for name in _quantities(outputs):
+                    components(solution, name)
+            problems = [repeating_problem(solution) for solution in solutions]
+        except QuantityError:
+            raise
+        except Exception:
+            continue
+        checks.require("sweep", *problems)
+        return _engine(job, solutions, engines)
+    return engines[-1]
+
+
+def _engine(job, solutions, engines):
+    first, *others = engines
+    if first == "numpy":
+        return first
+    try:
+        for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
+            compiled.program(solution, [*_quantities(outputs), "closure"], sizes=True)
+    except NotGivenError:
+        if not others:
+            raise
+        return _engine(job, solutions, others)
+    return first
+
+
+def _quantities(outputs):
+    return list(dict.fromkeys(item.quantity for item in outputs))
+
+
+def _solution(variant, angles):
+    turn = np.linspace(0.0, period_of(variant.loads), angles, endpoint=False)
+    return _solved(variant, turn)
+
+
+def _solved(variant, turn):
+    drive = {"crank_speed": variant.crank_speed, "crank_acceleration": variant.crank_acceleration}
+    return solve(variant.mechanism, turn, **drive, loads=variant.loads, on_gap="nan", engine="numpy")
+
+
+# Designs set apart
+
+
+def _compared(job, frame):
+    """Numbers (outputs, designs), ratios among them, and reasons (designs,), empty for designs that have numbers."""
+    (own, reasons), *reference = (_reduced(make, job, frame, outputs) for make, outputs in job.sides)
+    numbers, reasons = np.array(own), np.array(reasons)
+    for above, failing in reference:
+        below = numbers[job.ratios]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = np.where(abs(below) <= NEGLIGIBLE * abs(above), np.inf, above / below)
+        numbers[job.ratios] = np.where((above == 0) & (below == 0), np.nan, ratios)
+        reasons = np.where((reasons == "") & (failing != ""), "reference: " + failing, reasons)
+    for row in np.flatnonzero(np.isnan(numbers).any(axis=0) & (reasons == "")):
+        wrong = (str(item) for item, number in zip(job.outputs, numbers[:, row], strict=True) if np.isnan(number))
+        reasons[row] = f"{', '.join(wrong)} is no number, such as 0 / 0"
+    return numbers, reasons
+
+
+def _reduced(make, job, frame, outputs, earlier=None):
+    """Numbers of a variant (outputs, designs) and reasons (designs,) why it cannot be made or solved.
+
+    `earlier` are the numbers from half as many crank angles.
+    """
+    count = len(frame)
+    if count == 1:
+        return _alone(make, job, frame, outputs, earlier)
+    (values,) = job.values(frame)
+    try:
+        variant = make(values)
+    except Exception as error:
+        wrong = _told(error, count)
+        if wrong is None:
+            wrong = _unbuildable(make, job, frame)
+        apart = np.flatnonzero(wrong if wrong.any() else ~wrong)  # all that can be built by themselves only
+        parts = [np.delete(np.arange(count), apart), *apart[:, None]]
+    else:
+        try:
+            return _settled(make, job, frame, outputs, _run(variant, job, count, outputs), earlier)
+        except (MissingLibraryError, OSError):
+            raise
+        except Exception as error:
+            wrong = _told(error, count)
+            halves = np.array_split(np.arange(count), 2)
+            parts = halves if wrong is None else [np.flatnonzero(~wrong), *np.flatnonzero(wrong)[:, None]]
+    numbers, reasons = np.empty((len(outputs), count)), np.empty(count, dtype=object)
+    for part in parts:
+        if part.size:
+            known = None if earlier is None else earlier[:, part]
+            numbers[:, part], reasons[part] = _reduced(make, job, frame.iloc[part], outputs, known)
+    return numbers, reasons
+
+
+def _alone(make, job, frame, outputs, earlier):
+    """The same for a single design, as an array of one, so that it does not matter which designs come together."""
+    for values in job.values(frame):
+        try:
+            return _settled(make, job, frame, outputs, _run(make(values), job, 1, outputs), earlier)
+        except (MissingLibraryError, OSError):
+            raise
+        except Exception as error:
+            reason = str(error) or type(error).__name__
+    return np.full((len(outputs), 1), np.nan), np.array([reason], dtype=object)
+
+
+def _settled(make, job, frame, outputs, found, earlier):
+    """Numbers and reasons, those of designs that so many crank angles do not tell from twice as many."""
+    numbers, reasons, rough, nearest = found
+    numbers, reasons, rough = np.array(numbers), np.array(reasons), np.array(rough)
+    near = np.flatnonzero(~np.isnan(nearest) & (reasons == ""))
+    narrow = np.zeros(len(frame), dtype=bool)
+    if near.size:
+        reasons[near], narrow[near] = _near_limits(make, job, frame.iloc[near], nearest[near], outputs)
+    if earlier is not None:
+        with np.errstate(invalid="ignore"):
+            rough &= abs(numbers - earlier) > SETTLED * abs(numbers)
+    again = np.flatnonzero((rough.any(axis=0) | narrow) & (reasons == ""))
+    if again.size and (earlier is None or 2 * job.angles <= MOST):
+        finer = replace(job, angles=2 * job.angles)
+        numbers[:, again], reasons[again] = _reduced(make, finer, frame.iloc[again], outputs, numbers[:, again])
+    else:
+        for row in again:
+            wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]
+            reasons[row] = f"{', '.join(wrong)} is not resolved by {job.angles} crank angles" + (
+                f": it passes so near a limit position at {np.degrees(nearest[row]):.6g} deg" if narrow[row] else ""
+            )
+    return numbers, reasons
+
+
+def _near_limits(make, job, frame, nearest, outputs):
+    """Reasons of designs that do not close, or lose all digits, between crank angles, and whether peaks hide there.
+
+    Looked at anew around the crank angle at which each is nearest to a limit position.
+    """
+    values = job.values(frame)[-1]
+    variant = make(values)
+    step = period_of(variant.loads) / job.angles
+    shape = len(frame), 1
+    angle = np.broadcast_to(nearest[:, None], shape) + step * np.linspace(-1.5, 1.5, 25)
+    around = np.broadcast_arrays(*_solved(variant, angle).closure)
+    margin, place, bend = lowest(np.array(around).min(axis=0), step / 8)
+    place = np.round(angle[:, 12] + place, 9) % period_of(variant.loads)
+    reasons = np.full(len(frame), "", dtype=object)
+    for row in np.flatnonzero(margin < -ROUNDING):
+        where = f"between the crank angles, at {np.degrees(place[row]):.6g} deg"
+        reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
+    if all(unit(item.quantity) == "m" for item in outputs):
+        return reasons, np.zeros(len(frame), dtype=bool)
+    with np.errstate(all="ignore"):
+        lost = _solved(variant, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
+        narrow = step > np.sqrt(2.0 * np.maximum(margin, 0.0) / bend)
+    for row in np.flatnonzero(np.ravel(lost) & (reasons == "")):
+        reasons[row] = f"has no correct digit at crank angle {np.degrees(place[row]):.6g} deg, a limit position"
+    return reasons, narrow
+
+
+def _told(error, count):
+    """Which designs an error is about, as a mask; None if it does not tell."""
+    wrong: Any = getattr(error, "designs", None)
+    return np.ravel(wrong) if np.size(wrong) == count and np.any(wrong) else None
+
+
+def _unbuildable(make, job, frame):
+    """Which designs cannot be made, found by halves."""
+    for values in job.values(frame):
+        try:
+            make(values)
+        except Exception:
+            continue
+        return np.zeros(len(frame), dtype=bool)
+    if len(frame) == 1:
+        return np.ones(1, dtype=bool)
+    halves = np.array_split(np.arange(len(frame)), 2)
+    return np.concatenate([_unbuildable(make, job, frame.iloc[half]) for half in halves])
+
+
+# Designs together
+
+
+def _run(variant, job, count, outputs):
+    """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
+
+    That is which numbers so many crank angles do not tell (outputs, designs), and the crank angle at which a design is
+    nearest to a limit position (designs,), NaN if it is not near.
+    """
+    solution = _solution(variant, job.angles)
+    made = math.prod(solution.shape[:-1])
+    if made not in (1, count):
+        raise ParameterError(
+            f"the variant made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
+            "(designs, 1) of the values handed in"
+        )
+    names = _quantities(outputs)
+    evaluate = (_by_loop if job.engine == "compiled" else _by_numpy)(solution, [*names, "closure"], made)
+    numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
+    rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
+    turns = round(period_of(variant.loads) / TURN)
+    step = max(1, VALUES // job.angles)
+
+    def fill(start):
+        block = slice(start, start + step)
+        with np.errstate(all="ignore"):
+            *found, closure = evaluate(block)
+            values = {name: parts[0] for name, parts in zip(names, found, strict=True)}
+            for row, item in enumerate(outputs):
+                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity], turns)
+            margin = closure.min(axis=-1)
+            gaping = ~(margin >= -ROUNDING).all(axis=0)
+            gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
+            near = ~gaping & (margin < NEAR).any(axis=0)
+            if near.any():
+                nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
+
+    starts = range(0, made, step)
+    if min(job.threads, len(starts)) == 1:
+        list(map(fill, starts))
+    else:
+        with ThreadPoolExecutor(job.threads) as threads:
+            list(threads.map(fill, starts))
+    reasons = np.full(made, "", dtype=object)
+    for row in np.flatnonzero(gaps):
+        where = f"at {gaps[row]} of {job.angles} crank angles"
+        reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
+    shape = len(outputs), count
+    rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
+    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
+
+
+def _by_loop(solution, quantities, count):
+    """Function from a block of designs to the size of each quantity over the turn (parts, block, N), compiled.
+
+    Values stay until the same thread takes its next block: memory is asked for once.
+    """
+    program = compiled.program(solution, quantities, sizes=True)
+    angle = np.array(solution.crank_angle, ndmin=2)
+    turn, tables = program.turn(angle), program.tabulated(solution)
+    edges, held = np.cumsum(program.trace.widths)[:-1], threading.local()
+
+    def evaluate(block):
+        parameters = program.parameters[block]
+        designs = len(parameters)
+        if len(getattr(held, "results", ())) < designs:
+            held.results = np.empty((designs, len(program.trace.outputs), angle.shape[1]))
+            held.parts = np.empty((len(program.trace.outputs), designs, angle.shape[1]))
+        shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
+        values = held.parts[:, :designs]
+        values[:] = program.at(angle, *turn, shared, parameters, held.results[:designs])
+        return np.split(values, edges)
+
+    return evaluate
+
+
+def _by_numpy(solution, quantities, count):
+    """The same by NumPy, all designs at a time."""
+    with np.errstate(all="ignore"):
+        found = [sizes(solution, name) for name in quantities]
+    shaped = [np.reshape(parts, (len(parts), count, solution.shape[-1])) for parts in found]
+    return lambda block: [parts[:, block] for parts in shaped]

@@ -1,0 +1,291 @@
+"""Design sweeps: a row of numbers for each of many designs, on one core or many machines.
+
+A sweep goes chunk by chunk (`chunks`) through any `concurrent.futures.Executor` (`dispatch`); with a folder the results
+stream to a Parquet dataset (`dataset`), from which a sweep that was stopped goes on.
+"""
+
+import inspect
+import pickle
+from collections.abc import Iterable
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import closing
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pandas as pd
+
+from ..casefile.case import Case, Variant
+from ..casefile.parameters import paths, si_columns
+from ..engines import compiled
+from ..errors import ParameterError
+from ..numbers import checks
+from ..results.reductions import Output, parsed
+from ..solution.solution import WORTH_COMPILING
+from .chunks import FAILED, PROBED, Job, suitable_engine
+from .dataset import Dataset, Parts
+from .identity import identity
+from .workers import Workers, computed
+
+__all__ = ["FAILED", "sweep"]
+
+
+def sweep(
+    source,
+    designs,
+    outputs,
+    *,
+    variant=None,
+    reference=None,
+    angles=360,
+    engine=None,
+    executor=None,
+    workers=None,
+    chunk=10_000,
+    folder=None,
+    progress=True,
+):
+    """Outputs of many designs, a row for each.
+
+    Parameters
+    ----------
+    source : Case or function
+        A case, or a function that takes the parameters as keywords, arrays (designs, 1) in SI, and returns a
+        `case.Variant` of a mechanism, drive and loads. A function of plain numbers will do, but then each design is
+        solved by itself, which takes some milliseconds; so it is with variants that are balanced by counterweights.
+    designs : pandas.DataFrame
+        A column for each parameter: of a case its path with a unit, "spring.stiffness [kN/m]" (see
+        `designs.grid`, `.latin_hypercube` ...); of a function its keyword. Without a unit in SI.
+    outputs : sequence of str
+        "largest O", "mean_absolute balancing_torque", "range cam_force", "harmonic_2 balancing_torque" ...; with
+        "ratio" in front the reference's number divided by the design's. All reductions: `reductions.REDUCTIONS`.
+    variant, reference : str
+        Of a case: which variant the designs vary (the only one, or the first besides the reference), and which one
+        ratios refer to (the case's reference); the reference takes those parameters that it has too. With a function,
+        `reference` is a `Variant`.
+    angles : int
+        Crank angles over the turn; extremes are refined between them.
+    engine : "compiled" or "numpy"
+        Unless told, compiled for a million crank angles, all designs together, and more, if numba is installed and
+        takes the mechanism.
+    executor : concurrent.futures.Executor
+        Where chunks run; this process, on all its cores, unless told. A Dask cluster: ``client.get_executor()``. One
+        that breaks ends the sweep.
+    workers : int
+        In place of an executor: so many processes of the sweep's own (by loky), which take any function and end with
+        this process. When one dies, only the chunks under way are run again, and only designs that kill their worker by
+        themselves have no numbers.
+    chunk : int
+        Designs computed together: what bounds the memory.
+    folder : path
+        Parquet dataset that chunks are written to as they are done. If it holds part of the same sweep, that is kept
+        and the rest computed, also what was damaged since. A function is the same if its code is, with what it holds
+        and what it names of its own module (see `identity`).
+    progress : bool
+        Whether a bar is shown.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The designs with a column for each output, in SI, and a column "failed": why a design has none, else empty.
+
+    Raises
+    ------
+    ParameterError
+        A parameter, unit, output or reduction is not known, or the folder holds another sweep.
+    QuantityError
+        The mechanism, or the reference of a ratio, has no such quantity.
+    NotGivenError
+        ``engine="compiled"`` does not take the mechanism.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> table = ks.sweep(
+    ...     saw, ks.designs.grid({"spring.stiffness": "600..800 kN/m:3"}),
+    ...     ["ratio mean_absolute balancing_torque"], variant="cam-circle", progress=False,
+    ... )
+    >>> table.iloc[:, 1].round(2).tolist()
+    [3.92, 7.56, 50.56]
+    """
+    job, engines, compared = _job(
+        source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
+    )
+    with Workers(executor, workers) as hands:
+        for suitable in hands.survived(suitable_engine, job, designs[:PROBED], engines):
+            job = replace(job, engine=suitable)
+        parts = Parts(designs, chunk)
+        if folder is not None:
+            parts = Dataset(designs, chunk, folder, identity(job, designs, compared, chunk))
+        todo = [number for number in parts.numbers if not parts.holds(number)]
+        with _bar(progress, len(designs)) as bar, closing(computed(job, parts.rows, todo, hands)) as found:
+            bar.update(len(designs) - sum(len(parts.rows(number)) for number in todo))
+            for number, rows in found:
+                parts.keep(number, rows)
+                bar.update(len(rows))
+    return parts.table()
+
+
+def _bar(shown, total):
+    from tqdm.auto import tqdm
+
+    return tqdm(total=total, unit=" designs", disable=not shown)
+
+
+# What is to be done, checked
+
+
+def _job(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk):
+    """The job, the engines to try, and what is compared: variants of a case, or a function and a variant."""
+    if not isinstance(designs, pd.DataFrame):
+        raise ParameterError(
+            f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
+        )
+    if not isinstance(source, Case) and not callable(source):
+        raise ParameterError(
+            f"sweep: source must be a Case, as of ks.load_case, or a function that makes a Variant, got {source!r}"
+        )
+    make, known, compared = (
+        _of_case(source, variant, reference) if isinstance(source, Case) else _of_function(source, reference)
+    )
+    wanted, problems = _outputs(outputs)
+    columns, wrong = si_columns(designs.columns, known)
+    problems += [
+        *wrong,
+        *_name_problems(designs.columns, wanted),
+        *_type_problems(designs),
+        None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
+        checks.count("angles", angles, size=checks.ANGLE),
+        checks.count("chunk", chunk),
+        None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
+        None if len(designs) else "there are no designs",
+        _executor_problem(executor),
+        _workers_problem(workers, executor),
+        *_order_problems(wanted, angles),
+    ]
+    ratios = any(item.ratio for item in wanted)
+    if ratios and not isinstance(compared[1], Variant):
+        problems.append("ratios need a reference: a Variant, as the function makes")
+    checks.require("sweep", *problems)
+
+    if engine == "compiled":
+        compiled.require()
+    large = len(designs) * angles >= WORTH_COMPILING and compiled.available()
+    engines = [engine] if engine else ["compiled", "numpy"] if large else ["numpy"]
+    threads = compiled.cores() if executor is None and workers is None else 1
+    job = Job(make[0], make[1] if ratios else None, columns, wanted, angles, engines[0], threads)
+    if workers:
+        from cloudpickle import dumps
+
+        _require_portable(job, dumps, "give it no open files or locks, or use threads")
+    elif isinstance(executor, ProcessPoolExecutor):
+        _require_portable(
+            job, pickle.dumps, "define the function at the top of a module, or use workers=n, threads or Dask"
+        )
+    return job, engines, compared if ratios else compared[:1]
+
+
+def _of_case(case, variant, reference):
+    """Functions that make the varied variant and the reference, what may be varied, and the variants themselves."""
+    pair = chosen(case, variant, reference)
+    return [partial(_varied, item) for item in pair], paths(pair[0].table), pair
+
+
+def chosen(case, variant=None, reference=None):
+    """The variant that designs vary, and the one that ratios refer to."""
+    reference = reference or case.reference
+    variant = variant or next((name for name in case.variants if name != reference), reference)
+    return case.variant(variant), case.variant(reference)
+
+
+def _of_function(function, reference):
+    return [partial(_called, function), partial(_fixed, reference)], None, (function, reference)
+
+
+def _varied(variant, values):
+    """The variant with those of the values that it has a place for; the loads are made anew."""
+    known = paths(variant.table)
+    return variant.varied({path: value for path, value in values.items() if path in known})
+
+
+def _called(function, values):
+    return function(**values)
+
+
+def _fixed(variant, values):
+    return variant
+
+
+def listed(outputs):
+    """Outputs asked for, one or several."""
+    if isinstance(outputs, str | Output):
+        return [outputs]
+    if not isinstance(outputs, Iterable):
+        raise ParameterError(f'sweep: outputs must be texts such as "largest O", got {outputs!r}')
+    return list(outputs)
+
+
+def _outputs(outputs):
+    """The outputs asked for, and what is wrong with them."""
+    wanted, problems = [], []
+    for text in listed(outputs):
+        try:
+            wanted.append(parsed(text))
+        except ParameterError as error:
+            problems.append(str(error))
+    return tuple(dict.fromkeys(wanted)), problems or ([] if wanted else ["no outputs are asked for"])
+
+
+def _name_problems(columns, wanted):
+    """Columns of the designs that would stand in the table twice."""
+    taken = {item.column for item in wanted} | {FAILED}
+    return [f"column {name!r} of the designs has the name of an output; rename it" for name in columns if name in taken]
+
+
+def _type_problems(designs):
+    for column, kind in designs.dtypes.items():
+        if not pd.api.types.is_numeric_dtype(kind):
+            yield f"column {column!r} must hold numbers, but is of type {kind}"
+
+
+def _signature_problem(function, names):
+    try:
+        inspect.signature(function).bind(**dict.fromkeys(names))
+    except TypeError as error:
+        return f"the function does not take the columns of the designs: {error}"
+    except ValueError:  # it does not say what it takes
+        return None
+    return None
+
+
+def _executor_problem(executor):
+    if isinstance(executor, Executor | None):
+        return None
+    found = type(executor).__name__
+    return f"executor must be an Executor of concurrent.futures (of Dask: client.get_executor()), got {found}"
+
+
+def _workers_problem(workers, executor):
+    """What is wrong with the number of workers; many more than cores only cost memory, some 100 MB each."""
+    most = max(64, 4 * compiled.cores())
+    if workers is None:
+        return None
+    if isinstance(workers, bool) or not isinstance(workers, int | np.integer) or not 1 <= workers <= most:
+        return f"workers must be a whole number of processes from 1 to {most} here, got {workers!r}"
+    return None if executor is None else "give workers or an executor, not both"
+
+
+def _order_problems(wanted, angles):
+    for item in wanted:
+        if item.order and isinstance(angles, int) and 2 * item.order >= angles:
+            yield f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
+
+
+def _require_portable(job, dumps, remedy):
+    try:
+        dumps(job)
+    except Exception as error:
+        raise ParameterError(
+            f"sweep: the function and its reference cannot go to other processes: {error}; {remedy}, which take any"
+        ) from error

@@ -1,0 +1,136 @@
+"""Tolerances: what the spread of parameters does to outputs, and whose spread matters most."""
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from ..casefile.case import Case
+from ..casefile.parameters import paths
+from ..errors import ParameterError
+from ..numbers import checks
+from ..results.reductions import parsed
+from . import designs
+from .sweeps import FAILED, chosen, listed, sweep
+
+LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
+
+
+@dataclass(frozen=True, eq=False)
+class Tolerances:
+    """Outputs of a spread of designs; made by `tolerances`.
+
+    Attributes
+    ----------
+    table : pandas.DataFrame
+        The designs with their outputs, as of `sweep`.
+    outputs : tuple of str
+        Columns of the outputs.
+    sensitivity : pandas.DataFrame
+        By output and parameter: first-order and total Sobol index, the shares of the output's variance that the
+        parameter's spread causes by itself, and together with others (Saltelli 2010).
+    """
+
+    table: pd.DataFrame
+    outputs: tuple[str, ...]
+    sensitivity: pd.DataFrame
+    spreads: dict[str, str] = field(repr=False)
+
+    def quantiles(self, levels=LEVELS):
+        """Quantiles of every output over the designs, a pandas DataFrame."""
+        return self.table[list(self.outputs)].quantile(list(levels)).rename_axis("quantile")
+
+    def share(self, output, *, above=-np.inf, below=np.inf):
+        """Share of all designs whose output lies between."""
+        values = self.table[parsed(output).column]
+        return float(((values > above) & (values < below)).mean())
+
+
+def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, **options) -> Tolerances:
+    """Monte Carlo study of the spread of parameters, on the path of `sweep`.
+
+    Parameters
+    ----------
+    case : Case or function
+    outputs : sequence of str
+        As for `sweep`: "ratio mean_absolute balancing_torque" ...
+    spreads : dict of parameter to text, optional
+        "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m"; unless given those of
+        the case file's [tolerances] that the variant has.
+    count : int
+        Designs, a power of two; the Sobol indices take as many again for every parameter, and twice more.
+    seed : int
+        Of the scrambled Sobol sequences.
+    folder : path
+        Holds a Parquet dataset for each of the sweeps behind a study, from which one that was stopped goes on.
+    options
+        As for `sweep`: variant, reference, angles, engine, executor, workers, chunk, progress.
+
+    Returns
+    -------
+    Tolerances
+
+    Raises
+    ------
+    ParameterError
+        No spreads, a text that cannot be read, a count that is no power of two, or designs within the spread that
+        cannot be computed or have an infinite output, which makes quantiles and indices meaningless.
+    """
+    if spreads is None and isinstance(case, Case):
+        known = paths(chosen(case, options.get("variant"), options.get("reference"))[0].table)
+        spreads = {name: text for name, text in case.tolerances.items() if name in known}
+    if not isinstance(case, Case) and not callable(case):
+        raise ParameterError(f"tolerances: case must be a Case or a function that makes a Variant, got {case!r}")
+    power = isinstance(count, int) and count > 1 and not count & (count - 1)
+    checks.require(
+        "tolerances",
+        None if spreads else 'no spreads are given, nor has the case file any for this variant, in "tolerances"',
+        None
+        if spreads is None or isinstance(spreads, Mapping)
+        else f"spreads must be a dict of parameter to text, got {spreads!r}",
+        None if power else f"count must be a power of two, got {count!r}",
+    )
+    found = designs.distributions(spreads)
+    names = tuple(dict.fromkeys(parsed(item).column for item in listed(outputs)))
+    sweeps = itertools.count()
+
+    def run(table):
+        place = None if folder is None else Path(folder) / f"sweep-{next(sweeps)}"
+        table = sweep(case, table, outputs, folder=place, **options)
+        _require_finite(table, names)
+        return table
+
+    def values(numbers):
+        return np.array(run(pd.DataFrame(numbers.T, columns=designs.columns(found)))[list(names)]).T
+
+    table = run(designs.sobol(spreads, count, seed))
+    return Tolerances(table, names, _sensitivity(values, found, names, count, seed), dict(spreads))
+
+
+def _require_finite(table, names):
+    infinite = np.isinf(table[list(names)]).any(axis=1)
+    reasons = table[FAILED].where(~infinite, "an output is infinite")
+    wrong = reasons[reasons != ""]
+    if len(wrong):
+        raise ParameterError(
+            f"tolerances: {len(wrong)} of {len(table)} designs within the spread cannot be computed, for example: "
+            f"{wrong.iloc[0]}; narrow the spreads, or use sweep, which keeps them"
+        )
+
+
+def _sensitivity(values, found, names, count, seed):
+    """First-order and total Sobol index by output and parameter."""
+    from scipy.stats import sobol_indices
+
+    shape = len(names), len(found)
+    first = total = np.ones(shape)  # what a single parameter causes
+    if len(found) > 1:
+        distributions = [distribution for distribution, _ in found.values()]
+        indices: Any = sobol_indices(func=values, n=count, dists=distributions, rng=np.random.default_rng(seed))
+        first, total = (np.reshape(part, shape) for part in (indices.first_order, indices.total_order))
+    index = pd.MultiIndex.from_product([names, found], names=["output", "parameter"])
+    return pd.DataFrame({"first order": first.ravel(), "total": total.ravel()}, index=index)

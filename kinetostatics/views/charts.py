@@ -1,0 +1,259 @@
+"""Charts of the studies: error over time, error over the distance from where it hurts, error over the model's cost."""
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib import rc_context
+
+from ..errors import ParameterError
+from ..mechanics.quantities import label
+from ..numbers.files import written_whole
+from .canvas import ACCENT, axes, require_columns
+
+EXACT = 1e-17
+"""Where an error of zero is drawn: below the rounding of the largest value."""
+USELESS = 1e3
+"""Where larger errors, and NaN, are drawn."""
+COLOURS = [plt.get_cmap("tab20")(number) for number in (0, 2, 4, 8, 10, 12, 14, 16, 18, 1, 3, 5, 9, 11, 13, 17, 19)]
+"""Without reds, which are ours."""
+MARKERS = "osD^v<>PX*phd"
+
+
+def _styles(table):
+    """How each method of a study is drawn, by name."""
+    styles = {}
+    for number, (name, ours) in enumerate(table.groupby("method", sort=False)["ours"].first().items()):
+        styles[name] = {
+            "marker": MARKERS[number % len(MARKERS)],
+            "color": ACCENT if ours else COLOURS[number % len(COLOURS)],
+            "markersize": 7 if ours else 5.5,
+            "markeredgecolor": "0.15" if ours else "none",
+            "linewidth": 1.6 if ours else 1.0,
+            "zorder": 3 if ours else 2,
+        }
+    return styles
+
+
+def work_precision(table, ax=None):
+    """Error over time per crank angle, both logarithmic: a curve for each method with a setting, else a point.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One quantity of one scene, from `precision.study`.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    require_columns("work_precision", table, ("method", "ours", "setting", "error", "time [ns/angle]"))
+    ax = axes(ax)
+    given = table.dropna(subset=["error"])
+    for name, style in _styles(table).items():
+        rows = given[given["method"] == name]
+        if len(rows):
+            setting = rows["setting"].iloc[0]
+            text = f"{name} ({setting})" if setting else name
+            ax.plot(rows["time [ns/angle]"], np.maximum(rows["error"], EXACT), label=text, **style)
+    ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 30))
+    ax.set_xlabel("time [ns per crank angle]")
+    ax.set_ylabel("largest error over the turn, relative to largest value [1]")
+    ax.grid(visible=True, which="major", alpha=0.3)
+    return ax
+
+
+def error_by_distance(table, ax=None):
+    """Error of every method over the number that leads to a place, logarithmic; dashed: condition times rounding.
+
+    Errors of a thousand times the largest value and more, and NaN, lie on the upper edge.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One place, from `stability.study`.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    shown = ("method", "ours", "number", "error", "nan", "raised", "not given", "condition", "axis", "quantity")
+    require_columns("error_by_distance", table, shown)
+    ax = axes(ax)
+    for name, style in _styles(table).items():
+        rows = table[(table["method"] == name) & (table["not given"] == "")]
+        failing = (rows["nan"] > 0) | (rows["raised"] != "")
+        if len(rows):
+            ax.plot(rows["number"], rows["error"].where(~failing, USELESS).clip(EXACT, USELESS), label=name, **style)
+    problem = table.drop_duplicates("number")
+    ax.plot(
+        problem["number"],
+        np.clip(problem["condition"] * 2.0**-53, EXACT, USELESS),
+        "k--",
+        label="condition x rounding",
+    )
+    ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3 * USELESS), xlabel=table["axis"].iloc[0])
+    ax.set_ylabel(f"error of {label(table['quantity'].iloc[0])} [1]")
+    ax.grid(visible=True, alpha=0.3)
+    return ax
+
+
+def model_ladder(needs, ax=None):
+    """Error over operations: each simplification alone, and the ladder of the cheapest models; log scale.
+
+    Errors far below the tolerance lie on the lower edge.
+
+    Parameters
+    ----------
+    needs : Needs
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    if not hasattr(needs, "ladder"):
+        raise ParameterError(f"model_ladder: needs must be what ks.needs(...) returns, got a {type(needs).__name__}")
+    ax = axes(ax)
+    floor = 1e-3 * min(needs.within, 1e-2)
+
+    def drawn(models, *style, **named):
+        shown = [made for made in models if np.isfinite(made.error)]
+        ax.plot([made.operations for made in shown], [max(made.error, floor) for made in shown], *style, **named)
+        return shown
+
+    for made in drawn(needs.alone, "o", color="0.6", label="one simplification"):
+        place = made.operations, max(made.error, floor)
+        ax.annotate(made.name, place, xytext=(5, 3), textcoords="offset points", fontsize=7, color="0.3")
+    drawn(needs.ladder, "-D", color=ACCENT, markersize=5, drawstyle="steps", label="ladder: cheapest for its error")
+    ax.axhline(needs.within, color="0.3", linestyle="--", linewidth=1.0, label=f"tolerance {needs.within:g}")
+    drawn([needs.smallest], "*", color="tab:green", markersize=16, zorder=4, label=f"smallest: {needs.smallest.name}")
+    ax.set(yscale="log", xlabel="operations per crank angle [1]", ylim=(floor / 2, 30))
+    ax.set_ylabel(f"change of {label(needs.quantity)}, relative to largest value [1]")
+    ax.invert_xaxis()
+    ax.margins(x=0.15)
+    ax.legend(fontsize=7, loc="lower right")
+    ax.grid(visible=True, alpha=0.3)
+    return ax
+
+
+def sweep_map(table, parameters, output, ax=None):
+    """One output of a sweep over the one or two parameters that it varies: a line, or a map in colours.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `sweep`; designs that failed are left blank.
+    parameters : sequence of str
+        Columns of one or two parameters.
+    output : str
+        Column of the output.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    parameters = [parameters] if isinstance(parameters, str) else list(parameters or ())
+    require_columns("sweep_map", table, (*parameters, output))
+    if len(parameters) not in (1, 2) or len(set(parameters)) < len(parameters):
+        raise ParameterError(f"sweep_map: one or two different parameters can be drawn, got {parameters}")
+    ax = axes(ax)
+    if len(parameters) == 1:
+        (x,) = parameters
+        ordered = table.sort_values(x)
+        ax.plot(ordered[x], ordered[output], marker="." if len(table) < 100 else None, color=ACCENT)
+        ax.set(xlabel=x, ylabel=output)
+        ax.grid(visible=True, alpha=0.3)
+        return ax
+    x, y = parameters
+    grid = table.pivot_table(index=y, columns=x, values=output, dropna=False)
+    if grid.size == len(table):
+        drawn = ax.pcolormesh(grid.columns, grid.index, grid.to_numpy(), shading="nearest", cmap="viridis")
+    else:
+        drawn = ax.scatter(table[x], table[y], c=table[output], s=8, cmap="viridis")
+    ax.figure.colorbar(drawn, ax=ax, label=output)
+    ax.set(xlabel=x, ylabel=y)
+    return ax
+
+
+def sweep_page(table, parameters, outputs, path):
+    """Chart of a sweep saved to a file: a panel for each output, or a scatter matrix with three parameters and more."""
+    if len(parameters) < 3:
+        columns = min(3, len(outputs))
+        rows = -(-len(outputs) // columns)
+        size = (5.4 * columns, 4.2 * rows)
+        figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+        for ax, output in zip(grid.flat, outputs, strict=False):
+            sweep_map(table, parameters, output, ax=ax)
+        for ax in grid.flat[len(outputs) :]:
+            ax.remove()
+    else:
+        figure = _scatter_matrix(table, [*parameters, *outputs])
+    with written_whole(path) as temporary:
+        figure.savefig(temporary, format=Path(path).suffix[1:] or "png", dpi=150, bbox_inches="tight")
+    plt.close(figure)
+    return Path(path)
+
+
+def _in_lines(column):
+    """Heading with its reduction, quantity and unit each on a line."""
+    name, bracket, unit = column.partition(" [")
+    return "\n".join([*name.split(" "), *([f"[{unit}"] if bracket else [])])
+
+
+def _scatter_matrix(table, columns):
+    from pandas.plotting import scatter_matrix
+
+    shown = table[columns].dropna()
+    shown = shown.sample(min(len(shown), 2000), random_state=0).rename(columns=_in_lines)
+    side = 1.9 * len(columns)
+    grid = scatter_matrix(shown, figsize=(side, side), s=6, alpha=0.5, color=ACCENT, hist_kwds={"color": "0.6"})
+    return grid[0, 0].figure
+
+
+def precision_page(table, path):
+    """Chart of a study, a panel for each variant and quantity, saved as PNG and SVG; returns the paths."""
+    panels = {
+        f"{part['case'].iloc[0]}, {variant}: {label(quantity)}": part
+        for (variant, quantity), part in table.groupby(["variant", "quantity"], sort=False)
+    }
+    return _page(work_precision, panels, path)
+
+
+def stability_page(table, path):
+    """Chart of a stability study, a panel for each place, saved as PNG and SVG; returns the paths."""
+    return _page(error_by_distance, dict(list(table.groupby("place", sort=False))), path)
+
+
+def _page(draw, panels, path):
+    """Panels by title, three in a row, with one legend below."""
+    columns = min(3, len(panels))
+    rows = -(-len(panels) // columns)
+    size = (5.0 * max(columns, 2), 3.8 * rows + 1.6)
+    figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+    entries: dict[str, Any] = {}
+    for ax, (title, part) in zip(grid.flat, panels.items(), strict=False):
+        draw(part, ax=ax)
+        ax.set_title(title, fontsize=9)
+        entries |= {text: handle for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)}
+    for ax in grid.flat[len(panels) :]:
+        ax.remove()
+    figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=3, fontsize=8)
+    return _saved(figure, path)
+
+
+def _saved(figure, path):
+    """Figure as PNG and SVG beside each other; returns the paths."""
+    paths = []
+    for kind in ("png", "svg"):
+        target = Path(f"{path}.{kind}")
+        with rc_context({"svg.hashsalt": target.stem}), written_whole(target) as temporary:
+            metadata = {"Date": None} if kind == "svg" else {}
+            figure.savefig(temporary, format=kind, dpi=150, metadata=metadata)
+        paths.append(target)
+    plt.close(figure)
+    return paths

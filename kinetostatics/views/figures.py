@@ -1,0 +1,159 @@
+"""The figures of a case: which plots, of which variants, on which page. `kinetostatics plot` draws them to files."""
+
+from functools import partial
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from ..errors import ParameterError
+from ..machine.cam_roller import CamRoller
+from ..machine.rocker_group import RockerGroup
+from ..machine.slider_group import SliderGroup
+from ..numbers import checks
+from ..numbers.files import unwritable, written_whole
+from . import plots
+
+
+def draw_case(case, folder, file_format="png", only=None):
+    """Draw the figures of a case into a folder.
+
+    Parameters
+    ----------
+    case : Case
+    folder : path
+        Made if missing; each file is written whole or not at all.
+    file_format : "png" or "svg"
+    only : str, optional
+        Name of the one figure wanted.
+
+    Returns
+    -------
+    list of Path
+
+    Raises
+    ------
+    ParameterError
+        There is no figure of that name; the message lists them. Or the files cannot be written.
+    """
+    checks.require("figures", checks.case("case", case))
+    figures = {name: draw for name, (draw, applies) in FIGURES.items() if applies(case)}
+    problem = checks.choice("figure", only, figures) if only else None
+    if problem:
+        raise ParameterError(problem)
+    paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in ([only] if only else figures)}
+    checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
+    names = [case.reference, *(name for name in case.variants if name != case.reference)]
+    solutions = {name: case.solve(name) for name in names}
+    return [_saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]
+
+
+def _saved(draw, solutions, path, case, file_format):
+    with rc_context({"svg.hashsalt": case.path.stem, "font.size": 9}):
+        figure = draw(solutions)
+        metadata = {"Date": None} if file_format == "svg" else {}
+        with written_whole(path) as temporary:
+            figure.savefig(temporary, format=file_format, dpi=150, metadata=metadata)
+    plt.close(figure)
+    return path
+
+
+def _with_cam(items):
+    return {name: item for name, item in items.items() if item.mechanism.group(CamRoller) is not None}
+
+
+def _always(case):
+    return True
+
+
+def _has_cam(case):
+    return bool(_with_cam(case.variants))
+
+
+def _has_slider(case):
+    return all(item.mechanism.group(SliderGroup) is not None for item in case.variants.values())
+
+
+def _is_four_bar(case):
+    return all(item.mechanism.group(RockerGroup) is not None for item in case.variants.values())
+
+
+def _is_balanced(case):
+    return any(item.balanced is not None for item in case.variants.values())
+
+
+def _single(plot, width=6.4, height=4.0, **axes):
+    def draw(solutions) -> Figure:
+        figure, ax = plt.subplots(figsize=(width, height), layout="constrained", subplot_kw=axes)
+        plot(solutions, ax=ax)
+        return figure
+
+    return draw
+
+
+def _of_cams(plot):
+    single = _single(plot)
+    return lambda solutions: single(_with_cam(solutions))
+
+
+def _one_each(plot, width, height, stacked=False):
+    """Axes for each variant, three in a row or stacked."""
+
+    def draw(solutions) -> Figure:
+        columns = 1 if stacked else min(3, len(solutions))
+        rows = -(-len(solutions) // columns)
+        figure, axes = plt.subplots(
+            rows, columns, figsize=(width * columns, height * rows), layout="constrained", squeeze=False
+        )
+        for ax, (name, solution) in zip(axes.flat, solutions.items(), strict=False):
+            plot(solution, ax=ax)
+            ax.set_title(name)
+        for ax in axes.flat[len(solutions) :]:
+            ax.remove()
+        return figure
+
+    return draw
+
+
+def _overview(solutions) -> Figure:
+    """The last variant, its torque against all others, and the support reaction of the first and the last."""
+    shown = list(dict.fromkeys([next(iter(solutions)), next(reversed(solutions))]))
+    figure, axes = plt.subplot_mosaic(
+        [["mechanism"] * (1 + len(shown)), ["torque", *shown]],
+        figsize=(11, 6.4),
+        height_ratios=[0.8, 1],
+        layout="constrained",
+    )
+    last = solutions[shown[-1]]
+    plots.mechanism(last, ax=axes["mechanism"])
+    axes["mechanism"].set_title(f"{shown[-1]}: {last.mechanism.name}")
+    plots.torque(solutions, ax=axes["torque"])
+    axes["torque"].set_title("torque the drive must give")
+    for name in shown:
+        plots.hodograph(solutions[name], ax=axes[name], marks=45)
+        axes[name].set_title(f"support reaction, {name}")
+    return figure
+
+
+FIGURES = {
+    "overview": (_overview, _always),
+    "mechanism": (_one_each(plots.mechanism, 8, 2.6, stacked=True), _always),
+    "torque": (_single(plots.torque), _always),
+    "acceleration_error": (_single(plots.acceleration_error), _has_slider),
+    "hodograph": (_one_each(plots.hodograph, 4.4, 4.2), _always),
+    "pressure_angle": (_of_cams(plots.pressure_angle), _has_cam),
+    "cam_force": (_of_cams(plots.cam_force), _has_cam),
+    "mass_centres": (_single(plots.mass_centres, 9.0, 3.6), _is_balanced),
+    "shaking_by_direction": (_single(plots.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
+    "shaking_by_crank_angle": (
+        _single(partial(plots.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
+        _is_balanced,
+    ),
+    **{
+        f"{link}_{kind}": (_single(partial(plots.chain_unit_motion, link=link, order=order)), _is_four_bar)
+        for link in ("coupler", "rocker")
+        for order, kind in enumerate(("velocity", "acceleration"), 1)
+    },
+}
+"""Figure by name: how it is drawn, and the cases it applies to."""

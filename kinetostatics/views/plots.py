@@ -1,0 +1,257 @@
+"""Figures. Nothing is shown, and nothing is set globally.
+
+Every function draws on `ax` (a new one if not given) and returns it; `animation` returns the film.
+
+Where a function takes `solutions`, give one `Solution` or a mapping of label to `Solution` to draw them together.
+"""
+
+from collections.abc import Mapping
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from ..design.linkage import chain_unit_angle
+from ..machine.slider_group import SliderGroup
+from ..mechanics.quantities import label, magnitude, unit, values
+from ..numbers.checks import choice, problem, require
+from ..results.extremes import extremes
+from .canvas import INK, axes, closed, display, labelled, styled
+from .charts import error_by_distance, model_ladder, sweep_map, work_precision
+from .drawings import animation, mass_centres, mechanism
+
+__all__ = [
+    "acceleration_error",
+    "animation",
+    "cam_force",
+    "chain_unit_motion",
+    "error_by_distance",
+    "hodograph",
+    "mass_centres",
+    "mechanism",
+    "model_ladder",
+    "over_turn",
+    "pressure_angle",
+    "shaking_force",
+    "sweep_map",
+    "torque",
+    "work_precision",
+]
+
+LEAST_MARKS = 0.01
+"""Least step of the crank-angle marks, degrees."""
+
+
+def over_turn(solutions, quantity, ax=None):
+    """One quantity over the crank angle.
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    quantity : str
+        As for `extremes`; of a reaction or a vector the magnitude is drawn.
+    ax : matplotlib Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    ax = axes(ax)
+    curves = {
+        name: (_degrees(solution), values(solution, quantity))
+        for name, solution in labelled(solutions, quantity).items()
+    }
+    factor, shown = display(unit(quantity), [value for _, value in curves.values()])
+    for name, (angle, value), style in styled(curves):
+        ax.plot(angle, factor * value, linestyle=style, label=name)
+    return _finished(ax, f"{label(quantity)} [{shown}]", len(curves) > 1)
+
+
+def torque(solutions, ax=None):
+    """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a)."""
+    return over_turn(solutions, "balancing_torque", ax)
+
+
+def cam_force(solutions, ax=None):
+    """Force of the cam on the roller over the crank angle (figure 6b)."""
+    return over_turn(solutions, "cam_force", ax)
+
+
+def pressure_angle(solutions, ax=None):
+    """Pressure angle of the cam pair over the crank angle (figure 5)."""
+    return over_turn(solutions, "pressure_angle", ax)
+
+
+def acceleration_error(solutions, ax=None):
+    """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
+
+    With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
+    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2.
+    """
+    ax = axes(ax)
+    named = labelled(solutions, "slider_acceleration")
+    _require_turning(named)
+    for name, solution, style in styled(named):
+        half_stroke = np.ptp(extremes(solution, "slider_position").value) / 2
+        square, alpha = solution.crank_speed**2, solution.crank_acceleration
+        psi = solution.crank_angle - solution.mechanism.group(SliderGroup).guide.guide_angle
+        law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
+        error = (solution.slider_acceleration - law) / (half_stroke * square)
+        ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
+    return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1)
+
+
+def hodograph(solutions, joint="O", ax=None, marks=30):
+    """Hodograph of a joint reaction: the curve its tip draws over the turn (figure 7).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    joint : str
+        Joint, or the vector attribute "shaking_force".
+    ax : Axes, optional
+    marks : float
+        Step of the crank-angle marks, degrees; marks stand where the solution has that angle, to half a degree.
+
+    Returns
+    -------
+    Axes
+        With equal scales on both axes.
+    """
+    require("hodograph", problem("marks", marks, low=LEAST_MARKS))
+    ax = axes(ax)
+    named = labelled(solutions, joint)
+    curves = {name: _vector(solution, joint) for name, solution in named.items()}
+    factor, shown = display("N", curves.values())
+    for name, solution, style in styled(named):
+        (line,) = ax.plot(*closed(factor * curves[name]), linestyle=style, label=name)
+        _mark_angles(ax, solution, joint, factor, np.arange(0, 360, marks), line.get_color())
+    ax.axhline(0, color=INK, lw=0.5)
+    ax.axvline(0, color=INK, lw=0.5)
+    ax.set_aspect("equal", adjustable="datalim")
+    name = label(joint)
+    ax.set_xlabel(f"{name}, x [{shown}]")
+    ax.set_ylabel(f"{name}, y [{shown}]")
+    if len(named) > 1 or isinstance(solutions, Mapping):
+        ax.legend(frameon=False)
+    return ax
+
+
+def chain_unit_motion(solutions, link, order=1, ax=None):
+    """Relative angular velocity or acceleration of a link of the chain unit (Belarusian study, figures 5-12).
+
+    Both are counted in the crank's sense of turning and divided by crank speed, or its square; the crank angle from
+    +y, clockwise.
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    link : "coupler" or "rocker"
+    order : 1 or 2
+        Velocity or acceleration.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    require(
+        "chain_unit_motion",
+        None if order in (1, 2) else f"order must be 1 or 2, got {order!r}",
+        choice("link", link, ("coupler", "rocker")),
+    )
+    ax = axes(ax)
+    named = labelled(solutions, f"{link}_rate")
+    _require_turning(named)
+    for name, solution, style in styled(named):
+        angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
+        rows = np.argsort(angle)
+        speed = solution.crank_speed
+        relative = (
+            solution.rate(link) / speed if order == 1 else solution.angular_acceleration(link) / (speed * abs(speed))
+        )
+        ax.plot(angle[rows], relative[rows], linestyle=style, label=name)
+    kind = "velocity" if order == 1 else "acceleration"
+    _finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
+    ax.set_xlabel("crank angle from +y, clockwise [deg]")
+    return ax
+
+
+def shaking_force(solutions, by="direction", ax=None):
+    """Polar hodograph of the shaking force, by its own direction or by crank angle (mower study, figures 6a, 6b).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    by : "direction" or "crank angle"
+        What the polar angle is.
+    ax : polar Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    require("shaking_force", choice("by", by, ("direction", "crank angle")))
+    if ax is None:
+        ax = plt.subplots(subplot_kw={"projection": "polar"}, layout="constrained")[1]
+    ax = axes(ax)
+    named = labelled(solutions, "shaking_force")
+    sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
+    factor, shown = display("N", sizes.values())
+    for name, solution, style in styled(named):
+        x, y = solution.shaking_force
+        angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
+        ax.plot(*closed(np.array([angle, factor * sizes[name]])), linestyle=style, label=name)
+    ax.set_title(f"shaking force [{shown}] by {by}", fontsize="medium")
+    if len(named) > 1:
+        ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
+    return ax
+
+
+def _require_turning(named):
+    still = [name for name, solution in named.items() if np.any(np.asarray(solution.crank_speed) == 0)]
+    require(
+        "plots", f"the crank speed of {', '.join(still)} is 0, but what is shown is relative to it" if still else None
+    )
+
+
+def _degrees(solution):
+    return np.degrees(solution.crank_angle)
+
+
+def _finished(ax, ylabel, legend):
+    ax.set_xlabel("crank angle [deg]")
+    ax.set_ylabel(ylabel)
+    low, high = ax.dataLim.intervalx
+    if low >= 0 and high <= 360:
+        ax.set_xlim(0, 360)
+        ax.set_xticks(range(0, 361, 60))
+    ax.axhline(0, color=INK, lw=0.5)
+    ax.grid(alpha=0.3)
+    if legend:
+        ax.margins(y=0.18)
+        ax.legend(frameon=False, loc="upper center", ncols=3, fontsize="small", columnspacing=1.0)
+    return ax
+
+
+def _vector(solution, joint):
+    return solution.shaking_force if joint == "shaking_force" else solution.reaction(joint)
+
+
+def _mark_angles(ax, solution, joint, factor, angles, color):
+    """Marks at the crank angles that the solution has; marks that fall together share one label."""
+    apart = np.abs(np.mod(_degrees(solution) - angles[:, None] + 180, 360) - 180)
+    rows = np.argmin(apart, axis=1)
+    met = apart.min(axis=1) < 0.5
+    angles, points = angles[met], factor * _vector(solution, joint)[:, rows[met]]
+    if not angles.size:
+        return
+    ax.plot(*points, "o", ms=3, color=color)
+    near = 0.06 * np.max(np.ptp(points, axis=1))
+    labels: dict[int, list[str]] = {}
+    for row, point in enumerate(points.T):
+        first = next((other for other in labels if np.hypot(*(points[:, other] - point)) < near), row)
+        labels.setdefault(first, []).append(f"{angles[row]:g}°")
+    for row, names in labels.items():
+        ax.annotate(
+            ", ".join(names), points[:, row], xytext=(3, 3), textcoords="offset points", fontsize="x-small", color=INK
+        )
