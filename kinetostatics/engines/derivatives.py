@@ -1,0 +1,86 @@
+"""Derivatives of recorded outputs, as further nodes of the same graph: exact, and compiled like all else.
+
+Forward, the slope of every node along one parameter; in reverse, the slope of one output along every node (Griewank and
+Walther, *Evaluating Derivatives*, 2008, chapters 3.1 and 3.2). Forward costs a sweep for each parameter, in reverse one
+for each output; the shorter way is taken.
+"""
+
+from .trace import Node, needed
+
+
+def gradients(graph, outputs, parameters):
+    """Derivatives of outputs by parameters: a tuple of nodes or numbers for each output."""
+    if len(outputs) < len(parameters):
+        return [_adjoints(graph, output, parameters) for output in outputs]
+    columns = [_tangents(graph, outputs, parameter) for parameter in parameters]
+    return list(zip(*columns, strict=True))
+
+
+def _tangents(graph, outputs, parameter):
+    slopes = {parameter: 1.0}
+    for node in needed(outputs):
+        parts = [
+            _times(partial, slopes[argument]) for argument, partial in _partials(graph, node, slopes) if argument in slopes
+        ]
+        if parts:
+            slopes[node] = _total(parts)
+    return tuple(slopes.get(output, 0.0) for output in outputs)
+
+
+def _adjoints(graph, output, parameters):
+    if not isinstance(output, Node):
+        return (0.0,) * len(parameters)
+    wanted = set(parameters)
+    for node in needed([output]):
+        if any(part in wanted for part in node.arguments if isinstance(part, Node)):
+            wanted.add(node)
+    parts: dict[Node, list] = {output: [1.0]}
+    for node in reversed(needed([output])):
+        if node in parts and node in wanted:
+            whole = parts[node] = [_total(parts[node])]
+            for argument, partial in _partials(graph, node, wanted):
+                parts.setdefault(argument, []).append(_times(partial, whole[0]))
+    return tuple(parts[parameter][0] if parameter in parts else 0.0 for parameter in parameters)
+
+
+def _times(one, other):
+    if isinstance(one, float) and one == -1.0:
+        return -other
+    return one * other
+
+
+def _total(parts):
+    total = parts[0]
+    for part in parts[1:]:
+        total = total + part
+    return total
+
+
+def _partials(graph, node, wanted):
+    """Pairs of an argument among those wanted, and the derivative of the node by it."""
+    kind, arguments = node.operation, node.arguments
+    if kind in _RULES:
+        partials = _RULES[kind](graph, node, *arguments)
+        return [pair for pair in zip(arguments, partials, strict=True) if pair[0] in wanted]
+    return []
+
+
+def _division(graph, node, above, below):
+    over = 1.0 / below
+    return over, -(node * over)
+
+
+_RULES = {
+    "+": lambda graph, node, left, right: (1.0, 1.0),
+    "-": lambda graph, node, *parts: (1.0, -1.0) if len(parts) == 2 else (-1.0,),
+    "*": lambda graph, node, left, right: (right, left),
+    "/": _division,
+    "sin": lambda graph, node, angle: (graph.node("cos", angle),),
+    "cos": lambda graph, node, angle: (-graph.node("sin", angle),),
+    "sqrt": lambda graph, node, square: (0.5 / node,),
+    "atan": lambda graph, node, slope: (1.0 / (1.0 + slope * slope),),
+    "abs": lambda graph, node, value: (graph.node("sign", value),),
+    "root": lambda graph, node, square, unit: (0.5 / node, 0.0),
+    "divisor": lambda graph, node, root, unit: (1.0, 0.0),
+}
+"""By operation: its derivatives by its arguments. Guards against rounding act only where there is no digit left."""

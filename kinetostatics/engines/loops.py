@@ -1,0 +1,75 @@
+"""Compiled loops: recorded arithmetic over designs and crank angles, made machine code by numba (extra `fast`).
+
+Sines and cosines of the crank angle come first, in a loop of their own, and are shared by all designs; what is left has
+no calls, so the compiler vectorises it. Many values are shared out to threads.
+"""
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from ..compiled import _loaded, cores
+from .writing import TURN
+
+SHARE = 100_000
+"""Values over designs and angles that are worth a thread of their own."""
+
+
+def turn(angle):
+    """Sines and cosines of crank angles (1 or designs, N), which designs may share."""
+    sine, cosine = np.empty(angle.shape), np.empty(angle.shape)
+    _loaded(TURN).shared(angle.ravel(), sine.ravel(), cosine.ravel())
+    return sine, cosine
+
+
+def table_of_parameters(numbers, shape):
+    """Parameters (designs, P) from numbers, each a float or an array (..., 1), for designs of a batch shape."""
+    if not shape:
+        return np.array([numbers], dtype=float)
+    columns = [np.broadcast_to(number, (*shape, 1)).ravel() for number in numbers]
+    return np.array(columns, dtype=float).reshape(len(columns), -1).T.copy()
+
+
+def table_of_rows(rows, shape):
+    """Tables (T, 1 or designs, N) from rows, each a number or an array (..., N), of results of a shape."""
+    if not rows:
+        return np.empty((0, 1, shape[-1]))
+    one_row = all(math.prod(np.shape(row)[:-1]) == 1 for row in rows)
+    full = (1, shape[-1]) if one_row else (math.prod(shape[:-1]), shape[-1])
+    spread = [np.broadcast_to(row, shape[-1:] if one_row else shape).reshape(full) for row in rows]
+    return np.array(spread, dtype=float)
+
+
+def run(loop, angle, sine, cosine, parameters, tables, results):
+    """Fill results (designs, outputs, N), in threads if there is much to do.
+
+    Angles with their sines and cosines are (1 or designs, N), tables (T, 1 or designs, N), parameters (designs, P).
+    """
+    designs, _, angles = results.shape
+    pieces = designs * angles // SHARE
+    if pieces > 1:
+        pieces = min(pieces, cores(), designs if designs > 1 else angles)
+    if pieces <= 1:
+        loop(angle, sine, cosine, parameters, tables, results)
+        return
+    edges = np.linspace(0, designs if designs > 1 else angles, pieces + 1, dtype=int)
+
+    def piece(start, stop):
+        given = [_part(array, start, stop, designs) for array in (angle, sine, cosine, tables)]
+        if designs > 1:
+            loop(*given[:3], parameters[start:stop], given[3], results[start:stop])
+        else:
+            found = np.empty((1, results.shape[1], stop - start))
+            loop(*given[:3], parameters, given[3], found)
+            results[..., start:stop] = found
+
+    with ThreadPoolExecutor(pieces) as threads:
+        list(threads.map(piece, edges[:-1], edges[1:]))
+
+
+def _part(array, start, stop, designs):
+    """Columns of an array (..., designs, N) for some designs, or for some angles of a single one."""
+    if designs == 1:
+        return np.ascontiguousarray(array[..., start:stop])
+    return array if array.shape[-2] == 1 else np.ascontiguousarray(array[..., start:stop, :])

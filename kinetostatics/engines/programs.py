@@ -1,0 +1,218 @@
+"""Programs by structure: what a scene computes, recorded once for all scenes alike but for their numbers.
+
+A program runs in three ways, all from one recording: on plain numbers, on arrays by NumPy, and as a compiled loop.
+"""
+
+import math
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..compiled import _loaded
+from ..elementary import ROUNDING
+from ..numbers.leaves import Leaves, batch_shape, taken_apart
+from . import loops, writing
+from .derivatives import gradients
+from .record import Recording, record
+
+KEPT = 256
+"""Programs kept in memory; the longest unused goes first."""
+FEW = 12
+"""Crank angles, up to this many, that are computed one by one on plain numbers."""
+BLOCK = 2048
+"""Values over designs and angles that one buffer holds."""
+
+
+class Program:
+    """The arithmetic of one recording, ready to run.
+
+    Attributes
+    ----------
+    outputs : tuple of Node or float
+    recording : Recording
+    """
+
+    def __init__(self, recording, outputs=None):
+        self.recording = recording
+        self.outputs = recording.outputs if outputs is None else outputs
+
+    @cached_property
+    def by_parameters(self):
+        """Program of the derivatives of all outputs by all parameters: outputs one after the other, by each of them."""
+        recording = self.recording
+        rows = gradients(recording.graph, self.outputs, recording.parameters)
+        return Program(recording, tuple(part for row in rows for part in row))
+
+    @cached_property
+    def _plain(self):
+        return _made(writing.line(self.outputs), _PLAIN)
+
+    @cached_property
+    def _buffered(self):
+        source, count = writing.buffered_line(self.outputs)
+        return [_made(source, _ARRAYS | by_design) for by_design in (_PLAIN, _BY_DESIGN)], count
+
+    @cached_property
+    def _loop(self):
+        return _loaded(writing.loop(self.outputs)).loop
+
+    def on_numbers(self, angle, numbers, rows):
+        """Outputs, plain numbers, from a crank angle, numbers and table values that are plain numbers."""
+        return self._plain(angle, float(np.sin(angle)), float(np.cos(angle)), numbers, rows)
+
+    def by_numpy(self, angle, numbers, rows, shape):
+        """Outputs (outputs, *shape) from crank angles (..., N), numbers or arrays (..., 1), and rows of tables."""
+        if math.prod(shape) <= FEW and not (len(shape) > 1 or rows):
+            return self._by_numbers(angle, numbers, shape)
+        (single, batch), count = self._buffered
+        results = np.empty((len(self.outputs), *shape))
+        with np.errstate(all="ignore"):
+            sine, cosine = np.sin(angle), np.cos(angle)
+            if len(shape) == 1:
+                for start in range(0, shape[0], BLOCK):
+                    part = slice(start, start + BLOCK)
+                    given = [row[part] if np.size(row) > 1 else row for row in rows]
+                    own = results[:, part]
+                    single(angle[part], sine[part], cosine[part], numbers, given, _buffers(count, own.shape[1:]), own)
+            else:
+                line = batch if shape else single
+                line(angle, sine, cosine, numbers, rows, np.empty((count, *shape)), results)
+        return results
+
+    def _by_numbers(self, angle, numbers, shape):
+        try:
+            found = [self.on_numbers(float(one), numbers, ()) for one in angle.flat]
+        except (ZeroDivisionError, OverflowError):  # arrays answer with infinity or NaN
+            found = [self.by_numpy(np.full(FEW + 1, one), numbers, (), (FEW + 1,))[:, 0] for one in angle.flat]
+        return np.array(found, dtype=float).T.reshape(-1, *shape)
+
+    def by_loop(self, angle, numbers, rows, shape):
+        """The same by the compiled loop."""
+        parameters = loops.table_of_parameters(numbers, shape[:-1])
+        designs = len(parameters)
+        angles = np.array(angle, dtype=float, ndmin=2)  # a copy: numba would compile anew for a locked one
+        if math.prod(angle.shape[:-1]) > 1:
+            angles = np.broadcast_to(angle, shape).reshape(designs, -1).copy()
+        results = np.empty((designs, len(self.outputs), angles.shape[1]))
+        tables = loops.table_of_rows(rows, shape or (1,))
+        loops.run(self._loop, angles, *loops.turn(angles), parameters, tables, results)
+        return results.swapaxes(0, 1).reshape(-1, *shape)
+
+
+def _made(source, scope):
+    scope = dict(scope)
+    exec(source, scope)
+    return scope["line"]
+
+
+_memory = threading.local()
+
+
+def _buffers(count, shape):
+    """Memory for values on the way, the same again in each thread."""
+    size = count * math.prod(shape)
+    held = getattr(_memory, "held", None)
+    if held is None or held.size < size:
+        held = _memory.held = np.empty(max(size, 1))
+    return held[:size].reshape(count, *shape)
+
+
+# What operations are called on plain numbers, and on arrays
+
+
+def _plain_root(square, unit):
+    if square > 0.0:
+        return math.sqrt(square)
+    return 0.0 if square >= -ROUNDING * unit else math.nan
+
+
+def _plain_divisor(root, unit):
+    return unit if root < unit else root
+
+
+def _root(square, unit):
+    return np.where(square >= -ROUNDING * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
+
+
+def _root_of(square, unit, out):
+    np.maximum(square, 0.0, out)
+    np.sqrt(out, out)
+    np.copyto(out, np.nan, where=np.less(square, -ROUNDING * unit))
+
+
+def _sqrt(square):
+    return math.sqrt(square) if square >= 0.0 else math.nan
+
+
+_PLAIN = {
+    "sin": lambda angle: float(np.sin(angle)),
+    "cos": lambda angle: float(np.cos(angle)),
+    "atan": lambda slope: float(np.arctan(slope)),
+    "sqrt": _sqrt,
+    "abs": abs,
+    "sign": lambda value: math.copysign(1.0, value),
+    "root": _plain_root,
+    "divisor": _plain_divisor,
+    "nan": math.nan,
+    "inf": math.inf,
+}
+_BY_DESIGN = {
+    "sin": np.sin,
+    "cos": np.cos,
+    "atan": np.arctan,
+    "sqrt": np.sqrt,
+    "abs": np.abs,
+    "sign": lambda value: np.copysign(1.0, value),
+    "root": _root,
+    "divisor": np.maximum,
+    "nan": math.nan,
+    "inf": math.inf,
+}
+_ARRAYS = {
+    "add": np.add,
+    "subtract": np.subtract,
+    "multiply": np.multiply,
+    "divide": np.divide,
+    "negative": np.negative,
+    "sin_of": np.sin,
+    "cos_of": np.cos,
+    "sqrt_of": np.sqrt,
+    "arctan": np.arctan,
+    "absolute": np.absolute,
+    "sign_of": lambda value, out: np.copysign(1.0, value, out),
+    "root_of": _root_of,
+    "maximum": np.maximum,
+}
+
+
+# Programs kept by structure
+
+
+_kept: OrderedDict[Any, Program] = OrderedDict()
+_lock = threading.Lock()
+
+
+def apart(scene) -> tuple[Any, Leaves]:
+    """Structure and leaves of what a scene computes from: mechanism, drive and loads."""
+    leaves = Leaves()
+    return taken_apart((scene.mechanism, scene.crank_speed, scene.crank_acceleration, scene.loads), leaves), leaves
+
+
+def program(structure, quantities, sizes=False, lasting=True) -> Program:
+    """Program of a structure for some quantities, recorded the first time it is asked for."""
+    if not lasting:
+        return Program(record(structure, quantities, sizes))
+    key = structure, quantities, sizes
+    found = _kept.get(key)
+    if found is None:
+        found = Program(record(structure, quantities, sizes))
+    with _lock:
+        _kept[key] = found
+        _kept.move_to_end(key)
+        while len(_kept) > KEPT:
+            _kept.popitem(last=False)
+    return found

@@ -1,0 +1,153 @@
+"""The kernels run once on numbers that write down every operation: what a structure of scenes computes.
+
+Which groups, loads and names a scene has, what is absent and which assembly it has, belongs to its structure; the
+recorded arithmetic holds for all scenes of that structure, whatever their numbers.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..crank import ray
+from ..loads import ProcessForce
+from ..numbers.leaves import put_together
+from ..quantities import components
+from ..quantities import sizes as sizes_of
+from ..solution import Solution
+from .trace import Graph, Node, needed, operations
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """The arithmetic behind some quantities of all scenes of one structure.
+
+    Attributes
+    ----------
+    quantities : tuple of str
+    outputs : tuple of Node or float
+        What is computed, components one after the other.
+    widths : tuple of int
+        How many components each quantity has: 1, or 2 for a vector.
+    parameters : tuple of Node
+        One for each number of a scene, in the order of its leaves.
+    tables : tuple of functions
+        ``table(motion, arrays) -> rows``: what is computed beforehand at the crank angles, from the scene's motion and
+        the tables among its leaves.
+    graph : Graph
+    """
+
+    quantities: tuple[str, ...]
+    outputs: tuple[Any, ...]
+    widths: tuple[int, ...]
+    parameters: tuple[Node, ...]
+    tables: tuple[Callable[[Any, Any], Any], ...]
+    graph: Graph
+
+    @property
+    def operations(self):
+        """Number of operations at each crank angle."""
+        return operations(self.outputs)
+
+    @property
+    def rows(self):
+        """Number of rows of the tables that the outputs need."""
+        return max((node.arguments[0] + 1 for node in needed(self.outputs) if node.operation == "table"), default=0)
+
+
+def record(structure, quantities, sizes=False) -> Recording:
+    """Arithmetic of some quantities.
+
+    Parameters
+    ----------
+    structure : tuple
+        Of a mechanism, its crank speed and acceleration, and its loads, as `leaves.taken_apart` gives it.
+    quantities : sequence of str
+        Names as for `quantities.components`.
+    sizes : bool
+        Whether the magnitude of a vector is wanted, not its components.
+    """
+    recorder = _Recorder(structure)
+    found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
+    outputs = tuple(part.flat[0] for parts in found for part in parts)
+    widths = tuple(map(len, found))
+    return Recording(
+        tuple(quantities), outputs, widths, tuple(recorder.parameters), tuple(recorder.tables), recorder.graph
+    )
+
+
+class _Recorder:
+    """Puts nodes in place of the numbers of a structure."""
+
+    def __init__(self, structure):
+        self.graph = Graph()
+        self.parameters: list[Node] = []
+        self.tables: list[Callable] = []
+        self._rows = self._arrays = 0
+        mechanism, speed, acceleration, loads = put_together(structure, self._parameter, self._array)
+        self.angle = self._nodes(self.graph.angle())
+        groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
+        object.__setattr__(mechanism, "groups", tuple(groups))
+        idle = Solution(mechanism, self.angle, speed, acceleration, ())
+        self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(loads)))
+
+    def _parameter(self):
+        self.parameters.append(self.graph.parameter(len(self.parameters)))
+        return self.parameters[-1]
+
+    def _array(self):
+        place = self._arrays
+        self._arrays += 1
+        return self._tabled(1, lambda motion, arrays: [arrays[place]])[0]
+
+    def _tabled(self, rows, compute):
+        self.tables.append(compute)
+        first, self._rows = self._rows, self._rows + rows
+        return [self._nodes(self.graph.row(first + place)) for place in range(rows)]
+
+    def _nodes(self, *nodes):
+        return np.array(nodes, dtype=object)
+
+    def _with_cam(self, group, place):
+        """The group with values of its cam from a table if that takes plain numbers only."""
+        cam = getattr(group, "cam", None)
+        if cam is None or self._is_elementwise(cam, lambda angle: cam.polar(angle, ray(angle))):
+            return group
+        values = self._tabled(3, lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle))
+        object.__setattr__(group, "cam", _Tabled(tuple(values)))
+        return group
+
+    def _load(self, load, place, idle):
+        """The load, or a force from a table if it takes plain numbers only."""
+        if not hasattr(load, "push") or self._is_elementwise(
+            load, lambda angle: [load.push(replace(idle, crank_angle=angle))]
+        ):
+            return load
+        (values,) = self._tabled(1, lambda motion, arrays: [motion.loads[place].push(motion)])
+        return ProcessForce(values, load.on)
+
+    def _is_elementwise(self, part, compute):
+        """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""
+        try:
+            alone = [np.broadcast_to(found, 1)[0] for found in compute(self.angle)]
+            if getattr(part, "ELEMENTWISE", False):
+                return True
+            other = self.graph.angle()
+            for place, pair in enumerate([(self.angle[0], other), (other, self.angle[0])]):
+                beside = [np.broadcast_to(found, 2)[place] for found in compute(self._nodes(*pair))]
+                if any(one is not two and one != two for one, two in zip(alone, beside, strict=True)):
+                    return False
+        except Exception:  # whatever fails on recorded numbers
+            return False
+        return True
+
+
+@dataclass(frozen=True, eq=False)
+class _Tabled:
+    """A cam whose radius and derivatives are handed in."""
+
+    values: tuple
+
+    def polar(self, angle, ray):
+        return self.values

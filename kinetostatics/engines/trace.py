@@ -1,0 +1,141 @@
+"""Numbers that write down every operation: a graph of arithmetic without branches or absent parts.
+
+A graph keeps each operation once. What it costs is its number of operations; `record` fills one with the kernels'
+arithmetic, `derivatives` adds to it, `writing` makes source of it.
+"""
+
+import numpy as np
+
+from ..elementary import APART
+
+BY_DESIGN, BY_ANGLE = range(2)
+"""What the value of a node varies with: the design, or the crank angle as well."""
+INPUTS = ("angle", "parameter", "table")
+"""Operations without arguments that are nodes."""
+
+
+class Node:
+    """A number that is not known yet, and the operation it comes from."""
+
+    __slots__ = ("arguments", "graph", "index", "operation", "varies")
+
+    def __init__(self, graph, operation, arguments, varies):
+        self.graph, self.operation, self.arguments, self.varies = graph, operation, arguments, varies
+        self.index = len(graph)
+        graph.append(self)
+
+    def __add__(self, other):
+        return _combined(self, "+", self, other)
+
+    def __radd__(self, other):
+        return _combined(self, "+", other, self)
+
+    def __sub__(self, other):
+        return _combined(self, "-", self, other)
+
+    def __rsub__(self, other):
+        return _combined(self, "-", other, self)
+
+    def __mul__(self, other):
+        return _combined(self, "*", self, other)
+
+    def __rmul__(self, other):
+        return _combined(self, "*", other, self)
+
+    def __truediv__(self, other):
+        return _combined(self, "/", self, other)
+
+    def __rtruediv__(self, other):
+        return _combined(self, "/", other, self)
+
+    def __pow__(self, exponent):
+        if exponent != 2:
+            raise TypeError(f"only squares are recorded, not powers of {exponent}")
+        return self * self
+
+    def __neg__(self):
+        return self.graph.node("-", self)
+
+    def __abs__(self):
+        return self.graph.node("abs", self)
+
+    def sin(self):
+        """Called by `numpy.sin` for an array of objects, as `cos` and `sqrt` are."""
+        return self.graph.node("sin", self)
+
+    def cos(self):
+        return self.graph.node("cos", self)
+
+    def sqrt(self):
+        return self.graph.node("sqrt", self)
+
+    def arctan(self):
+        return self.graph.node("atan", self)
+
+    def forgiving_root(self, unit):
+        """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
+        return self.graph.node("root", self, unit)
+
+    def kept_off_zero(self, unit):
+        return self.graph.node("divisor", self, unit)
+
+    def moved_apart(self, unit):
+        return self + APART * unit
+
+    def _unknown(self, other=None):
+        raise TypeError("the value of a recorded number is not known yet: kernels must not branch on values")
+
+    __bool__ = __float__ = __int__ = __eq__ = __ne__ = __lt__ = __le__ = __gt__ = __ge__ = _unknown
+    __hash__ = object.__hash__
+
+
+def _combined(node, operation, left, right):
+    if isinstance(left, np.ndarray) or isinstance(right, np.ndarray):
+        return NotImplemented
+    return node.graph.node(operation, left, right)
+
+
+class Graph(list):
+    """Nodes in the order in which they can be computed; what was computed before is not computed again."""
+
+    def __init__(self):
+        super().__init__()
+        self._known = {}
+
+    def node(self, operation, *arguments):
+        arguments = tuple(part if isinstance(part, Node) else float(part) for part in arguments)
+        factors = [part for part in arguments if isinstance(part, Node) or part != 1.0]
+        if operation == "*" and len(factors) == 1:
+            return factors[0]
+        key = (operation, *((part.index,) if isinstance(part, Node) else part for part in arguments))
+        if key not in self._known:
+            varies = max(part.varies for part in arguments if isinstance(part, Node))
+            self._known[key] = Node(self, operation, arguments, varies)
+        return self._known[key]
+
+    def angle(self):
+        return Node(self, "angle", (), BY_ANGLE)
+
+    def parameter(self, place):
+        return Node(self, "parameter", (place,), BY_DESIGN)
+
+    def row(self, place):
+        """A row of the tables."""
+        return Node(self, "table", (place,), BY_ANGLE)
+
+
+def needed(outputs):
+    """Nodes that outputs, nodes or plain numbers, are computed from, in order."""
+    found: set[Node] = set()
+    waiting = [part for part in outputs if isinstance(part, Node)]
+    while waiting:
+        node = waiting.pop()
+        if node not in found:
+            found.add(node)
+            waiting += [part for part in node.arguments if isinstance(part, Node)]
+    return sorted(found, key=lambda node: node.index)
+
+
+def operations(outputs):
+    """Number of operations at each crank angle."""
+    return sum(node.varies == BY_ANGLE and node.operation not in INPUTS for node in needed(outputs))

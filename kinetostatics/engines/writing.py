@@ -1,0 +1,184 @@
+"""Source of programs from recorded arithmetic: a loop for numba, a line of array operations, a line of plain numbers."""
+
+from ..elementary import ROUNDING
+from .trace import BY_ANGLE, Node, needed
+
+ROWS_AT_ONCE = 12
+"""Outputs written in one loop; beyond fifteen the compiler gives up vectorising."""
+TURN = '''"""Written by kinetostatics; may be deleted at any time."""
+
+from math import cos, sin
+
+from numba import njit
+
+
+@njit(nogil=True, cache=True)
+def shared(angle, sine, cosine):
+    for i in range(angle.size):
+        cosine[i] = cos(angle[i])
+        sine[i] = sin(angle[i])
+'''
+"""Module that computes sines and cosines of crank angles."""
+LOOP_HEADER = f'''"""Written by kinetostatics; may be deleted at any time."""
+
+from math import atan, copysign, cos, inf, nan, sin, sqrt
+
+from numba import njit
+
+options = dict(error_model="numpy", nogil=True, cache=True)
+
+
+@njit(**options)
+def root(square, unit):
+    return sqrt(max(square, 0.0)) if square >= {-ROUNDING!r} * unit else nan
+
+
+@njit(**options)
+def divisor(root, unit):
+    return root if root != root else max(root, unit)
+
+
+@njit(**options)
+def sign(value):
+    return copysign(1.0, value)
+
+
+@njit(**options)
+def loop(angle, sine, cosine, parameters, tables, results):
+    for design in range(parameters.shape[0]):
+        first = design * (angle.shape[0] > 1)
+        table = design * (tables.shape[1] > 1)
+'''
+
+
+def loop(outputs) -> str:
+    """Source of a module with ``loop(angle, sine, cosine, parameters, tables, results)``.
+
+    It takes angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
+    designs, N), and fills results (designs, outputs, N).
+    """
+    nodes = needed(outputs)
+    lines = [f"        {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
+    for start in range(0, len(outputs), ROWS_AT_ONCE):
+        rows = dict(enumerate(outputs[start : start + ROWS_AT_ONCE], start))
+        lines += [f"        row_{place} = results[design, {place}]" for place in rows]
+        lines.append("        for i in range(angle.shape[1]):")
+        lines += [f"            {_defined(node)}" for node in needed(rows.values()) if _is_computed_by_angle(node)]
+        lines += [f"            row_{place}[i] = {_name(part)}" for place, part in rows.items()]
+    return LOOP_HEADER + "\n".join(lines) + "\n"
+
+
+def line(outputs, argument_names="angle, sine, cosine, parameters, tables") -> str:
+    """Source of ``line(angle, sine, cosine, parameters, tables)``, which returns the outputs as they come.
+
+    Of plain numbers; of arrays too, each operation with new memory.
+    """
+    lines = [f"def line({argument_names}):"]
+    lines += [f"    {_defined(node, _PLAIN)}" for node in needed(outputs) if node.operation != "angle"]
+    lines.append(f"    return ({' '.join(f'{_name(part, _PLAIN)},' for part in outputs)})")
+    return "\n".join(lines) + "\n"
+
+
+def buffered_line(outputs) -> tuple[str, int]:
+    """Source of ``line(angle, sine, cosine, parameters, tables, buffers, results)`` on arrays, and how many buffers.
+
+    Each operation writes into a buffer whose value is needed no more, or into its row of the results.
+    """
+    nodes = needed(outputs)
+    rows: dict[Node, int] = {}
+    copies = []
+    for place, part in enumerate(outputs):
+        if isinstance(part, Node) and part not in rows and _is_computed_by_angle(part) and part.operation != "table":
+            rows[part] = place
+        else:
+            copies.append((place, part))
+    last = {argument: node for node in nodes for argument in node.arguments if isinstance(argument, Node)}
+    source = [f"    {_defined(node, _PLAIN)}" for node in nodes if node.varies < BY_ANGLE]
+    free: list[str] = []
+    place_of: dict[Node, str] = {}
+    count = 0
+    for node in nodes:
+        if not _is_computed_by_angle(node):
+            continue
+        if _is_given(node):
+            place_of[node] = _expression(node, _PLAIN)
+            continue
+        names = [place_of.get(part) or _name(part, _PLAIN) for part in node.arguments]
+        spent = {part for part in node.arguments if isinstance(part, Node) and last[part] is node and part not in rows}
+        released = [place_of[part] for part in spent if place_of.get(part, "").startswith("b")]
+        if node in rows:
+            target = f"r{rows[node]}"
+        elif node.operation in _IN_PLACE and released:
+            target = released.pop()
+        elif free:
+            target = free.pop()
+        else:
+            target, count = f"b{count}", count + 1
+        free += released
+        place_of[node] = target
+        source.append(f"    {_OPERATIONS[node.operation, len(names)]}({', '.join([*names, target])})")
+    source += [f"    r{place}[...] = {place_of.get(part) or _name(part, _PLAIN)}" for place, part in copies]
+    heads = ["def line(angle, sine, cosine, parameters, tables, buffers, results):"]
+    heads += [f"    {', '.join(f'b{k}' for k in range(count))}, = buffers"] if count else []
+    heads += [f"    {', '.join(f'r{k}' for k in range(len(outputs)))}, = results"]
+    return "\n".join(heads + source) + "\n", count
+
+
+_OPERATIONS = {
+    ("+", 2): "add",
+    ("-", 2): "subtract",
+    ("*", 2): "multiply",
+    ("/", 2): "divide",
+    ("-", 1): "negative",
+    ("sin", 1): "sin_of",
+    ("cos", 1): "cos_of",
+    ("sqrt", 1): "sqrt_of",
+    ("atan", 1): "arctan",
+    ("abs", 1): "absolute",
+    ("sign", 1): "sign_of",
+    ("root", 2): "root_of",
+    ("divisor", 2): "maximum",
+}
+"""By operation and number of arguments: the array function that takes its result's place as last argument."""
+_IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "divisor")
+
+
+def _is_computed_by_angle(node):
+    return node.varies == BY_ANGLE and node.operation != "angle"
+
+
+def _is_given(node):
+    """Whether a node's value is handed in."""
+    return node.operation in ("angle", "table") or _is_of_angle(node)
+
+
+def _is_of_angle(node):
+    return node.operation in ("sin", "cos") and node.arguments[0].operation == "angle"
+
+
+_COMPILED = {"angle": "angle[first, i]", "parameter": "parameters[design, {}]", "table": "tables[{}, table, i]"}
+_COMPILED |= {"sin": "sine[first, i]", "cos": "cosine[first, i]"}
+_PLAIN = {"angle": "angle", "parameter": "parameters[{}]", "table": "tables[{}]", "sin": "sine", "cos": "cosine"}
+"""What inputs, and sine and cosine of the crank angle, are called."""
+
+
+def _defined(node, inputs=_COMPILED):
+    return f"v{node.index} = {_expression(node, inputs)}"
+
+
+def _name(part, inputs=_COMPILED):
+    if not isinstance(part, Node):
+        return repr(part)
+    return inputs["angle"] if part.operation == "angle" else f"v{part.index}"
+
+
+def _expression(node, inputs):
+    kind = node.operation
+    if kind in ("angle", "parameter", "table"):
+        return inputs[kind].format(*node.arguments)
+    if _is_of_angle(node):
+        return inputs[kind]
+    names = [_name(part, inputs) for part in node.arguments]
+    if kind in ("+", "-", "*", "/"):
+        return f" {kind} ".join(names) if len(names) == 2 else f"{kind}{names[0]}"
+    return f"{kind}({', '.join(names)})"

@@ -1,0 +1,233 @@
+"""Parameter trees: what a scene is apart from its numbers, the numbers, and both put together again.
+
+A scene is a tree of dataclasses and tuples. Its *structure*, a hashable nest of tuples, tells the kinds of parts, names,
+assemblies, and what is absent: a plain zero. Its *leaves* are the numbers, in the order of the structure, each a float
+or an array of designs (..., 1); its *tables* are arrays with a value for each crank angle. Programs are kept by
+structure, so that new numbers never make a new program.
+"""
+
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass
+from types import BuiltinFunctionType, FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+
+
+class _Mark:
+    """Stands in a structure where a leaf was taken out."""
+
+    def __init__(self, name):
+        self._name = name
+
+    def __repr__(self):
+        return self._name
+
+    def __reduce__(self):
+        return self._name
+
+
+NUMBER, TABLE = _Mark("NUMBER"), _Mark("TABLE")
+STRUCTURAL = (bool, int, str)
+"""Types of dataclass fields that are no numbers: an assembly, a name. Fields for numbers are annotated `Any`."""
+
+
+class Kept(float):
+    """A zero that stays a leaf, so that it can be given another value."""
+
+
+class Leaves:
+    """Leaves of an item, in the order of its structure.
+
+    Attributes
+    ----------
+    numbers : list of float or array (..., 1)
+    tables : list
+        Arrays with a value for each crank angle, and parts that declare `TABULATED`: sampled cams.
+    lasting : bool
+        Whether the structure tells all else; False with objects of the user's that may change unseen.
+    """
+
+    __slots__ = ("lasting", "numbers", "tables")
+
+    def __init__(self):
+        self.numbers, self.tables, self.lasting = [], [], True
+
+
+def taken_apart(item, leaves: Leaves):
+    """Structure of an item; its leaves are appended to `leaves`."""
+    kind = type(item)
+    if kind is float:
+        if item == 0.0:
+            return 0.0
+        leaves.numbers.append(item)
+        return NUMBER
+    return (_TAKERS.get(kind) or _taker(kind))(item, leaves)
+
+
+def put_together(structure, number: Callable[[], Any], table: Callable[[], Any]):
+    """The item of a structure, with leaves from two functions that are called in order; nothing is checked anew."""
+    if structure is NUMBER:
+        return number()
+    if structure is TABLE:
+        return table()
+    if isinstance(structure, Opaque):
+        return structure.item
+    if type(structure) is not tuple:
+        return structure
+    kind, *parts = structure
+    made = [put_together(part, number, table) for part in parts]
+    if kind is tuple:
+        return tuple(made)
+    if not is_dataclass(kind):
+        return kind(*made)
+    whole = object.__new__(kind)
+    for field, value in zip(fields(kind), made, strict=True):
+        object.__setattr__(whole, field.name, value)
+    return whole
+
+
+class Opaque:
+    """A function or an object that is compared by what it is made of, and never looked into."""
+
+    __slots__ = ("_key", "item")
+
+    def __init__(self, item, key):
+        self.item, self._key = item, key
+
+    def __eq__(self, other):
+        return isinstance(other, Opaque) and self._key == other._key
+
+    def __hash__(self):
+        return hash(self._key)
+
+
+def mapped(item, number):
+    """Copy of an item with ``number(value)`` in place of each leaf, nothing checked anew."""
+    leaves = Leaves()
+    structure = taken_apart(item, leaves)
+    values, rows = map(number, leaves.numbers), map(number, leaves.tables)
+    return put_together(structure, lambda: next(values), lambda: next(rows))
+
+
+def batch_shape(numbers):
+    """Shape that arrays of designs among numbers have in common; () for a single design."""
+    shapes = [number.shape for number in numbers if type(number) is not float]
+    return np.broadcast_shapes(*shapes)[:-1] if shapes else ()
+
+
+# How each type is taken apart
+
+
+def _array(item, leaves):
+    shape = item.shape
+    if item.dtype != float:
+        return _passing(item, leaves)
+    if not shape:
+        return taken_apart(float(item), leaves)
+    if shape[-1] == 1:
+        leaves.numbers.append(item)
+        return NUMBER
+    return _table(item, leaves)
+
+
+def _table(item, leaves):
+    leaves.tables.append(item)
+    return TABLE
+
+
+def _tuple(item, leaves):
+    return (tuple, *[taken_apart(part, leaves) for part in item])
+
+
+def _as_it_is(item, leaves):
+    return item
+
+
+def _number(item, leaves):
+    return taken_apart(float(item), leaves)
+
+
+def _kept(item, leaves):
+    leaves.numbers.append(float(item))
+    return NUMBER
+
+
+def _function(item, leaves):
+    key = _function_key(item)
+    if key is None:
+        return _passing(item, leaves)
+    return Opaque(item, key)
+
+
+def _passing(item, leaves):
+    leaves.lasting = False
+    return Opaque(item, (id(item),))
+
+
+def _function_key(function):
+    """What a function is made of, its code and the constants it refers to; None where these may change unseen."""
+    code, outer = function.__code__, function.__globals__
+    held = [cell.cell_contents for cell in function.__closure__ or ()]
+    held += [outer[name] for name in code.co_names if name in outer]
+    held += [*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values()]
+    key = tuple(map(_constant_key, held))
+    return None if None in key else (code, *key)
+
+
+def _constant_key(value):
+    if isinstance(value, float | int | str | None | type | ModuleType | BuiltinFunctionType | np.ufunc):
+        return (type(value), value)
+    if isinstance(value, FunctionType):
+        return _function_key(value)
+    return None
+
+
+_TAKERS: dict[type, Callable] = {
+    int: _number,
+    bool: _as_it_is,
+    str: _as_it_is,
+    type(None): _as_it_is,
+    tuple: _tuple,
+    list: _tuple,
+    np.ndarray: _array,
+    Kept: _kept,
+    FunctionType: _function,
+}
+
+
+def _taker(kind):
+    """How items of a type are taken apart, found once: dataclasses and named tuples field by field."""
+    if getattr(kind, "TABULATED", False):
+        taker = _table
+    elif is_dataclass(kind):
+        taker = _of_dataclass(kind)
+    elif issubclass(kind, tuple) and hasattr(kind, "_fields"):
+        taker = _of_named_tuple(kind)
+    else:
+        taker = _number if issubclass(kind, np.floating | np.integer) else _passing
+    _TAKERS[kind] = taker
+    return taker
+
+
+def _of_dataclass(kind):
+    """Function written for the type, as a hand would write it: it runs for each part of each scene that is solved."""
+    lines = ["def taker(item, leaves):"]
+    for place, field in enumerate(fields(kind)):
+        lines.append(f"    v{place} = item.{field.name}")
+        if field.type not in STRUCTURAL:
+            lines += [
+                f"    if type(v{place}) is float and v{place} != 0.0:",
+                f"        leaves.numbers.append(v{place})",
+                f"        v{place} = NUMBER",
+                "    else:",
+                f"        v{place} = taken_apart(v{place}, leaves)",
+            ]
+    lines.append(f"    return (kind, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
+    scope = {"kind": kind, "NUMBER": NUMBER, "taken_apart": taken_apart}
+    exec("\n".join(lines), scope)
+    return scope["taker"]
+
+
+def _of_named_tuple(kind):
+    return lambda item, leaves: (kind, *[taken_apart(part, leaves) for part in item])
