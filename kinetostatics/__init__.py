@@ -42,17 +42,19 @@ from .errors import (
     QuantityError,
 )
 from .machine import cams
+from .machine.builders import cam_crank_slider, crank_slider, four_bar
 from .machine.cam_roller import CamRoller
 from .machine.crank import Crank
 from .machine.guide import Guide
 from .machine.links import Link
 from .machine.loads import Gravity, ProcessForce, Spring
-from .machine.mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
+from .machine.mechanism import Mechanism
 from .machine.rocker_group import RockerGroup
 from .machine.slider_group import SliderGroup
 from .mechanics.principal_points import principal_points
 from .results.extremes import extremes
-from .solution.solution import Solution, solve
+from .solution.scene import solve
+from .solution.solution import Solution
 
 __version__ = "0.1.0"
 

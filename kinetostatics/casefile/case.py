@@ -13,20 +13,22 @@ import numpy as np
 import pydantic
 
 from ..design import balancing, linkage
+from ..design.balancing_table import balancing_table
 from ..errors import AssemblyError, CaseError, KinetostaticsError, ParameterError
 from ..machine import cams
+from ..machine.builders import cam_crank_slider, crank_slider, four_bar
 from ..machine.guide import Guide
 from ..machine.links import Link
-from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Tabulated
-from ..machine.mechanism import Mechanism, cam_crank_slider, crank_slider, four_bar
+from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Tabulated, period_of
+from ..machine.mechanism import Mechanism
 from ..mechanics import assembly
 from ..mechanics.quantities import label
 from ..numbers import checks
 from ..numbers.files import read_columns, read_text
 from ..numbers.units import base_factor, shown
 from ..results.comparison import Comparison
-from ..results.tables import balancing_table
-from ..solution.solution import Solution, period_of, solve
+from ..solution.scene import solve
+from ..solution.solution import Solution
 from ..sweeps import designs
 from . import parameters, schema
 

@@ -18,7 +18,7 @@ from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from ..results.extremes import extremes
-from ..solution.solution import solve
+from ..solution.scene import solve
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight
 
 __all__ = ["Balanced", "Counterweight", "counterweight", "full", "optimal", "partial"]

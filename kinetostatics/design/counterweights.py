@@ -11,7 +11,7 @@ from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label
 from ..numbers import checks
 from ..results.extremes import extremes
-from ..solution.solution import solve
+from ..solution.scene import solve
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from math import asin, atan2, pi, sqrt
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.mechanism import four_bar
+from ..machine.builders import four_bar
 from ..machine.rocker_group import RockerGroup
 from ..numbers import checks
 from ..results.extremes import extremes

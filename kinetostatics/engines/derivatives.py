@@ -20,7 +20,9 @@ def _tangents(graph, outputs, parameter):
     slopes = {parameter: 1.0}
     for node in needed(outputs):
         parts = [
-            _times(partial, slopes[argument]) for argument, partial in _partials(graph, node, slopes) if argument in slopes
+            _times(partial, slopes[argument])
+            for argument, partial in _partials(graph, node, slopes)
+            if argument in slopes
         ]
         if parts:
             slopes[node] = _total(parts)

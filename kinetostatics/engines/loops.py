@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ..compiled import _loaded, cores
+from .compiled import _loaded, cores
 from .writing import TURN
 
 SHARE = 100_000

@@ -6,18 +6,18 @@ A program runs in three ways, all from one recording: on plain numbers, on array
 import math
 import threading
 from collections import OrderedDict
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..compiled import _loaded
-from ..elementary import ROUNDING
-from ..numbers.leaves import Leaves, batch_shape, taken_apart
+from ..errors import NotGivenError
+from ..numbers.elementary import ROUNDING
+from ..numbers.leaves import Leaves, taken_apart
 from . import loops, writing
+from .compiled import _loaded
 from .derivatives import gradients
-from .record import Recording, record
+from .record import record
 
 KEPT = 256
 """Programs kept in memory; the longest unused goes first."""
@@ -57,8 +57,18 @@ class Program:
         return [_made(source, _ARRAYS | by_design) for by_design in (_PLAIN, _BY_DESIGN)], count
 
     @cached_property
-    def _loop(self):
+    def loop(self):
+        """The compiled loop; see `writing.loop`."""
         return _loaded(writing.loop(self.outputs)).loop
+
+    def rows(self, state, leaves):
+        """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand."""
+        return [row for table in self.recording.tables for row in table(state, leaves.tables)]
+
+    def run(self, state, leaves, compiled=False):
+        """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
+        run = self.by_loop if compiled else self.by_numpy
+        return run(state.crank_angle, leaves.numbers, self.rows(state, leaves), state.shape)
 
     def on_numbers(self, angle, numbers, rows):
         """Outputs, plain numbers, from a crank angle, numbers and table values that are plain numbers."""
@@ -99,7 +109,7 @@ class Program:
             angles = np.broadcast_to(angle, shape).reshape(designs, -1).copy()
         results = np.empty((designs, len(self.outputs), angles.shape[1]))
         tables = loops.table_of_rows(rows, shape or (1,))
-        loops.run(self._loop, angles, *loops.turn(angles), parameters, tables, results)
+        loops.run(self.loop, angles, *loops.turn(angles), parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
 
@@ -196,23 +206,52 @@ _kept: OrderedDict[Any, Program] = OrderedDict()
 _lock = threading.Lock()
 
 
-def apart(scene) -> tuple[Any, Leaves]:
-    """Structure and leaves of what a scene computes from: mechanism, drive and loads."""
-    leaves = Leaves()
-    return taken_apart((scene.mechanism, scene.crank_speed, scene.crank_acceleration, scene.loads), leaves), leaves
+def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
+    """Program for some quantities of a `Dynamics` and of all others of its structure, and its own leaves.
 
+    Recorded the first time it is asked for; each time for what may change unseen.
 
-def program(structure, quantities, sizes=False, lasting=True) -> Program:
-    """Program of a structure for some quantities, recorded the first time it is asked for."""
-    if not lasting:
-        return Program(record(structure, quantities, sizes))
+    Parameters
+    ----------
+    state : Dynamics
+    quantities, sizes
+        As for `record.record`.
+    lasting : bool
+        Whether what would have to be recorded each time is refused.
+
+    Raises
+    ------
+    NotGivenError
+        A group or load of the user's own cannot be recorded.
+    """
+    structure, leaves = apart(state)
+    if not leaves.lasting or state.way is not None:
+        if lasting:
+            raise NotGivenError(f"{state.mechanism.name} holds what may change unseen, to be recorded each time")
+        return _recorded(state, structure, quantities, sizes), leaves
     key = structure, quantities, sizes
     found = _kept.get(key)
     if found is None:
-        found = Program(record(structure, quantities, sizes))
+        found = _recorded(state, structure, quantities, sizes)
     with _lock:
         _kept[key] = found
         _kept.move_to_end(key)
         while len(_kept) > KEPT:
             _kept.popitem(last=False)
-    return found
+    return found, leaves
+
+
+def apart(state) -> tuple[Any, Leaves]:
+    """Structure and leaves of a scene: mechanism, drive and loads."""
+    leaves = Leaves()
+    return taken_apart((state.mechanism, state.crank_speed, state.crank_acceleration, state.loads), leaves), leaves
+
+
+def _recorded(state, structure, quantities, sizes):
+    try:
+        return Program(record(structure, quantities, sizes, state.way))
+    except (TypeError, AttributeError) as error:
+        raise NotGivenError(
+            f"the compiled engine cannot take {state.mechanism.name}: a group or load of it does more than arithmetic "
+            f'with sin, cos and sqrt of `elementary` ({error}); use engine="numpy"'
+        ) from error

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from ..crank import ray
-from ..loads import ProcessForce
+from ..machine.crank import ray
+from ..machine.loads import ProcessForce
+from ..mechanics.dynamics import Dynamics
+from ..mechanics.quantities import components, of_mechanism
+from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.leaves import put_together
-from ..quantities import components
-from ..quantities import sizes as sizes_of
-from ..solution import Solution
 from .trace import Graph, Node, needed, operations
 
 
@@ -29,7 +29,8 @@ class Recording:
     outputs : tuple of Node or float
         What is computed, components one after the other.
     widths : tuple of int
-        How many components each quantity has: 1, or 2 for a vector.
+        How many rows each quantity has: 1, 2 for a vector, one for each group for the closure.
+    vectors : tuple of bool
     parameters : tuple of Node
         One for each number of a scene, in the order of its leaves.
     tables : tuple of functions
@@ -41,9 +42,20 @@ class Recording:
     quantities: tuple[str, ...]
     outputs: tuple[Any, ...]
     widths: tuple[int, ...]
+    vectors: tuple[bool, ...]
     parameters: tuple[Node, ...]
     tables: tuple[Callable[[Any, Any], Any], ...]
     graph: Graph
+
+    def named(self, rows):
+        """Results by name from rows (outputs, ...): (...) of a number, (rows, ...) of a vector and the closure."""
+        found, start = {}, 0
+        for name, width, vector in zip(self.quantities, self.widths, self.vectors, strict=True):
+            found[name] = (
+                rows[start] if width == 1 and not vector and name != "closure" else rows[start : start + width]
+            )
+            start += width
+        return found
 
     @property
     def operations(self):
@@ -56,40 +68,51 @@ class Recording:
         return max((node.arguments[0] + 1 for node in needed(self.outputs) if node.operation == "table"), default=0)
 
 
-def record(structure, quantities, sizes=False) -> Recording:
+def record(structure, quantities, sizes=False, way=None) -> Recording:
     """Arithmetic of some quantities.
 
     Parameters
     ----------
     structure : tuple
         Of a mechanism, its crank speed and acceleration, and its loads, as `leaves.taken_apart` gives it.
-    quantities : sequence of str
-        Names as for `quantities.components`.
+    quantities : sequence of str or None
+        Names as for `quantities.components`; None: closure, and all that the groups find.
     sizes : bool
         Whether the magnitude of a vector is wanted, not its components.
+    way : function, optional
+        Other way to the placement, as `Dynamics` takes it.
     """
-    recorder = _Recorder(structure)
+    recorder = _Recorder(structure, way)
+    if quantities is None:
+        quantities = ("closure", *recorder.recorded.mechanism.outputs)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
     outputs = tuple(part.flat[0] for parts in found for part in parts)
-    widths = tuple(map(len, found))
+    known = of_mechanism(recorder.recorded.mechanism)
+    vectors = tuple(name != "closure" and known[name].vector and not sizes for name in quantities)
     return Recording(
-        tuple(quantities), outputs, widths, tuple(recorder.parameters), tuple(recorder.tables), recorder.graph
+        tuple(quantities),
+        outputs,
+        tuple(map(len, found)),
+        vectors,
+        tuple(recorder.parameters),
+        tuple(recorder.tables),
+        recorder.graph,
     )
 
 
 class _Recorder:
     """Puts nodes in place of the numbers of a structure."""
 
-    def __init__(self, structure):
+    def __init__(self, structure, way):
         self.graph = Graph()
         self.parameters: list[Node] = []
         self.tables: list[Callable] = []
         self._rows = self._arrays = 0
-        mechanism, speed, acceleration, loads = put_together(structure, self._parameter, self._array)
+        mechanism, speed, acceleration, loads = put_together(structure, self._parameter, self._array, lambda: None)
         self.angle = self._nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))
-        idle = Solution(mechanism, self.angle, speed, acceleration, ())
+        idle = Dynamics(mechanism, self.angle, speed, acceleration, way=way)
         self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(loads)))
 
     def _parameter(self):
@@ -111,8 +134,9 @@ class _Recorder:
 
     def _with_cam(self, group, place):
         """The group with values of its cam from a table if that takes plain numbers only."""
-        cam = getattr(group, "cam", None)
-        if cam is None or self._is_elementwise(cam, lambda angle: cam.polar(angle, ray(angle))):
+        if not hasattr(group, "cam") or self._is_elementwise(
+            group.cam, lambda angle: group.cam.polar(angle, ray(angle))
+        ):
             return group
         values = self._tabled(3, lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle))
         object.__setattr__(group, "cam", _Tabled(tuple(values)))

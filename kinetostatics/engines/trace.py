@@ -6,7 +6,7 @@ arithmetic, `derivatives` adds to it, `writing` makes source of it.
 
 import numpy as np
 
-from ..elementary import APART
+from ..numbers.elementary import APART
 
 BY_DESIGN, BY_ANGLE = range(2)
 """What the value of a node varies with: the design, or the crank angle as well."""

@@ -1,18 +1,20 @@
 """Source of programs from recorded arithmetic: a loop for numba, a line of array operations, a line of plain numbers."""
 
-from ..elementary import ROUNDING
+from ..numbers.elementary import ROUNDING
 from .trace import BY_ANGLE, Node, needed
 
 ROWS_AT_ONCE = 12
 """Outputs written in one loop; beyond fifteen the compiler gives up vectorising."""
-TURN = '''"""Written by kinetostatics; may be deleted at any time."""
+GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
+"""Arrays of so many axes that a loop reads, which may be locked, and that it writes, as numba names them."""
+TURN = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import cos, sin
 
 from numba import njit
 
 
-@njit(nogil=True, cache=True)
+@njit("void({", ".join([GIVEN, FILLED, FILLED]).format(1, 1, 1)})", nogil=True, cache=KEEP)
 def shared(angle, sine, cosine):
     for i in range(angle.size):
         cosine[i] = cos(angle[i])
@@ -25,7 +27,7 @@ from math import atan, copysign, cos, inf, nan, sin, sqrt
 
 from numba import njit
 
-options = dict(error_model="numpy", nogil=True, cache=True)
+options = dict(error_model="numpy", nogil=True)
 
 
 @njit(**options)
@@ -43,7 +45,7 @@ def sign(value):
     return copysign(1.0, value)
 
 
-@njit(**options)
+@njit("void({", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})", cache=KEEP, **options)
 def loop(angle, sine, cosine, parameters, tables, results):
     for design in range(parameters.shape[0]):
         first = design * (angle.shape[0] > 1)

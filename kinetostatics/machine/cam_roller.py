@@ -11,24 +11,29 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import sqrt
-from ..numbers.planar import cross, dot, minus, subtracted, vector
-from .chain import Adds
+from ..numbers.elementary import namespace, sqrt
+from ..numbers.planar import cross, dot, minus, vector
 from .crank import ray
+from .group import Group, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench
 
 GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 """Crank angles at which cams of the user's own are looked at, rad."""
+OUTPUTS = {
+    "cam_force": Output("N", False, "cam on roller along the normal, positive toward the inside of the pitch curve"),
+    "slot_force": Output("N", False, "slotted crank on block across the ray, positive with growing crank angle"),
+}
+MOTIONS = {"pressure_angle": Output("rad", False, "of the cam pair, atan(r'/r), positive where the radius grows")}
 
 
 class RollerForces(NamedTuple):
     """`cam`: cam on roller along the inward normal; `slot`: crank on block, positive with growing crank angle;
-    `crank_demand`: wrench about O that the crank must supply to the block.
+    `on_crank`: wrench about O that the crank must supply to the block.
     """
 
     cam: Any
     slot: Any
-    crank_demand: Wrench
+    on_crank: Wrench
 
 
 def place(ray, radius, slope, curvature):
@@ -43,22 +48,22 @@ def place(ray, radius, slope, curvature):
     )
 
 
-def resolve(ray, radius, slope, block_load, demand):
+def resolve(ray, radius, slope, load):
     """Cam and slot force on the block (kernel).
 
-    `block_load` is the wrench of the block about A, `demand` the force it must supply to the coupler.
+    `load` is what acts on the block, its own and what hangs on it, a wrench about A.
     """
-    force = vector(subtracted(block_load.force, demand))
+    force = vector(load.force)
     lean = slope / radius
     outward = dot(force, ray)
     cam = outward * sqrt(1.0 + lean * lean)
     slot = -(cross(ray, force) + outward * lean)
-    crank_demand = Wrench((-slot * ray[1], slot * ray[0]), minus(slot * radius, block_load.moment))
-    return RollerForces(cam, slot, crank_demand)
+    on_crank = Wrench((-slot * ray[1], slot * ray[0]), minus(slot * radius, load.moment))
+    return RollerForces(cam, slot, on_crank)
 
 
 @dataclass(frozen=True, eq=False)
-class CamRoller(checks.Checked):
+class CamRoller(checks.Checked, Group):
     """Block and roller at joint A, guided by the slotted crank and the fixed `cam`.
 
     Parameters
@@ -72,15 +77,12 @@ class CamRoller(checks.Checked):
     cam: Any
     block: Link = Link()
 
+    TRUSTED = True
     RULES = checks.Rules(
         "cam roller",
         cam=checks.Own(("polar",), "one of ks.cams or alike"),
         block=checks.Made(Link, "a Link"),
     )
-
-    @property
-    def adds(self):
-        return Adds(("A",), ("block",), (), ("cam_force", "slot_force"))
 
     @property
     def links(self):
@@ -95,21 +97,34 @@ class CamRoller(checks.Checked):
         return (*getattr(self.cam, "lengths", ()), *self.block.centre)
 
     @property
-    def smallest_radius(self):
+    def shortest(self):
         """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
         found = getattr(self.cam, "smallest_radius", None)
         return np.min(self.cam.polar(GRID, ray(GRID))[0]) if found is None else found
 
     @property
-    def bars(self):
-        return ()
+    def hangs_on(self):
+        return ("O",)
+
+    @property
+    def joints(self):
+        return {"A": Point("block")}
+
+    @property
+    def outputs(self):
+        return OUTPUTS
+
+    @property
+    def motions(self):
+        return MOTIONS
+
+    def motion(self, name, placement):
+        radius, slope, _ = placement.details["cam"]
+        return namespace(slope).atan(slope / radius)
 
     def place(self, placement):
         polar = self.cam.polar(placement.angle, placement.ray)
-        joint = place(placement.ray, *polar)
-        placement.joints["A"] = joint
-        placement.links["block"] = LinkMotion(joint, placement.ray, 1.0, None)
-        placement.details["cam"] = polar
+        self._set(placement, place(placement.ray, *polar), polar)
 
     def closure(self, placement):
         """Squared cosine of the pressure angle, negative where the radius is."""
@@ -119,9 +134,17 @@ class CamRoller(checks.Checked):
     def requirement(self, placement):
         return f"the pitch curve must go around O, but its radius falls to {placement.details['cam'][0].min():.6g} m"
 
-    def resolve(self, placement, loads, pushes, forces):
+    def resolve(self, placement, loads, along) -> Resolved:
         radius, slope, _ = placement.details["cam"]
-        found = resolve(placement.ray, radius, slope, loads["block"], forces.demand.get("A"))
-        forces.scalars["cam_force"] = found.cam
-        forces.scalars["slot_force"] = found.slot
-        forces.crank_demand = found.crank_demand
+        found = resolve(placement.ray, radius, slope, loads["block"])
+        return Resolved({}, {"cam_force": found.cam, "slot_force": found.slot}, {"crank": found.on_crank})
+
+    def follow(self, placement, joints):
+        """Place the block at joints found in another way."""
+        joint = joints["A"]
+        self._set(placement, joint, tuple(dot(vector(part), placement.ray) for part in joint))
+
+    def _set(self, placement, joint, polar):
+        placement.joints["A"] = joint
+        placement.links["block"] = LinkMotion(joint, placement.ray, 1.0, None)
+        placement.details["cam"] = polar

@@ -85,6 +85,9 @@ class Circle(Cam):
     pitch_radius: Any
     centre: Any
 
+    ELEMENTWISE = True
+    PATHS = {"pitch_radius": "radius"}
+
     def __init__(self, radius, centre=(0.0, 0.0)):
         object.__setattr__(self, "pitch_radius", radius)
         object.__setattr__(self, "centre", centre)
@@ -168,7 +171,9 @@ class CosineLaw(checks.Checked, Cam):
 
     amplitude: Any
     mean: Any
-    guide_angle: float = 0.0
+    guide_angle: Any = 0.0
+
+    ELEMENTWISE = True
 
     def _clear_of_origin(self):
         """Say where the slider would run over O."""
@@ -262,6 +267,8 @@ class Sampled(Cam):
 
     angle: Any
     samples: Any
+
+    TABULATED = True
 
     def __init__(self, angle, radius):
         checks.require("sampled cam", checks.table("angle", angle), checks.table("radius", radius))

@@ -1,13 +1,15 @@
 """The driver: a crank that turns about O and carries pin A, or a slotted crank that guides a block."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
+
+import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
-from ..numbers.planar import minus, moment, number, subtracted, vector
-from .chain import Adds, Bar, Forces, Placement
-from .links import Joint, Link, LinkMotion, Wrench
+from ..numbers.planar import minus, number, subtracted, vector
+from .group import FRAME, Bar, Output, Placement, Point, Resolved
+from .links import Joint, Link, LinkMotion
 
 ORIGIN = Joint((0.0, 0.0), None, None)
 
@@ -24,12 +26,12 @@ def pin(ray, length):
     return Joint((x, y), (minus_y, x), (-x, minus_y))
 
 
-def resolve(own, demand):
+def resolve(load):
     """Force of the ground on the crank at O, and the torque that keeps the motion (kernel).
 
-    `own` is the load of the crank itself, `demand` what it must supply to the chain, both wrenches about O.
+    `load` is what acts on the crank, its own and what hangs on it, a wrench about O.
     """
-    return vector(subtracted(demand.force, own.force)), number(minus(demand.moment, own.moment))
+    return vector(subtracted(None, load.force)), number(minus(None, load.moment))
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +51,6 @@ class Crank(checks.Checked):
     )
 
     @property
-    def adds(self):
-        joints = ("O",) if self.length is None else ("O", "A")
-        return Adds(joints, ("crank",), ("O",), ("balancing_torque",))
-
-    @property
     def links(self):
         return {"crank": self.link}
 
@@ -61,13 +58,39 @@ class Crank(checks.Checked):
     def references(self):
         return {"crank": "O"}
 
+    PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
+    guides: ClassVar = {}
+    motions: ClassVar = {}
+    hangs_on = ()
+
+    @property
+    def names(self):
+        """What its names come from."""
+        return (self.length is None,)
+
+    @property
+    def shortest(self):
+        return np.inf if self.length is None else self.length
+
     @property
     def lengths(self):
         return (*self.link.centre, 0.0 if self.length is None else self.length)
 
     @property
+    def joints(self):
+        pins = {} if self.length is None else {"A": Point("crank", self.length)}
+        return {"O": Point(FRAME), **pins}
+
+    @property
     def bars(self):
         return () if self.length is None else (Bar("O", "A", "crank", self.length),)
+
+    @property
+    def outputs(self):
+        return {
+            "O": Output("N", True, "ground on crank"),
+            "balancing_torque": Output("N m", False, "on the crank, counter-clockwise, to keep the motion"),
+        }
 
     def place(self, angle) -> Placement:
         direction = ray(angle)
@@ -76,9 +99,6 @@ class Crank(checks.Checked):
             placement.joints["A"] = pin(direction, self.length)
         return placement
 
-    def resolve(self, placement, loads, forces: Forces):
-        demand = forces.crank_demand
-        if self.length is not None:
-            at_pin = forces.demand.get("A")
-            demand = Wrench(at_pin, moment(placement.joints["A"].position, at_pin))
-        forces.reactions["O"], forces.scalars["balancing_torque"] = resolve(loads["crank"], demand)
+    def resolve(self, placement, loads, along) -> Resolved:
+        support, torque = resolve(loads["crank"])
+        return Resolved({"O": support}, {"balancing_torque": torque}, {})

@@ -1,6 +1,8 @@
 """The straight guide of a slider: a line of any inclination and offset."""
 
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -8,30 +10,58 @@ from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from .links import present
 
-ANGLE, OFFSET, POINT = checks.Number("rad"), checks.Number("m"), checks.Pair("m")
-DIRECTION = checks.Pair("1", "guide direction")
+POINT = checks.Pair("m")
 
 
-class Guide(NamedTuple):
-    """Guide line by its direction (unit vector) and its signed distance from O along its left normal, m.
-
-    Make one with `Guide.at` (angle and offset) or `Guide.through` (two points).
-    """
+class Line(NamedTuple):
+    """The guide as kernels take it: None for a direction along +x and for no offset."""
 
     direction: Any
+    offset: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Guide(checks.Checked):
+    """Guide line by its angle and its signed distance from O along its left normal.
+
+    Make one with `Guide.at` (angle and offset) or `Guide.through` (two points).
+
+    Attributes
+    ----------
+    angle : float or array or None
+        From +x, rad; None for a guide through two points, whose `exact` direction was rounded once.
+    guide_offset : float or array
+        m.
+    exact : (x, y) or None
+        Unit vector.
+    """
+
+    angle: Any = 0.0
     guide_offset: Any = 0.0
+    exact: Any = None
+
+    PATHS: ClassVar = {"angle": "guide_angle"}
+
+    def _unit_vector(self):
+        """Say where the exact direction is none."""
+        length = 1.0 if self.exact is None or not all(map(checks.known, self.exact)) else np.hypot(*self.exact)
+        if np.any(np.abs(length - 1.0) > 1e-9):
+            yield f"direction must have length 1, got {length}; use Guide.at"
+
+    RULES = checks.Rules(
+        "guide",
+        _unit_vector,
+        angle=checks.Optional(checks.Number("rad", "guide_angle")),
+        guide_offset=checks.Number("m"),
+        exact=checks.Optional(checks.Pair("1", "direction")),
+    )
 
     @classmethod
     def at(cls, guide_angle=0.0, guide_offset=0.0):
         """Guide at an angle (rad, counter-clockwise from +x) and offset (m)."""
-        angle, offset = ANGLE.quick(guide_angle), OFFSET.quick(guide_offset)
-        if angle is checks.UNSURE or offset is checks.UNSURE:
-            rules = {"guide_angle": ANGLE, "guide_offset": OFFSET}
-            given = {"guide_angle": guide_angle, "guide_offset": guide_offset}
-            angle, offset = checks.examined("guide", rules, given).values()
-        if isinstance(angle, float):
-            return cls((float(cos(angle)), float(sin(angle))) if angle else (1.0, 0.0), offset)
-        return cls((cos(angle), sin(angle)), offset)
+        if guide_angle is None:
+            checks.require("guide", checks.finite("guide_angle", guide_angle))
+        return cls(guide_angle, guide_offset)
 
     @classmethod
     def through(cls, W1, W2):
@@ -52,39 +82,32 @@ class Guide(NamedTuple):
             x, y = x2 - x1, y2 - y1
             length = (x * x + y * y).sqrt()
             checks.require("guide", None if length else f"W1 and W2 coincide at {points['W1']}")
-            return cls((float(x / length), float(y / length)), float((x * y1 - y * x1) / length))
+            return cls(None, float((x * y1 - y * x1) / length), (float(x / length), float(y / length)))
 
     @property
     def is_level(self):
         """Whether it points along +x, by plain numbers."""
-        return present(self.direction[0] - 1.0) is None and present(self.direction[1]) is None
+        if self.exact is None:
+            return present(self.angle) is None
+        return present(self.exact[0] - 1.0) is None and present(self.exact[1]) is None
+
+    @cached_property
+    def direction(self):
+        """Unit vector along the guide."""
+        if self.exact is not None:
+            return self.exact
+        return (1.0, 0.0) if self.is_level else _direction(self.angle)
 
     @property
     def guide_angle(self):
         """Angle of the direction from +x, rad."""
-        return np.arctan2(self.direction[1], self.direction[0])[()]
+        return np.arctan2(self.direction[1], self.direction[0])[()] if self.angle is None else self.angle
+
+    @cached_property
+    def line(self):
+        return Line(None if self.is_level else self.direction, present(self.guide_offset))
 
 
-class Line:
-    """Rule of a field that is a guide, whose direction must have length 1."""
-
-    words = "made by Guide.at or .through"
-
-    def quick(self, value):
-        if type(value) is not Guide or type(value.direction) is not tuple or len(value.direction) != 2:
-            return checks.UNSURE
-        (x, y), offset = value.direction, value.guide_offset
-        plain = type(x) is float and type(y) is float and OFFSET.quick(offset) is offset
-        return value if plain and abs(x * x + y * y - 1.0) < 1e-9 else checks.UNSURE
-
-    def taken(self, value, field=""):
-        if not isinstance(value, Guide):
-            return value, f"{field} must be {self.words}, got {checks.shown(value)}"
-        direction, problem = DIRECTION.taken(value.direction)
-        offset, other = OFFSET.taken(value.guide_offset, "guide_offset")
-        return Guide(direction, offset), problem or other or self._problem(direction)
-
-    def _problem(self, direction):
-        length = np.hypot(*direction) if all(map(checks.known, direction)) else 1.0
-        right = np.all(np.abs(length - 1.0) < 1e-9)
-        return None if right else f"guide direction must have length 1, got {length}; use Guide.at"
+def _direction(angle):
+    x, y = cos(angle), sin(angle)
+    return (float(x), float(y)) if isinstance(angle, float) else (x, y)

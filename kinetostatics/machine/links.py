@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from ..numbers import checks
-from ..numbers.planar import added, left, minus, moment, plus, product, stretched, subtracted, work
+from ..numbers.planar import added, cross, left, minus, moment, plus, product, stretched, subtracted, vector, work
 
 
 class Joint(NamedTuple):
@@ -110,6 +110,14 @@ def arm(direction, along, across):
     if across is None:
         return stretched(along, direction)
     return added(stretched(along, direction), stretched(across, left(direction)))
+
+
+def between(start, end, length):
+    """Motion of a link from joint to joint: its direction and rate by the difference of positions and velocities."""
+    direction, first, second = (
+        tuple(part / length for part in vector(subtracted(b, a))) for a, b in zip(start, end, strict=True)
+    )
+    return LinkMotion(start, direction, cross(direction, first), cross(direction, second))
 
 
 def first_at(link, arm):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.batch import Batched
+from ..numbers.leaves import Batched
 from .crank import ray
 
 TURN = 2 * math.pi
@@ -43,6 +43,7 @@ class Gravity(checks.Checked, Batched):
     acceleration: Any = 9.81
     direction: Any = -math.pi / 2
 
+    PATH = "gravity"
     RULES = checks.Rules("gravity", acceleration=checks.Number("m/s**2", low=0.0), direction=checks.Number("rad"))
 
     @cached_property
@@ -70,6 +71,7 @@ class Spring(checks.Checked, Batched):
     free_position: Any
     on: str = "slider"
 
+    PATH, ELEMENTWISE = "spring", True
     RULES = checks.Rules(
         "spring", stiffness=checks.Number("N/m", low=0.0), free_position=checks.Number("m"), on=checks.Name()
     )
@@ -108,7 +110,9 @@ class ProcessForce(checks.Checked, Batched):
 
     force: Any
     on: str = "slider"
-    period: float = field(default=TURN, kw_only=True)
+    period: float = field(default=TURN, kw_only=True, metadata={"structural": True})
+
+    PATH = "process_force"
 
     def _periods(self):
         """Say where the force has a period of its own."""
@@ -243,3 +247,13 @@ def _missing(angle, force, period, step):
 
 def _degrees(angle):
     return f"{math.degrees(angle):.9g} deg"
+
+
+def period_of(loads):
+    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, one at least."""
+    return TURN * math.lcm(*(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
+
+
+def is_given(item):
+    """Whether a load is numbers, checked when it was made, and no code of the user's."""
+    return isinstance(item, Gravity | Spring) or (isinstance(item, ProcessForce) and not callable(item.force))

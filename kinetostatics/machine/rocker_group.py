@@ -7,15 +7,15 @@ area / (2 c h): a product of lengths, so no digit is lost near a toggle, where i
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
-from ..numbers.planar import added, dot, left, minus, moment, number, quotient, stretched, subtracted
-from .chain import Adds, Bar
-from .links import Joint, Link, LinkMotion
+from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted
+from .group import FRAME, Bar, Group, Output, Point, Resolved
+from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
@@ -81,23 +81,22 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
 
 
-def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load, demand):
+def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     """Forces on rocker and coupler (kernel).
 
-    `demand` is the force the pin B must supply to further groups; loads are wrenches about the links' reference
-    joints. Moments of the coupler about A and of the rocker about O2 give the pin force by its parts along both links.
+    Loads are wrenches about the links' reference joints, those of further groups among them. Moments of the coupler
+    about A and of the rocker about O2 give the pin force by its parts along both links.
     """
     q, p = motion.coupler.direction, motion.rocker.direction
-    on_rocker = minus(quotient(rocker_load.moment, rocker_length), moment(p, demand))
-    along_coupler = number(on_rocker) / motion.divisor
+    along_coupler = number(quotient(rocker_load.moment, rocker_length)) / motion.divisor
     along_rocker = number(quotient(coupler_load.moment, coupler_length)) / motion.divisor
     pin = added(stretched(along_coupler, q), stretched(along_rocker, p))
-    pivot = subtracted(subtracted(demand, pin), rocker_load.force)
+    pivot = subtracted(subtracted(None, pin), rocker_load.force)
     return RockerForces(subtracted(pin, coupler_load.force), pin, pivot)
 
 
 @dataclass(frozen=True, eq=False)
-class RockerGroup(checks.Checked):
+class RockerGroup(checks.Checked, Group):
     """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
 
     Parameters
@@ -126,6 +125,8 @@ class RockerGroup(checks.Checked):
     pivot_name: str = "O2"
     label: str = ""
 
+    TRUSTED = True
+    PATHS: ClassVar = {"pivot": "rocker_pivot"}
     RULES = checks.Rules(
         "rocker group",
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
@@ -139,11 +140,6 @@ class RockerGroup(checks.Checked):
         pivot_name=checks.Name(),
         label=checks.Name(may_be_empty=True),
     )
-
-    @property
-    def adds(self):
-        forces = (self.on + self.label, self.pin, self.pivot_name)
-        return Adds((self.pin, self.pivot_name), (self._coupler, self._rocker), forces)
 
     @property
     def links(self):
@@ -172,9 +168,32 @@ class RockerGroup(checks.Checked):
     def _rocker(self):
         return "rocker" + self.label
 
+    @property
+    def joints(self):
+        return {self.pin: Point(self._rocker, self.rocker_length), self.pivot_name: Point(FRAME, *self.pivot)}
+
+    @property
+    def outputs(self):
+        return {
+            self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}"),
+            self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
+            self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
+        }
+
     def place(self, placement):
         """Add joints B and O2, coupler and rocker."""
-        motion = place(placement.joints[self.on], self.coupler_length, self.rocker_length, self.pivot, self.assembly)
+        lengths = self.coupler_length, self.rocker_length
+        self._set(placement, place(placement.joints[self.on], *lengths, self.pivot, self.assembly))
+
+    def follow(self, placement, joints):
+        """Place coupler and rocker at joints found in another way."""
+        pin, pivot = joints[self.pin], Joint(self.pivot, None, None)
+        coupler = between(placement.joints[self.on], pin, self.coupler_length)
+        rocker = between(pivot, pin, self.rocker_length)
+        sine, cosine = cross(coupler.direction, rocker.direction), dot(coupler.direction, rocker.direction)
+        self._set(placement, RockerMotion(coupler, rocker, pin, sine, cosine, sine, None))
+
+    def _set(self, placement, motion):
         placement.joints[self.pin] = motion.pin
         placement.joints[self.pivot_name] = motion.rocker.joint
         placement.links[self._coupler] = motion.coupler
@@ -195,17 +214,16 @@ class RockerGroup(checks.Checked):
             f"{np.max(high):.6g} m"
         )
 
-    def resolve(self, placement, loads, pushes, forces):
-        """Add the reactions at A, B and O2, and demand the inner one of the joint it hangs on."""
+    def resolve(self, placement, loads, along) -> Resolved:
         found = resolve(
             placement.details[self._rocker],
             self.coupler_length,
             self.rocker_length,
             loads[self._coupler],
             loads[self._rocker],
-            forces.demand.get(self.pin),
         )
-        forces.reactions[self.on + self.label] = found.inner
-        forces.reactions[self.pin] = found.pin
-        forces.reactions[self.pivot_name] = found.pivot
-        forces.require(self.on, found.inner)
+        return Resolved(
+            {self.on + self.label: found.inner, self.pin: found.pin, self.pivot_name: found.pivot},
+            {},
+            {self.on: Wrench(found.inner, None)},
+        )

@@ -6,17 +6,28 @@ dead centres, whatever the inclination of the guide.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import divisor, root
-from ..numbers.planar import added, minus, number, plus, quotient, subtracted, turned, unturned, vector
-from .chain import Adds, Bar
-from .guide import Guide, Line
-from .links import Joint, Link, LinkMotion, present
+from ..numbers.planar import (
+    added,
+    cross,
+    dot,
+    minus,
+    number,
+    plus,
+    quotient,
+    subtracted,
+    turned,
+    unturned,
+    vector,
+)
+from .group import Bar, Group, Output, Point, Resolved
+from .guide import Guide
+from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-27
 """Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
@@ -52,7 +63,7 @@ def place(joint, coupler_length, guide, assembly):
     first = unturned(joint.first, guide.direction)
     second = unturned(joint.second, guide.direction)
 
-    across = minus(guide.guide_offset, position[1])
+    across = minus(guide.offset, position[1])
     square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
     reach = root(square, unit)
     along, divided = assembly * reach, assembly * divisor(reach, SMALLEST * coupler_length)
@@ -80,18 +91,18 @@ def place(joint, coupler_length, guide, assembly):
 def _on_guide(position, travel, reach, guide):
     """Slider pin, by the shorter sum: along a level guide from O, else from the inner joint."""
     if guide.direction is None:
-        return (travel, number(guide.guide_offset))
+        return (travel, number(guide.offset))
     return added(position, turned(reach, guide.direction))
 
 
-def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, demand):
+def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     """Forces on slider and coupler, from the slider inwards (kernel).
 
-    `push` is the applied force along the guide, `demand` the force the slider pin must supply to further groups; loads
-    are wrenches about the links' reference joints. The slider's balance along the guide gives the pin force along it,
-    moments of the coupler about its inner joint the pin force across; the guide carries the rest.
+    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, those
+    of further groups among them. The slider's balance along the guide gives the pin force along it, moments of the
+    coupler about its inner joint the pin force across; the guide carries the rest.
     """
-    on_slider = unturned(vector(subtracted(slider_load.force, demand)), guide.direction)
+    on_slider = unturned(vector(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
     across = (number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along) / motion.divisor
     pin = turned((along, across), guide.direction)
@@ -104,7 +115,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push, dema
 
 
 @dataclass(frozen=True, eq=False)
-class SliderGroup(checks.Checked):
+class SliderGroup(checks.Checked, Group):
     """Coupler from joint `on` to a slider at joint `pin` on `guide`.
 
     Parameters
@@ -122,7 +133,7 @@ class SliderGroup(checks.Checked):
     """
 
     coupler_length: Any
-    guide: Guide = Guide((1.0, 0.0))
+    guide: Guide = Guide()
     assembly: int = 1
     coupler: Link = Link()
     slider: Link = Link()
@@ -130,24 +141,18 @@ class SliderGroup(checks.Checked):
     pin: str = "B"
     label: str = ""
 
+    TRUSTED = True
+    PATHS: ClassVar = {"guide": ""}
     RULES = checks.Rules(
         "slider group",
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
-        guide=Line(),
+        guide=checks.Made(Guide, "made by Guide.at or .through"),
         assembly=checks.Sign(),
         coupler=checks.Made(Link, "a Link"),
         slider=checks.Made(Link, "a Link"),
         on=checks.Name(),
         pin=checks.Name(),
         label=checks.Name(may_be_empty=True),
-    )
-
-    @property
-    def adds(self):
-        label = self.label
-        reactions = (self.on + label, self.pin, "guide" + label)
-        return Adds(
-            (self.pin,), (self._coupler, self._slider), reactions, ("guide_force" + label, "guide_moment" + label)
         )
 
     @property
@@ -174,17 +179,42 @@ class SliderGroup(checks.Checked):
     def _slider(self):
         return "slider" + self.label
 
-    @cached_property
-    def _line(self):
-        """The guide as kernels take it: None for a direction along +x and for no offset."""
-        direction, offset = self.guide
-        return Guide(None if self.guide.is_level else direction, present(offset))
+    @property
+    def joints(self):
+        return {self.pin: Point(self._slider)}
+
+    @property
+    def guides(self):
+        return {self._slider: self.guide}
+
+    @property
+    def outputs(self):
+        label = self.label
+        return {
+            self.on + label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}"),
+            self.pin: Output("N", True, f"{self._coupler} on {self._slider}"),
+            "guide" + label: Output("N", True, f"ground on {self._slider}"),
+            "guide_force" + label: Output("N", False, f"ground on {self._slider} along the guide's left normal"),
+            "guide_moment" + label: Output("N m", False, f"ground on {self._slider} about {self.pin}"),
+        }
 
     def place(self, placement):
-        motion = place(placement.joints[self.on], self.coupler_length, self._line, self.assembly)
+        self._set(placement, place(placement.joints[self.on], self.coupler_length, self.guide.line, self.assembly))
+
+    def follow(self, placement, joints):
+        """Place coupler and slider at joints found in another way."""
+        pin, direction = joints[self.pin], self.guide.direction
+        coupler = between(placement.joints[self.on], pin, self.coupler_length)
+        sine, cosine = cross(direction, coupler.direction), dot(direction, coupler.direction)
+        travel = Joint(*(dot(direction, part) for part in pin))
+        slider = LinkMotion(pin, direction, None, None)
+        self._set(placement, SliderMotion(coupler, slider, sine, cosine, cosine, None, travel))
+
+    def _set(self, placement, motion):
         placement.joints[self.pin] = motion.slider.joint
         placement.links[self._coupler] = motion.coupler
         placement.links[self._slider] = motion.slider
+        placement.travels[self._slider] = motion.travel
         placement.details[self._slider] = motion
 
     def closure(self, placement):
@@ -196,7 +226,7 @@ class SliderGroup(checks.Checked):
         The coupler reaches its length along the guide less l (1 - cos) = l sin^2 / (1 + cos), all small beside it.
         """
         motion = placement.details[self._slider]
-        along = unturned(placement.joints[self.on].position, self._line.direction)[0]
+        along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
         shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
         return along + (self.assembly * self.coupler_length - free_position) - self.assembly * shortfall
 
@@ -207,23 +237,21 @@ class SliderGroup(checks.Checked):
             f"{self._coupler} length, {_span(self.coupler_length)} m"
         )
 
-    def resolve(self, placement, loads, pushes, forces):
-        """Add pin reactions, guide force and moment, and demand the inner reaction of the joint it hangs on."""
+    def resolve(self, placement, loads, along) -> Resolved:
         found = resolve(
             placement.details[self._slider],
             self.coupler_length,
-            self._line,
+            self.guide.line,
             loads[self._coupler],
             loads[self._slider],
-            pushes.get(self._slider),
-            forces.demand.get(self.pin),
+            along.get(self._slider),
         )
-        forces.reactions[self.on + self.label] = found.inner
-        forces.reactions[self.pin] = found.pin
-        forces.reactions["guide" + self.label] = turned((0.0, found.guide_force), self._line.direction)
-        forces.scalars["guide_force" + self.label] = found.guide_force
-        forces.scalars["guide_moment" + self.label] = found.guide_moment
-        forces.require(self.on, found.inner)
+        guide = turned((0.0, found.guide_force), self.guide.line.direction)
+        return Resolved(
+            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: guide},
+            {"guide_force" + self.label: found.guide_force, "guide_moment" + self.label: found.guide_moment},
+            {self.on: Wrench(found.inner, None)},
+        )
 
 
 def _span(length):

@@ -8,8 +8,8 @@ from ..errors import QuantityError
 from ..machine.links import accelerated, angular_acceleration, arm, first_at, present, second_at
 from ..machine.mechanism import Mechanism
 from ..numbers import checks
-from ..numbers.batch import wider
 from ..numbers.elementary import namespace, read_only, stack
+from ..numbers.leaves import wider
 from ..numbers.planar import added, number, plus, product, stretched, vector
 
 
@@ -26,18 +26,19 @@ class Motion:
         rad.
     crank_speed, crank_acceleration : float or array
         rad/s, rad/s2.
+    loads : tuple
     """
 
     mechanism: Mechanism
     crank_angle: Any
     crank_speed: Any
     crank_acceleration: Any
+    loads: tuple = ()
 
     @cached_property
     def shape(self):
-        """Shape (..., N) of a scalar result: batch axes of the designs, then the crank angles."""
-        parts = (self.mechanism, self.crank_speed, self.crank_acceleration)
-        return wider(self.crank_angle.shape, *parts)
+        """Shape (..., N) of a scalar result: batch axes of designs and loads, then the crank angles."""
+        return wider(self.crank_angle.shape, self.mechanism, self.crank_speed, self.crank_acceleration, *self.loads)
 
     @cached_property
     def placement(self):
@@ -75,6 +76,16 @@ class Motion:
         """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m."""
         return self._scalar(self._travel(slider).position)
 
+    def travel_velocity(self, slider="slider"):
+        """Velocity of a slider along its guide, (..., N), m/s."""
+        return self._scalar(self.crank_speed * self._travel(slider).first)
+
+    def travel_acceleration(self, slider="slider"):
+        """Acceleration of a slider along its guide, (..., N), m/s2."""
+        travel = self._travel(slider)
+        square, alpha = self.accelerating
+        return self._scalar(plus(square * travel.second, product(alpha, travel.first)))
+
     def elongation(self, free_position, slider="slider"):
         """Coordinate of a slider's pin along its guide less a free position (m), free of cancellation, (..., N), m."""
         travel = self._travel(slider)
@@ -91,14 +102,17 @@ class Motion:
     @property
     def slider_velocity(self):
         """Velocity of the slider along the guide, m/s."""
-        return self._scalar(self.crank_speed * self._travel("slider").first)
+        return self.travel_velocity()
 
     @property
     def slider_acceleration(self):
         """Acceleration of the slider along the guide, m/s2."""
-        travel = self._travel("slider")
-        square, alpha = self.accelerating
-        return self._scalar(plus(square * travel.second, product(alpha, travel.first)))
+        return self.travel_acceleration()
+
+    def measure(self, name):
+        """A quantity of motion that a group declares, such as "pressure_angle", (..., N)."""
+        groups = {declared: group for group in self.mechanism.groups for declared in group.motions}
+        return self._scalar(self._look_up("quantity", name, groups).motion(name, self.placement))
 
     @property
     def closure(self):
@@ -127,8 +141,7 @@ class Motion:
         return self._look_up("link", name, self.placement.links)
 
     def _travel(self, slider):
-        sliders = {key: found for key, found in self.placement.details.items() if hasattr(found, "travel")}
-        return self._look_up("slider", slider, sliders).travel
+        return self._look_up("slider", slider, self.placement.travels)
 
     def _point(self, name):
         """Reference joint, arm from it and link of a mass centre; joint, None, None of a joint."""

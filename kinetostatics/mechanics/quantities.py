@@ -1,92 +1,162 @@
-"""Names and units of what a solution offers: one list for extremes, tables, plots and the command line."""
+"""What a solution offers, by name: units and labels that the mechanism's parts declare, and the values behind them.
+
+One list serves extremes, tables, plots, sweeps and the command line.
+"""
+
+from collections.abc import Callable
+from operator import attrgetter, methodcaller
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 from ..errors import QuantityError
 from ..numbers import checks
 from ..numbers.elementary import sqrt
 
-UNITS = {
-    "balancing_torque": "N m",
-    "balancing_torque_by_power": "N m",
-    "guide_force": "N",
-    "guide_moment": "N m",
-    "cam_force": "N",
-    "slot_force": "N",
-    "shaking_force": "N",
-    "shaking_moment": "N m",
-    "slider_position": "m",
-    "slider_velocity": "m/s",
-    "slider_acceleration": "m/s2",
-    "pressure_angle": "rad",
-}
-VECTORS = ("shaking_force",)
-RATES = {"_rate": "rad/s", "_angular_acceleration": "rad/s2"}
-"""Endings that make a quantity of a link's name: "coupler_rate", "rocker_angular_acceleration"."""
+
+class Quantity(NamedTuple):
+    """A quantity that a mechanism has.
+
+    Attributes
+    ----------
+    unit : str
+        SI.
+    label : str
+        What a table or an axis calls it.
+    read : function
+        From a motion, dynamics or solution to its values: (..., N), of a vector (2, ..., N).
+    vector : bool
+    kind : str
+        "reaction", "force" (a force, moment or torque by name), "slider", "motion", "whole" (of the whole mechanism),
+        or "rate".
+    owner : str
+        Link that a rate is of.
+    """
+
+    unit: str
+    label: str
+    read: Callable[[Any], Any]
+    vector: bool = False
+    kind: str = "force"
+    owner: str = ""
 
 
-def values(solution, quantity):
-    """Values of a quantity over the crank angles; of a joint's reaction or a vector attribute, the magnitude."""
-    if callable(quantity):
-        return quantity(solution)
-    parts = components(solution, quantity)
+_known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
+
+
+def of_mechanism(mechanism) -> dict[str, Quantity]:
+    """Every quantity of a mechanism, by name."""
+    if mechanism not in _known:
+        _known[mechanism] = _declared(mechanism)
+    return _known[mechanism]
+
+
+def _declared(mechanism):
+    found: dict[str, Quantity] = {}
+
+    def add(name, unit, read, vector=False, kind="force", label=None, owner=""):
+        found[name] = Quantity(unit, label or name.replace("_", " "), read, vector, kind, owner)
+
+    outputs = mechanism.outputs
+    for name in ("balancing_torque", *(name for name in outputs if name != "balancing_torque")):
+        unit, vector, _ = outputs[name]
+        if not vector:
+            add(name, unit, methodcaller("scalar", name))
+    add("balancing_torque_by_power", "N m", attrgetter("balancing_torque_by_power"), kind="whole")
+    add("shaking_force", "N", attrgetter("shaking_force"), True, "whole")
+    add("shaking_moment", "N m", attrgetter("shaking_moment"), kind="whole")
+    for slider in mechanism.guides:
+        add(f"{slider}_position", "m", methodcaller("travel", slider), kind="slider")
+        add(f"{slider}_velocity", "m/s", methodcaller("travel_velocity", slider), kind="slider")
+        add(f"{slider}_acceleration", "m/s2", methodcaller("travel_acceleration", slider), kind="slider")
+    for group in mechanism.groups:
+        for name, output in group.motions.items():
+            add(name, output.unit, methodcaller("measure", name), kind="motion")
+    for name, output in outputs.items():
+        if output.vector:
+            add(name, output.unit, methodcaller("reaction", name), True, "reaction", f"reaction {name}")
+    for link in mechanism.links:
+        add(f"{link}_rate", "rad/s", methodcaller("rate", link), kind="rate", owner=link)
+        add(f"{link}_angular_acceleration", "rad/s2", methodcaller("angular_acceleration", link), kind="rate", owner=link)
+    return found
+
+
+def still(ratio):
+    """Whether a kinematic coefficient stands for what does not turn."""
+    return ratio is None
+
+
+def quantity(solution, name) -> Quantity:
+    """Quantity of a solution by name.
+
+    Raises
+    ------
+    QuantityError
+        The mechanism has no such quantity; the message lists those it has.
+    """
+    known = of_mechanism(solution.mechanism)
+    if name not in known:
+        raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", name, tuple(known)))
+    return known[name]
+
+
+def components(solution, name):
+    """Values of a scalar quantity over the crank angles, or both components of a vector; "closure": of each group."""
+    if name == "closure":
+        return solution.closure
+    found = quantity(solution, name)
+    values = found.read(solution)
+    return tuple(values) if found.vector else (values,)
+
+
+def values(solution, name):
+    """Values of a quantity over the crank angles; of a vector the magnitude; of a function what it returns."""
+    if callable(name):
+        return name(solution)
+    parts = components(solution, name)
     return parts[0] if len(parts) == 1 else magnitude(parts)
 
 
-def components(solution, quantity):
-    """Values of a scalar quantity over the crank angles, or both components of a joint's reaction or a vector."""
-    if quantity in UNITS:
-        found = getattr(solution, quantity)
-        return tuple(found) if quantity in VECTORS else (found,)
-    if quantity == "closure":
-        return solution.closure
-    link, ending = _of_link(quantity)
-    if link in solution.mechanism.links:
-        return (solution.rate(link) if ending == "_rate" else solution.angular_acceleration(link),)
-    if quantity in solution.reactions:
-        return tuple(solution.reaction(quantity))
-    if quantity in solution.scalars:
-        return (solution.scalar(quantity),)
-    known = (*UNITS, *solution.scalars, *solution.reactions)
-    raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", quantity, tuple(dict.fromkeys(known))))
+def sizes(solution, name):
+    """Components of a quantity with the magnitude in place of those of a vector."""
+    parts = components(solution, name)
+    vector = name != "closure" and quantity(solution, name).vector
+    return (magnitude(parts),) if vector else parts
 
 
-def sizes(solution, quantity):
-    """The same with the magnitude in place of the components of a vector."""
-    parts = components(solution, quantity)
-    return (magnitude(parts),) if quantity in VECTORS or quantity in solution.reactions else parts
-
-
-def scale(solution, quantity):
+def scale(solution, name):
     """Largest of the terms that a force, moment or torque is the sum of; 0 for a motion or a function of the user's.
 
     What is small beside it may be rounding of terms that cancel.
     """
-    if callable(quantity) or _of_link(quantity)[0] or unit(quantity) not in ("N", "N m"):
-        return 0.0
-    return solution.largest_torque_term if unit(quantity) == "N m" else solution.largest_force_term
-
-
-def unit(quantity):
-    """Unit of a quantity, SI; a joint's reaction is in N."""
-    return RATES.get(_of_link(quantity)[1]) or UNITS.get(_unlabelled(quantity), "N")
-
-
-def label(quantity):
-    """What a table or an axis calls a quantity."""
-    named = _unlabelled(quantity) in UNITS or _of_link(quantity)[0]
-    return quantity.replace("_", " ") if named else f"reaction {quantity}"
-
-
-def _unlabelled(quantity):
-    """Name of a quantity without the number of a second group: guide_force of "guide_force2"."""
-    return quantity.rstrip("0123456789")
-
-
-def _of_link(quantity):
-    """Link and ending of a rate's name; two empty texts for any other quantity."""
-    found = next((ending for ending in RATES if quantity.endswith(ending)), "")
-    return quantity.removesuffix(found) if found else "", found
+    unit = "" if callable(name) else quantity(solution, name).unit
+    if unit == "N m":
+        return solution.largest_torque_term
+    return solution.largest_force_term if unit == "N" else 0.0
 
 
 def magnitude(vector):
     """Length of a vector, first axis (x, y)."""
     return sqrt(vector[0] * vector[0] + vector[1] * vector[1])
+
+
+_SPELLED = {"torque": "N m", "power": "N m", "moment": "N m", "velocity": "m/s", "position": "m", "rate": "rad/s"}
+
+
+def unit(name):
+    """Unit by spelling (to go)."""
+    base = name.rstrip("0123456789")
+    if base.endswith("angular_acceleration"):
+        return "rad/s2"
+    if base.endswith("slider_acceleration"):
+        return "m/s2"
+    if base == "pressure_angle":
+        return "rad"
+    return next((text for ending, text in _SPELLED.items() if base.endswith(ending)), "N")
+
+
+def label(name):
+    """Label by spelling (to go)."""
+    return name.replace("_", " ") if "_" in name else f"reaction {name}"
+
+
+RATES = {"_rate": "rad/s", "_angular_acceleration": "rad/s2"}

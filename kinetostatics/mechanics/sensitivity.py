@@ -27,9 +27,9 @@ from ..machine.guide import Guide
 from ..machine.links import Link, arm, first_at, second_at, virtual_work
 from ..machine.loads import Gravity, ProcessForce, Spring
 from ..numbers.elementary import APART, ROUNDING
+from ..numbers.leaves import mapped, with_fields
 from ..numbers.planar import product, vector
-from ..numbers.substitution import with_fields, with_numbers
-from ..solution.solution import Solution
+from .dynamics import Dynamics
 
 UNIT = 2.0**-53
 SAFETY = 3.0
@@ -217,25 +217,25 @@ class _Seeded:
         self._seeds, self._count = 0, len(lengths) + len(plain.loads) + 2
         self._angle = _array(self._seed(plain.crank_angle))
         mechanism = self._geometry(plain.mechanism, self._seed, {CamRoller: self._roller})
-        drive = with_numbers((plain.crank_speed, plain.crank_acceleration), self._constant)
-        idle = Solution(mechanism, self._angle, *drive)
+        drive = mapped((plain.crank_speed, plain.crank_acceleration), self._constant)
+        idle = Dynamics(mechanism, self._angle, *drive)
         self.solution = replace(idle, loads=tuple(self._load(item, idle) for item in plain.loads))
         self.largest_pushes = {
-            name: self._value(np.asarray(plain._largest(push))[..., None]) for name, push in plain._pushes.items()
+            name: self._value(np.asarray(plain.largest(push))[..., None]) for name, push in plain.pushes.items()
         }
 
     def _geometry(self, item, number, special=None):
         """The item with its masses as they are, and other numbers in place of its lengths."""
 
         def link(own):
-            mass, inertia = with_numbers((own.mass, own.inertia), self._constant)
-            return with_fields(own, mass=mass, centre=with_numbers(own.centre, number), inertia=inertia)
+            mass, inertia = mapped((own.mass, own.inertia), self._constant)
+            return with_fields(own, mass=mass, centre=mapped(own.centre, number), inertia=inertia)
 
         def guide(line):
-            direction = line.direction if line.is_level else with_numbers(line.direction, self._constant)
-            return Guide(direction, with_numbers(line.guide_offset, number))
+            direction = (1.0, 0.0) if line.is_level else mapped(line.direction, self._constant)
+            return with_fields(line, angle=None, guide_offset=mapped(line.guide_offset, number), exact=direction)
 
-        return with_numbers(item, number, {Link: link, Guide: guide, **(special or {})})
+        return mapped(item, number, {Link: link, Guide: guide, **(special or {})})
 
     def _constant(self, value):
         return Dual(self._value(value)) if np.ndim(value) else value
@@ -280,12 +280,12 @@ class _Seeded:
 
     def _load(self, item, idle):
         if isinstance(item, Gravity):
-            return with_numbers(item, self._constant)
+            return mapped(item, self._constant)
         push, known = item.push(self._plain), self._seeds
         try:
-            copied = with_numbers(item, self._constant)
+            copied = mapped(item, self._constant)
             if isinstance(item, Spring):
-                copied = with_fields(copied, free_position=with_numbers(item.free_position, self._seed))
+                copied = with_fields(copied, free_position=mapped(item.free_position, self._seed))
             found = copied.push(idle)
             self._require_equal([found], [push])
         except Exception:  # whatever fails on numbers that are not plain
@@ -387,7 +387,7 @@ def _terms(solution):
     """Terms of every link by name."""
     placement, bodies = solution.placement, {name: link.body for name, link in solution.mechanism.links.items()}
     square, alpha = (abs(_number(part).value) for part in solution.accelerating)
-    gravity = 0.0 if solution._gravity is None else _Sized(solution._gravity).size
+    gravity = 0.0 if solution.gravity is None else _Sized(solution.gravity).size
     found = {}
     for part in (solution.mechanism.crank, *solution.mechanism.groups):
         joints = [placement.joints[name] for bar in part.bars for name in (bar.start, bar.end)]
@@ -413,19 +413,19 @@ def _terms(solution):
 def _of_forces(solution, links, largest_pushes):
     """Magnification in reactions and torque; nothing without loads."""
     forces, torques = [0.0], [0.0]
-    for name, wrench in solution._link_loads.items():
+    for name, wrench in solution.link_loads.items():
         link = links[name]
         forces += [PASSING * link.force, PASSING**2 * link.moment / link.length]
         torques.append(PASSING * (link.force * link.speed + link.moment * link.rate))
         forces.append(0.0 if wrench.force is None else _Sized(wrench.force).certain)
         torques.append(_Sized(virtual_work(solution.placement.links[name], wrench)).certain)
-    for name, push in solution._pushes.items():
+    for name, push in solution.pushes.items():
         work = product(push, solution._travel(name).first)
         size = np.maximum(_Sized(push).certain, PASSING * largest_pushes[name])
         forces.append(size)
         torques += [_Sized(work).certain, PASSING * size * links[name].speed]
     force, torque = reduce(np.maximum, forces), reduce(np.maximum, torques)
-    found = solution._forces
+    found = solution.resolved
     supports = [*found.reactions.values(), *(found.scalars[name] for name in BESIDES if name in found.scalars)]
     shares = [_quotient(_Sized(vector(part) if part is None else part).change, force) for part in supports]
     return [*shares, _quotient(_Sized(found.scalars["balancing_torque"]).change, torque)]

@@ -8,6 +8,7 @@ structure, so that new numbers never make a new program.
 
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
+from functools import cached_property
 from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
@@ -27,9 +28,9 @@ class _Mark:
         return self._name
 
 
-NUMBER, TABLE = _Mark("NUMBER"), _Mark("TABLE")
+NUMBER, TABLE, PART = _Mark("NUMBER"), _Mark("TABLE"), _Mark("PART")
 STRUCTURAL = (bool, int, str)
-"""Types of dataclass fields that are no numbers: an assembly, a name. Fields for numbers are annotated `Any`."""
+"""Types of dataclass fields that are no numbers: an assembly, a name; others may say so, by their metadata."""
 
 
 class Kept(float):
@@ -42,16 +43,18 @@ class Leaves:
     Attributes
     ----------
     numbers : list of float or array (..., 1)
-    tables : list
-        Arrays with a value for each crank angle, and parts that declare `TABULATED`: sampled cams.
+    tables : list of array
+        With a value for each crank angle.
+    parts : list
+        That declare `TABULATED`, as sampled cams do: they are computed beforehand, not recorded.
     lasting : bool
         Whether the structure tells all else; False with objects of the user's that may change unseen.
     """
 
-    __slots__ = ("lasting", "numbers", "tables")
+    __slots__ = ("lasting", "numbers", "parts", "tables")
 
     def __init__(self):
-        self.numbers, self.tables, self.lasting = [], [], True
+        self.numbers, self.tables, self.parts, self.lasting = [], [], [], True
 
 
 def taken_apart(item, leaves: Leaves):
@@ -65,18 +68,20 @@ def taken_apart(item, leaves: Leaves):
     return (_TAKERS.get(kind) or _taker(kind))(item, leaves)
 
 
-def put_together(structure, number: Callable[[], Any], table: Callable[[], Any]):
-    """The item of a structure, with leaves from two functions that are called in order; nothing is checked anew."""
+def put_together(structure, number: Callable[[], Any], table: Callable[[], Any], part: Callable[[], Any]):
+    """The item of a structure, with leaves from functions that are called in order; nothing is checked anew."""
     if structure is NUMBER:
         return number()
     if structure is TABLE:
         return table()
+    if structure is PART:
+        return part()
     if isinstance(structure, Opaque):
         return structure.item
     if type(structure) is not tuple:
         return structure
     kind, *parts = structure
-    made = [put_together(part, number, table) for part in parts]
+    made = [put_together(item, number, table, part) for item in parts]
     if kind is tuple:
         return tuple(made)
     if not is_dataclass(kind):
@@ -102,18 +107,64 @@ class Opaque:
         return hash(self._key)
 
 
-def mapped(item, number):
-    """Copy of an item with ``number(value)`` in place of each leaf, nothing checked anew."""
-    leaves = Leaves()
-    structure = taken_apart(item, leaves)
-    values, rows = map(number, leaves.numbers), map(number, leaves.tables)
-    return put_together(structure, lambda: next(values), lambda: next(rows))
+def mapped(item, number, special=None):
+    """Copy of an item with ``number(value)`` in place of each leaf, nothing checked anew.
+
+    `special` holds by type functions that copy an item in their own way.
+    """
+    for kind, copied in (special or {}).items():
+        if isinstance(item, kind):
+            return copied(item)
+    if is_dataclass(item) and not getattr(item, "TABULATED", False):
+        return with_fields(
+            item,
+            **{name: mapped(getattr(item, name), number, special) for name, structural in _kinds(item) if not structural},
+        )
+    if isinstance(item, tuple | list):
+        return tuple(mapped(part, number, special) for part in item)
+    if isinstance(item, int | float | np.number) and item == 0:
+        return item
+    return number(item) if isinstance(item, int | float | np.number | np.ndarray) else item
+
+
+def with_fields(item, **changes):
+    """Copy of a dataclass with some fields changed and nothing checked."""
+    made = object.__new__(type(item))
+    for field in fields(item):
+        object.__setattr__(made, field.name, changes.get(field.name, getattr(item, field.name)))
+    return made
+
+
+def _kinds(kind):
+    """Names of the fields of a dataclass, and whether each belongs to the structure."""
+    for field in fields(kind):
+        yield field.name, field.type in STRUCTURAL or bool(field.metadata.get("structural"))
 
 
 def batch_shape(numbers):
     """Shape that arrays of designs among numbers have in common; () for a single design."""
     shapes = [number.shape for number in numbers if type(number) is not float]
     return np.broadcast_shapes(*shapes)[:-1] if shapes else ()
+
+
+class Batched:
+    """A dataclass of parameters, which may be arrays of designs."""
+
+    @cached_property
+    def batch(self):
+        """Shape that arrays of designs among the parameters have in common; () for a single design.
+
+        An array of one axis is a table (of a cam, of a load over the crank angles), not a batch.
+        """
+        leaves = Leaves()
+        taken_apart(self, leaves)
+        return wider((), *(leaf for leaf in (*leaves.numbers, *leaves.tables) if np.ndim(leaf) > 1))
+
+
+def wider(shape, *parts):
+    """Shape of results that depend on these parts too: numbers, arrays, or parameters with a `batch`."""
+    more = [found for part in parts if (found := getattr(part, "batch", None) or getattr(part, "shape", ()))]
+    return np.broadcast_shapes(shape, *more) if more else shape
 
 
 # How each type is taken apart
@@ -134,6 +185,11 @@ def _array(item, leaves):
 def _table(item, leaves):
     leaves.tables.append(item)
     return TABLE
+
+
+def _part(item, leaves):
+    leaves.parts.append(item)
+    return PART
 
 
 def _tuple(item, leaves):
@@ -199,7 +255,7 @@ _TAKERS: dict[type, Callable] = {
 def _taker(kind):
     """How items of a type are taken apart, found once: dataclasses and named tuples field by field."""
     if getattr(kind, "TABULATED", False):
-        taker = _table
+        taker = _part
     elif is_dataclass(kind):
         taker = _of_dataclass(kind)
     elif issubclass(kind, tuple) and hasattr(kind, "_fields"):
@@ -213,9 +269,9 @@ def _taker(kind):
 def _of_dataclass(kind):
     """Function written for the type, as a hand would write it: it runs for each part of each scene that is solved."""
     lines = ["def taker(item, leaves):"]
-    for place, field in enumerate(fields(kind)):
-        lines.append(f"    v{place} = item.{field.name}")
-        if field.type not in STRUCTURAL:
+    for place, (name, structural) in enumerate(_kinds(kind)):
+        lines.append(f"    v{place} = item.{name}")
+        if not structural:
             lines += [
                 f"    if type(v{place}) is float and v{place} != 0.0:",
                 f"        leaves.numbers.append(v{place})",

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
+from ..machine.loads import TURN, is_given
 from ..mechanics import assembly
-from ..solution.solution import TURN, is_given, pushed
+from ..mechanics.pushes import pushed
 
 SAMPLES = 1440
 """Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""

@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.chain import MEMBERS, Forces, Once, Placement
 from ..machine.crank import ORIGIN, ray
+from ..machine.group import MEMBERS, Placement
 from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
 from ..numbers import checks
-from ..numbers.planar import length, number, plus, product, subtracted, vector, work
+from ..numbers.planar import length, number, product, subtracted, vector, work
 
 TOLERANCE = 1e-6
 """Largest relative error that passes; right groups reach 1e-10, a wrong term is of the order of 1."""
@@ -71,7 +71,7 @@ def check(group):
     Parameters
     ----------
     group : SliderGroup, RockerGroup, CamRoller or alike
-        With the members that `kinetostatics.chain` lists; a single design.
+        With the members that `kinetostatics.machine.group` lists; a single design.
 
     Returns
     -------
@@ -164,11 +164,10 @@ def _of_shape(stage):
         errors[f"direction of {name}"] = _error(length(motion.direction), 1.0, 1.0)
         pairs = zip(motion.joint.position, placement.joints[joint].position, strict=True)
         errors[f"reference joint of {name}"] = max(_error(*pair, stage.size) for pair in pairs)
-    for name, detail in placement.details.items():
-        if hasattr(detail, "travel") and hasattr(group, "elongation"):
-            free = 0.7 * stage.size
-            elongation = group.elongation(placement, free)
-            errors[f"elongation of {name}"] = _error(elongation, detail.travel.position - free, stage.size)
+    for name, travel in placement.travels.items() if hasattr(group, "elongation") else ():
+        free = 0.7 * stage.size
+        elongation = group.elongation(placement, free)
+        errors[f"elongation of {name}"] = _error(elongation, travel.position - free, stage.size)
     return errors
 
 
@@ -197,9 +196,8 @@ def _rates(placement, stage):
 
     for name in placement.joints.keys() - {"O", stage.on}:
         add(f"joint {name}", placement.joints[name])
-    for name, detail in placement.details.items():
-        if hasattr(detail, "travel"):
-            add(f"travel of {name}", detail.travel)
+    for name, travel in placement.travels.items():
+        add(f"travel of {name}", travel)
     for name in stage.group.links:
         motion = placement.links[name]
         x, y = motion.direction
@@ -226,11 +224,10 @@ def _of_forces(stage):
 
     still = stage.placed()
     wrenches = {name: Wrench(any_vector(), stage.size * any_vector()[0]) for name in stage.group.links}
-    pushes = {name: any_vector()[0] for name, detail in still.details.items() if hasattr(detail, "travel")}
-    demand = {name: any_vector() for name in still.joints.keys() - {"O", stage.on}}
+    pushes = {name: any_vector()[0] for name in still.travels}
     ways = {"x": {"way": (1.0, 0.0)}, "y": {"way": (0.0, 1.0)}} if stage.on != "O" else {"the turn": {}}
     errors = {
-        f"work of the forces along {name}": _work_missing(stage, stage.placed(**way), wrenches, pushes, demand)
+        f"work of the forces along {name}": _work_missing(stage, stage.placed(**way), wrenches, pushes)
         for name, way in ways.items()
     }
     inertia = {
@@ -238,19 +235,20 @@ def _of_forces(stage):
         for name, link in stage.group.links.items()
     }
     if any(wrench.force is not None or wrench.moment is not None for wrench in inertia.values()):
-        errors["power of weight and inertia"] = _work_missing(stage, still, inertia, {}, {})
+        errors["power of weight and inertia"] = _work_missing(stage, still, inertia, {})
     return errors
 
 
-def _work_missing(stage, placement, wrenches, pushes, demand):
+def _work_missing(stage, placement, wrenches, pushes):
     """Work that is left over, relative to the largest part of it."""
-    forces = Forces(dict(demand), reactions=Once(), scalars=Once())
-    stage.group.resolve(placement, wrenches, pushes, forces)
-    joints, asked = placement.joints, forces.demand.get(stage.on)
+    resolved = stage.group.resolve(placement, wrenches, pushes)
     parts = [virtual_work(placement.links[name], wrench) for name, wrench in wrenches.items()]
-    parts += [product(push, placement.details[name].travel.first) for name, push in pushes.items()]
-    parts += [-number(work(force, joints[name].first)) for name, force in demand.items()]
-    parts += [plus(work(asked, joints[stage.on].first), forces.crank_demand.moment)]
+    parts += [product(push, placement.travels[name].first) for name, push in pushes.items()]
+    for name, demand in resolved.demands.items():
+        of_link = name in placement.links
+        parts.append(
+            virtual_work(placement.links[name], demand) if of_link else work(demand.force, placement.joints[name].first)
+        )
     sizes = [np.max(np.abs(number(part))) for part in parts]
     return _error(sum(number(part) for part in parts), 0.0, max(sizes) or 1.0)
 

@@ -12,8 +12,9 @@ from functools import partial
 
 import numpy as np
 
-from ..engines.rerouted import harmonic_series, rerouted
-from ..engines.tracing import trace
+from ..engines import programs
+from ..engines.engines import Kernels
+from ..engines.series import harmonic_series
 from ..errors import NotGivenError, ParameterError
 from ..machine.links import Link
 from ..machine.loads import Gravity, ProcessForce, Spring
@@ -136,7 +137,7 @@ def _as_two_masses(solution):
 def _guide_through_crank_centre(solution):
     mechanism = solution.mechanism
     groups = tuple(
-        replace(group, guide=group.guide._replace(guide_offset=0.0)) if isinstance(group, SliderGroup) else group
+        replace(group, guide=replace(group.guide, guide_offset=0.0)) if isinstance(group, SliderGroup) else group
         for group in mechanism.groups
     )
     offset = [group.guide.guide_offset for group in mechanism.groups if isinstance(group, SliderGroup)]
@@ -144,7 +145,7 @@ def _guide_through_crank_centre(solution):
 
 
 def _up_to_harmonic(order):
-    return lambda solution: rerouted(solution, harmonic_series(solution, order))
+    return lambda solution: replace(solution, engine=Kernels(harmonic_series(solution, order)))
 
 
 INGREDIENTS = {
@@ -326,7 +327,7 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
             change = np.linalg.norm(np.array(components(simplified, quantity)) - exact, axis=0).max() / largest
         error = float(change) if math.isfinite(change) else math.inf
         names = tuple(choice.name for choice in choices)
-        return Model(names, error, trace(simplified, [quantity]).operations, simplified)
+        return Model(names, error, programs.of(simplified.dynamics, (quantity,))[0].recording.operations, simplified)
 
     alone = {choice: made for choices in INGREDIENTS.values() for choice in choices if (made := model((choice,)))}
     options = _options(alone, left_out)

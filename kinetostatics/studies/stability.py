@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError
+from ..machine.builders import cam_crank_slider, crank_slider, four_bar
 from ..machine.cams import Circle, CosineLaw
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
-from ..machine.mechanism import cam_crank_slider, crank_slider, four_bar
 from ..mechanics.quantities import components
 from ..numbers import checks
 from ..solution.solution import Solution

@@ -15,14 +15,15 @@ import numpy as np
 import pandas as pd
 
 from ..casefile.case import Variant
-from ..engines import compiled
+from ..engines import loops, programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
+from ..machine.loads import TURN, period_of
 from ..mechanics.quantities import components, sizes, unit
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
 from ..results.reductions import Output, lowest
 from ..results.turn import NEAR, repeating_problem
-from ..solution.solution import TURN, period_of, solve
+from ..solution.scene import solve
 
 VALUES = 100_000
 """Values over designs and angles computed at a time on each core: about what its cache holds."""
@@ -137,7 +138,7 @@ def _engine(job, solutions, engines):
         return first
     try:
         for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
-            compiled.program(solution, [*_quantities(outputs), "closure"], sizes=True)
+            programs.of(solution.dynamics, (*_quantities(outputs), "closure"), sizes=True)
     except NotGivenError:
         if not others:
             raise
@@ -352,20 +353,22 @@ def _by_loop(solution, quantities, count):
 
     Values stay until the same thread takes its next block: memory is asked for once.
     """
-    program = compiled.program(solution, quantities, sizes=True)
+    state = solution.dynamics
+    program, leaves = programs.of(state, tuple(quantities), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
-    turn, tables = program.turn(angle), program.tabulated(solution)
-    edges, held = np.cumsum(program.trace.widths)[:-1], threading.local()
+    turn, tables = loops.turn(angle), loops.table_of_rows(program.rows(state, leaves), solution.shape)
+    parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
+    edges, held, rows = np.cumsum(program.recording.widths)[:-1], threading.local(), len(program.outputs)
 
     def evaluate(block):
-        parameters = program.parameters[block]
-        designs = len(parameters)
+        designs = len(parameters[block])
         if len(getattr(held, "results", ())) < designs:
-            held.results = np.empty((designs, len(program.trace.outputs), angle.shape[1]))
-            held.parts = np.empty((len(program.trace.outputs), designs, angle.shape[1]))
+            held.results = np.empty((designs, rows, angle.shape[1]))
+            held.parts = np.empty((rows, designs, angle.shape[1]))
         shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
-        values = held.parts[:, :designs]
-        values[:] = program.at(angle, *turn, shared, parameters, held.results[:designs])
+        results, values = held.results[:designs], held.parts[:, :designs]
+        loops.run(program.loop, angle, *turn, parameters[block], shared, results)
+        values[:] = results.swapaxes(0, 1)
         return np.split(values, edges)
 
     return evaluate

@@ -21,7 +21,7 @@ from ..engines import compiled
 from ..errors import ParameterError
 from ..numbers import checks
 from ..results.reductions import Output, parsed
-from ..solution.solution import WORTH_COMPILING
+from ..solution.scene import WORTH_COMPILING
 from .chunks import FAILED, PROBED, Job, suitable_engine
 from .dataset import Dataset, Parts
 from .identity import identity

@@ -12,13 +12,11 @@ from typing import Any
 import numpy as np
 
 from ...errors import MissingLibraryError, NotGivenError
-from ...machine.cam_roller import CamRoller
 from ...machine.crank import ray
-from ...machine.guide import Guide
 from ...machine.loads import Gravity, ProcessForce
+from ...mechanics.dynamics import Dynamics
 from ...mechanics.quantities import components
-from ...numbers.substitution import with_numbers
-from ...solution.solution import Solution
+from ...numbers.leaves import mapped, with_fields
 
 FEWEST_BITS, MOST_BITS = 128, 4096
 
@@ -123,17 +121,20 @@ def _closing(run, solution):
     return closing
 
 
-def on_arb(arb, solution) -> Solution:
+def on_arb(arb, solution) -> Dynamics:
     """The solution with arb numbers in place of its own, every push on a slider evaluated."""
     angle = _copied(np.atleast_1d(np.asarray(solution.crank_angle, dtype=float)), arb)
     mechanism = _copied(solution.mechanism, arb)
-    cam = getattr(mechanism.group(CamRoller), "cam", None)
-    if cam is not None:
+    for group, own in zip(mechanism.groups, solution.mechanism.groups, strict=True):
+        if hasattr(group, "guide"):
+            exact = with_fields(group.guide, angle=None, exact=_direction(own.guide.direction, arb))
+            object.__setattr__(group, "guide", exact)
+    for cam in (group.cam for group in mechanism.groups if hasattr(group, "cam")):
         what = f"cam {type(cam).__name__}"
         for values in _attempted(what, lambda: cam.polar(angle, ray(angle))):
             _require_exact(what, values, arb)
     drive = _copied((solution.crank_speed, solution.crank_acceleration), arb)
-    idle = Solution(mechanism, angle, *drive)
+    idle = Dynamics(mechanism, angle, *drive)
     loads = (_load_on_arb(arb, item, place, idle) for place, item in enumerate(solution.loads, 1))
     return replace(idle, loads=tuple(loads))
 
@@ -149,17 +150,14 @@ def _load_on_arb(arb, item, place, motion):
 
 
 def _copied(item, arb):
-    """The item with arb numbers in place of its own, a guide direction of length 1."""
+    """The item with arb numbers in place of its own."""
 
     def number(value):
         if isinstance(value, np.ndarray):
             return np.frompyfunc(lambda part: arb(float(part)), 1, 1)(value)
         return arb(value) if isinstance(value, int) else arb(float(value))
 
-    def guide(line):
-        return Guide(_direction(line.direction, arb), with_numbers(line.guide_offset, number))
-
-    return with_numbers(item, number, {Guide: guide})
+    return mapped(item, number)
 
 
 def _direction(pair, arb):

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...engines import compiled
+from ...engines import programs
+from ...engines.compiled import require
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import components
-from ...solution.solution import solve
+from ...solution.scene import solve
 from .method import Method, NotGivenError
 
 
@@ -30,8 +31,10 @@ def _numpy(solution, quantity, setting):
 
 def compiled_run(solution, quantity):
     """Function that computes a quantity by a compiled loop."""
-    made = compiled.program(solution, [quantity])
-    return lambda: tuple(made(solution.crank_angle, made.tabulated(solution))[:, 0])
+    require()
+    state = solution.dynamics
+    made, leaves = programs.of(state, (quantity,))
+    return lambda: tuple(made.run(state, leaves, compiled=True))
 
 
 def _compiled(solution, quantity, setting):

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...engines.rerouted import assembled, closed_paths, harmonic_series, joints_of, positions, rerouted
+from ...engines.engines import Kernels
+from ...engines.series import assembled, closed_paths, harmonic_series, joints_of, positions
 from ...errors import NotGivenError
 from ...mechanics.quantities import components
 from ..needs import two_mass_coupler
@@ -37,7 +38,7 @@ def _differences(order):
                 ),
             )
 
-        return lambda: components(rerouted(solution, way), quantity)
+        return lambda: components(replace(solution, engine=Kernels(way)), quantity)
 
     return prepare
 
@@ -59,7 +60,7 @@ def _spectral(solution, quantity, samples):
         parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
         return assembled(mechanism, angle, joints_of(mechanism, *parts))
 
-    return lambda: components(rerouted(solution, way), quantity)
+    return lambda: components(replace(solution, engine=Kernels(way)), quantity)
 
 
 def _is_even_turn(angle):
@@ -70,7 +71,7 @@ def _is_even_turn(angle):
 def _series(solution, order):
     """The solution with its kinematics as a truncated series."""
     require_one_design(solution)
-    return rerouted(solution, harmonic_series(solution, order))
+    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
 
 
 def _two_mass(solution, setting):

@@ -1,0 +1,68 @@
+"""Engines: ways to the values of a scene at crank angles. Each takes a `Dynamics` and names, and returns values by name.
+
+`KERNELS` runs the kernels as they are, on whatever numbers: JAX, enclosures, single precision, a user's own groups that
+cannot be recorded. `NUMPY` runs what they recorded as one line of array operations, `COMPILED` as a loop made by numba.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..errors import NotGivenError
+from ..mechanics.quantities import of_mechanism
+from ..numbers.elementary import read_only, stack
+from . import programs
+
+
+@dataclass(frozen=True)
+class Kernels:
+    """The kernels themselves; with another `way` to the placement, as `Dynamics` takes it."""
+
+    way: Any = None
+
+    def values(self, state, names=None):
+        """Values by name; None for closure and all that the groups find."""
+        state = state if self.way is None else replace(state, way=self.way)
+        names = ("closure", *state.mechanism.outputs) if names is None else names
+        return {name: self._values(state, name) for name in names}
+
+    def _values(self, state, name):
+        if name == "closure":
+            return read_only(stack(state.closure))
+        return of_mechanism(state.mechanism)[name].read(state)
+
+
+KERNELS = Kernels()
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What the kernels recorded, run by NumPy or, `compiled`, as a loop made by numba.
+
+    Where that is not possible, or by NumPy would take a recording each time, the kernels run as they are; `strict`
+    raises `NotGivenError` instead.
+    """
+
+    compiled: bool = False
+    strict: bool = False
+
+    def values(self, state, names=None):
+        """Values by name; None for closure and all that the groups find."""
+        if not is_plain(state.crank_angle):
+            return KERNELS.values(state, names)
+        try:
+            program, leaves = programs.of(state, names, lasting=not self.compiled)
+        except NotGivenError:
+            if self.strict:
+                raise
+            return KERNELS.values(state, names)
+        return program.recording.named(read_only(program.run(state, leaves, self.compiled)))
+
+
+def is_plain(angle):
+    """Whether crank angles are a NumPy array in double precision."""
+    return isinstance(angle, np.ndarray) and angle.dtype == float
+
+
+NUMPY, FASTEST, COMPILED = Recorded(), Recorded(compiled=True), Recorded(compiled=True, strict=True)

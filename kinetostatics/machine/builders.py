@@ -1,0 +1,165 @@
+"""Builders: the mechanisms of everyday, made of crank and groups."""
+
+import warnings
+
+import numpy as np
+
+from ..numbers import checks
+from .cam_roller import CamRoller
+from .cams import CosineLaw
+from .crank import Crank
+from .guide import Guide
+from .links import Link, present
+from .mechanism import Mechanism
+from .rocker_group import RockerGroup
+from .slider_group import SliderGroup
+
+
+def crank_slider(
+    crank_length,
+    coupler_length,
+    *,
+    guide_angle=0.0,
+    guide_offset=0.0,
+    guide=None,
+    assembly=+1,
+    crank=Link(),
+    coupler=Link(),
+    slider=Link(),
+):
+    """Plain crank-slider: crank O-A, coupler A-B, slider B on a straight guide.
+
+    Parameters
+    ----------
+    crank_length, coupler_length : float or array
+        m; arrays of shape (designs, 1) make a batch.
+    guide_angle : float
+        Direction of the guide from +x, rad.
+    guide_offset : float or array
+        Signed distance of the guide from O along the guide's left normal, m.
+    guide : Guide
+        In place of the two, as from ``Guide.through(W1, W2)``.
+    assembly : +1 or -1
+        +1: slider ahead of A along the guide.
+    crank, coupler, slider : Link
+        Mass properties; a link left out has no mass and costs nothing.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, or both ways of giving the guide.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=100.0).balancing_torque), 6)
+    0.0
+    """
+    group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
+    return Mechanism("crank-slider", Crank(crank_length, crank), (group,))
+
+
+def cam_crank_slider(
+    cam,
+    coupler_length,
+    *,
+    guide_angle=0.0,
+    guide_offset=0.0,
+    guide=None,
+    assembly=+1,
+    crank=Link(),
+    block=Link(),
+    coupler=Link(),
+    slider=Link(),
+):
+    """Cam-balanced crank-slider: slotted crank, block with a roller on a fixed cam, coupler and slider.
+
+    Parameters
+    ----------
+    cam : cams.Circle, cams.CosineLaw or cams.Sampled
+        Fixed cam, by the pitch curve of the roller centre.
+    coupler_length, guide_angle, guide_offset, guide, assembly, crank, coupler, slider
+        As for `crank_slider`; the mass centre of the slotted crank lies on it at a constant distance from O.
+    block : Link
+        Block with roller; reference joint A, along the crank ray.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, or both ways of giving the guide.
+    """
+    group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
+    if isinstance(cam, CosineLaw):
+        _warn_off_law(cam, group)
+    return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block), group))
+
+
+def four_bar(
+    crank_length,
+    coupler_length,
+    rocker_length,
+    *,
+    rocker_pivot,
+    assembly=+1,
+    crank=Link(),
+    coupler=Link(),
+    rocker=Link(),
+):
+    """Four-bar: crank O-A, coupler A-B, rocker O2-B.
+
+    Parameters
+    ----------
+    crank_length, coupler_length, rocker_length : float or array
+        m; arrays of shape (designs, 1) make a batch.
+    rocker_pivot : (x, y)
+        Fixed pivot O2 of the rocker, m.
+    assembly : +1 or -1
+        +1: B to the left of the direction from A to O2.
+    crank, coupler, rocker : Link
+        Mass properties; a link left out has no mass and costs nothing.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have.
+    """
+    group = RockerGroup(coupler_length, rocker_length, rocker_pivot, assembly, coupler, rocker)
+    return Mechanism("four-bar", Crank(crank_length, crank), (group,))
+
+
+def _warn_off_law(cam, group):
+    """Warn if the slider will not follow the law that the cam is cut for."""
+    angle, length = group.guide.guide_angle, group.coupler_length
+    wrong = [
+        text
+        for text, value, wanted in [
+            (f"guide_offset {group.guide.guide_offset} m is not 0", group.guide.guide_offset, 0.0),
+            (f"assembly {group.assembly} is not +1", group.assembly, 1.0),
+            (f"guide_angle {angle} is not the cam's {cam.guide_angle}", np.cos(angle - cam.guide_angle), 1.0),
+            (f"coupler_length {length} m is not the cam's {cam.coupler_length} m", length, cam.coupler_length),
+        ]
+        if checks.known(value) and checks.known(wanted) and np.any(np.abs(value - wanted) > 1e-9)
+    ]
+    if wrong:
+        warnings.warn(f"the slider will not follow the cosine law of its cam: {'; '.join(wrong)}", stacklevel=3)
+
+
+def _guide(guide, angle, offset):
+    if guide is None:
+        return Guide.at(angle, offset)
+    free = present(angle) is None and present(offset) is None
+    checks.require("guide", None if free else "give either guide or guide_angle and guide_offset")
+    return guide

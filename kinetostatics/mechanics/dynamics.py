@@ -1,0 +1,167 @@
+"""Forces of a scene by the kernels, from whatever numbers it has: floats, arrays, recorded numbers, enclosures.
+
+Everything here is the kernels' own arithmetic; engines and solutions ask it, it knows neither.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, reduce
+from typing import Any
+
+import numpy as np
+
+from ..machine.links import load, virtual_work
+from ..machine.loads import Gravity
+from ..numbers.planar import added, minus, moment, number, plus, product
+from .motion import Motion
+from .principal_points import principal_points
+from .pushes import pushed
+
+UNBALANCED = 1e-6
+"""Part of the largest torque that the two ways to it may differ by in a mechanism with groups of the user's own."""
+
+
+@dataclass(frozen=True, eq=False)
+class Dynamics(Motion):
+    """Motion and forces of a scene at its crank angles, computed when first asked for.
+
+    Attributes
+    ----------
+    way : function, optional
+        ``way(mechanism, crank_angle)``: another way to the placement than the groups' closed forms, as harmonic series.
+    """
+
+    way: Callable[[Any, Any], Any] | None = None
+
+    @cached_property
+    def placement(self):
+        """Joints and links by name, as kinematic coefficients."""
+        return (self.way or type(self.mechanism).place)(self.mechanism, self.crank_angle)
+
+    @cached_property
+    def resolved(self):
+        """All reactions and other forces, as the groups find them."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = self.mechanism.resolve(self.placement, self.link_loads, self.pushes)
+        if not self.mechanism.trusted:
+            self._warn_of_lost_power(found.scalars["balancing_torque"])
+        return found
+
+    def _warn_of_lost_power(self, torque):
+        """Warn if a group of the user's own finds forces that do not do the work of the loads."""
+        torque = self._scalar(torque)
+        if not isinstance(torque, np.ndarray) or torque.dtype != float:
+            return
+        lost = self.largest(torque - self.balancing_torque_by_power)
+        scale = np.maximum(self.largest_torque_term, self.largest(torque))
+        if np.any(lost > UNBALANCED * scale):
+            warnings.warn(
+                f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of powers "
+                f"differ by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group of your own "
+                "places its links or resolves its forces wrongly; ks.check(group) says where",
+                stacklevel=2,
+            )
+
+    def reaction(self, joint):
+        """Reaction at a joint, (2, ..., N), N."""
+        return self.as_vector(self._look_up("reaction", joint, self.resolved.reactions))
+
+    def scalar(self, name):
+        """A force or moment by name, (..., N)."""
+        scalars = self.resolved.scalars
+        found = self._look_up("quantity", name, scalars)
+        if not hasattr(found, "shape"):  # a constant has the gaps of the others
+            found = found + 0.0 * scalars["balancing_torque"]
+        return self._scalar(found)
+
+    @property
+    def balancing_torque(self):
+        """Torque on the crank that keeps the prescribed motion, from the crank's equilibrium, N m."""
+        return self.scalar("balancing_torque")
+
+    @property
+    def balancing_torque_by_power(self):
+        """The same torque from the balance of powers, without any reaction, N m."""
+        total = reduce(plus, self.powers)
+        return self._scalar(minus(None, total) if total is not None else 0.0)
+
+    @property
+    def shaking_force(self):
+        """Force of the inertia of all moving masses on the frame, (2, ..., N), N."""
+        return principal_points(self.mechanism).shaking_force(self)
+
+    @property
+    def shaking_moment(self):
+        """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
+        moments = (
+            plus(moment(self._link(name).joint.position, wrench.force), wrench.moment)
+            for name, wrench in self.inertia.items()
+        )
+        return self._scalar(reduce(plus, moments))
+
+    def inertia_force(self, link):
+        """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""
+        return self.as_vector(self._look_up("link", link, self.inertia).force)
+
+    @cached_property
+    def largest_torque_term(self):
+        """Largest torque that one load alone would take, N m: what the balancing torque is a sum of."""
+        return reduce(np.maximum, (self.largest(part) for part in self.powers), 0.0)
+
+    @cached_property
+    def largest_force_term(self):
+        """Largest load on one link, weight, inertia or applied, N: what a reaction is a sum of."""
+        forces = [part for wrench in self.link_loads.values() if wrench.force is not None for part in wrench.force]
+        return reduce(np.maximum, map(self.largest, [*forces, *self.pushes.values()]), 0.0)
+
+    @cached_property
+    def gravity(self):
+        """Acceleration by weight, m/s2; None without."""
+        return reduce(added, (item.vector for item in self.loads if isinstance(item, Gravity)), None)
+
+    @cached_property
+    def inertia(self):
+        """Wrench of inertia by link."""
+        return self._mass_loads(None)
+
+    @cached_property
+    def link_loads(self):
+        """Wrench of inertia and weight by link."""
+        return self._mass_loads(self.gravity)
+
+    def _mass_loads(self, gravity):
+        links = self.placement.links
+        return {
+            name: load(links[name], link.body, *self.accelerating, gravity)
+            for name, link in self.mechanism.links.items()
+        }
+
+    @cached_property
+    def pushes(self):
+        """Applied force along its guide by slider, N."""
+        pushes: dict[str, Any] = {}
+        for item in self.loads:
+            if not isinstance(item, Gravity):
+                pushes[item.on] = plus(pushes.get(item.on), pushed(item, self))
+        return pushes
+
+    @cached_property
+    def powers(self):
+        """Power of each load divided by the crank speed."""
+        links = self.placement.links
+        works = [virtual_work(links[name], wrench) for name, wrench in self.link_loads.items()]
+        return works + [product(push, self._travel(name).first) for name, push in self.pushes.items()]
+
+    @cached_property
+    def closed(self):
+        """Whether the mechanism closes at each angle."""
+        parts = [part for joint in self.placement.joints.values() for part in joint.position]
+        return np.isfinite(reduce(plus, (np.asarray(part, dtype=float) for part in parts)))
+
+    def largest(self, part):
+        """Largest magnitude over the angles at which the mechanism closes; NaN if there is none."""
+        size, closed = np.broadcast_arrays(np.abs(np.asarray(number(part), dtype=float)), self.closed)
+        if not size.ndim:
+            return size if closed else size * np.nan
+        return np.where(closed.any(axis=-1), np.max(np.where(closed, size, 0.0), axis=-1), np.nan)

@@ -1,0 +1,82 @@
+"""Names of the numbers in a parameter tree: "crank_length", "slider2.mass", "cam.centre.x", as in case files.
+
+A part tells by the rules of its fields (`checks.fields`) what its numbers are, with their units, and by `PATHS` what a
+field is called where that is not its name; "" stands for a part whose fields are called as they are.
+"""
+
+from dataclasses import fields, is_dataclass
+from typing import Any, NamedTuple
+
+from . import checks
+
+
+class Place(NamedTuple):
+    """Where a number stands in a tree: names of fields and numbers of items, from the outermost; and its rule."""
+
+    steps: tuple[str | int, ...]
+    rule: checks.Number
+
+    def value(self, item) -> Any:
+        for step in self.steps:
+            item = item[step] if isinstance(step, int) else getattr(item, step)
+        return item
+
+
+def places(item, prefix="", label="") -> dict[str, Place]:
+    """Place by path of every number of a part, zeros among them; a label goes behind the first name."""
+    names = getattr(type(item), "PATHS", {})
+    found = {}
+    for field, rule in _rules(item).items():
+        name = names.get(field, field)
+        path = f"{prefix}{name}{label if name else ''}"
+        for inner, place in _of_value(getattr(item, field), rule, path, label if not name else "").items():
+            found[inner] = place._replace(steps=(field, *place.steps))
+    return found
+
+
+def _rules(item):
+    if not is_dataclass(item):
+        return {}
+    rules = getattr(type(item).__post_init__, "rules", None) if hasattr(item, "__post_init__") else None
+    return rules or {field.name: checks.Number() for field in fields(item) if field.type in (Any, float)}
+
+
+def _of_value(value, rule, path, label):
+    rule = getattr(rule, "rule", rule) if isinstance(rule, checks.Optional | checks.OrFunction) else rule
+    if isinstance(rule, checks.Number):
+        return {path: Place((), rule)} if checks.is_number(value) else {}
+    if isinstance(rule, checks.Pair):
+        return {f"{path}.{part}": Place((number,), rule.rule) for number, part in enumerate(rule.parts)}
+    if isinstance(value, tuple):
+        found: dict[str, Place] = {}
+        counts: dict[str, int] = {}
+        for number, part in enumerate(value):
+            named = getattr(type(part), "PATH", "")
+            counts[named] = counts.get(named, 0) + 1
+            again = str(counts[named]) if named and counts[named] > 1 else ""
+            inner = places(part, f"{named}{again}." if named else "", getattr(part, "label", ""))
+            found |= {name: place._replace(steps=(number, *place.steps)) for name, place in inner.items()}
+        return found
+    return places(value, f"{path}." if path else "", label)
+
+
+def with_values(item, values: dict):
+    """Copy of a tree with other values, by steps; every part that holds one is checked anew."""
+    if () in values:
+        return values[()]
+    inner: dict[Any, dict] = {}
+    for (first, *rest), value in values.items():
+        inner.setdefault(first, {})[tuple(rest)] = value
+    if isinstance(item, tuple):
+        return tuple(with_values(part, inner[place]) if place in inner else part for place, part in enumerate(item))
+    return changed(item, **{name: with_values(getattr(item, name), parts) for name, parts in inner.items()})
+
+
+def changed(item, **values):
+    """Copy of a dataclass with other values in some fields, checked as its constructor does."""
+    made = object.__new__(type(item))
+    for field in fields(item):
+        object.__setattr__(made, field.name, values.get(field.name, getattr(item, field.name)))
+    if hasattr(made, "__post_init__"):
+        made.__post_init__()
+    return made

@@ -1,0 +1,32 @@
+"""Crank angles as solutions keep them."""
+
+import math
+
+import numpy as np
+
+from ..numbers import checks
+from ..numbers.elementary import read_only
+
+ANGLE = checks.Number("rad", "crank_angle", table=True)
+PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
+
+
+def crank_angles(given):
+    """Crank angles of any kind: a locked copy of plain ones, those of another array library as they are."""
+    if type(given) is np.ndarray and given.dtype in PRECISIONS:
+        return read_only(given.copy())
+    if isinstance(given, list | tuple) and not given:
+        checks.require("solve", "there are no crank angles")
+    angle, problem = ANGLE.taken(given)
+    checks.require("solve", problem)
+    return angle if hasattr(angle, "shape") else read_only(np.array(angle))
+
+
+def problems(angle):
+    """What is wrong with crank angles, as far as they can be looked at."""
+    if not math.prod(angle.shape):
+        return "there are no crank angles"
+    if not isinstance(angle, np.ndarray) or angle.dtype == object:
+        return None
+    finite = (angle.ndim == 1 and math.isfinite(angle.dot(angle))) or np.isfinite(angle).all()  # dot costs a quarter
+    return None if finite else "crank angles must be finite; found NaN or infinity"

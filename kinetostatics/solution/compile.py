@@ -1,0 +1,202 @@
+"""`compile`: what a scene computes made ready once, and called with other numbers as often as one likes."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ..engines import programs
+from ..engines.compiled import available, require
+from ..errors import ParameterError
+from ..machine.loads import TURN
+from ..mechanics.dynamics import Dynamics
+from ..numbers import checks, paths
+from ..numbers.elementary import read_only
+from ..numbers.leaves import Kept, with_fields
+from .angles import crank_angles, problems
+from .scene import Scene
+
+
+def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa: A001 - the contract's name
+    """Program of some quantities of a scene, to be called with other crank angles and other numbers.
+
+    Parameters
+    ----------
+    scene : Scene
+    quantities : str or sequence of str
+        "balancing_torque", a joint (its reaction), "slider_acceleration", "coupler_rate" ...
+    parameters : sequence of str
+        Paths of numbers that are zero in the scene and shall be given other values. What is zero is otherwise absent,
+        and costs nothing.
+    engine : "compiled" or "numpy"
+        Unless told, compiled if numba is installed.
+
+    Returns
+    -------
+    Program
+
+    Raises
+    ------
+    ParameterError
+        The scene has no such parameter.
+    QuantityError
+        The mechanism has no such quantity; the message lists those it has.
+    NotGivenError
+        A group or load of your own does more than arithmetic with sin, cos and sqrt, so it cannot be recorded.
+    MissingLibraryError
+        ``engine="compiled"`` without numba.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+    >>> program = ks.compile(ks.Scene(pump, crank_speed=100.0), "balancing_torque", engine="numpy")
+    >>> round(float(program(0.5)["balancing_torque"]), 6)
+    -5.945034
+    >>> round(float(program(0.5, {"slider.mass": 2.0})["balancing_torque"]), 6)
+    -11.890069
+    """
+    names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
+    checks.require(
+        "compile",
+        None if isinstance(scene, Scene) else f"scene must be a Scene, as ks.Scene(...), got {checks.shown(scene)}",
+        None if names else "no quantities are asked for",
+        *(checks.quantity(name) for name in names),
+        None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
+    )
+    if engine == "compiled":
+        require()
+    return Program(scene, names, tuple(parameters), engine != "numpy" and available())
+
+
+class Program:
+    """Quantities of a scene as a program of crank angle and parameters; made by `compile`.
+
+    Attributes
+    ----------
+    scene : Scene
+    quantities : tuple of str
+    parameters : mapping of path to value
+        Every number that can be given another value, as in the scene.
+    """
+
+    def __init__(self, scene, quantities, kept, compiled):
+        self.scene, self.quantities, self._compiled = scene, quantities, compiled
+        places = paths.places(scene)
+        checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
+        for path in kept:
+            if _is_zero(places[path].value(scene)):
+                scene = _with_kept(scene, places[path].steps)
+        self._state = Dynamics(
+            scene.mechanism, np.zeros(1), scene.crank_speed, scene.crank_acceleration, scene.loads
+        )
+        self._program, self._leaves = programs.of(self._state, quantities)
+        self._structure, _ = programs.apart(self._state)
+        found = programs.numbered(self._state)
+        self._numbers = {
+            path: (number, place.rule) for path, place in places.items() if (number := place.value_in(found)) is not None
+        }
+        self._absent = tuple(path for path in places if path not in self._numbers)
+        self._doors = _doors(scene, places)
+        self._places = places
+        values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
+        self.parameters: Mapping[str, Any] = MappingProxyType(values)
+
+    def __repr__(self):
+        names = ", ".join(self.parameters)
+        return f"<Program: {', '.join(self.quantities)} of {self.scene.mechanism.name}; parameters {names}>"
+
+    def __call__(self, angle, values=MappingProxyType({})):
+        """Values by quantity.
+
+        Parameters
+        ----------
+        angle : float or array (..., N)
+            Crank angles, rad; tables over the crank angles of the scene, a crank speed for instance, must fit them.
+        values : mapping of path to float or array (designs, 1)
+            Other numbers, in SI, checked as when a scene is made; all others stay.
+
+        Returns
+        -------
+        dict of str to array
+            As the solution gives them: (..., N), vectors (2, ..., N); NaN where the mechanism does not close.
+
+        Raises
+        ------
+        ParameterError
+            No machine has such a value, or there is no such parameter: what is zero in the scene is absent unless
+            `compile` was told to keep it.
+        """
+        state, leaves = self._at(angle, values)
+        rows = self._program.run(state, leaves, self._compiled)
+        return self._program.recording.named(read_only(rows))
+
+    def derivatives(self, angle, by=None, values=MappingProxyType({})):
+        """Exact derivatives of every quantity by parameters, from the recorded arithmetic.
+
+        Parameters
+        ----------
+        angle, values
+            As for a call.
+        by : sequence of str, optional
+            Paths; all parameters unless told.
+
+        Returns
+        -------
+        dict of str to dict of path to array
+            Shaped as the quantities, in units of the quantity by units of the parameter.
+        """
+        names = tuple(self.parameters) if by is None else ((by,) if isinstance(by, str) else tuple(by))
+        self._require_known(names)
+        state, leaves = self._at(angle, values)
+        places = tuple(self._numbers[name][0] for name in names)
+        rows = self._program.by_parameters(places).run(state, leaves, self._compiled)
+        rows = read_only(rows.reshape(-1, len(names), *state.shape))
+        return {
+            quantity: dict(zip(names, np.moveaxis(found, -1 - len(state.shape), 0), strict=True))
+            for quantity, found in self._program.recording.named(rows).items()
+        }
+
+    def _at(self, angle, values):
+        """The scene at crank angles, with its leaves."""
+        angle = angle if type(angle) is np.ndarray and angle.dtype == float else crank_angles(angle)
+        checks.require("program", problems(angle))
+        leaves = self._leaves
+        if values:
+            leaves = leaves.with_numbers(self._numbers_with(values))
+        state = with_fields(self._state, crank_angle=angle)
+        vars(state)["shape"] = programs.shape_of(angle, leaves)
+        if self._program.recording.tables:
+            state = self._state_with(angle, values)
+        return state, leaves
+
+    def _numbers_with(self, values):
+        """All numbers, in their order, with some values in place of their own."""
+        self._require_known(values)
+        numbers, problems_, doors = list(self._leaves.numbers), [], set()
+        for path, value in values.items():
+            number, rule = self._numbers[path]
+            found = rule.quick(value)
+            if found is checks.UNSURE:
+                found, problem = rule.taken(value, path)
+                problems_.append(problem)
+            numbers[number] = found
+            doors |= {door for door in self._doors if path in self._doors[door]}
+        checks.require("program", *problems_)
+        if doors:
+            self.scene.varied(values)
+        return numbers
+
+    def _state_with(self, angle, values):
+        scene = self.scene.varied(values) if values else self.scene
+        return Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
+
+    def _require_known(self, names):
+        for path in names:
+            if path in self._absent:
+                raise ParameterError(
+                    f"program: {path} is zero in the scene and so left out; keep it by "
+                    f'compile(..., parameters=("{path}",))'
+                )
+        checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))

@@ -1,0 +1,250 @@
+"""A scene: a mechanism, what drives it and what loads it; the door through which all of it comes to a solution."""
+
+import math
+import warnings
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..engines import programs
+from ..engines.compiled import available, require
+from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
+from ..errors import HintWarning, ParameterError
+from ..machine import hints
+from ..machine.loads import Gravity, ProcessForce, Spring, period_of
+from ..machine.mechanism import Mechanism
+from ..numbers import checks, paths
+from .angles import crank_angles, problems
+from .solution import Solution
+
+DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
+LOADS = (Gravity, Spring, ProcessForce)
+WORTH_COMPILING = 1_000_000
+"""Crank angles, all designs together, from which a compiled loop is worth its preparation."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A mechanism with its drive and loads: all that a solution needs but the crank angles.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        As made by `crank_slider`, `cam_crank_slider`, `four_bar`, or from a crank and groups of your own.
+    crank_speed, crank_acceleration : float or array
+        rad/s and rad/s2, counter-clockwise positive; an array has a value for each crank angle, or is (designs, 1).
+    loads : sequence
+        `Gravity`, `Spring`, `ProcessForce`, or one of them.
+
+    Raises
+    ------
+    ParameterError
+        A value is not finite, or a load acts on a link that is not there.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+    >>> scene = ks.Scene(pump, crank_speed=100.0, loads=ks.Gravity())
+    >>> print(f"{ks.extremes(scene.solve(360), 'O').largest:.3f} N")
+    625.077 N
+    >>> scene.varied({"slider.mass": 2.0}).parameters["slider.mass"]
+    2.0
+    """
+
+    mechanism: Mechanism
+    crank_speed: Any
+    crank_acceleration: Any = 0.0
+    loads: Any = ()
+
+    PATHS: ClassVar = {"mechanism": "", "loads": ""}
+
+    def __post_init__(self):
+        self._admit("scene")
+
+    def _admit(self, owner):
+        values = vars(self)
+        if type(self.mechanism) is not Mechanism:
+            checks.require(owner, _no_mechanism(self.mechanism))
+        drive = {name: rule.quick(values[name]) for name, rule in DRIVE.items()}
+        if checks.UNSURE in drive.values():
+            drive = checks.examined(owner, DRIVE, values)
+        loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
+        checks.require(owner, *(_load_problem(self.mechanism, item) for item in loads))
+        values.update(drive, loads=tuple(item if type(item) in LOADS else checks.kept(item) for item in loads))
+
+    @property
+    def period(self):
+        """Crank angle after which motion and loads repeat, rad."""
+        return period_of(self.loads)
+
+    @cached_property
+    def _places(self):
+        return paths.places(self)
+
+    @property
+    def parameters(self):
+        """Every number of the scene by path, zeros too, as in case files: "crank_length", "slider.mass" ..."""
+        return {path: place.value(self) for path, place in self._places.items()}
+
+    @property
+    def units(self):
+        """SI unit of every number by path."""
+        return {path: place.rule.unit for path, place in self._places.items()}
+
+    def varied(self, values):
+        """The scene with other values at some paths, in SI, checked as when it was made; all others stay.
+
+        Parameters
+        ----------
+        values : dict of path to float or array (designs, 1)
+
+        Raises
+        ------
+        ParameterError
+            There is no such path, or no machine has such a value.
+        """
+        known = self._places
+        checks.require("scene", *(checks.choice("parameter", path, tuple(known)) for path in values))
+        return paths.with_values(self, {known[path].steps: value for path, value in values.items()})
+
+    def solve(self, angles=720, *, on_gap="raise", engine=None) -> Solution:
+        """Solution at crank angles.
+
+        Parameters
+        ----------
+        angles : int, float or array
+            A whole number is a count of angles over one period from 0, its end excluded; all else are angles, rad.
+        on_gap, engine
+            As for `solve`.
+        """
+        if isinstance(angles, int | np.integer) and not isinstance(angles, bool):
+            checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
+            angles = np.linspace(0.0, self.period, angles, endpoint=False)
+        return _solved(self, angles, on_gap, engine)
+
+
+def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), on_gap="raise", engine=None):
+    """Motion and forces of a mechanism at prescribed crank motion.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        As made by `crank_slider`, `cam_crank_slider` or from a crank and groups of your own.
+    crank_angle : array (..., N)
+        rad, counter-clockwise from +x; the last axis is the turn, axes before it broadcast with designs.
+    crank_speed, crank_acceleration : float or array
+        rad/s and rad/s2, counter-clockwise positive.
+    loads : sequence
+        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing. Loads of your own, as all
+        arrays, are taken as they are now: what is changed of them later is not seen.
+    on_gap : "raise" or "nan"
+        What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
+        give NaN there and exact values elsewhere (no check, as needed under ``jax.jit``).
+    engine : "numpy" or "compiled"
+        "compiled" runs the same kernels as one loop made by numba (extra `fast`), for each quantity when it is asked
+        for: the first time takes about a second, then machine code is kept on disk. Unless told, it is taken for a
+        million crank angles (designs times angles) and more, if numba is installed. Results agree to a few ulp.
+
+    Returns
+    -------
+    Solution
+        Lazy: results are computed when first read, and kept; they cannot be written to.
+
+    Raises
+    ------
+    AssemblyError
+        The mechanism does not close at some of the angles and ``on_gap="raise"``.
+    ParameterError
+        A value is not finite, or a load acts on a link that is not there.
+    MissingLibraryError
+        ``engine="compiled"`` without numba.
+    NotGivenError
+        ``engine="compiled"`` for a group or load of your own that does more than arithmetic.
+
+    Warns
+    -----
+    ConditionWarning
+        Half of the digits are lost at some crank angle: `Solution.condition` exceeds 1e8.
+    HintWarning
+        Something looks like a slip of units: angles in degrees, a mass centre far outside, hardly any inertia.
+    UserWarning
+        The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
+    """
+    scene = object.__new__(Scene)
+    vars(scene).update(
+        mechanism=mechanism, crank_speed=crank_speed, crank_acceleration=crank_acceleration, loads=loads
+    )
+    scene._admit("solve")
+    return _solved(scene, crank_angle, on_gap, engine)
+
+
+def _solved(scene, crank_angle, on_gap, engine):
+    angle, mechanism = crank_angles(crank_angle), scene.mechanism
+    checks.require(
+        "solve",
+        problems(angle),
+        checks.choice("on_gap", on_gap, ("raise", "nan")),
+        None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
+    )
+    checks.require("solve", checks.fitting(**_shapes(scene, angle)))
+    if angle.dtype == "float32":
+        warnings.warn(
+            "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
+            'JAX switch jax.config.update("jax_enable_x64", True) on first',
+            stacklevel=3,
+        )
+    for text in (*mechanism.hints, *hints.of_angles(angle)):
+        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=3)
+    solution = Solution(mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
+    chosen = _engine(engine, angle, solution)
+    solution = solution if chosen is NUMPY else replace(solution, engine=chosen)
+    if on_gap == "raise":
+        solution.check()
+    elif chosen is COMPILED:
+        programs.of(solution.dynamics)
+    return solution
+
+
+def _engine(name, angle, solution):
+    """The engine asked for, or the one that suits so many crank angles, all designs together."""
+    if name == "compiled":
+        if not is_plain(angle):
+            raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
+        require()
+        return COMPILED
+    if name is None and is_plain(angle) and math.prod(solution.shape) >= WORTH_COMPILING and available():
+        return FASTEST
+    return NUMPY
+
+
+def _no_mechanism(found):
+    """What is wrong with what was given for a mechanism, or None."""
+    if isinstance(found, Mechanism):
+        return None
+    itself = not isinstance(found, type) and hasattr(found, "solve")
+    remedy = "; it is solved by its own .solve(angles), with its own drive and loads" if itself else ""
+    return f"mechanism must be a Mechanism, as made by crank_slider or four_bar, got {checks.shown(found)}{remedy}"
+
+
+def _shapes(scene, angle):
+    """Shapes that must fit together, by what has them."""
+    arrays = {"crank_angle": angle, "crank_speed": scene.crank_speed, "crank_acceleration": scene.crank_acceleration}
+    shapes = {name: value.shape for name, value in arrays.items() if hasattr(value, "shape")}
+    if scene.mechanism.batch:
+        shapes["mechanism"] = scene.mechanism.batch
+    for item in scene.loads:
+        found = getattr(getattr(item, "force", None), "shape", ()) or getattr(item, "batch", ())
+        if found:
+            shapes[f"{type(item).__name__} {len(shapes)}"] = found
+    return shapes
+
+
+def _load_problem(mechanism, item):
+    if isinstance(item, Gravity):
+        return None
+    if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):
+        return f"loads must be Gravity, Spring or ProcessForce, got {checks.shown(item)}"
+    return checks.choice(f"{type(item).__name__}: on", item.on, tuple(mechanism.guides))
