@@ -3,17 +3,19 @@
 A program runs in three ways, all from one recording: on plain numbers, on arrays by NumPy, and as a compiled loop.
 """
 
+import itertools
 import math
 import threading
 from collections import OrderedDict
 from functools import cached_property
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from ..errors import NotGivenError
+from ..errors import NotGivenError, ParameterError
 from ..numbers.elementary import ROUNDING
-from ..numbers.leaves import Leaves, taken_apart
+from ..numbers.leaves import Leaves, put_together, taken_apart
 from . import loops, writing
 from .compiled import _loaded
 from .derivatives import gradients
@@ -39,13 +41,15 @@ class Program:
     def __init__(self, recording, outputs=None):
         self.recording = recording
         self.outputs = recording.outputs if outputs is None else outputs
+        self._slopes: dict[tuple[int, ...], Program] = {}
 
-    @cached_property
-    def by_parameters(self):
-        """Program of the derivatives of all outputs by all parameters: outputs one after the other, by each of them."""
-        recording = self.recording
-        rows = gradients(recording.graph, self.outputs, recording.parameters)
-        return Program(recording, tuple(part for row in rows for part in row))
+    def by_parameters(self, places):
+        """Program of the derivatives of all outputs, one after the other, by each of the parameters at some places."""
+        if places not in self._slopes:
+            recording = self.recording
+            rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
+            self._slopes[places] = Program(recording, tuple(part for row in rows for part in row))
+        return self._slopes[places]
 
     @cached_property
     def _plain(self):
@@ -149,7 +153,7 @@ def _root(square, unit):
 
 
 def _root_of(square, unit, out):
-    np.maximum(square, 0.0, out)
+    np.maximum(square, 0.0, out=out)
     np.sqrt(out, out)
     np.copyto(out, np.nan, where=np.less(square, -ROUNDING * unit))
 
@@ -195,7 +199,7 @@ _ARRAYS = {
     "absolute": np.absolute,
     "sign_of": lambda value, out: np.copysign(1.0, value, out),
     "root_of": _root_of,
-    "maximum": np.maximum,
+    "maximum": lambda one, other, out: np.maximum(one, other, out=out),
 }
 
 
@@ -245,6 +249,41 @@ def apart(state) -> tuple[Any, Leaves]:
     """Structure and leaves of a scene: mechanism, drive and loads."""
     leaves = Leaves()
     return taken_apart((state.mechanism, state.crank_speed, state.crank_acceleration, state.loads), leaves), leaves
+
+
+def numbered(state):
+    """The scene of a `Dynamics` with the place of each number among its leaves, a `Numbered`, instead of it."""
+    structure, _ = apart(state)
+    places = itertools.count()
+    mechanism, speed, acceleration, loads = put_together(
+        structure, lambda: Numbered(next(places)), lambda: None, lambda: None
+    )
+    return SimpleNamespace(mechanism=mechanism, crank_speed=speed, crank_acceleration=acceleration, loads=loads)
+
+
+class Numbered(int):
+    """Place of a number among the leaves of a scene."""
+
+
+def shape_of(angle, leaves):
+    """Shape (..., N) of scalar results at crank angles.
+
+    Raises
+    ------
+    ParameterError
+        Tables over the crank angles, or designs, do not fit them.
+    """
+    arrays = [leaf for leaf in (*leaves.numbers, *leaves.tables) if type(leaf) is not float]
+    if not arrays:
+        return angle.shape
+    try:
+        return np.broadcast_shapes(angle.shape, *(array.shape for array in arrays))
+    except ValueError:
+        shapes = ", ".join(str(array.shape) for array in arrays)
+        raise ParameterError(
+            f"program: crank angles {angle.shape} do not fit arrays of the scene of shape {shapes}; the last axis is the "
+            "crank angle, designs come before it"
+        ) from None
 
 
 def _recorded(state, structure, quantities, sizes):

@@ -9,7 +9,7 @@ import math
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -86,7 +86,7 @@ class Circle(Cam):
     centre: Any
 
     ELEMENTWISE = True
-    PATHS = {"pitch_radius": "radius"}
+    PATHS: ClassVar = {"pitch_radius": "radius"}
 
     def __init__(self, radius, centre=(0.0, 0.0)):
         object.__setattr__(self, "pitch_radius", radius)

@@ -153,7 +153,7 @@ class SliderGroup(checks.Checked, Group):
         on=checks.Name(),
         pin=checks.Name(),
         label=checks.Name(may_be_empty=True),
-        )
+    )
 
     @property
     def links(self):

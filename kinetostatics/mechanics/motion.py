@@ -120,19 +120,6 @@ class Motion:
         return tuple(self._scalar(group.closure(self.placement)) for group in self.mechanism.groups)
 
     @cached_property
-    def condition(self):
-        """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
-
-        A bound of the true magnification: the sum over all lengths and the crank angle p of |p dq/dp|, over the largest
-        term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
-        at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
-        16 - log10(condition) correct digits of its largest term, or more.
-        """
-        from .sensitivity import condition
-
-        return read_only(condition(self).reshape(self.shape))
-
-    @cached_property
     def accelerating(self) -> tuple[Any, Any]:
         """Crank speed squared, and the crank acceleration or None: what kinematic coefficients are multiplied by."""
         return self.crank_speed * self.crank_speed, present(self.crank_acceleration)

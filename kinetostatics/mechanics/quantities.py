@@ -76,7 +76,13 @@ def _declared(mechanism):
             add(name, output.unit, methodcaller("reaction", name), True, "reaction", f"reaction {name}")
     for link in mechanism.links:
         add(f"{link}_rate", "rad/s", methodcaller("rate", link), kind="rate", owner=link)
-        add(f"{link}_angular_acceleration", "rad/s2", methodcaller("angular_acceleration", link), kind="rate", owner=link)
+        add(
+            f"{link}_angular_acceleration",
+            "rad/s2",
+            methodcaller("angular_acceleration", link),
+            kind="rate",
+            owner=link,
+        )
     return found
 
 

@@ -56,6 +56,12 @@ class Leaves:
     def __init__(self):
         self.numbers, self.tables, self.parts, self.lasting = [], [], [], True
 
+    def with_numbers(self, numbers):
+        """The same with other numbers, in the same order."""
+        other = Leaves()
+        other.numbers, other.tables, other.parts, other.lasting = numbers, self.tables, self.parts, self.lasting
+        return other
+
 
 def taken_apart(item, leaves: Leaves):
     """Structure of an item; its leaves are appended to `leaves`."""
@@ -118,7 +124,11 @@ def mapped(item, number, special=None):
     if is_dataclass(item) and not getattr(item, "TABULATED", False):
         return with_fields(
             item,
-            **{name: mapped(getattr(item, name), number, special) for name, structural in _kinds(item) if not structural},
+            **{
+                name: mapped(getattr(item, name), number, special)
+                for name, structural in _kinds(item)
+                if not structural
+            },
         )
     if isinstance(item, tuple | list):
         return tuple(mapped(part, number, special) for part in item)

@@ -7,6 +7,8 @@ field is called where that is not its name; "" stands for a part whose fields ar
 from dataclasses import fields, is_dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from . import checks
 
 
@@ -35,17 +37,19 @@ def places(item, prefix="", label="") -> dict[str, Place]:
 
 
 def _rules(item):
+    rules = getattr(item, "RULES", None)
+    if rules is not None:
+        return rules.rules
     if not is_dataclass(item):
         return {}
-    rules = getattr(type(item).__post_init__, "rules", None) if hasattr(item, "__post_init__") else None
-    return rules or {field.name: checks.Number() for field in fields(item) if field.type in (Any, float)}
+    return {field.name: checks.Number() for field in fields(item) if field.type in (Any, float, "Any", "float")}
 
 
 def _of_value(value, rule, path, label):
-    rule = getattr(rule, "rule", rule) if isinstance(rule, checks.Optional | checks.OrFunction) else rule
+    rule = rule.rule if isinstance(rule, checks.Optional | checks.OrFunction) else rule
     if isinstance(rule, checks.Number):
-        return {path: Place((), rule)} if checks.is_number(value) else {}
-    if isinstance(rule, checks.Pair):
+        return {path: Place((), rule)} if _is_number(value) else {}
+    if isinstance(rule, checks.Pair) and value is not None:
         return {f"{path}.{part}": Place((number,), rule.rule) for number, part in enumerate(rule.parts)}
     if isinstance(value, tuple):
         found: dict[str, Place] = {}
@@ -80,3 +84,8 @@ def changed(item, **values):
     if hasattr(made, "__post_init__"):
         made.__post_init__()
     return made
+
+
+def _is_number(value):
+    """Whether a value is one number, or one for each of some designs."""
+    return isinstance(value, float) or (isinstance(value, np.ndarray) and value.shape[-1:] in ((), (1,)))

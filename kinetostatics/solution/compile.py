@@ -9,7 +9,6 @@ import numpy as np
 from ..engines import programs
 from ..engines.compiled import available, require
 from ..errors import ParameterError
-from ..machine.loads import TURN
 from ..mechanics.dynamics import Dynamics
 from ..numbers import checks, paths
 from ..numbers.elementary import read_only
@@ -88,18 +87,15 @@ class Program:
         for path in kept:
             if _is_zero(places[path].value(scene)):
                 scene = _with_kept(scene, places[path].steps)
-        self._state = Dynamics(
-            scene.mechanism, np.zeros(1), scene.crank_speed, scene.crank_acceleration, scene.loads
-        )
+        self._state = Dynamics(scene.mechanism, np.zeros(1), scene.crank_speed, scene.crank_acceleration, scene.loads)
         self._program, self._leaves = programs.of(self._state, quantities)
-        self._structure, _ = programs.apart(self._state)
-        found = programs.numbered(self._state)
+        numbered = programs.numbered(self._state)
+        found = {path: place.value(numbered) for path, place in places.items()}
         self._numbers = {
-            path: (number, place.rule) for path, place in places.items() if (number := place.value_in(found)) is not None
+            path: (number, places[path].rule) for path, number in found.items() if isinstance(number, programs.Numbered)
         }
         self._absent = tuple(path for path in places if path not in self._numbers)
-        self._doors = _doors(scene, places)
-        self._places = places
+        self._doors = {path for path in self._numbers if _is_judged_together(scene, places[path].steps)}
         values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
         self.parameters: Mapping[str, Any] = MappingProxyType(values)
 
@@ -174,17 +170,16 @@ class Program:
     def _numbers_with(self, values):
         """All numbers, in their order, with some values in place of their own."""
         self._require_known(values)
-        numbers, problems_, doors = list(self._leaves.numbers), [], set()
+        numbers, wrong = list(self._leaves.numbers), []
         for path, value in values.items():
             number, rule = self._numbers[path]
             found = rule.quick(value)
             if found is checks.UNSURE:
                 found, problem = rule.taken(value, path)
-                problems_.append(problem)
+                wrong.append(problem)
             numbers[number] = found
-            doors |= {door for door in self._doors if path in self._doors[door]}
-        checks.require("program", *problems_)
-        if doors:
+        checks.require("program", *wrong)
+        if not self._doors.isdisjoint(values):
             self.scene.varied(values)
         return numbers
 
@@ -200,3 +195,27 @@ class Program:
                     f'compile(..., parameters=("{path}",))'
                 )
         checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+
+
+def _is_zero(value):
+    return isinstance(value, int | float) and value == 0
+
+
+def _with_kept(item, steps):
+    """Copy of a tree in which a zero is kept as a number; nothing is checked."""
+    if not steps:
+        return Kept(0.0)
+    step, *rest = steps
+    if isinstance(step, int):
+        return tuple(_with_kept(part, rest) if place == step else part for place, part in enumerate(item))
+    return with_fields(item, **{step: _with_kept(getattr(item, step), rest)})
+
+
+def _is_judged_together(item, steps):
+    """Whether a number stands in a part that has rules for several of its numbers together."""
+    for step in steps:
+        rules = getattr(item, "RULES", None)
+        if rules is not None and rules.also is not None:
+            return True
+        item = item[step] if isinstance(step, int) else getattr(item, step)
+    return False

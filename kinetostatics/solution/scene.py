@@ -60,6 +60,9 @@ class Scene:
     loads: Any = ()
 
     PATHS: ClassVar = {"mechanism": "", "loads": ""}
+    RULES = checks.Rules(
+        "scene", mechanism=checks.Made(Mechanism, "a Mechanism"), **DRIVE, loads=checks.Own((), "loads")
+    )
 
     def __post_init__(self):
         self._admit("scene")
@@ -174,9 +177,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
     """
     scene = object.__new__(Scene)
-    vars(scene).update(
-        mechanism=mechanism, crank_speed=crank_speed, crank_acceleration=crank_acceleration, loads=loads
-    )
+    vars(scene).update(mechanism=mechanism, crank_speed=crank_speed, crank_acceleration=crank_acceleration, loads=loads)
     scene._admit("solve")
     return _solved(scene, crank_angle, on_gap, engine)
 

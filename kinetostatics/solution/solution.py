@@ -33,7 +33,7 @@ class Solution(Motion):
     def check(self):
         """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""
         if not assembly.surely_well(self, self._found("closure")):
-            assembly.check(self)
+            assembly.check(self.dynamics)
 
     def __repr__(self):
         drive = f"crank_speed={self.crank_speed}, crank_acceleration={self.crank_acceleration}"
@@ -155,6 +155,17 @@ class Solution(Motion):
     def pressure_angle(self):
         """Pressure angle of the cam pair, atan(r'/r), (..., N), rad."""
         return self.measure("pressure_angle")
+
+    @property
+    def condition(self):
+        """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
+
+        A bound of the true magnification: the sum over all lengths and the crank angle p of |p dq/dp|, over the largest
+        term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
+        at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
+        16 - log10(condition) correct digits of its largest term, or more.
+        """
+        return self.dynamics.condition
 
     def condition_of(self, quantity):
         """How many times relative errors are magnified in one quantity, relative to its largest value, (..., N).
