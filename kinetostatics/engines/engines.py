@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError
+from ..machine.loads import is_given
 from ..mechanics.quantities import of_mechanism
 from ..numbers.elementary import read_only, stack
 from . import programs
@@ -57,7 +58,10 @@ class Recorded:
             if self.strict:
                 raise
             return KERNELS.values(state, names)
-        return program.recording.named(read_only(program.run(state, leaves, self.compiled)))
+        rows = program.run(state, leaves, self.compiled)
+        if not (all(map(is_given, state.loads)) or np.isfinite(rows).all()):
+            state.pushes  # noqa: B018  raises an error if a load is no number where the mechanism closes
+        return program.recording.named(read_only(rows))
 
 
 def is_plain(angle):

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import NotGivenError, ParameterError
+from ..errors import NotGivenError
 from ..numbers.elementary import ROUNDING
-from ..numbers.leaves import Leaves, put_together, taken_apart
+from ..numbers.leaves import Leaves, put_together
 from . import loops, writing
 from .compiled import _loaded
 from .derivatives import gradients
@@ -228,7 +228,7 @@ def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Lea
     NotGivenError
         A group or load of the user's own cannot be recorded.
     """
-    structure, leaves = apart(state)
+    structure, leaves = state.apart
     if not leaves.lasting or state.way is not None:
         if lasting:
             raise NotGivenError(f"{state.mechanism.name} holds what may change unseen, to be recorded each time")
@@ -245,15 +245,9 @@ def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Lea
     return found, leaves
 
 
-def apart(state) -> tuple[Any, Leaves]:
-    """Structure and leaves of a scene: mechanism, drive and loads."""
-    leaves = Leaves()
-    return taken_apart((state.mechanism, state.crank_speed, state.crank_acceleration, state.loads), leaves), leaves
-
-
 def numbered(state):
     """The scene of a `Dynamics` with the place of each number among its leaves, a `Numbered`, instead of it."""
-    structure, _ = apart(state)
+    structure, _ = state.apart
     places = itertools.count()
     mechanism, speed, acceleration, loads = put_together(
         structure, lambda: Numbered(next(places)), lambda: None, lambda: None
@@ -263,27 +257,6 @@ def numbered(state):
 
 class Numbered(int):
     """Place of a number among the leaves of a scene."""
-
-
-def shape_of(angle, leaves):
-    """Shape (..., N) of scalar results at crank angles.
-
-    Raises
-    ------
-    ParameterError
-        Tables over the crank angles, or designs, do not fit them.
-    """
-    arrays = [leaf for leaf in (*leaves.numbers, *leaves.tables) if type(leaf) is not float]
-    if not arrays:
-        return angle.shape
-    try:
-        return np.broadcast_shapes(angle.shape, *(array.shape for array in arrays))
-    except ValueError:
-        shapes = ", ".join(str(array.shape) for array in arrays)
-        raise ParameterError(
-            f"program: crank angles {angle.shape} do not fit arrays of the scene of shape {shapes}; the last axis is the "
-            "crank angle, designs come before it"
-        ) from None
 
 
 def _recorded(state, structure, quantities, sizes):

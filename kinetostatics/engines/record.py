@@ -13,6 +13,7 @@ import numpy as np
 from ..machine.crank import ray
 from ..machine.loads import ProcessForce
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.pushes import pushed
 from ..mechanics.quantities import components, of_mechanism
 from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.leaves import put_together
@@ -148,7 +149,7 @@ class _Recorder:
             load, lambda angle: [load.push(replace(idle, crank_angle=angle))]
         ):
             return load
-        (values,) = self._tabled(1, lambda motion, arrays: [motion.loads[place].push(motion)])
+        (values,) = self._tabled(1, lambda motion, arrays: [pushed(motion.loads[place], motion)])
         return ProcessForce(values, load.on)
 
     def _is_elementwise(self, part, compute):

@@ -24,7 +24,9 @@ since they may cancel with inertia.
 Nothing else in the library knows what a group looks like, nor the names of its links.
 """
 
+import math
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -119,7 +121,7 @@ class Group:
     @property
     def shortest(self):
         """Its shortest link or cam radius."""
-        return min((bar.length for bar in self.bars), default=np.inf)
+        return smaller(*(bar.length for bar in self.bars))
 
     @property
     def bars(self):
@@ -138,3 +140,10 @@ class Group:
     def motions(self):
         """Quantities of its motion besides those of joints and links, each an `Output`; ``motion(name, placement)``."""
         return {}
+
+
+def smaller(*lengths):
+    """Smallest of lengths, numbers or arrays of designs; infinite of none."""
+    if all(type(length) is float for length in lengths):
+        return min(lengths, default=math.inf)
+    return reduce(np.minimum, lengths, math.inf)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..numbers import checks
+from .links import Link
 
 FAR = 20.0
 """Lengths of the longest link beyond which nobody puts a mass centre: millimetres beside metres make 1000."""
@@ -12,6 +13,8 @@ THIN = 1000.0
 
 def of_mechanism(mechanism):
     """Sentences on mass centres and inertias that look like those of another unit."""
+    if _surely_none(mechanism):
+        return ()
     bars = [bar for bar in mechanism.bars if checks.known(bar.length)]
     if not bars:
         return ()
@@ -24,6 +27,24 @@ def of_mechanism(mechanism):
                 f"the longest link ({longest:.4g} m); is it in mm?"
             )
     return (*found, *(text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link)))))
+
+
+def _surely_none(mechanism):
+    """Whether a quick look at plain numbers finds nothing odd, even beside the longest link."""
+    lengths = [bar.length for bar in mechanism.bars]
+    if not lengths or not all(type(length) is float for length in lengths):
+        return False
+    longest = max(lengths)
+    far, thin = FAR * longest, longest * longest / (THIN * 12.0)
+    for part in mechanism.parts:
+        for link in vars(part).values():
+            if type(link) is Link:
+                mass, (along, across), inertia = link.mass, link.centre, link.inertia
+                if not (type(mass) is type(along) is type(across) is type(inertia) is float):
+                    return False
+                if abs(along) > far or abs(across) > far or 0.0 < inertia < thin * mass:
+                    return False
+    return True
 
 
 def _inertia(bar, link):

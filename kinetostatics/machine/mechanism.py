@@ -11,7 +11,7 @@ from ..numbers.leaves import Batched
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .crank import Crank
-from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved
+from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved, smaller
 from .links import Wrench, arm, present
 
 NAME = checks.Name()
@@ -114,14 +114,11 @@ class Mechanism(Batched):
     @cached_property
     def proportion(self):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
-        whole, shortest = 0.0, np.inf
-        for part in self.parts:
-            for length in part.lengths:
-                whole = whole + abs(length)
-            shortest = np.minimum(shortest, part.shortest)
+        whole = sum(sum(map(abs, part.lengths)) for part in self.parts)
+        shortest = smaller(*(part.shortest for part in self.parts))
         return float(np.max(whole / shortest))
 
-    @property
+    @cached_property
     def bars(self):
         """Links that keep two joints at a distance, from the crank outwards."""
         return sum((group.bars for group in self.groups), self.crank.bars)

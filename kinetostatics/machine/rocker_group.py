@@ -14,7 +14,7 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted
-from .group import FRAME, Bar, Group, Output, Point, Resolved
+from .group import FRAME, Bar, Group, Output, Point, Resolved, smaller
 from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-53
@@ -155,6 +155,10 @@ class RockerGroup(checks.Checked, Group):
             Bar(self.on, self.pin, self._coupler, self.coupler_length),
             Bar(self.pivot_name, self.pin, self._rocker, self.rocker_length),
         )
+
+    @property
+    def shortest(self):
+        return smaller(self.coupler_length, self.rocker_length)
 
     @property
     def lengths(self):

@@ -41,13 +41,19 @@ def surely_well(solution, margins):
     least = 1.0
     for margin in margins:
         least = least * min(margin.min(), 1.0)
-    return least >= _enough(solution)
+    if not least > 0.0:
+        return False
+    angle = np.ravel(solution.crank_angle)
+    return least >= _enough(solution, math.sqrt(angle.dot(angle))) or least >= _enough(solution)
 
 
-def _enough(solution):
-    """Product of all groups' margins from which the condition is below `HALF`, however they lie."""
-    farthest = max(1.0, float(np.abs(np.asarray(solution.crank_angle)).max()))
-    return solution.mechanism.proportion * np.sqrt(WORST * farthest / HALF)
+def _enough(solution, farthest=None):
+    """Product of all groups' margins from which the condition is below `HALF`, however they lie.
+
+    A bound of the crank angles will do in place of the farthest of them.
+    """
+    farthest = float(np.abs(np.asarray(solution.crank_angle)).max()) if farthest is None else farthest
+    return solution.mechanism.proportion * math.sqrt(WORST * max(1.0, farthest) / HALF)
 
 
 def _in_double_precision(solution):

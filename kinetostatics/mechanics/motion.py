@@ -9,7 +9,7 @@ from ..machine.links import accelerated, angular_acceleration, arm, first_at, pr
 from ..machine.mechanism import Mechanism
 from ..numbers import checks
 from ..numbers.elementary import namespace, read_only, stack
-from ..numbers.leaves import wider
+from ..numbers.leaves import Leaves, taken_apart, wider
 from ..numbers.planar import added, number, plus, product, stretched, vector
 
 
@@ -36,8 +36,18 @@ class Motion:
     loads: tuple = ()
 
     @cached_property
+    def apart(self):
+        """Structure of the scene, what is apart from its numbers, and its leaves."""
+        leaves = Leaves()
+        scene = self.mechanism, self.crank_speed, self.crank_acceleration, self.loads
+        return taken_apart(scene, leaves), leaves
+
+    @cached_property
     def shape(self):
         """Shape (..., N) of a scalar result: batch axes of designs and loads, then the crank angles."""
+        _, leaves = self.apart
+        if leaves.lasting:
+            return leaves.shape(self.crank_angle.shape)
         return wider(self.crank_angle.shape, self.mechanism, self.crank_speed, self.crank_acceleration, *self.loads)
 
     @cached_property

@@ -56,6 +56,16 @@ class Leaves:
     def __init__(self):
         self.numbers, self.tables, self.parts, self.lasting = [], [], [], True
 
+    @property
+    def are_plain(self):
+        """Whether all are plain numbers, and the structure tells all else."""
+        return self.lasting and not self.tables and all(type(number) is float for number in self.numbers)
+
+    def shape(self, angles):
+        """Shape (..., N) of scalar results at crank angles of a shape."""
+        arrays = [leaf.shape for leaf in (*self.numbers, *self.tables) if type(leaf) is not float]
+        return np.broadcast_shapes(angles, *arrays) if arrays else angles
+
     def with_numbers(self, numbers):
         """The same with other numbers, in the same order."""
         other = Leaves()

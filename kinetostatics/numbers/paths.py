@@ -83,6 +83,8 @@ def changed(item, **values):
         object.__setattr__(made, field.name, values.get(field.name, getattr(item, field.name)))
     if hasattr(made, "__post_init__"):
         made.__post_init__()
+    elif hasattr(made, "RULES"):
+        made.RULES.admit(made)
     return made
 
 

@@ -87,9 +87,10 @@ class Program:
         for path in kept:
             if _is_zero(places[path].value(scene)):
                 scene = _with_kept(scene, places[path].steps)
-        self._state = Dynamics(scene.mechanism, np.zeros(1), scene.crank_speed, scene.crank_acceleration, scene.loads)
-        self._program, self._leaves = programs.of(self._state, quantities)
-        numbered = programs.numbered(self._state)
+        state = Dynamics(scene.mechanism, np.zeros(1), scene.crank_speed, scene.crank_acceleration, scene.loads)
+        self._fields = dict(vars(state))
+        self._program, self._leaves = programs.of(state, quantities)
+        numbered = programs.numbered(state)
         found = {path: place.value(numbered) for path, place in places.items()}
         self._numbers = {
             path: (number, places[path].rule) for path, number in found.items() if isinstance(number, programs.Numbered)
@@ -156,15 +157,16 @@ class Program:
 
     def _at(self, angle, values):
         """The scene at crank angles, with its leaves."""
-        angle = angle if type(angle) is np.ndarray and angle.dtype == float else crank_angles(angle)
-        checks.require("program", problems(angle))
-        leaves = self._leaves
-        if values:
-            leaves = leaves.with_numbers(self._numbers_with(values))
-        state = with_fields(self._state, crank_angle=angle)
-        vars(state)["shape"] = programs.shape_of(angle, leaves)
+        angle = np.array(angle) if type(angle) is float else crank_angles(angle)
+        wrong = problems(angle)
+        if wrong:
+            checks.require("program", wrong)
+        leaves = self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
         if self._program.recording.tables:
-            state = self._state_with(angle, values)
+            scene = self.scene.varied(values) if values else self.scene
+            return Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads), leaves
+        state = object.__new__(Dynamics)
+        vars(state).update(self._fields, crank_angle=angle, shape=_shape(angle, leaves))
         return state, leaves
 
     def _numbers_with(self, values):
@@ -178,16 +180,15 @@ class Program:
                 found, problem = rule.taken(value, path)
                 wrong.append(problem)
             numbers[number] = found
-        checks.require("program", *wrong)
+        if wrong:
+            checks.require("program", *wrong)
         if not self._doors.isdisjoint(values):
             self.scene.varied(values)
         return numbers
 
-    def _state_with(self, angle, values):
-        scene = self.scene.varied(values) if values else self.scene
-        return Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
-
     def _require_known(self, names):
+        if all(path in self._numbers for path in names):
+            return
         for path in names:
             if path in self._absent:
                 raise ParameterError(
@@ -195,6 +196,17 @@ class Program:
                     f'compile(..., parameters=("{path}",))'
                 )
         checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+
+
+def _shape(angle, leaves):
+    """Shape (..., N) of scalar results; refused where tables over the crank angles, or designs, do not fit them."""
+    try:
+        return leaves.shape(angle.shape)
+    except ValueError:
+        arrays = (leaf for leaf in (*leaves.numbers, *leaves.tables) if type(leaf) is not float)
+        given = {f"array {number} of the scene": array.shape for number, array in enumerate(arrays, 1)}
+        checks.require("program", checks.fitting(crank_angle=angle.shape, **given))
+        raise
 
 
 def _is_zero(value):

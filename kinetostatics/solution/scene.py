@@ -190,7 +190,6 @@ def _solved(scene, crank_angle, on_gap, engine):
         checks.choice("on_gap", on_gap, ("raise", "nan")),
         None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
     )
-    checks.require("solve", checks.fitting(**_shapes(scene, angle)))
     if angle.dtype == "float32":
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
@@ -200,6 +199,9 @@ def _solved(scene, crank_angle, on_gap, engine):
     for text in (*mechanism.hints, *hints.of_angles(angle)):
         warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=3)
     solution = Solution(mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
+    _, leaves = solution.apart
+    if not leaves.are_plain:
+        checks.require("solve", checks.fitting(**_shapes(scene, angle)))
     chosen = _engine(engine, angle, solution)
     solution = solution if chosen is NUMPY else replace(solution, engine=chosen)
     if on_gap == "raise":

@@ -1,7 +1,7 @@
 """What users hold: motion and forces of a scene, each computed by an engine when first asked for."""
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -187,8 +187,10 @@ class Solution(Motion):
     @cached_property
     def dynamics(self):
         """The scene at its crank angles, as engines take it and kernels compute it."""
-        given = {field.name: getattr(self, field.name) for field in fields(Motion)}
-        return Dynamics(**given, way=getattr(self.engine, "way", None))
+        way = getattr(self.engine, "way", None)
+        made = Dynamics(self.mechanism, self.crank_angle, self.crank_speed, self.crank_acceleration, self.loads, way)
+        vars(made).update(apart=self.apart, shape=self.shape)
+        return made
 
     @property
     def placement(self):

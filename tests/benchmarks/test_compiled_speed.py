@@ -33,7 +33,6 @@ from test_speed import (
 
 import kinetostatics as ks
 from kinetostatics.engines import compiled
-from kinetostatics.studies import timing
 from kinetostatics.studies.methods import kane
 
 SAW = ks.load_case("sawframe_2r63")
@@ -52,20 +51,6 @@ OUTPUTS = ("largest O", "mean_absolute balancing_torque", "range guide_force")
 MANY = 100_000
 
 pytestmark = pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)")
-
-
-@pytest.fixture(scope="module")
-def tell(request):
-    """Prints a line past pytest's capturing; first of all the machine and the versions."""
-    capturing = request.config.pluginmanager.getplugin("capturemanager")
-
-    def line(text):
-        with capturing.global_and_fixture_disabled():
-            print(f"\n{text}", end="")
-
-    for text in timing.circumstances().values():
-        line(text)
-    return line
 
 
 @pytest.fixture

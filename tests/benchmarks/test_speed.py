@@ -6,15 +6,12 @@ the rivals take turns; limits are generous, the figures themselves are printed a
 
 import math
 import os
-import platform
 import subprocess
 import sys
 import timeit
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 import kinetostatics as ks
 
@@ -103,22 +100,6 @@ def seconds(*rivals, rounds=12, spent=0.02):
     counts = [max(1, round(spent / min(timer.repeat(3, 1)))) for timer in timers]
     times = [[timer.timeit(count) / count for timer, count in zip(timers, counts, strict=True)] for _ in range(rounds)]
     return np.min(times, axis=0)
-
-
-@pytest.fixture(scope="session")
-def tell(request):
-    """Prints a line past pytest's capturing; first of all the machine and the versions."""
-    from cpuinfo import get_cpu_info
-
-    capturing = request.config.pluginmanager.getplugin("capturemanager")
-
-    def line(text):
-        with capturing.global_and_fixture_disabled():
-            print(f"\n{text}", end="")
-
-    line(f"{get_cpu_info().get('brand_raw', platform.machine())}, {platform.system()}")
-    line(f"Python {platform.python_version()}, NumPy {np.__version__}, SciPy {version('scipy')}")
-    return line
 
 
 def assert_same(found, expected):
