@@ -1,35 +1,28 @@
 """Kinetostatics of planar slider mechanisms: motion, joint forces, drive torque, and what balancing buys.
 
-planar, elementary          vectors by components; sin, cos, sqrt of any array
-links, guide, loads         what a mechanism is made of
-crank                       the driver
-cam_roller, cams            slotted crank, block and roller on a fixed cam
-slider_group, rocker_group  coupler and slider on a guide; coupler and rocker
-chain, batch, mechanism     how groups hang together; the mechanisms made of them
-motion, solution            what it does and what forces that takes
-tracing, compiled           the kernels' arithmetic written down, and as a loop by numba
-balancing, counterweights   static balancing, the counterweights it takes, and their price
-linkage                     swing and class of four-bars
-principal_points            common mass centre and shaking force from the link masses
-assembly                    where it can be put together
-turn                        the period results are reduced over, and where they have no correct digit
-extremes, comparison        true extrema; dynamic coefficients
-ingredients, rerouted       how much model a quantity needs; motion found in other ways
-precision, stability        every method's time against error; where methods fail
-methods                     the methods under study and the certified reference
-designs, parameters         tables of designs; what a case lets vary
-sweeps, chunks, dispatch    a row for each design: the sweep, one chunk, workers and their deaths
-reductions, dataset         numbers from values over the turn; results on disk
-tolerance                   spreads, quantiles, Sobol indices
-case, schema, units         case files and what they may hold; text with units
-files                       CSV tables in, results out
-quantities, tables          names and units of results; DataFrames
-checks, errors, hints       what is refused at the door, how it is said, and what looks like a slip
-group_check                 a test of a group of one's own
-substitution, timing        other kinds of numbers in place of floats; how long, and on what machine
-plots, charts               figures of solutions; charts of studies
-drawings, canvas            the mechanism itself; what figures share
-figures, cli                figures of a case; command line
+Call first
+    crank_slider, cam_crank_slider, four_bar    a mechanism; Link its masses, Gravity, Spring, ProcessForce its loads
+    solve(mechanism, angles, crank_speed=...)   its Solution: motion, every reaction, the torque of the drive
+    Scene(mechanism, crank_speed, ...)          all that together; .solve(angles), .varied({"slider.mass": 620.0})
+    load_case("sawframe_2r63")                  the same from a file; shipped cases by name
+    extremes, compare                           true peaks; how many times better than a reference
+    compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
+    sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
+    balancing, linkage, needs                   counterweights; classes of four-bars; how much model a quantity needs
+    plots, precision, stability, check          figures; every method's time and error; a test of a group of one's own
+
+Rooms, in the order in which they build on each other
+    numbers     elementary functions, planar vectors, leaves of parameter trees, checks, units, files
+    machine     what it is: links, guide, cams, crank, groups, loads, the mechanism made of them
+    mechanics   what it does: motion, forces, assembly, principal points, quantities with their units
+    engines     how fast, how sure: kernels recorded once a structure, NumPy lines, compiled loops, derivatives
+    results     extremes, means, reductions, comparison, tables
+    solution    what users hold: scene, solution, solve, compile
+    design      static balancing, four-bar classes
+    sweeps      designs, sweep, workers, datasets, tolerances
+    studies     needs, precision, stability, the methods under study
+    casefile    case files: schema, reading, building
+    views       plots, charts, drawings
 """
 
 from .errors import (

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import NotGivenError
+from ..errors import NotGivenError, QuantityError
 from ..numbers.elementary import ROUNDING
 from ..numbers.leaves import Leaves, put_together
 from . import loops, writing
@@ -262,6 +262,8 @@ class Numbered(int):
 def _recorded(state, structure, quantities, sizes):
     try:
         return Program(record(structure, quantities, sizes, state.way))
+    except QuantityError:
+        raise
     except (TypeError, AttributeError) as error:
         raise NotGivenError(
             f"the compiled engine cannot take {state.mechanism.name}: a group or load of it does more than arithmetic "

@@ -162,11 +162,12 @@ class Program:
         if wrong:
             checks.require("program", wrong)
         leaves = self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
+        shape = _shape(angle, leaves)
         if self._program.recording.tables:
             scene = self.scene.varied(values) if values else self.scene
             return Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads), leaves
         state = object.__new__(Dynamics)
-        vars(state).update(self._fields, crank_angle=angle, shape=_shape(angle, leaves))
+        vars(state).update(self._fields, crank_angle=angle, shape=shape)
         return state, leaves
 
     def _numbers_with(self, values):

@@ -1,0 +1,131 @@
+"""`ks.compile`: a program called with other numbers gives what a new scene gives, and says what it does not take."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+
+ANGLES = np.linspace(0.0, 6.0, 25)
+QUANTITIES = ("balancing_torque", "O", "guide_force", "slider_acceleration", "coupler_rate", "shaking_force")
+
+
+def saw(**links):
+    given = {"coupler": ks.Link(150.0, 1.0, 20.5), "slider": ks.Link(600.0)} | links
+    return ks.Scene(ks.crank_slider(0.3, 2.0, **given), 30.0, loads=ks.Gravity())
+
+
+def assert_as_solved(found, solution):
+    for name, values in found.items():
+        expected = (
+            solution.reaction(name)
+            if name in solution.reactions
+            else solution.rate("coupler")
+            if name == "coupler_rate"
+            else getattr(solution, name)
+        )
+        assert values.shape == expected.shape, name
+        assert np.array_equal(values, expected, equal_nan=True), name
+
+
+@pytest.mark.parametrize("angle", [0.3, ANGLES, ANGLES[:3], ANGLES[None]], ids=["one", "turn", "few", "row"])
+def test_program_gives_what_a_solution_gives(angle):
+    assert_as_solved(ks.compile(saw(), QUANTITIES, engine="numpy")(angle), saw().solve(np.asarray(angle)))
+
+
+def test_other_numbers_give_what_a_varied_scene_gives():
+    values = {"slider.mass": 620.0, "crank_length": 0.31, "gravity.direction": -1.4, "crank_speed": 31.0}
+    found = ks.compile(saw(), QUANTITIES, engine="numpy")(ANGLES, values)
+    assert_as_solved(found, saw().varied(values).solve(ANGLES))
+
+
+def test_arrays_of_numbers_make_a_batch():
+    masses = np.array([[500.0], [600.0], [700.0]])
+    found = ks.compile(saw(), ("balancing_torque", "O"), engine="numpy")(ANGLES, {"slider.mass": masses})
+    assert found["O"].shape == (2, 3, ANGLES.size)
+    for row, mass in enumerate(masses[:, 0]):
+        alone = saw(slider=ks.Link(mass)).solve(ANGLES)
+        assert np.array_equal(found["balancing_torque"][row], alone.balancing_torque)
+
+
+def test_parameters_are_those_present_and_those_asked_for():
+    program = ks.compile(saw(), "balancing_torque", parameters=("crank.mass", "slider.centre.across"), engine="numpy")
+    assert program.parameters["crank.mass"] == 0.0
+    assert "crank.inertia" not in program.parameters
+    assert program.parameters["slider.mass"] == 600.0
+    plain = ks.compile(saw(), "balancing_torque", engine="numpy")
+    assert np.array_equal(program(ANGLES)["balancing_torque"], plain(ANGLES)["balancing_torque"])
+    varied = saw().varied({"crank.mass": 5.0, "slider.centre.across": 0.1}).solve(ANGLES)
+    found = program(ANGLES, {"crank.mass": 5.0, "slider.centre.across": 0.1})
+    assert found["balancing_torque"] == pytest.approx(varied.balancing_torque, rel=1e-14)
+
+
+def test_gaps_are_nan_without_a_word():
+    scene = ks.Scene(ks.crank_slider(1.0, 0.8, slider=ks.Link(1.0)), 3.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = ks.compile(scene, "O", engine="numpy")(ANGLES)["O"]
+    expected = scene.solve(ANGLES, on_gap="nan").reaction("O")
+    assert np.array_equal(found, expected, equal_nan=True)
+    assert np.isnan(found).any()
+
+
+BAD = {
+    "absent": ({"crank.mass": 1.0}, r'crank.mass is zero .* compile\(\.\.\., parameters=\("crank.mass",\)\)'),
+    "unknown": ({"slider.mas": 1.0}, "did you mean 'slider.mass'"),
+    "negative": ({"slider.mass": -1.0, "crank_length": 0.0}, "slider.mass must be at least 0.*crank length must be gr"),
+    "text": ({"slider.mass": "600 kg"}, "slider.mass must be a number"),
+    "over the angles": ({"crank_length": ANGLES}, "last axis would be the crank angle"),
+    "not a number": ({"crank_speed": np.nan}, "crank_speed must be finite"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_numbers_no_machine_can_have_are_refused(name):
+    values, words = BAD[name]
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.compile(saw(), "O", engine="numpy")(ANGLES, values)
+
+
+def test_numbers_that_only_together_make_no_machine_are_refused():
+    mechanism = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.02, 0.0)), 2.0, slider=ks.Link(1.0))
+    program = ks.compile(ks.Scene(mechanism, 3.0), "cam_force", engine="numpy")
+    with pytest.raises(ks.ParameterError, match="O must lie inside the pitch circle"):
+        program(ANGLES, {"cam.centre.x": -0.5})
+
+
+WRONG = {
+    "no scene": (lambda: ks.compile(saw().mechanism, "O"), "scene must be a Scene"),
+    "no quantity": (lambda: ks.compile(saw(), ()), "no quantities"),
+    "unknown quantity": (lambda: ks.compile(saw(), "cam_force", engine="numpy"), "quantity is 'cam_force', allowed"),
+    "unknown parameter": (
+        lambda: ks.compile(saw(), "O", ("block.mass",), "numpy"),
+        "parameter is 'block.mass', allowed",
+    ),
+    "unknown engine": (lambda: ks.compile(saw(), "O", engine="fortran"), "engine is 'fortran', allowed"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_cannot_be_compiled_is_refused(name):
+    call, words = WRONG[name]
+    with pytest.raises((ks.ParameterError, ks.QuantityError), match=words):
+        call()
+
+
+def test_crank_speed_over_the_angles_must_fit_them():
+    scene = ks.Scene(saw().mechanism, np.linspace(20.0, 30.0, ANGLES.size))
+    program = ks.compile(scene, "balancing_torque", engine="numpy")
+    assert np.array_equal(program(ANGLES)["balancing_torque"], scene.solve(ANGLES).balancing_torque)
+    with pytest.raises(ks.ParameterError, match="do not fit together"):
+        program(ANGLES[:4])
+
+
+def test_derivatives_have_the_shape_of_the_quantity():
+    program = ks.compile(saw(), ("O", "balancing_torque"), engine="numpy")
+    found = program.derivatives(ANGLES, ("crank_length", "slider.mass"))
+    assert {name: {path: slope.shape for path, slope in slopes.items()} for name, slopes in found.items()} == {
+        "O": dict.fromkeys(("crank_length", "slider.mass"), (2, ANGLES.size)),
+        "balancing_torque": dict.fromkeys(("crank_length", "slider.mass"), (ANGLES.size,)),
+    }
