@@ -182,7 +182,8 @@ def test_derivatives_equal_central_differences_of_the_kernels_on_enclosures(name
             for quantity in quantities:
                 slope = ((above[quantity] - below[quantity]) / (2 * step * value)).astype(float)
                 own = np.reshape(found[quantity][path], slope.shape)
-                unit = np.abs(slope).max() or np.abs(own).max() or 1.0
+                terms = np.abs(above[quantity].astype(float)).max() / abs(float(leaves.numbers[place]))
+                unit = max(np.abs(slope).max(), terms) or np.abs(own).max() or 1.0
                 assert np.abs(own - slope).max() <= 1e-12 * unit, (path, quantity)
 
 
