@@ -19,35 +19,33 @@ WORST = 100.0
 
 def check(solution):
     """Raise `AssemblyError` if the mechanism does not close at some angle; warn where half of the digits are lost."""
-    placement, margins = solution.placement, []
+    placement, margins, least = solution.placement, [], 1.0
     for group in solution.mechanism.groups:
         margin = _looked_at(group.closure(placement))
         if margin is None:
             continue
         margins.append(margin)
         smallest = margin.min()
+        least *= min(smallest, 1.0)
         if smallest >= 0.0:
             continue
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
         if smallest < -ROUNDING:
             raise _error(solution.mechanism, group, placement, margin)
-    if margins and _in_double_precision(solution) and not surely_well(solution, margins):
+    if margins and _in_double_precision(solution) and not least >= _enough(solution):
         _warn_where_digits_are_lost(solution, margins)
 
 
 def surely_well(solution, margins):
     """Whether the margins of closure alone tell that no crank angle loses half of its digits."""
-    least = 1.0
-    for margin in margins:
-        least = least * min(margin.min(), 1.0)
-    return least >= _enough(solution)
+    return math.prod(min(margin.min(), 1.0) for margin in margins) >= _enough(solution)
 
 
 def _enough(solution):
     """Product of all groups' margins from which the condition is below `HALF`, however they lie."""
     farthest = max(1.0, float(np.abs(np.asarray(solution.crank_angle)).max()))
-    return solution.mechanism.proportion * np.sqrt(WORST * farthest / HALF)
+    return solution.mechanism.proportion * math.sqrt(WORST * farthest / HALF)
 
 
 def _in_double_precision(solution):
