@@ -296,5 +296,5 @@ def parsed(text) -> Output:
     names = ", ".join((*FOUND, "harmonic_1", "harmonic_2 ..."))
     raise ParameterError(
         f'output {text!r} must be a reduction and a quantity, such as "largest O" or "ratio mean_absolute '
-        f'balancing_torque"; reductions: {names}{checks.hint(reduction, FOUND)}'
+        f'balancing_torque"; reductions: {names}{"" if reduction in FOUND else checks.hint(reduction, FOUND)}'
     )
