@@ -64,7 +64,7 @@ def _unfit(kind: Any):
         ((bool, np.bool_), "a truth value; give a number"),
         ((complex, np.complexfloating), "a complex number; give a real one"),
         ((str, bytes), "a text; write a plain number in SI units, without quotes"),
-        ((dt.date, dt.time, dt.timedelta, np.datetime64, np.timedelta64), "a time; give a number in SI units"),
+        ((dt.date, dt.time, dt.timedelta, np.timedelta64), "a time; give a number in SI units"),
     ):
         if issubclass(kind, kinds):
             return words
