@@ -17,22 +17,16 @@ WORST = 100.0
 """Largest condition of a mechanism times margin^2 / (proportion^2 times crank angle)."""
 
 
-def check(solution, on_gap="raise"):
-    """Raise `AssemblyError` if the mechanism does not close at some angle, unless `on_gap` is "nan".
-
-    Warn where half of the digits are lost.
-    """
+def check(solution):
+    """Raise `AssemblyError` if the mechanism does not close at some angle; warn where half of the digits are lost."""
     placement, margins = solution.placement, []
     for group in solution.mechanism.groups:
-        margin = group.closure(placement)
-        if on_gap == "nan" and not isinstance(margin, np.ndarray | float):  # not to be worked out now
-            continue
-        margin = _looked_at(margin)
+        margin = _looked_at(group.closure(placement))
         if margin is None:
             continue
         margins.append(margin)
         smallest = margin.min()
-        if on_gap == "nan" or smallest >= 0.0:
+        if smallest >= 0.0:
             continue
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")

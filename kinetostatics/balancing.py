@@ -19,7 +19,7 @@ from .principal_points import principal_points
 from .quantities import magnitude
 from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
-from .solution import unchecked
+from .solution import solve
 
 __all__ = ["Balanced", "Counterweight", "counterweight", "full", "optimal", "partial"]
 
@@ -142,7 +142,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         return result
 
     def solved(unknowns):
-        return unchecked(balanced(unknowns * scale).mechanism, turn, 1.0, 0.0, (), None)
+        return solve(balanced(unknowns * scale).mechanism, turn, crank_speed=1.0, on_gap="nan")
 
     def sizes(unknowns):
         return _sizes(solved(unknowns), norm)

@@ -20,7 +20,7 @@ from .elementary import ROUNDING
 from .errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
 from .quantities import components, sizes, unit
 from .reductions import Output, lowest
-from .solution import TURN, period_of, unchecked
+from .solution import TURN, period_of, solve
 from .turn import NEAR, repeating_problem
 
 VALUES = 100_000
@@ -154,8 +154,8 @@ def _solution(variant, angles):
 
 
 def _solved(variant, turn):
-    drive = variant.crank_speed, variant.crank_acceleration
-    return unchecked(variant.mechanism, turn, *drive, variant.loads, "numpy")
+    drive = {"crank_speed": variant.crank_speed, "crank_acceleration": variant.crank_acceleration}
+    return solve(variant.mechanism, turn, **drive, loads=variant.loads, on_gap="nan", engine="numpy")
 
 
 # Designs set apart

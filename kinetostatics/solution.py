@@ -41,10 +41,10 @@ class Solution(Motion):
 
     loads: tuple = ()
 
-    def check(self, on_gap="raise"):
-        """Raise `AssemblyError` where the mechanism does not close, unless that gives NaN; warn of lost digits."""
+    def check(self):
+        """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""
         if not self._surely_closes():
-            assembly.check(self, on_gap)
+            assembly.check(self)
 
     def _surely_closes(self):
         """Whether that is known without a look at the placement."""
@@ -385,7 +385,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         arrays, are taken as they are now: what is changed of them later is not seen.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
-        give NaN there and exact values elsewhere (as needed under ``jax.jit``).
+        give NaN there and exact values elsewhere (no check, as needed under ``jax.jit``).
     engine : "numpy" or "compiled"
         "compiled" runs the same kernels as one loop made by numba (extra `fast`), for each quantity when it is asked
         for: the first time takes about a second, then machine code is kept on disk. Unless told, it is taken for a
@@ -416,14 +416,6 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     UserWarning
         The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
     """
-    problem = checks.choice("on_gap", on_gap, ("raise", "nan"))
-    solution = unchecked(mechanism, crank_angle, crank_speed, crank_acceleration, loads, engine, problem)
-    solution.check(on_gap)
-    return solution
-
-
-def unchecked(mechanism, crank_angle, crank_speed, crank_acceleration, loads, engine, problem=None):
-    """What `solve` returns, before a look at where the mechanism closes and where digits are lost."""
     if type(mechanism) is not Mechanism:
         checks.require("solve", _no_mechanism(mechanism))
     angle = _angles(crank_angle)
@@ -433,7 +425,7 @@ def unchecked(mechanism, crank_angle, crank_speed, crank_acceleration, loads, en
         "solve",
         None if math.prod(angle.shape) else "there are no crank angles",
         None if _finite(angle) else "crank angles must be finite; found NaN or infinity",
-        problem,
+        checks.choice("on_gap", on_gap, ("raise", "nan")),
         None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
         *(_load_problem(mechanism, item) for item in loads),
         _period_problem(loads),
@@ -447,11 +439,14 @@ def unchecked(mechanism, crank_angle, crank_speed, crank_acceleration, loads, en
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
-            stacklevel=3,
+            stacklevel=2,
         )
     for text in (*mechanism.hints, *hints.of_angles(angle)):
-        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=3)
-    return _on_engine(engine, Solution(mechanism, angle, crank_speed, crank_acceleration, loads))
+        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=2)
+    solution = _on_engine(engine, Solution(mechanism, angle, crank_speed, crank_acceleration, loads))
+    if on_gap == "raise":
+        solution.check()
+    return solution
 
 
 def _on_engine(engine, solution):

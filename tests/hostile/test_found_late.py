@@ -142,15 +142,6 @@ def test_an_output_without_a_quantity_is_not_asked_for_its_reduction():
     assert "did you mean" not in str(found.value)
 
 
-@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
-@pytest.mark.parametrize("lengths", [(1, 3, 2, 4), (1, 2, 1, 2), (1, 1, 1, 1), (2, 2, 1, 1)])
-def test_lost_digits_are_told_where_gaps_are_allowed_too(lengths, engine):
-    crank, coupler, rocker, ground = lengths
-    mechanism = ks.four_bar(crank, coupler, rocker, rocker_pivot=(ground, 0), **BODIES)
-    with pytest.warns(ks.ConditionWarning, match="near a limit position or change point"):
-        ks.solve(mechanism, TURN, crank_speed=5.0, loads=[ks.Gravity()], on_gap="nan", engine=engine)
-
-
 def test_gaps_alone_are_no_reason_to_warn():
     swinging = ks.crank_slider(1.0, 0.8, slider=ks.Link(2.0))
     torque = ks.solve(swinging, TURN, crank_speed=5.0, on_gap="nan").balancing_torque
