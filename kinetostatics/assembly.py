@@ -95,9 +95,12 @@ def _warn_where_digits_are_lost(solution, margins):
         return
     worst = int(np.argmax(found))
     angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[points[worst]]
+    cause = "it is near a limit position or change point: errors of its lengths, rounding among them, are"
+    if found[worst] * TURN < HALF * abs(angle):
+        cause = "it is many turns from 0 (angles within one turn would do): rounding of the crank angle is"
     warnings.warn(
-        f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position or change "
-        f"point: errors of its lengths, rounding among them, are magnified {found[worst]:.3g} times, so rates and "
+        f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg {cause} "
+        f"magnified {found[worst]:.3g} times, so rates and "
         f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {points.size} of "
         f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
         "angle by angle)",
@@ -148,7 +151,12 @@ def intervals(mechanism, group, design=(), angles=()):
     if stops.size and stops[0] < starts[0]:
         stops = np.roll(stops, -1)
         stops[-1] += TURN
-    return tuple((float(start), float(stop)) for start, stop in zip(starts, stops, strict=True))
+    with np.errstate(invalid="ignore"):
+        real = (
+            margin((starts + stops) / 2) < -ROUNDING
+        )  # the others are change points, where it closes but for rounding
+    kept = real if real.any() else ~real
+    return tuple((float(start), float(stop)) for start, stop in zip(starts[kept], stops[kept], strict=True))
 
 
 def near_limits(mechanism, below):

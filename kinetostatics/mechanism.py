@@ -309,7 +309,8 @@ def _name_problems(parts):
 
     for kind, on, adds in parts:
         if on not in points and on != "O":
-            problems.append(f"{kind} hangs on joint {on!r}, which no part before it places")
+            remedy = "; give the crank a length, or put a CamRoller before it" if on == "A" else ""
+            problems.append(f"{kind} hangs on joint {on!r}, which no part before it places{remedy}")
         add(points, "joint", kind, adds.joints)
         add(points, "link", kind, adds.links)
         add(forces, "reaction", kind, adds.reactions)

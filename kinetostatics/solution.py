@@ -13,7 +13,7 @@ from .batch import wider
 from .elementary import is_foreign_array, read_only
 from .errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from .links import load, virtual_work
-from .loads import Gravity, ProcessForce, Spring
+from .loads import MOST_TURNS, Gravity, ProcessForce, Spring
 from .mechanism import Mechanism
 from .motion import Motion
 from .planar import added, minus, moment, number, plus, product
@@ -287,6 +287,17 @@ def period_of(loads):
     return TURN * math.lcm(*(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
 
 
+def _period_problem(loads):
+    """What is wrong with the period that loads have in common, or None."""
+    turns = period_of(loads) / TURN if len(loads) > 1 else 1.0
+    each = ", ".join(f"{getattr(item, 'period', TURN) / TURN:.6g}" for item in loads)
+    return (
+        f"loads that repeat after {each} turns do so together after {turns:.6g} only, {MOST_TURNS} at most"
+        if (turns > MOST_TURNS)
+        else None
+    )
+
+
 def is_given(item):
     """Whether a load is numbers, checked when it was made, and no code of the user's."""
     return isinstance(item, Gravity | Spring) or (isinstance(item, ProcessForce) and not callable(item.force))
@@ -301,10 +312,15 @@ def pushed(item, motion):
         It is no array of numbers, one for each crank angle, or not finite where the mechanism closes.
     """
     found = item.push(motion)
-    if is_given(item) or is_foreign_array(found) or (isinstance(found, np.ndarray) and found.dtype == object):
+    if is_given(item) or (isinstance(found, np.ndarray) and found.dtype == object):
         return found
     owner = f"{type(item).__name__} on {item.on!r}: its function"
     wanted = f"must return its force in N, a number or an array of shape {motion.shape}, one for each crank angle"
+    words = None if hasattr(found, "to_numpy") else checks.unfit(found)
+    if words:
+        raise ParameterError(f"{owner} {wanted}, got {checks.shown(found)}, {words.format(unit='N')}")
+    if is_foreign_array(found):
+        return found
     array = np.asarray(found)
     if array.dtype == object and array.ndim == 0 and hasattr(found, "__mul__"):  # a recorded number, an enclosure
         return found
@@ -412,6 +428,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         checks.choice("on_gap", on_gap, ("raise", "nan")),
         None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
         *(_load_problem(mechanism, item) for item in loads),
+        _period_problem(loads),
     )
     loads = tuple(item if type(item) in LOADS else checks.kept(item) for item in loads)
     shapes = _shapes(
