@@ -136,7 +136,9 @@ def _parser():
     sweep.add_argument("--variant", type=_text, metavar="NAME", help="variant whose parameters vary")
     sweep.add_argument("--reference", type=_text, metavar="NAME", help="variant that ratios refer to")
     sweep.add_argument("--sample", type=_designs, metavar="N", help="N designs of a Latin hypercube in place of a grid")
-    sweep.add_argument("--angles", type=_angles, default=360, metavar="N", help="crank angles over the turn (360)")
+    sweep.add_argument(
+        "--angles", type=_angles, default=360, metavar="N", help="crank angles over the period, 12 at least (360)"
+    )
     sweep.add_argument("--workers", type=_count, metavar="N", help="processes (this one, on all its cores)")
     sweep.add_argument(
         "--out", type=_text, metavar="PATH", help="table to write, .csv or .parquet; or a folder to resume from"

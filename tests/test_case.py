@@ -348,11 +348,28 @@ DOUBTFUL = [
 def test_a_tolerance_hundreds_of_times_off_its_parameter_is_doubted(tmp_path, spread, doubted):
     path = case_file(tmp_path, f"{PLAIN}[tolerances]\n{spread}\n")
     if doubted:
-        with pytest.warns(UserWarning, match=r"tolerances: .* but the parameter of .*; is the unit right\?") as caught:
+        words = r"tolerances: .* but the parameter of .*; is the unit right\?"
+        with pytest.warns(ks.HintWarning, match=words) as caught:
             ks.load_case(path)
         assert caught[0].filename == __file__
     else:
         ks.load_case(path)
+
+
+def test_slips_of_units_in_links_are_hinted_at_where_the_case_is_read(tmp_path):
+    """By file and variant, once; and as ever when it is solved."""
+    path = case_file(tmp_path, PLAIN.replace('"mid-length"', '"1000 m"').replace("20.5", "0.01"))
+    with pytest.warns(ks.HintWarning) as caught:
+        case = ks.load_case(path)
+    texts = [str(item.message) for item in caught]
+    assert len(texts) == 2
+    assert all(text.startswith(f"{path}: variants.plain: ") for text in texts)
+    assert "is 1000 m from its reference joint" in texts[0]
+    assert "the inertia of the coupler" in texts[1]
+    assert {item.filename for item in caught} == {__file__}
+    with pytest.warns(ks.HintWarning) as caught:
+        case.solve("plain", 12)
+    assert len(caught) == 2
 
 
 def test_the_stiffness_of_a_spring_that_balances_is_compared_with_its_number(tmp_path):

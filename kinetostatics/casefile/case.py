@@ -14,7 +14,7 @@ import pydantic
 
 from ..design import balancing, linkage
 from ..design.balancing_table import balancing_table
-from ..errors import AssemblyError, CaseError, KinetostaticsError, ParameterError
+from ..errors import AssemblyError, CaseError, HintWarning, KinetostaticsError, ParameterError
 from ..machine import cams
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar
 from ..machine.guide import Guide
@@ -210,9 +210,11 @@ def load_case(path) -> Case:
 
     Warns
     -----
+    HintWarning
+        A tolerance is hundreds of times above or below its parameter, or a mass centre or an inertia looks like a slip
+        of units.
     UserWarning
-        A tolerance is hundreds of times above or below its parameter, a sampled cam is noisy, or a file has the name of
-        the shipped case that is read.
+        A sampled cam is noisy, or a file has the name of the shipped case that is read.
     """
     path, raw = _read(_place(path))
     head, problems = _validated(schema.CaseTable, raw, lambda keys: keys)
@@ -230,7 +232,10 @@ def load_case(path) -> Case:
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
     for doubt in _far_off(head.tolerances, variants):
-        warnings.warn(f"{path}: {doubt}", stacklevel=2)
+        warnings.warn(f"{path}: {doubt}", HintWarning, stacklevel=2)
+    for name, item in variants.items():
+        for hint in item.mechanism.hints:
+            warnings.warn(f"{path}: variants.{name}: {hint}", HintWarning, stacklevel=2)
     return Case(
         head.title, head.source, path, head.reference, MappingProxyType(variants), head.published, head.tolerances
     )
@@ -343,7 +348,9 @@ def _variant(name, own, common, folder, problems):
         return None
     try:
         variant = _built(table, folder, _tabulated(table, folder))
-        variant.solve(angles=720)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", HintWarning)  # `load_case` gives them, with the file and the variant
+            variant.solve(angles=720)
         assembly.require_turn(variant.mechanism)
     except CaseError as error:
         problems += [f"variants.{name}: {error.path}: {problem}" for problem in error.problems]

@@ -12,6 +12,8 @@ from ..numbers.leaves import Batched
 from .crank import ray
 
 TURN = 2 * math.pi
+MOST_TURNS = 100
+"""Turns after which loads must repeat, all together."""
 
 
 class WholeTurns:
@@ -24,7 +26,8 @@ class WholeTurns:
         number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
         turns = value / TURN if number else 0.0
         if round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns:
-            return round(turns) * TURN, None
+            many = f"{field} must be at most {MOST_TURNS} turns, got {round(turns):.6g}"
+            return round(turns) * TURN, many if round(turns) > MOST_TURNS else None
         return value, f"{field} must be 2 pi or a whole multiple of it, got {checks.shown(value)}"
 
 

@@ -178,8 +178,9 @@ def _name_problems(parts):
 
     for part in parts:
         kind = type(part).__name__
-        unknown = [name for name in part.hangs_on if name not in points]
-        problems += [f"{kind} hangs on joint {name!r}, which no part before it places" for name in unknown]
+        for name in (name for name in part.hangs_on if name not in points):
+            remedy = "; give the crank a length, or put a CamRoller before it" if name == "A" else ""
+            problems.append(f"{kind} hangs on joint {name!r}, which no part before it places{remedy}")
         add(points, "joint", kind, part.joints)
         add(points, "link", kind, part.links)
         for vector, what in ((True, "reaction"), (False, "quantity")):

@@ -19,28 +19,27 @@ WORST = 100.0
 
 def check(solution):
     """Raise `AssemblyError` if the mechanism does not close at some angle; warn where half of the digits are lost."""
-    placement, margins = solution.placement, []
+    placement, margins, least = solution.placement, [], 1.0
     for group in solution.mechanism.groups:
         margin = _looked_at(group.closure(placement))
         if margin is None:
             continue
         margins.append(margin)
         smallest = margin.min()
+        least *= min(smallest, 1.0)
         if smallest >= 0.0:
             continue
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
         if smallest < -ROUNDING:
             raise _error(solution.mechanism, group, placement, margin)
-    if margins and _in_double_precision(solution) and not surely_well(solution, margins):
+    if margins and _in_double_precision(solution) and not least >= _enough(solution):
         _warn_where_digits_are_lost(solution, margins)
 
 
 def surely_well(solution, margins):
     """Whether the margins of closure alone tell that no crank angle loses half of its digits."""
-    least = 1.0
-    for margin in margins:
-        least = least * min(margin.min(), 1.0)
+    least = math.prod(min(margin.min(), 1.0) for margin in margins)
     if not least > 0.0:
         return False
     angle = np.ravel(solution.crank_angle)
@@ -103,9 +102,12 @@ def _warn_where_digits_are_lost(solution, margins):
         return
     worst = int(np.argmax(found))
     angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[points[worst]]
+    cause = "it is near a limit position or change point: errors of its lengths, rounding among them, are"
+    if found[worst] * TURN < HALF * abs(angle):
+        cause = "it is many turns from 0 (angles within one turn would do): rounding of the crank angle is"
     warnings.warn(
-        f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg it is near a limit position or change "
-        f"point: errors of its lengths, rounding among them, are magnified {found[worst]:.3g} times, so rates and "
+        f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg {cause} "
+        f"magnified {found[worst]:.3g} times, so rates and "
         f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {points.size} of "
         f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
         "angle by angle)",
@@ -156,7 +158,12 @@ def intervals(mechanism, group, design=(), angles=()):
     if stops.size and stops[0] < starts[0]:
         stops = np.roll(stops, -1)
         stops[-1] += TURN
-    return tuple((float(start), float(stop)) for start, stop in zip(starts, stops, strict=True))
+    with np.errstate(invalid="ignore"):
+        real = (
+            margin((starts + stops) / 2) < -ROUNDING
+        )  # the others are change points, where it closes but for rounding
+    kept = real if real.any() else ~real
+    return tuple((float(start), float(stop)) for start, stop in zip(starts[kept], stops[kept], strict=True))
 
 
 def near_limits(mechanism, below):

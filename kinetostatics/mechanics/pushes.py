@@ -4,6 +4,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.loads import is_given
+from ..numbers import checks
 from ..numbers.elementary import is_foreign_array
 
 
@@ -16,10 +17,15 @@ def pushed(item, motion):
         It is no array of numbers, one for each crank angle, or not finite where the mechanism closes.
     """
     found = item.push(motion)
-    if is_given(item) or is_foreign_array(found) or (isinstance(found, np.ndarray) and found.dtype == object):
+    if is_given(item) or (isinstance(found, np.ndarray) and found.dtype == object):
         return found
     owner = f"{type(item).__name__} on {item.on!r}: its function"
     wanted = f"must return its force in N, a number or an array of shape {motion.shape}, one for each crank angle"
+    words = None if hasattr(found, "to_numpy") else checks.unfit(found)
+    if words:
+        raise ParameterError(f"{owner} {wanted}, got {checks.shown(found)}, {words.format(unit='N')}")
+    if is_foreign_array(found):
+        return found
     array = np.asarray(found)
     if array.dtype == object and array.ndim == 0 and hasattr(found, "__mul__"):  # a recorded number, an enclosure
         return found

@@ -64,7 +64,7 @@ def _unfit(kind: Any):
         ((bool, np.bool_), "a truth value; give a number"),
         ((complex, np.complexfloating), "a complex number; give a real one"),
         ((str, bytes), "a text; write a plain number in SI units, without quotes"),
-        ((dt.date, dt.time, dt.timedelta), "a time; give a number in SI units"),
+        ((dt.date, dt.time, dt.timedelta, np.timedelta64), "a time; give a number in SI units"),
     ):
         if issubclass(kind, kinds):
             return words
@@ -80,6 +80,11 @@ def _unfit(kind: Any):
         return None
     arithmetic = all(hasattr(kind, f"__{name}__") for name in ("add", "sub", "mul", "truediv", "neg"))
     return None if arithmetic and not issubclass(kind, np.generic) else "no number"
+
+
+def unfit(value):
+    """Why a value is no number, and what to hand in; None if it may be one."""
+    return _unfit(_kind(value))
 
 
 def shown(value):

@@ -60,8 +60,8 @@ def to_si(text, unit):
     if given is None:
         raise ValueError(f'has no unit; write for example "{number} {unit}"')
     value = float(number) * factor(given, unit)
-    if not math.isfinite(value):
-        raise ValueError(f"must be finite, found {text!r}")
+    if not math.isfinite(value) or (value == 0.0 and re.search("[1-9]", re.split("[eE]", number)[0])):
+        raise ValueError(f"is too {'small' if value == 0.0 else 'large'} for double precision, found {text!r}")
     return value
 
 

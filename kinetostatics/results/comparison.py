@@ -11,7 +11,7 @@ from ..mechanics.quantities import label, magnitude, unit
 from ..numbers import checks
 from ..solution.solution import Solution
 from .extremes import UNIT, extrema, extremes, warning
-from .turn import USABLE, require_single
+from .turn import SAME, USABLE, require_single
 
 ORDER = 8
 """Nodes of a panel of the quadrature."""
@@ -209,6 +209,7 @@ def _mean_absolute(function, turn, floor):
 
 def _matched(reference, balanced):
     distance = np.abs(np.exp(1j * reference.angle)[:, None] - np.exp(1j * balanced.angle))
+    distance = distance + SAME * (_side(reference)[:, None] != _side(balanced))
     distance = np.where(reference.maximum[:, None] == balanced.maximum, distance, np.inf)
     if not distance.size:
         return np.full(len(reference), np.nan)
@@ -216,11 +217,16 @@ def _matched(reference, balanced):
     return np.where(np.isfinite(distance.min(axis=1)), balanced.value[nearest], np.nan)
 
 
+def _side(found):
+    """Whether each extremum stands behind another at its crank angle: what a limit position is left with."""
+    return np.diff(found.angle, prepend=-1.0) <= SAME
+
+
 def _ratio(reference, balanced):
-    """Ratio of two peaks; infinite where the balanced one is zero but for rounding."""
-    if abs(balanced) <= 1e-12 * abs(reference):
-        return np.inf
-    return reference / balanced if balanced else np.nan
+    """Ratio of two peaks; infinite where the balanced one is zero but for rounding, NaN if neither has a value."""
+    if abs(balanced) > 1e-12 * abs(reference):
+        return reference / balanced
+    return np.inf if abs(reference) > 0 and np.isfinite(balanced) else np.nan
 
 
 def _peak(solution, joint):

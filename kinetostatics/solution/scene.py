@@ -13,7 +13,7 @@ from ..engines.compiled import available, require
 from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
 from ..errors import HintWarning, ParameterError
 from ..machine import hints
-from ..machine.loads import Gravity, ProcessForce, Spring, period_of
+from ..machine.loads import MOST_TURNS, TURN, Gravity, ProcessForce, Spring, period_of
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from .angles import crank_angles, problems
@@ -75,7 +75,7 @@ class Scene:
         if checks.UNSURE in drive.values():
             drive = checks.examined(owner, DRIVE, values)
         loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
-        checks.require(owner, *(_load_problem(self.mechanism, item) for item in loads))
+        checks.require(owner, *(_load_problem(self.mechanism, item) for item in loads), _period_problem(loads))
         values.update(drive, loads=tuple(item if type(item) in LOADS else checks.kept(item) for item in loads))
 
     @property
@@ -243,6 +243,15 @@ def _shapes(scene, angle):
         if found:
             shapes[f"{type(item).__name__} {len(shapes)}"] = found
     return shapes
+
+
+def _period_problem(loads):
+    """What is wrong with the period that loads have in common, or None."""
+    turns = period_of(loads) / TURN if len(loads) > 1 else 1.0
+    if turns <= MOST_TURNS:
+        return None
+    each = ", ".join(f"{getattr(item, 'period', TURN) / TURN:.6g}" for item in loads)
+    return f"loads that repeat after {each} turns do so together after {turns:.6g} only, {MOST_TURNS} at most"
 
 
 def _load_problem(mechanism, item):

@@ -171,7 +171,8 @@ def _compared(job, frame):
         below = numbers[job.ratios]
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = np.where(abs(below) <= NEGLIGIBLE * abs(above), np.inf, above / below)
-        numbers[job.ratios] = np.where((above == 0) & (below == 0), np.nan, ratios)
+        unknown = ((above == 0) & (below == 0)) | (np.isinf(above) & np.isinf(below))
+        numbers[job.ratios] = np.where(unknown, np.nan, ratios)
         reasons = np.where((reasons == "") & (failing != ""), "reference: " + failing, reasons)
     for row in np.flatnonzero(np.isnan(numbers).any(axis=0) & (reasons == "")):
         wrong = (str(item) for item, number in zip(job.outputs, numbers[:, row], strict=True) if np.isnan(number))

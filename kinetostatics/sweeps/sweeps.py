@@ -64,7 +64,8 @@ def sweep(
         ratios refer to (the case's reference); the reference takes those parameters that it has too. With a function,
         `reference` is a `Variant`.
     angles : int
-        Crank angles over the turn; extremes are refined between them.
+        Crank angles over the period of the loads, at least 12; extremes are refined between them. Where they do not
+        resolve an output of a design, they are doubled for it, up to 5760.
     engine : "compiled" or "numpy"
         Unless told, compiled for a million crank angles, all designs together, and more, if numba is installed and
         takes the mechanism.
@@ -245,7 +246,7 @@ def _name_problems(columns, wanted):
 
 def _type_problems(designs):
     for column, kind in designs.dtypes.items():
-        if not pd.api.types.is_numeric_dtype(kind):
+        if not pd.api.types.is_any_real_numeric_dtype(kind):
             yield f"column {column!r} must hold numbers, but is of type {kind}"
 
 

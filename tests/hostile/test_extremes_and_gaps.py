@@ -41,6 +41,8 @@ CHANGE_POINTS = {
     "4/1/3/2": ((1.0, 3.0, 2.0, 4.0), (180,)),
     "parallelogram": ((1.0, 2.0, 1.0, 2.0), (0, 180)),
     "kite": ((2.0, 2.0, 1.0, 1.0), (0, 180)),
+    "rhombus": ((1.0, 1.0, 1.0, 1.0), (0, 180)),
+    "deltoid": ((1.0, 2.0, 2.0, 1.0), (0,)),
 }
 each_change_point = pytest.mark.parametrize("name", CHANGE_POINTS)
 each_turn = pytest.mark.parametrize("turn", [0.0, 30.0, 200.0])

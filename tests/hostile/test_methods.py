@@ -37,9 +37,9 @@ class Wheel:
         """Always assembled."""
         return 1.0
 
-    def condition(self, placement):
-        """Nothing is lost."""
-        return 1.0
+    def requirement(self, placement):
+        """Asks for nothing."""
+        return "none"
 
     def resolve(self, placement, loads, pushes, forces):
         """Bears nothing."""

@@ -306,6 +306,41 @@ def test_a_pipe_device_folder_or_giant_is_no_case(tmp_path, kind):
         ks.load_case(special(tmp_path, kind))
 
 
+@pytest.mark.parametrize("name", ["a\0b", "x" * 300, "x" * 100_000, "a/" * 3000, "\ud800", "~/saw", "", ".", "\n"])
+def test_a_name_that_no_file_can_have_is_no_case(name):
+    with pytest.raises(ks.CaseError, match=r"cannot be read|no such file"):
+        ks.load_case(name)
+
+
+NO_PATHS = [
+    None,
+    3,
+    np.nan,
+    True,
+    b"saw",
+    b"\0",
+    [],
+    ["sawframe_2r63"],
+    {},
+    object(),
+    np.array(["a"]),
+    ks.crank_slider,
+]
+
+
+@pytest.mark.parametrize("thing", NO_PATHS, ids=range(len(NO_PATHS)))
+def test_what_is_neither_path_nor_name_is_no_case(thing):
+    with pytest.raises(ks.ParameterError, match=r"^load_case: takes a path or the name of a shipped case, got "):
+        ks.load_case(thing)
+
+
+def test_a_solution_is_no_case():
+    case = ks.load_case("sawframe_2r63")
+    for thing in (case, case.variant("plain"), case.solve("plain", 12)):
+        with pytest.raises(ks.ParameterError, match=r"^load_case: takes a path or the name of a shipped case, got "):
+            ks.load_case(thing)
+
+
 # Case files
 
 CASE = """
