@@ -15,9 +15,15 @@ from four_bars import FourBar
 from test_six_bar import six_bar
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled, tracing
-from kinetostatics.machine.links import LinkMotion
+from kinetostatics.engines import compiled, loops, programs
+from kinetostatics.engines.engines import KERNELS
+from kinetostatics.engines.trace import Node
+from kinetostatics.errors import NotGivenError
+from kinetostatics.machine.group import Group, Output, Resolved
+from kinetostatics.machine.links import LinkMotion, Wrench
+from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components
+from kinetostatics.numbers.leaves import put_together
 
 SPEED = 320 * 2 * math.pi / 60
 ANGLES = np.linspace(0, 2 * math.pi, 360, endpoint=False)
@@ -69,6 +75,8 @@ SCENES = {
     "four-bar": Scene(FourBar(assembly=-1).solve().mechanism, ks.Gravity(9.81, -1.2), acceleration=40.0),
     "six-bar": Scene(six_bar(), ks.Gravity(), ks.Spring(100.0, 0.5, on="slider2"), 30.0, 40.0, on="slider2"),
 }
+LOOP = 8 * 2.0**-52
+"""Difference of compiled loops, relative to the largest value: a few ulp."""
 DIVERSE = ["plain, weightless", "cosine cam", "circle cam, everything", "six-bar"]
 """Scenes that have among them all that the others have."""
 
@@ -234,25 +242,29 @@ def everything(solution):
     )
 
 
-def assert_program_equals(solution, tables=0):
-    """A program gives what the solution has: the same NaN, and what differs by 1e-15 of the largest value.
+def program(solution, names, sizes=False):
+    """Program of some quantities, and a function that runs it: by NumPy unless told."""
+    made, leaves = programs.of(solution.dynamics, tuple(names), sizes)
+    return made, lambda compiled=False: made.run(solution.dynamics, leaves, compiled)
 
-    Sines and cosines are NumPy's, which may differ from others in the last place.
+
+def assert_program_equals(solution, tables=0):
+    """A program gives what the kernels give: the same NaN, and what differs by 1e-15 of the largest value.
+
+    By NumPy and by the loop. Sines and cosines of the loop are its own, which may differ from others in the last place.
     """
     names = everything(solution)
-    made = compiled.program(solution, names)
-    assert len(made.trace.tables) == tables
-    angle = np.atleast_2d(solution.crank_angle)
-    if angle.shape[0] > 1:
-        angle = np.broadcast_to(angle, solution.shape).reshape(-1, solution.shape[-1]).copy()
-    rows = iter(made.at(angle, np.sin(angle), np.cos(angle), made.tabulated(solution)))
-    for name in names:
-        for part in components(solution, name):
-            found = next(rows).reshape(part.shape)
-            assert np.array_equal(np.isnan(found), np.isnan(part)), name
-            assert np.nanmax(np.abs(found - part)) <= 1e-15 * np.nanmax(np.abs(part)), name
-    assert next(rows, None) is None
-    return made
+    made, run = program(solution, names)
+    assert len(made.recording.tables) == tables
+    expected = KERNELS.values(solution.dynamics, names)
+    for compiled_loop, tolerance in ((False, 1e-15), (True, LOOP)):
+        found = made.recording.named(run(compiled_loop))
+        assert tuple(found) == tuple(dict.fromkeys(names))
+        for name in names:
+            assert found[name].shape == expected[name].shape, name
+            assert np.array_equal(np.isnan(found[name]), np.isnan(expected[name])), name
+            error, size = (np.nanmax(np.abs(part)) for part in (found[name] - expected[name], expected[name]))
+            assert error <= tolerance * size, name
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -262,10 +274,60 @@ def test_recorded_program_equals_solve(interpreted, name):
 
 @pytest.mark.parametrize("name", ["circle cam, everything", "six-bar"])
 def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba, name):
-    made = assert_program_equals(solve(SCENES[name], ANGLES))
-    sine, cosine = made.turn(ANGLES[None])
+    assert_program_equals(solve(SCENES[name], ANGLES))
+    sine, cosine = loops.turn(ANGLES[None])
     assert largest(sine - np.sin(ANGLES)) <= 2**-52
     assert largest(cosine - np.cos(ANGLES)) <= 2**-52
+
+
+@pytest.mark.parametrize("angles", [ANGLES[7:8], ANGLES[:5]])
+@pytest.mark.parametrize("name", SCENES)
+def test_program_on_plain_numbers_equals_the_kernels(name, angles):
+    """A few crank angles are computed one by one."""
+    s = solve(SCENES[name], angles)
+    names = everything(s)
+    made, run = program(s, names)
+    expected = KERNELS.values(s.dynamics, names)
+    for quantity, found in made.recording.named(run()).items():
+        assert largest(found - expected[quantity]) <= 1e-15 * max(1.0, largest(expected[quantity])), quantity
+
+
+def test_programs_in_pieces_of_many_angles_equal_one_in_a_piece(monkeypatch):
+    """NumPy takes so many crank angles at once that its buffers stay in the cache."""
+    s = solve(SCENES["six-bar"], np.linspace(0, 7, 5000))
+    found = [program(s, everything(s))[1]()]
+    monkeypatch.setattr(programs, "BLOCK", 10_000)
+    found.append(program(s, everything(s))[1]())
+    assert np.array_equal(*found)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_derivatives_by_every_number_equal_differences_with_60_digits(interpreted, flint, name):
+    """By NumPy and by the loop, against central differences of the kernels on arb numbers."""
+    s = solve(SCENES[name], ANGLES[5::45])
+    names, state = ("balancing_torque", *s.reactions), s.dynamics
+    made, leaves = programs.of(state, names)
+    places = tuple(range(len(leaves.numbers)))
+    assert len(places) > 4
+    angles = np.array([flint.arb(angle) for angle in s.crank_angle.tolist()])
+    structure, _ = programs.apart(state)
+    step = flint.arb(2) ** -60
+
+    def beside(place, way):
+        numbers = iter([flint.arb(value) + way * step * (k == place) for k, value in enumerate(leaves.numbers)])
+        mechanism, speed, acceleration, loads = put_together(structure, lambda: next(numbers), None, None)
+        moved = Dynamics(mechanism, angles, speed, acceleration, loads)
+        return [part for quantity in names for part in components(moved, quantity)]
+
+    slopes = [
+        [(ahead - behind) / (2 * step) for ahead, behind in zip(beside(place, 1), beside(place, -1), strict=True)]
+        for place in places
+    ]
+    expected = np.array(slopes).swapaxes(0, 1).astype(float)
+    for compiled_loop in (False, True):
+        found = made.by_parameters(places).run(state, leaves, compiled_loop).reshape(expected.shape)
+        size = np.abs(expected).max(axis=-1, keepdims=True)
+        assert np.all(np.abs(found - expected) <= 1e-12 * np.maximum(size, 1e-3 * size.max(axis=1, keepdims=True)))
 
 
 def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
@@ -309,7 +371,7 @@ class Steps(ks.cams.Cam):
 
 
 @dataclass(frozen=True, eq=False)
-class Pan:
+class Pan(Group):
     """A group of the user's own: a link that hangs on the crank pin and does not turn."""
 
     pan: ks.Link
@@ -318,7 +380,8 @@ class Pan:
 
     links = property(lambda self: {"pan": self.pan})
     references = property(lambda self: {"pan": self.on})
-    bars = ()
+    joints = property(lambda self: {})
+    outputs = property(lambda self: {"A pan": Output("N", True), "pan moment": Output("N m")})
 
     def place(self, placement):
         """Add the pan."""
@@ -331,16 +394,11 @@ class Pan:
     def requirement(self, placement):
         """Never asked for."""
 
-    def condition(self, placement):
-        """Nothing is magnified."""
-        return 1.0
-
-    def resolve(self, placement, loads, pushes, forces):
-        """Add the force at the pin, and the moment that keeps the pan level."""
+    def resolve(self, placement, loads, along):
+        """Force at the pin, and the moment that keeps the pan level."""
         x, y = loads["pan"].force
-        forces.reactions["A pan"] = (-x, -y)
-        forces.scalars["pan moment"] = -loads["pan"].moment
-        forces.require(self.on, (-x, -y))
+        moment = -loads["pan"].moment
+        return Resolved({"A pan": (-x, -y)}, {"pan moment": moment}, {self.on: Wrench((-x, -y), None)})
 
 
 class Stop(Pan):
@@ -437,36 +495,30 @@ BATCHES = {
 @pytest.mark.parametrize("name", BATCHES)
 def test_program_of_many_designs_equals_solve(interpreted, name):
     s = BATCHES[name]()
-    made = compiled.program(s, ["balancing_torque"])
-    assert made.shape == s.shape[:-1]
-    assert_program_equals(s, len(made.trace.tables))
+    made, run = program(s, ["balancing_torque"])
+    assert run().shape == run(compiled=True).shape == (1, *s.shape)
+    assert_program_equals(s, len(made.recording.tables))
 
 
 @pytest.mark.parametrize("sizes", [False, True])
 @pytest.mark.parametrize("name", ["crank angles, other lengths, sampled cam, table", "one design"])
-def test_program_in_pieces_and_in_memory_handed_in_gives_the_same(interpreted, monkeypatch, name, sizes):
+def test_program_in_pieces_gives_the_same(interpreted, monkeypatch, name, sizes):
     s = BATCHES[name]() if name in BATCHES else solve(SCENES["plain, everything"], SAMPLES)
-    made = compiled.program(s, ["O", "balancing_torque"], sizes)
-    angle, tables = np.broadcast_to(s.crank_angle, s.shape).reshape(-1, SAMPLES.size), made.tabulated(s)
-    whole = made(angle, tables)
+    _, run = program(s, ["O", "balancing_torque"], sizes)
+    whole = run(compiled=True)
     expected = [ks.quantities.magnitude(s.reaction("O"))] if sizes else s.reaction("O")
-    assert largest(whole[:-1].reshape(-1, *s.shape) - expected) <= 1e-13 * largest(expected)
-    monkeypatch.setattr(compiled, "SHARE", 20)
-    monkeypatch.setattr(compiled, "cores", lambda: 3)
-    assert np.array_equal(made(angle, tables), whole)
-    results = np.empty((whole.shape[1], whole.shape[0], SAMPLES.size))
-    found = made.at(angle, *made.turn(angle), tables, results=results)
-    assert np.shares_memory(found, results)
-    assert np.array_equal(found, whole)
-    with pytest.raises(ValueError, match="memory for results"):
-        made.at(angle, *made.turn(angle), tables, results=results[1:])
+    assert largest(whole[:-1] - expected) <= 1e-13 * largest(expected)
+    monkeypatch.setattr(loops, "SHARE", 20)
+    monkeypatch.setattr(loops, "cores", lambda: 3)
+    assert np.array_equal(run(compiled=True), whole)
 
 
 # What a program costs
 
 
 def operations(scene, *names):
-    return tracing.trace(solve(scene, ANGLES), names or everything(solve(scene, ANGLES))).operations
+    s = solve(scene, ANGLES)
+    return program(s, names or everything(s))[0].recording.operations
 
 
 def test_what_is_absent_or_not_asked_for_costs_nothing():
@@ -479,28 +531,29 @@ def test_what_is_absent_or_not_asked_for_costs_nothing():
     assert operations(plain, "balancing_torque", "A", "A") == operations(plain, "A", "balancing_torque")
 
 
-def test_designs_of_one_structure_share_a_source_and_others_do_not():
-    def text(**changes):
+def test_designs_of_one_structure_share_a_program_and_others_do_not():
+    def found(**changes):
         values = {"guide_offset": 0.1, "assembly": 1, "slider": 600.0} | changes
         mass = ks.Link(values.pop("slider"))
         mechanism = ks.crank_slider(0.3, values.pop("coupler", 2.0), slider=mass, **values)
         s = ks.solve(mechanism, ANGLES, crank_speed=changes.get("coupler", 5.0))
-        return compiled.source(tracing.trace(s, ["balancing_torque"]))
+        return program(s, ["balancing_torque"])[0]
 
     same = [{"guide_offset": -0.2}, {"slider": 1.0}, {"coupler": 3.0}, {"coupler": np.array([[1.5], [2.5]])}]
-    assert {text(**changes) for changes in same} == {text()}
+    assert {found(**changes) for changes in same} == {found()}
     others = [{"guide_offset": 0.0}, {"slider": 0.0}, {"assembly": -1}, {"guide_angle": 0.3}]
-    assert len({text(), *(text(**changes) for changes in others)}) == 5
+    assert len({found(), *(found(**changes) for changes in others)}) == 5
 
 
 def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monkeypatch, capsys):
     """Nothing is compiled anew, neither there nor here for crank angles that are locked against writing."""
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path))
     code = (
-        "import kinetostatics as ks; from kinetostatics import compiled;"
-        " s = ks.solve(ks.crank_slider(0.3, 2.0), [0.1, 0.2], crank_speed=1.0);"
-        " made = compiled.program(s, ['slider_position', 'coupler_rate']);"
-        " print(made(s.crank_angle).tolist(), made([0.1, 0.2]).shape)"
+        "import kinetostatics as ks;"
+        " scene = ks.Scene(ks.crank_slider(0.3, 2.0), crank_speed=1.0);"
+        " made = ks.compile(scene, ['slider_position', 'coupler_rate'], engine='compiled');"
+        " locked = scene.solve([0.1, 0.2]).crank_angle;"
+        " print(made(locked)['coupler_rate'].tolist(), made([0.1, 0.2])['slider_position'].shape)"
     )
 
     def files():
@@ -508,10 +561,11 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
         return sorted((path.name, path.stat().st_mtime_ns) for path in kept)
 
     compiled._loaded.cache_clear()
+    programs._kept.clear()
     exec(code)
     here, compiled_here = capsys.readouterr().out, files()
-    programs, code_files = ([name for name, _ in compiled_here if name.endswith(end)] for end in (".py", ".nbc"))
-    assert len(programs) == len(code_files) == 2
+    sources, code_files = ([name for name, _ in compiled_here if name.endswith(end)] for end in (".py", ".nbc"))
+    assert len(sources) == len(code_files) == 2
     assert all(name.endswith(".1.nbc") for name in code_files)
     there = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     assert there.stdout == here
@@ -523,15 +577,15 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
 
 def test_kernel_that_branches_on_values_is_refused_with_the_reason():
     s = solve(with_group(Stop(ks.Link(3.0))), np.array([0.3]))
-    with pytest.raises(TypeError, match="kernels must not branch on values"):
-        tracing.trace(s, ["O"])
+    with pytest.raises(NotGivenError, match="kernels must not branch on values"):
+        program(s, ["O"])
 
 
 def test_values_of_recorded_numbers_cannot_be_looked_at():
     recorded = []
     force = ks.ProcessForce(lambda motion: recorded.append(motion.travel()[0]) or motion.travel())
-    tracing.trace(ks.solve(SCENES["plain"].mechanism, [0.1], crank_speed=1.0, loads=force), ["A"])
-    node = next(value for value in recorded if isinstance(value, tracing.Node))
+    program(ks.solve(SCENES["plain"].mechanism, [0.1], crank_speed=1.0, loads=force), ["A"])
+    node = next(value for value in recorded if isinstance(value, Node))
     for look in (bool, float, int, lambda x: x == 0, lambda x: x != 0, lambda x: x > 0, lambda x: x <= 0.0):
         with pytest.raises(TypeError, match="not known yet"):
             look(node)
@@ -539,16 +593,18 @@ def test_values_of_recorded_numbers_cannot_be_looked_at():
         node**3
 
 
-def test_program_without_its_tables_or_with_those_of_other_angles_is_refused(interpreted):
-    s = ks.solve(SCENES["plain"].mechanism, ANGLES, crank_speed=1.0, loads=ks.ProcessForce(np.sin(ANGLES)))
-    made = compiled.program(s, ["A"])
-    for arguments in ((ANGLES,), (ANGLES[:9], made.tabulated(s)), (ANGLES * np.ones((2, 1)), made.tabulated(s))):
-        with pytest.raises(ValueError, match="make tables by `tabulated`"):
-            made(*arguments)
+def test_program_of_a_table_at_other_angles_is_refused():
+    loads = ks.ProcessForce(np.sin(ANGLES))
+    scene = ks.Scene(SCENES["plain"].mechanism, crank_speed=1.0, loads=loads)
+    made = ks.compile(scene, ["A"], engine="numpy")
+    assert made(ANGLES)["A"].shape == (2, 360)
+    for angles in (ANGLES[:9], ANGLES[:9] * np.ones((2, 1))):
+        with pytest.raises(ks.ParameterError, match="do not fit"):
+            made(angles)
 
 
 def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    monkeypatch.setattr(compiled, "_loaded", compiled._loaded.__wrapped__)
+    scene = ks.Scene(SCENES["plain"].mechanism, crank_speed=1.0)
     with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]"'):
-        compiled.program(solve(SCENES["plain"], ANGLES), ["O"])
+        ks.compile(scene, ["O"], engine="compiled")
