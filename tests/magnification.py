@@ -13,7 +13,7 @@ import numpy as np
 from kinetostatics import Gravity, Link, Spring
 from kinetostatics.machine.guide import Guide
 from kinetostatics.machine.links import arm, first_at
-from kinetostatics.numbers.substitution import with_fields, with_numbers
+from kinetostatics.numbers.leaves import mapped, with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
 
 BITS = 270
@@ -24,7 +24,7 @@ def truly_magnified(solution):
     """Largest true magnification at each crank angle of a solution, and the largest error by that of a rounding."""
     with flint.ctx.workprec(BITS):
         run, step = on_arb(flint.arb, replace(solution, loads=())), flint.arb(STEP)
-        run = replace(run, loads=with_numbers(solution.loads, lambda value: flint.arb(float(value))))
+        run = replace(run, loads=mapped(solution.loads, lambda value: flint.arb(float(value))))
         exact = quantities(run)
         changes = dict.fromkeys(exact, 0.0)
         for number in range(lengths(run) + 1):
@@ -50,25 +50,25 @@ def changed(run, which, factor):
         return value * factor if count == which else value
 
     def link(own):
-        return with_fields(own, centre=with_numbers(own.centre, number, {flint.arb: number}))
+        return with_fields(own, centre=mapped(own.centre, number, {flint.arb: number}))
 
     def guide(line):
-        return Guide(line.direction, with_numbers(line.guide_offset, number, {flint.arb: number}))
+        return with_fields(line, guide_offset=mapped(line.guide_offset, number, {flint.arb: number}))
 
     def spring(own):
         return with_fields(own, free_position=number(own.free_position))
 
     special = {Link: link, Guide: guide, Spring: spring, Gravity: lambda own: own, flint.arb: number}
-    mechanism, loads = (with_numbers(item, number, special) for item in (run.mechanism, run.loads))
+    mechanism, loads = (mapped(item, number, special) for item in (run.mechanism, run.loads))
     return replace(run, mechanism=mechanism, loads=loads, crank_angle=number(run.crank_angle))
 
 
 def lengths(run):
     """How many lengths there are."""
     count = []
-    special = {Link: lambda own: with_numbers(own.centre, count.append, {flint.arb: count.append})}
-    special |= {Guide: lambda line: with_numbers(line.guide_offset, count.append, {flint.arb: count.append})}
-    with_numbers(run.mechanism, count.append, special | {flint.arb: count.append})
+    special = {Link: lambda own: mapped(own.centre, count.append, {flint.arb: count.append})}
+    special |= {Guide: lambda line: mapped(line.guide_offset, count.append, {flint.arb: count.append})}
+    mapped(run.mechanism, count.append, special | {flint.arb: count.append})
     return len(count) + sum(isinstance(item, Spring) for item in run.loads)
 
 
@@ -85,9 +85,10 @@ def quantities(run):
     """Rates, reactions and torque by kind and name, each a list of components."""
     rates = {("rate", name): [link.ratio] for name, link in turning(run).items()}
     slopes = {("slope", name): [link.ratio_slope] for name, link in turning(run).items()}
-    reactions = {("reaction", name): list(parts) for name, parts in run._forces.reactions.items()}
+    forces = getattr(run, "dynamics", run).resolved
+    reactions = {("reaction", name): list(parts) for name, parts in forces.reactions.items()}
     scalars = {
-        ("reaction", name): [run._forces.scalars[name]] for name in ("cam_force", "slot_force") if name in run.scalars
+        ("reaction", name): [forces.scalars[name]] for name in ("cam_force", "slot_force") if name in forces.scalars
     }
     return rates | slopes | reactions | scalars | {("torque", ""): [run.balancing_torque]}
 
@@ -114,13 +115,13 @@ def terms_of(run, sizes):
                 found["rate", bar.link] = rate
                 found["slope", bar.link] = np.max([sizes["slope", bar.link], rate**2, acceleration / length], axis=0)
         for name in part.links:
-            link, wrench, body = placement.links[name], run._link_loads[name], run.mechanism.links[name].body
+            link, wrench, body = placement.links[name], run.link_loads[name], run.mechanism.links[name].body
             centre = magnitude(first_at(link, arm(link.direction, body.along, body.across)))
             forces.append(magnitude(wrench.force))
             turned = magnitude([wrench.moment]) * magnitude([link.ratio])
             torques.append(forces[-1] * np.maximum(speed, centre) + turned)
-            if "slider" in name and name in run._pushes:
-                forces.append(magnitude([run._pushes[name]]))
+            if "slider" in name and name in run.pushes:
+                forces.append(magnitude([run.pushes[name]]))
                 torques.append(forces[-1] * speed)
     largest = {
         "reaction": np.max(np.broadcast_arrays(*forces), axis=0),

@@ -161,7 +161,7 @@ def test_single_precision_angles_are_warned_of():
         (lambda s: s.scalar("guide_farce"), "'guide_farce', allowed: .*'guide_force'.*did you mean 'guide_force'"),
         (lambda s: s.cam_force, "'cam_force', allowed: "),
         (lambda s: s.slot_force, "'slot_force', allowed: "),
-        (lambda s: s.pressure_angle, "crank-slider has no cam"),
+        (lambda s: s.pressure_angle, "crank-slider: quantity is 'pressure_angle', allowed: 'balancing_torque'"),
     ],
 )
 def test_unknown_names_are_answered_with_the_valid_ones_and_the_nearest(ask, message):

@@ -22,7 +22,7 @@ from kinetostatics.errors import NotGivenError
 from kinetostatics.machine.group import Group, Output, Resolved
 from kinetostatics.machine.links import LinkMotion, Wrench
 from kinetostatics.mechanics.dynamics import Dynamics
-from kinetostatics.mechanics.quantities import components
+from kinetostatics.mechanics.quantities import components, magnitude
 from kinetostatics.numbers.leaves import put_together
 
 SPEED = 320 * 2 * math.pi / 60
@@ -506,7 +506,7 @@ def test_program_in_pieces_gives_the_same(interpreted, monkeypatch, name, sizes)
     s = BATCHES[name]() if name in BATCHES else solve(SCENES["plain, everything"], SAMPLES)
     _, run = program(s, ["O", "balancing_torque"], sizes)
     whole = run(compiled=True)
-    expected = [ks.quantities.magnitude(s.reaction("O"))] if sizes else s.reaction("O")
+    expected = [magnitude(s.reaction("O"))] if sizes else s.reaction("O")
     assert largest(whole[:-1] - expected) <= 1e-13 * largest(expected)
     monkeypatch.setattr(loops, "SHARE", 20)
     monkeypatch.setattr(loops, "cores", lambda: 3)
@@ -576,7 +576,7 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
 
 
 def test_kernel_that_branches_on_values_is_refused_with_the_reason():
-    s = solve(with_group(Stop(ks.Link(3.0))), np.array([0.3]))
+    s = solve(with_group(Stop(ks.Link(3.0, 0.1))), np.array([0.3]))
     with pytest.raises(NotGivenError, match="kernels must not branch on values"):
         program(s, ["O"])
 

@@ -9,7 +9,7 @@ import pytest
 from machines import CLOSE, KINDS, LINKS, Machine, largest
 
 import kinetostatics as ks
-from kinetostatics.machine.chain import MEMBERS
+from kinetostatics.machine.group import MEMBERS
 from kinetostatics.mechanics import quantities
 from kinetostatics.studies.methods import integration, newton
 from kinetostatics.studies.methods.method import NotGivenError

@@ -89,9 +89,9 @@ def test_a_standing_mechanism_is_held_by_the_statics_of_its_loads():
     assert standing.power_residual < 1e-14
 
 
-def test_power_residual_shows_a_torque_that_is_wrong():
+def test_power_residual_shows_a_torque_that_is_wrong(monkeypatch):
+    monkeypatch.setattr(ks.Solution, "balancing_torque", property(lambda s: s.scalar("balancing_torque") + 1.0))
     solution = solved()
-    vars(solution)["balancing_torque"] = solution.balancing_torque + 1.0
     assert solution.power_residual == pytest.approx(1.0 / solution.largest_torque_term, rel=1e-9)
     assert 1e-5 < solution.power_residual < 1e-4
 
@@ -123,7 +123,7 @@ def test_groups_that_do_not_hang_together_are_refused():
     with pytest.raises(ks.ParameterError, match="adds joint 'A' a second time"):
         ks.Mechanism("both", ks.Crank(0.1), (ks.CamRoller(ks.cams.Circle(0.1)), ks.SliderGroup(0.5)))
     with pytest.raises(ks.ParameterError, match="direction must have length 1"):
-        ks.SliderGroup(0.5, ks.Guide((2.0, 0.0)))
+        ks.SliderGroup(0.5, ks.Guide(None, 0.0, (2.0, 0.0)))
 
 
 def test_cosine_law_cam_warns_of_a_mechanism_that_breaks_the_law():
