@@ -154,7 +154,7 @@ def test_bits_grow_near_a_limit_position(which):
 
 
 def test_limit_and_beyond_are_refused_by_angle():
-    stretched = ks.crank_slider(1.0, 1.0, guide=ks.Guide((0.0, 1.0)), slider=link(1.0))
+    stretched = ks.crank_slider(1.0, 1.0, guide=ks.Guide(None, 0.0, (0.0, 1.0)), slider=link(1.0))
     with pytest.raises(NotGivenError, match=r"crank angle 0\.0 rad \(0 deg\): SliderGroup is at a limit position"):
         enclosure(ks.solve(stretched, [0.5, 0.0], crank_speed=1.0, on_gap="nan"), "A")
     meeting = ks.four_bar(0.3, 0.4, 0.4, rocker_pivot=(0.3, 0.0), coupler=link(1.0))
@@ -200,7 +200,7 @@ def test_a_kernel_wrong_by_1e_27_is_caught(monkeypatch, module, kernel, field, n
 def test_a_guide_is_taken_by_its_direction_not_by_the_rounding_of_its_length():
     """The stored pair is 1e-10 too long, which no kernel forgives."""
     x, y = np.cos(0.3) * (1 + 1e-10), np.sin(0.3) * (1 + 1e-10)
-    s = ks.solve(ks.crank_slider(0.1, 0.4, guide=ks.Guide((x, y), 0.05), slider=link(1.0)), FEW, crank_speed=5.0)
+    s = ks.solve(ks.crank_slider(0.1, 0.4, guide=ks.Guide(None, 0.05, (x, y)), slider=link(1.0)), FEW, crank_speed=5.0)
     assert certified(s, "O").agreement < 1e-35
     assert 1e-11 < worst_error(s, "O") < 1e-9
 

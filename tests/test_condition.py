@@ -420,9 +420,9 @@ def near_limits(draw, kind):
 
 def rows(item, number):
     """One design of a batch."""
-    from kinetostatics.numbers.substitution import with_numbers
+    from kinetostatics.numbers.leaves import mapped
 
-    return with_numbers(item, lambda value: float(np.broadcast_to(value, (400, 1))[number, 0]))
+    return mapped(item, lambda value: float(np.broadcast_to(value, (400, 1))[number, 0]))
 
 
 @pytest.mark.parametrize("kind", ["slider", "four-bar"])
@@ -442,7 +442,7 @@ def test_no_loss_of_half_the_digits_passes_the_first_look_at_margins(kind):
 def test_angles_that_lose_half_their_digits_are_those_whose_condition_says_so_in_gaps_too(kind):
     draw = Draw(29, 12)
     s = ks.Solution(RANDOM[kind](draw), TURN[::4], 7.0, 0.0, (ks.Gravity(),))
-    points, condition = ill_conditioned(s)
+    points, condition = ill_conditioned(s.dynamics)
     whole = s.condition.ravel()
     assert np.array_equal(points, np.flatnonzero(whole > HALF))
     np.testing.assert_array_equal(condition, whole[points])

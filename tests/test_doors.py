@@ -10,7 +10,8 @@ from numpy.testing import assert_array_equal
 from test_engines import Pan
 
 import kinetostatics as ks
-from kinetostatics.machine.links import Joint
+from kinetostatics.machine.group import MEMBERS
+from kinetostatics.machine.links import Joint, Wrench
 
 TURN = 2 * np.pi * np.arange(72) / 72
 ROD = ks.Link(2.0, (0.2, 0.05), 0.03)
@@ -38,7 +39,7 @@ PLACES = {
     "crank length": lambda x: solve(mechanism(crank_length=x / 100)),
     "coupler length": lambda x: solve(mechanism(coupler_length=x)),
     "guide offset": lambda x: solve(mechanism(guide_offset=x / 100)),
-    "guide by hand": lambda x: solve(mechanism(guide=ks.Guide((1.0, 0.0), x / 100))),
+    "guide by hand": lambda x: solve(mechanism(guide=ks.Guide(0.0, x / 100))),
     "stiffness": lambda x: solve(loads=ks.Spring(x, 0.3)),
     "gravity": lambda x: solve(loads=ks.Gravity(x)),
     "pivot": lambda x: solve(ks.four_bar(0.1, 4.0, 4.0, rocker_pivot=(x / 9, 3.0), rocker=ks.Link(1.0, 0.1))),
@@ -120,25 +121,21 @@ class Mine(ks.RockerGroup):
 
     change: Any = None
 
-    @property
-    def adds(self):
-        """Not known, as of a group written from nothing."""
-        raise AttributeError
-
     def place(self, placement):
         """Place, then change."""
         super().place(placement)
         if self.change in DERIVATIVES:
             DERIVATIVES[self.change](placement)
 
-    def resolve(self, placement, loads, pushes, forces):
+    def resolve(self, placement, loads, along):
         """Resolve, then change."""
-        super().resolve(placement, loads, pushes, forces)
+        found = super().resolve(placement, loads, along)
         if self.change == "wrong force":
-            x, y = forces.demand["A"]
-            forces.demand["A"] = (-x, y)
-        if self.change == "lost name":
-            forces.reactions["B"] = (0.0, 0.0)
+            x, y = found.demands["A"].force
+            found.demands["A"] = Wrench((-x, y), None)
+        if self.change == "other name":
+            found.reactions["O"] = found.reactions.pop("B")
+        return found
 
 
 def _joint(placement, **changes):
@@ -256,11 +253,16 @@ def test_crank_angles_that_are_not_finite_are_refused_whatever_gaps_do(bad, on_g
         solve(angle=angle.reshape(shape), on_gap=on_gap)
 
 
-def test_a_reaction_that_would_overwrite_another_is_refused():
-    with pytest.raises(
-        ks.ParameterError, match="two parts of the mechanism add a force 'B', of which one would be lost"
-    ):
-        solve(chain("lost name")).reaction("O")
+def test_a_reaction_that_is_not_declared_so_that_it_could_overwrite_another_is_refused():
+    words = r"mine: Mine resolves reaction 'O', which its outputs do not declare; Mine declares reaction 'B', but"
+    with pytest.raises(ks.ParameterError, match=words):
+        solve(chain("other name")).reaction("O")
+
+
+def test_a_group_that_is_not_derived_from_group_is_refused():
+    lone = type("Lone", (), {name: getattr(Pan, name) for name in MEMBERS})()
+    with pytest.raises(ks.ParameterError, match=r"Lone is not derived from kinetostatics\.machine\.group\.Group"):
+        ks.Mechanism("lone", ks.Crank(0.1), (lone,))
 
 
 # Hints

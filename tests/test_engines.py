@@ -576,7 +576,7 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
 
 
 def test_kernel_that_branches_on_values_is_refused_with_the_reason():
-    s = solve(with_group(Stop(ks.Link(3.0, 0.1))), np.array([0.3]))
+    s = solve(with_group(Stop(ks.Link(3.0, 0.1))), np.array([0.3]), on_gap="nan")
     with pytest.raises(NotGivenError, match="kernels must not branch on values"):
         program(s, ["O"])
 

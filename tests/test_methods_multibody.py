@@ -2,14 +2,13 @@
 
 from dataclasses import replace
 from itertools import pairwise
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from machines import CLOSE, KINDS, LINKS, Machine, largest
 
 import kinetostatics as ks
-from kinetostatics.machine.group import MEMBERS
+from kinetostatics.machine.group import MEMBERS, Group
 from kinetostatics.mechanics import quantities
 from kinetostatics.studies.methods import integration, newton
 from kinetostatics.studies.methods.method import NotGivenError
@@ -109,13 +108,14 @@ def test_what_no_constraint_equation_gives_is_refused(method):
     setting, s = method.settings[-1], solved("circle", acceleration=0.0)
     designs = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), TURN, crank_speed=1.0)
     short = ks.solve(ks.crank_slider(0.2, 0.1), TURN, crank_speed=1.0, on_gap="nan")
-    gear = SimpleNamespace(links={}, references={}, bars=(), **dict.fromkeys(MEMBERS[3:]))
+    members = dict.fromkeys(MEMBERS) | dict.fromkeys(("links", "references", "joints", "outputs"), {}) | {"bars": ()}
+    gear = type("Gear", (Group,), members | {"hangs_on": ()})()
     foreign = replace(s, mechanism=ks.Mechanism("gear", ks.Crank(0.1), (gear,)))
     for refused, wanted, words in [
         (s, "pressure_angle", "no pressure_angle, but O, balancing_torque, slot_force"),
         (designs, "O", r"not a batch of shape \(2, 72\)"),
         (short, "O", "finds no position of crank-slider at 0"),
-        (foreign, "O", "written for SimpleNamespace"),
+        (foreign, "O", "written for Gear"),
     ]:
         with pytest.raises(NotGivenError, match=words):
             method.prepare(refused, wanted, setting)

@@ -104,6 +104,11 @@ class Group:
     """Whether its forces are known to balance and its names to come from its texts: the library's own, as tested."""
 
     @property
+    def trusted(self):
+        """Whether its class says so itself: one derived from it may do otherwise."""
+        return vars(type(self)).get("TRUSTED", False)
+
+    @property
     def names(self):
         """What its names come from."""
         return [value for value in vars(self).values() if type(value) is str]

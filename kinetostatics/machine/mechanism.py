@@ -15,6 +15,7 @@ from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved
 from .links import Wrench, arm, present
 
 NAME = checks.Name()
+GROUP = f"{Group.__module__}.{Group.__name__}"
 REMEDY = "give the second group another pin, pivot_name or label"
 _NAMED_WELL: set = set()
 """What names come from in chains of the library's own groups that were looked at and found well."""
@@ -26,7 +27,7 @@ class Chain:
     rule = checks.Own(MEMBERS, "a group: RockerGroup, SliderGroup, CamRoller or one of your own, derived from Group")
 
     def quick(self, value):
-        if type(value) is tuple and all(isinstance(group, Group) and group.TRUSTED for group in value):
+        if type(value) is tuple and all(isinstance(group, Group) and group.trusted for group in value):
             return value
         return checks.UNSURE
 
@@ -35,6 +36,9 @@ class Chain:
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
         found = [self.rule.taken(group, "a group") for group in value]
         found += [NAME.taken(getattr(group, "on", "O"), f"on of {type(group).__name__}") for group in value]
+        found += [
+            (group, f"{type(group).__name__} is not derived from {GROUP}") for group in value if not _is_group(group)
+        ]
         problem = next((problem for _, problem in found if problem), None)
         return tuple(group for group, _ in found[: len(value)]), problem
 
@@ -75,7 +79,7 @@ class Mechanism(Batched):
     @property
     def trusted(self):
         """Whether all groups are the library's own, whose forces are known to balance."""
-        return all(group.TRUSTED for group in self.groups)
+        return all(group.trusted for group in self.groups)
 
     @cached_property
     def links(self):
@@ -119,7 +123,7 @@ class Mechanism(Batched):
             for length in part.lengths:
                 whole = whole + abs(length)
             shortest = np.minimum(shortest, part.shortest)
-        return float(np.max(whole / shortest))
+        return float(np.max(np.asarray(whole / shortest, dtype=float)))
 
     @property
     def bars(self):
@@ -149,6 +153,8 @@ class Mechanism(Batched):
         loads, found = dict(loads), Resolved({}, {}, {})
         for part in (*reversed(self.groups), self.crank):
             resolved = part.resolve(placement, loads, along)
+            if not part.trusted:
+                checks.require(self.name, *_output_problems(part, resolved))
             found.reactions.update(resolved.reactions)
             found.scalars.update(resolved.scalars)
             for name, demand in resolved.demands.items():
@@ -165,6 +171,22 @@ class Mechanism(Batched):
             return FRAME, demand
         lever = arm(placement.links[point.link].direction, present(point.along), present(point.across))
         return point.link, Wrench(demand.force, plus(moment(lever, demand.force), demand.moment))
+
+
+def _is_group(found):
+    return isinstance(found, Group)
+
+
+def _output_problems(part, resolved):
+    """What a group found and does not declare, which could overwrite what another finds, and what it lacks."""
+    kind = type(part).__name__
+    for vector, found in ((True, resolved.reactions), (False, resolved.scalars)):
+        declared = {name for name, output in part.outputs.items() if output.vector == vector}
+        what = "reaction" if vector else "quantity"
+        yield from (
+            f"{kind} resolves {what} {name!r}, which its outputs do not declare" for name in found.keys() - declared
+        )
+        yield from (f"{kind} declares {what} {name!r}, but does not resolve it" for name in declared - found.keys())
 
 
 def _name_problems(parts):

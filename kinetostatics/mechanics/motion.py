@@ -115,7 +115,9 @@ class Motion:
         for group in self.mechanism.groups:
             if name in group.motions:
                 return self._scalar(group.motion(name, self.placement))
-        raise QuantityError(checks.choice(f"{self.mechanism.name}: quantity", name, tuple(of_mechanism(self.mechanism))))
+        raise QuantityError(
+            checks.choice(f"{self.mechanism.name}: quantity", name, tuple(of_mechanism(self.mechanism)))
+        )
 
     @property
     def closure(self):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.machine.group import Group, Resolved
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.studies.methods import METHODS
 
@@ -22,12 +23,14 @@ class OwnSlider(ks.SliderGroup):
     """A group of a user's own, which places and resolves itself in another way than the library's."""
 
 
-class Wheel:
+class Wheel(Group):
     """A group of a user's own with one link, massless, that turns with the crank."""
 
     links: ClassVar = {"wheel": ks.Link()}
     references: ClassVar = {"wheel": "O"}
-    bars = ()
+    joints: ClassVar = {}
+    outputs: ClassVar = {}
+    hangs_on = ("O",)
 
     def place(self, placement):
         """Put the wheel where the crank is."""
@@ -37,12 +40,12 @@ class Wheel:
         """Always assembled."""
         return 1.0
 
-    def condition(self, placement):
-        """Nothing is lost."""
-        return 1.0
+    def requirement(self, placement):
+        """Never asked for."""
 
-    def resolve(self, placement, loads, pushes, forces):
+    def resolve(self, placement, loads, along):
         """Bears nothing."""
+        return Resolved({}, {}, {})
 
 
 class OwnCam:

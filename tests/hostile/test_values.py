@@ -206,15 +206,31 @@ def test_a_cam_is_made_and_has_a_pitch_curve(bad):
         0.3,
         "level",
         (1.0, 0.0),
-        ks.Guide((1.0, np.nan)),
-        ks.Guide((2.0, 0.0)),
-        ks.Guide("ab"),
-        ks.Guide((1.0, 0.0), "3"),
+        ks.Guide,
+        None,
     ],
 )
 def test_a_guide_is_a_guide(bad):
     with pytest.raises(ks.ParameterError, match="guide"):
         ks.SliderGroup(1.0, bad)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        (None, 0.0, (1.0, np.nan)),
+        (None, 0.0, (2.0, 0.0)),
+        (None, 0.0, 3.0),
+        (None,),
+        ((1.0, 0.0),),
+        (np.nan,),
+        ("ab",),
+        (0.0, "3"),
+    ],
+)
+def test_a_guide_has_a_direction_and_an_offset(given):
+    with pytest.raises(ks.ParameterError, match="guide"):
+        ks.Guide(*given)
 
 
 @pytest.mark.parametrize(
