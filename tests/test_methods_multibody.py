@@ -108,7 +108,9 @@ def test_what_no_constraint_equation_gives_is_refused(method):
     setting, s = method.settings[-1], solved("circle", acceleration=0.0)
     designs = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), TURN, crank_speed=1.0)
     short = ks.solve(ks.crank_slider(0.2, 0.1), TURN, crank_speed=1.0, on_gap="nan")
-    members = dict.fromkeys(MEMBERS) | dict.fromkeys(("links", "references", "joints", "outputs"), {}) | {"bars": ()}
+    members = (
+        dict.fromkeys(MEMBERS) | {name: {} for name in ("links", "references", "joints", "outputs")} | {"bars": ()}
+    )
     gear = type("Gear", (Group,), members | {"hangs_on": ()})()
     foreign = replace(s, mechanism=ks.Mechanism("gear", ks.Crank(0.1), (gear,)))
     for refused, wanted, words in [

@@ -109,6 +109,12 @@ class Group:
         return vars(type(self)).get("TRUSTED", False)
 
     @property
+    def follows(self):
+        """Whether `follow` belongs to the class that places it, and so knows its joints."""
+        placing = next(kind for kind in type(self).__mro__ if "place" in vars(kind))
+        return "follow" in vars(placing)
+
+    @property
     def names(self):
         """What its names come from."""
         return [value for value in vars(self).values() if type(value) is str]

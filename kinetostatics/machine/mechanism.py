@@ -1,13 +1,13 @@
 """A mechanism: a crank and the chain of structural groups that hang on it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.leaves import Batched
+from ..numbers.leaves import Batched, with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .crank import Crank
@@ -36,9 +36,8 @@ class Chain:
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
         found = [self.rule.taken(group, "a group") for group in value]
         found += [NAME.taken(getattr(group, "on", "O"), f"on of {type(group).__name__}") for group in value]
-        found += [
-            (group, f"{type(group).__name__} is not derived from {GROUP}") for group in value if not _is_group(group)
-        ]
+        strange = [group for group in value if not isinstance(group, Group)]
+        found += [(group, f"{type(group).__name__} is not derived from {GROUP}") for group in strange]
         problem = next((problem for _, problem in found if problem), None)
         return tuple(group for group, _ in found[: len(value)]), problem
 
@@ -173,10 +172,6 @@ class Mechanism(Batched):
         return point.link, Wrench(demand.force, plus(moment(lever, demand.force), demand.moment))
 
 
-def _is_group(found):
-    return isinstance(found, Group)
-
-
 def _output_problems(part, resolved):
     """What a group found and does not declare, which could overwrite what another finds, and what it lacks."""
     kind = type(part).__name__
@@ -187,6 +182,20 @@ def _output_problems(part, resolved):
             f"{kind} resolves {what} {name!r}, which its outputs do not declare" for name in found.keys() - declared
         )
         yield from (f"{kind} declares {what} {name!r}, but does not resolve it" for name in declared - found.keys())
+
+
+def _spelled(part, table):
+    """Names in a table of a part; of the library's own parts also those that coincide, which a table has once."""
+    if not part.trusted:
+        return list(getattr(part, table))
+    texts = {field.name: getattr(part, field.name) for field in fields(part)}
+    marks = {name: f"\0{name}\0" for name, text in texts.items() if type(text) is str}
+    found = []
+    for spelled in getattr(with_fields(part, **marks), table):
+        for name, mark in marks.items():
+            spelled = spelled.replace(mark, texts[name])
+        found.append(spelled)
+    return found
 
 
 def _name_problems(parts):
@@ -205,10 +214,11 @@ def _name_problems(parts):
         kind = type(part).__name__
         unknown = [name for name in part.hangs_on if name not in points]
         problems += [f"{kind} hangs on joint {name!r}, which no part before it places" for name in unknown]
-        add(points, "joint", kind, part.joints)
+        add(points, "joint", kind, _spelled(part, "joints"))
         add(points, "link", kind, part.links)
+        outputs = _spelled(part, "outputs")
         for vector, what in ((True, "reaction"), (False, "quantity")):
-            add(forces, what, kind, [name for name, output in part.outputs.items() if output.vector == vector])
+            add(forces, what, kind, [name for name in outputs if part.outputs[name].vector == vector])
         endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
         add(forces, "quantity", kind, [f"{link}{ending}" for link in part.links for ending in endings])
         add(forces, "quantity", kind, part.motions)

@@ -425,7 +425,7 @@ ROCKER = ks.RockerGroup(0.4, 0.3, (0.35, 0.1))
         ((ROCKER, replace(ROCKER, on="B", pin="C", label="2")), "adds joint 'O2' a second time"),
         ((ks.SliderGroup(0.5, pin="guide"),), "adds reaction 'guide' a second time"),
         ((ks.SliderGroup(0.5, pin="slider"),), "adds link 'slider' a second time, after the joint"),
-        ((ks.SliderGroup(0.5, pin="guide_force"),), "adds reaction 'guide_force' a second time"),
+        ((ks.SliderGroup(0.5, pin="guide_force"),), "adds quantity 'guide_force' a second time"),
         ((ks.SliderGroup(0.5, pin="shaking_force"),), "adds reaction 'shaking_force' a second time"),
         ((ks.SliderGroup(0.5, pin="closure"),), "adds reaction 'closure' a second time"),
         ((ks.SliderGroup(0.5, pin="coupler_rate"),), "'coupler_rate' a second time"),
