@@ -617,7 +617,9 @@ def test_workers_end_with_their_parent_however_it_ends(tmp_path, monkeypatch):
     """Here by a signal that nobody can answer; each worker writes down its process when it computes."""
     monkeypatch.setenv("KINETOSTATICS_TEST_NOTES", str(tmp_path))
     parent = subprocess.Popen(
-        [sys.executable, "-c", WATCHED, str(Path(__file__).parents[1])], stderr=subprocess.DEVNULL, start_new_session=True
+        [sys.executable, "-c", WATCHED, str(Path(__file__).parents[1])],
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
     )
     processes = waited(lambda: [int(path.name) for path in tmp_path.iterdir()], lambda found: len(found) == 2)
     parent.kill()
@@ -717,7 +719,7 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(tmp_path, expected, monke
 
 def test_a_killed_process_leaves_a_folder_that_goes_on(tmp_path, expected):
     code = (
-        "import sys; sys.path.insert(0, sys.argv[1]); import factories as f; import kinetostatics as ks;"
+        "import sys; sys.path.insert(0, sys.argv[1]); from support import factories as f; import kinetostatics as ks;"
         " ks.sweep(f.deadly_once(0.3, sys.argv[2]), f.DESIGNS, f.OUTPUTS, chunk=7, folder=sys.argv[3], progress=False)"
     )
     marker, folder = tmp_path / "died", tmp_path / "sweep"
