@@ -46,6 +46,7 @@ from .machine.rocker_group import RockerGroup
 from .machine.slider_group import SliderGroup
 from .mechanics.principal_points import principal_points
 from .results.extremes import extremes
+from .solution.compile import compile  # noqa: A004 - the contract's name
 from .solution.scene import Scene, solve
 from .solution.solution import Solution
 
@@ -98,7 +99,6 @@ _LATER = {
     "balancing": "design.balancing:",
     "check": "solution.group_check:check",
     "compare": "results.comparison:compare",
-    "compile": "solution.compile:compile",
     "designs": "sweeps.designs:",
     "linkage": "design.linkage:",
     "load_case": "casefile.case:load_case",

@@ -18,7 +18,7 @@ def assembled(mechanism, angle, joints) -> Placement:
     """Placement of a mechanism whose moving joints are known, by name, with their derivatives."""
     placement = mechanism.crank.place(angle)
     for group in mechanism.groups:
-        if not hasattr(group, "follow"):
+        if not group.follows:
             raise NotGivenError(f"{type(group).__name__} has no `follow`, to be placed at joints known in another way")
         group.follow(placement, joints)
     return placement

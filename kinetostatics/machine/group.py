@@ -105,6 +105,17 @@ class Group:
     """Whether its forces are known to balance and its names to come from its texts: the library's own, as tested."""
 
     @property
+    def trusted(self):
+        """Whether its class says so itself: one derived from it may do otherwise."""
+        return vars(type(self)).get("TRUSTED", False)
+
+    @property
+    def follows(self):
+        """Whether `follow` belongs to the class that places it, and so knows its joints."""
+        placing = next(kind for kind in type(self).__mro__ if "place" in vars(kind))
+        return "follow" in vars(placing)
+
+    @property
     def names(self):
         """What its names come from."""
         return [value for value in vars(self).values() if type(value) is str]

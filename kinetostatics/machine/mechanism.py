@@ -1,13 +1,13 @@
 """A mechanism: a crank and the chain of structural groups that hang on it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.leaves import Batched
+from ..numbers.leaves import Batched, with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .crank import Crank
@@ -15,6 +15,7 @@ from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved, sm
 from .links import Wrench, arm, present
 
 NAME = checks.Name()
+GROUP = f"{Group.__module__}.{Group.__name__}"
 REMEDY = "give the second group another pin, pivot_name or label"
 _NAMED_WELL: set = set()
 """What names come from in chains of the library's own groups that were looked at and found well."""
@@ -26,7 +27,7 @@ class Chain:
     rule = checks.Own(MEMBERS, "a group: RockerGroup, SliderGroup, CamRoller or one of your own, derived from Group")
 
     def quick(self, value):
-        if type(value) is tuple and all(isinstance(group, Group) and group.TRUSTED for group in value):
+        if type(value) is tuple and all(isinstance(group, Group) and group.trusted for group in value):
             return value
         return checks.UNSURE
 
@@ -35,6 +36,8 @@ class Chain:
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
         found = [self.rule.taken(group, "a group") for group in value]
         found += [NAME.taken(getattr(group, "on", "O"), f"on of {type(group).__name__}") for group in value]
+        strange = [group for group in value if not isinstance(group, Group)]
+        found += [(group, f"{type(group).__name__} is not derived from {GROUP}") for group in strange]
         problem = next((problem for _, problem in found if problem), None)
         return tuple(group for group, _ in found[: len(value)]), problem
 
@@ -75,7 +78,7 @@ class Mechanism(Batched):
     @property
     def trusted(self):
         """Whether all groups are the library's own, whose forces are known to balance."""
-        return all(group.TRUSTED for group in self.groups)
+        return all(group.trusted for group in self.groups)
 
     @cached_property
     def links(self):
@@ -116,7 +119,7 @@ class Mechanism(Batched):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
         whole = sum(sum(map(abs, part.lengths)) for part in self.parts)
         shortest = smaller(*(part.shortest for part in self.parts))
-        return float(np.max(whole / shortest))
+        return float(np.max(np.asarray(whole / shortest, dtype=float)))
 
     @cached_property
     def bars(self):
@@ -146,6 +149,8 @@ class Mechanism(Batched):
         loads, found = dict(loads), Resolved({}, {}, {})
         for part in (*reversed(self.groups), self.crank):
             resolved = part.resolve(placement, loads, along)
+            if not part.trusted:
+                checks.require(self.name, *_output_problems(part, resolved))
             found.reactions.update(resolved.reactions)
             found.scalars.update(resolved.scalars)
             for name, demand in resolved.demands.items():
@@ -162,6 +167,32 @@ class Mechanism(Batched):
             return FRAME, demand
         lever = arm(placement.links[point.link].direction, present(point.along), present(point.across))
         return point.link, Wrench(demand.force, plus(moment(lever, demand.force), demand.moment))
+
+
+def _output_problems(part, resolved):
+    """What a group found and does not declare, which could overwrite what another finds, and what it lacks."""
+    kind = type(part).__name__
+    for vector, found in ((True, resolved.reactions), (False, resolved.scalars)):
+        declared = {name for name, output in part.outputs.items() if output.vector == vector}
+        what = "reaction" if vector else "quantity"
+        yield from (
+            f"{kind} resolves {what} {name!r}, which its outputs do not declare" for name in found.keys() - declared
+        )
+        yield from (f"{kind} declares {what} {name!r}, but does not resolve it" for name in declared - found.keys())
+
+
+def _spelled(part, table):
+    """Names in a table of a part; of the library's own parts also those that coincide, which a table has once."""
+    if not part.trusted:
+        return list(getattr(part, table))
+    texts = {field.name: getattr(part, field.name) for field in fields(part)}
+    marks = {name: f"\0{name}\0" for name, text in texts.items() if type(text) is str}
+    found = []
+    for spelled in getattr(with_fields(part, **marks), table):
+        for name, mark in marks.items():
+            spelled = spelled.replace(mark, texts[name])
+        found.append(spelled)
+    return found
 
 
 def _name_problems(parts):
@@ -181,10 +212,11 @@ def _name_problems(parts):
         for name in (name for name in part.hangs_on if name not in points):
             remedy = "; give the crank a length, or put a CamRoller before it" if name == "A" else ""
             problems.append(f"{kind} hangs on joint {name!r}, which no part before it places{remedy}")
-        add(points, "joint", kind, part.joints)
+        add(points, "joint", kind, _spelled(part, "joints"))
         add(points, "link", kind, part.links)
+        outputs = _spelled(part, "outputs")
         for vector, what in ((True, "reaction"), (False, "quantity")):
-            add(forces, what, kind, [name for name, output in part.outputs.items() if output.vector == vector])
+            add(forces, what, kind, [name for name in outputs if part.outputs[name].vector == vector])
         endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
         add(forces, "quantity", kind, [f"{link}{ending}" for link in part.links for ending in endings])
         add(forces, "quantity", kind, part.motions)

@@ -112,7 +112,7 @@ def _warn_where_digits_are_lost(solution, margins):
         f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
         "angle by angle)",
         ConditionWarning,
-        stacklevel=5,
+        stacklevel=6,
     )
 
 

@@ -11,6 +11,7 @@ from ..numbers import checks
 from ..numbers.elementary import namespace, read_only, stack
 from ..numbers.leaves import Leaves, taken_apart, wider
 from ..numbers.planar import added, number, plus, product, stretched, vector
+from .quantities import of_mechanism
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,8 +122,12 @@ class Motion:
 
     def measure(self, name):
         """A quantity of motion that a group declares, such as "pressure_angle", (..., N)."""
-        groups = {declared: group for group in self.mechanism.groups for declared in group.motions}
-        return self._scalar(self._look_up("quantity", name, groups).motion(name, self.placement))
+        for group in self.mechanism.groups:
+            if name in group.motions:
+                return self._scalar(group.motion(name, self.placement))
+        raise QuantityError(
+            checks.choice(f"{self.mechanism.name}: quantity", name, tuple(of_mechanism(self.mechanism)))
+        )
 
     @property
     def closure(self):

@@ -21,6 +21,7 @@ import numpy as np
 
 from ..errors import ParameterError
 
+LIBRARY = __name__.partition(".")[0]
 HUGE, LONG = 1e150, 1e75
 """Sizes that double precision cannot square, and lengths (and their reciprocals) that it cannot twice."""
 PLAIN = (int, float, np.integer, np.floating, Fraction, Decimal)
@@ -315,7 +316,7 @@ class Own:
     words: str
 
     def quick(self, value):
-        own = not type(value).__module__.startswith(f"{__package__}.")
+        own = not type(value).__module__.startswith(f"{LIBRARY}.")
         return UNSURE if own or not all(hasattr(value, name) for name in self.members) else value
 
     def taken(self, value, field=""):

@@ -91,5 +91,5 @@ def _each(method, x, unit, exactly):
 
 def stack(arrays):
     """Arrays of one shape as one array, along a new first axis."""
-    xp = namespace(arrays[0])
+    xp = namespace(arrays[0]) if arrays else np
     return np.array(arrays) if xp is np else xp.stack(arrays)  # np.stack takes three times as long

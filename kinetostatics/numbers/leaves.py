@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import ParameterError
+
 
 class _Mark:
     """Stands in a structure where a leaf was taken out."""
@@ -178,7 +180,20 @@ class Batched:
         """
         leaves = Leaves()
         taken_apart(self, leaves)
-        return wider((), *(leaf for leaf in (*leaves.numbers, *leaves.tables) if np.ndim(leaf) > 1))
+        try:
+            return wider((), *(leaf for leaf in (*leaves.numbers, *leaves.tables) if np.ndim(leaf) > 1))
+        except ValueError:
+            raise _unfitting(self) from None
+
+
+def _unfitting(item):
+    """Error that names the arrays of designs in an item, which do not fit together."""
+    from .checks import fitting
+    from .paths import places
+
+    shapes = {path: np.shape(place.value(item)) for path, place in places(item).items()}
+    problem = fitting(**{path: shape for path, shape in shapes.items() if len(shape) > 1})
+    return ParameterError(f"{getattr(item, 'name', type(item).__name__)}: {problem}")
 
 
 def wider(shape, *parts):

@@ -169,7 +169,7 @@ class Turn:
     def _outermost(self, end, side):
         """Last crank angle at which the mechanism closes to rounding, where positions lose nothing."""
         angle = end - side * np.append(0.0, SMALLEST * 2.0 ** np.arange(30))
-        closed = self.evaluate(lambda at: at._closed, angle)
+        closed = self.evaluate(lambda at: at.dynamics.closed, angle)
         return angle[np.flatnonzero(closed)[-1]] if closed.any() else end
 
     def clear(self, angle):

@@ -49,7 +49,9 @@ def test_users_calls_keep_to_their_share_of_kanes_time(benchmark, tell, count):
     kanes, *times = seconds(peer, *rivals.values())
     shares = {name: spent / kanes for name, spent in zip(rivals, times, strict=True)}
     benchmark.extra_info.update(shares)
-    told = ", ".join(f"{name} {1e6 * spent:.0f} us ({spent / kanes:.2f})" for name, spent in zip(rivals, times, strict=True))
+    told = ", ".join(
+        f"{name} {1e6 * spent:.0f} us ({spent / kanes:.2f})" for name, spent in zip(rivals, times, strict=True)
+    )
     tell(f"{count} angles, new objects in each call: {told}; Kane {1e6 * kanes:.0f} us")
     assert {name: share for name, share in shares.items() if share > LIMITS[count][name]} == {}
 
@@ -83,6 +85,8 @@ def test_all_derivatives_of_the_torque_cost_a_few_times_its_value(benchmark, tel
     for engine, limit in limits.items():
         program = ks.compile(scene, "balancing_torque", engine=engine)
         value, slopes = seconds(partial(program, angles), partial(program.derivatives, angles))
-        tell(f"{engine}: all {len(program.parameters)} derivatives of the torque take {slopes / value:.2f} times its value")
+        tell(
+            f"{engine}: all {len(program.parameters)} derivatives of the torque take {slopes / value:.2f} times its value"
+        )
         assert slopes <= limit * value
     benchmark(program.derivatives, angles)

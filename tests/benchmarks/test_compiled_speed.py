@@ -16,7 +16,11 @@ from time import perf_counter
 
 import numpy as np
 import pytest
-from test_speed import (
+
+import kinetostatics as ks
+from kinetostatics.engines import compiled
+from kinetostatics.studies.methods import kane
+from support.speed import (
     CENTRE,
     COUPLER,
     COUPLER_INERTIA,
@@ -30,10 +34,6 @@ from test_speed import (
     seconds,
     turn,
 )
-
-import kinetostatics as ks
-from kinetostatics.engines import compiled
-from kinetostatics.studies.methods import kane
 
 SAW = ks.load_case("sawframe_2r63")
 FORCES = ("O", "A", "B", "guide_force", "guide_moment", "balancing_torque")

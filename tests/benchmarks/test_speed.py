@@ -4,60 +4,24 @@ Run by ``python -m pytest tests/benchmarks --benchmark-only``. Every ratio is of
 the rivals take turns; limits are generous, the figures themselves are printed and kept in the benchmark's `extra_info`.
 """
 
-import math
-import os
-import subprocess
-import sys
-import timeit
-from pathlib import Path
-
 import numpy as np
 
 import kinetostatics as ks
-
-CRANK, COUPLER, CENTRE = 0.3, 2.0, 1.0
-COUPLER_MASS, COUPLER_INERTIA, SLIDER_MASS = 150.0, 20.5, 600.0
-SPEED = 320 * 2 * math.pi / 60
-GRAVITY = 9.81
-PLAIN = ks.crank_slider(
-    CRANK, COUPLER, coupler=ks.Link(COUPLER_MASS, CENTRE, COUPLER_INERTIA), slider=ks.Link(SLIDER_MASS)
+from support.speed import (
+    COUPLER_INERTIA,
+    COUPLER_MASS,
+    CRANK,
+    GRAVITY,
+    PLAIN,
+    SLIDER_MASS,
+    SPEED,
+    assert_same,
+    flat,
+    results,
+    run,
+    seconds,
+    turn,
 )
-LOADS = (ks.Gravity(GRAVITY),)
-
-
-def turn(count):
-    return np.linspace(0, 2 * math.pi, count, endpoint=False)
-
-
-def results(mechanism, angles):
-    """O, A, B, guide force and moment, torque."""
-    s = ks.solve(mechanism, angles, crank_speed=SPEED, loads=LOADS)
-    return s.reaction("O"), s.reaction("A"), s.reaction("B"), s.guide_force, s.guide_moment, s.balancing_torque
-
-
-def flat(angles):
-    """The same by one script, specialised by hand: massless crank, level guide through O, coupler centre on A-B.
-
-    With c, s of the coupler, k its rate and e its angular acceleration by crank angle, the centre at the distance a
-    from A has the acceleration -(x + a p, y - a q) by crank angle, where p = e s + k^2 c and q = e c - k^2 s.
-    """
-    square = SPEED * SPEED
-    x, y = CRANK * np.cos(angles), CRANK * np.sin(angles)
-    s = y * (-1.0 / COUPLER)
-    c = np.sqrt((1.0 - s) * (1.0 + s))
-    along = COUPLER * c
-    k = x / along
-    k2 = k * k
-    e = (y - k2 * y) / along
-    p, q = e * s + k2 * c, e * c - k2 * s
-    mass_x = (COUPLER_MASS * square) * (x + CENTRE * p)
-    mass_y = (COUPLER_MASS * square) * (y - CENTRE * q) - COUPLER_MASS * GRAVITY
-    mass_moment = CENTRE * (c * mass_y - s * mass_x) - (COUPLER_INERTIA * square) * e
-    pin_x = (-SLIDER_MASS * square) * (x + COUPLER * p)
-    pin_y = (mass_moment / COUPLER + s * pin_x) / c
-    inner = np.array((pin_x - mass_x, pin_y - mass_y))
-    torque = x * inner[1] - y * inner[0]
-    return inner, inner, np.array((pin_x, pin_y)), SLIDER_MASS * GRAVITY - pin_y, np.zeros_like(x), torque
 
 
 def newton_euler(A, B, centre, centre_acceleration, angular_acceleration, slider_acceleration):
@@ -92,19 +56,6 @@ def motion(angles):
     s = ks.solve(PLAIN, angles, crank_speed=SPEED)
     positions = (s.position(point) for point in ("A", "B", "coupler"))
     return *positions, s.acceleration("coupler"), s.angular_acceleration("coupler"), s.acceleration("B")
-
-
-def seconds(*rivals, rounds=12, spent=0.02):
-    """Least time of each rival, s; in each round each runs for about `spent` s."""
-    timers = [timeit.Timer(rival) for rival in rivals]
-    counts = [max(1, round(spent / min(timer.repeat(3, 1)))) for timer in timers]
-    times = [[timer.timeit(count) / count for timer, count in zip(timers, counts, strict=True)] for _ in range(rounds)]
-    return np.min(times, axis=0)
-
-
-def assert_same(found, expected):
-    for values, right in zip(found, expected, strict=True):
-        np.testing.assert_allclose(values, right, rtol=0, atol=1e-12 * np.max(np.abs(right)))
 
 
 def test_one_turn_takes_less_than_half_the_time_of_newton_euler(benchmark, tell):
@@ -150,21 +101,10 @@ def test_time_is_linear_in_the_number_of_angles(benchmark, tell):
 def nanoseconds_an_angle(count, environment):
     """Of `results` and of `flat`, in a process of its own."""
     code = (
-        f"from test_speed import *; angles = turn({count});"
+        f"from support.speed import *; angles = turn({count});"
         f" print(*seconds(lambda: results(PLAIN, angles), lambda: flat(angles), rounds=6) / {count} * 1e9)"
     )
     return [float(text) for text in run(code, environment).split()]
-
-
-def run(code, environment):
-    """What Python prints in a fresh process that finds this file and the package."""
-    here = Path(__file__).parent
-    path = {"PYTHONPATH": os.pathsep.join((str(here), str(Path(ks.__file__).parents[1])))}
-    command = [sys.executable, "-c", code]
-    done = subprocess.run(
-        command, env={**os.environ, **path, **environment}, check=True, capture_output=True, text=True
-    )
-    return done.stdout
 
 
 def test_many_designs_in_one_call(benchmark, tell):

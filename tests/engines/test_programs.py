@@ -1,203 +1,420 @@
-"""Programs by structure: recorded once for all numbers, with exact derivatives."""
+"""One source of physics on every engine: JAX, arb, dask, and programs recorded from the kernels, compiled by numba."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import machine_code, programs, record
-from kinetostatics.machine.loads import TURN
+from kinetostatics.engines import compiled, loops, programs
+from kinetostatics.engines.engines import KERNELS
+from kinetostatics.engines.trace import Node
+from kinetostatics.errors import NotGivenError
 from kinetostatics.mechanics.dynamics import Dynamics
-from kinetostatics.mechanics.quantities import components
+from kinetostatics.mechanics.quantities import components, magnitude
 from kinetostatics.numbers.leaves import put_together
-
-ANGLES = np.linspace(0.1, 6.2, 7)
-SIZES = np.array([[0.9], [1.0], [1.1]])
-SIX_BAR = ks.Mechanism(
-    "six-bar",
-    ks.Crank(0.1, ks.Link(2.0, 0.04, 0.01)),
-    (
-        ks.RockerGroup(0.4, 0.3, (0.35, 0.02), coupler=ks.Link(3.0, (0.2, 0.03), 0.05), rocker=ks.Link(2.0, 0.1, 0.03)),
-        ks.SliderGroup(
-            0.5,
-            ks.Guide.at(0.2, 0.05),
-            on="B",
-            pin="C",
-            label="2",
-            coupler=ks.Link(1.0, 0.2, 0.02),
-            slider=ks.Link(4.0),
-        ),
-    ),
+from support import DATA
+from support.scenes import (
+    ANGLES,
+    BATCHES,
+    FORCES,
+    OWN,
+    SAMPLES,
+    SCENES,
+    SPEED,
+    Pan,
+    everything,
+    solve,
+    with_group,
 )
 
-
-def shipped():
-    for name in ("sawframe_2r63", "mower_drive", "chain_unit"):
-        for variant, found in ks.load_case(name).variants.items():
-            loads = found.loads
-            yield f"{name} {variant}", ks.Scene(found.mechanism, found.crank_speed, 3.0, loads)
-    yield "six-bar", ks.Scene(SIX_BAR, 12.0, -20.0, (ks.Gravity(9.81, -1.2), ks.ProcessForce(40.0, "slider2")))
+LOOP = 8 * 2.0**-52
+"""Difference of compiled loops, relative to the largest value: a few ulp."""
+DIVERSE = ["plain, weightless", "cosine cam", "circle cam, everything", "six-bar"]
+"""Scenes that have among them all that the others have."""
 
 
-SCENES = dict(shipped())
+def results(solution):
+    """Every reaction, force and moment by name."""
+    vectors = {name: solution.reaction(name) for name in solution.reactions}
+    return vectors | {name: solution.scalar(name) for name in solution.scalars}
 
 
-def plain(size=1.0, speed=30.0, load=None):
-    saw = ks.crank_slider(0.3 * size, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0 * size))
-    return ks.Scene(saw, speed, loads=(ks.Gravity(9.81 * size), *([load] if load else ())))
+def largest(values):
+    return max(abs(float(value)) for value in np.ravel(values))
 
 
-def cam(size=1.0, speed=30.0):
-    mechanism = ks.cam_crank_slider(ks.cams.Circle(0.3 * size, (-0.02, 0.0)), 2.0, slider=ks.Link(600.0))
-    return ks.Scene(mechanism, speed, loads=ks.Spring(7e5 * size, 2.0))
+def assert_agree(found, expected, tolerance=1e-13):
+    """Every result agrees, to the tolerance times its largest value."""
+    assert found.keys() == expected.keys()
+    for name, values in expected.items():
+        assert largest(np.asarray(found[name]) - values) <= tolerance * largest(values), name
 
 
-def four_bar(size=1.0, speed=30.0):
-    return ks.Scene(
-        ks.four_bar(0.1 * size, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(2.0 * size, 0.1, 0.1)), speed
-    )
-
-
-def six_bar(size=1.0, speed=30.0):
-    groups = (
-        ks.RockerGroup(0.4, 0.3, (0.35, 0.0)),
-        ks.SliderGroup(0.5, on="B", pin="C", label="2", slider=ks.Link(size)),
-    )
-    return ks.Scene(ks.Mechanism("six-bar", ks.Crank(0.1), groups), speed)
+# JAX
 
 
 @pytest.fixture
-def counted(monkeypatch):
-    """Counts recordings, and modules that numba compiles."""
-    found = {"recordings": 0, "compilations": 0}
-    recorded, load = record.record, machine_code.load
-
-    def record_(*given):
-        found["recordings"] += 1
-        return recorded(*given)
-
-    def load_(*given, **options):
-        found["compilations"] += 1
-        return load(*given, **options)
-
-    monkeypatch.setattr(programs, "record", record_)
-    monkeypatch.setattr("kinetostatics.engines.compiled.load", load_)
-    return found
+def jax():
+    return pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
 
 
-def speeds(size):
-    return np.linspace(20.0, 30.0, ANGLES.size) * size
+@pytest.fixture
+def double(jax):
+    """JAX in double precision, and back to what it was."""
+    before = jax.config.jax_enable_x64
+    jax.config.update("jax_enable_x64", True)
+    yield jax
+    jax.config.update("jax_enable_x64", before)
 
 
-FAMILIES = {
-    "plain": plain,
-    "cam": cam,
-    "four-bar": four_bar,
-    "six-bar": six_bar,
-    "crank speed over the angles": lambda size: plain(size, speeds(size)),
-    "designs": lambda size: plain(SIZES * size),
-    "a table over the angles": lambda size: plain(size, load=ks.ProcessForce(speeds(size))),
-    "a function": lambda size: plain(size, load=ks.ProcessForce(_drag)),
-    "a sampled cam": lambda size: ks.Scene(_sampled(size), 30.0),
-}
+@pytest.mark.parametrize("name", DIVERSE)
+def test_solve_under_jax_jit_equals_numpy(double, name):
+    found = double.jit(lambda angles: results(solve(SCENES[name], angles, on_gap="nan")))(ANGLES)
+    assert all(values.dtype == "float64" for values in found.values())
+    assert_agree(found, results(solve(SCENES[name], ANGLES)))
 
 
-def _drag(motion):
-    return -5.0 * motion.slider_velocity
+def test_jax_in_single_precision_is_warned_of(jax):
+    before = jax.config.jax_enable_x64
+    jax.config.update("jax_enable_x64", False)
+    try:
+        with pytest.warns(UserWarning, match="single precision.*jax_enable_x64"):
+            solve(SCENES["plain"], jax.numpy.asarray(ANGLES), on_gap="nan")
+    finally:
+        jax.config.update("jax_enable_x64", before)
 
 
-def _sampled(size):
-    angle = np.linspace(0.0, TURN, 72, endpoint=False)
-    return ks.cam_crank_slider(ks.cams.Sampled(angle, 0.3 * size + 0.01 * np.cos(angle)), 2.0, slider=ks.Link(600.0))
+# arb
 
 
-@pytest.mark.parametrize("engine", ["numpy", "compiled"])
-@pytest.mark.parametrize("name", FAMILIES)
-def test_other_numbers_in_the_same_structure_record_and_compile_nothing(counted, name, engine):
-    if engine == "compiled":
-        pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-    first = FAMILIES[name](1.0).solve(ANGLES, engine=engine).balancing_torque
-    before = dict(counted)
-    second = FAMILIES[name](1.05).solve(ANGLES, engine=engine).balancing_torque
-    assert counted == before
-    assert not np.array_equal(first, second)
-    kernels = Dynamics(*_fields(FAMILIES[name](1.05)), loads=FAMILIES[name](1.05).loads)
-    assert np.allclose(second, kernels.balancing_torque, rtol=0.0, atol=1e-13 * np.abs(second).max())
+@pytest.fixture
+def flint():
+    """python-flint at 200 bits, and back to what it was."""
+    flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    before = flint.ctx.prec
+    flint.ctx.prec = 200
+    yield flint
+    flint.ctx.prec = before
 
 
-def _fields(scene):
-    return scene.mechanism, ANGLES, scene.crank_speed, scene.crank_acceleration
+def assert_narrow(found, flint):
+    """All enclosures are narrower than 1e-40 of the largest value."""
+    for name, values in found.items():
+        radii = [flint.arb(value).rad() for value in values.flat]
+        assert largest(radii) <= 1e-40 * largest(values), name
 
 
-@pytest.mark.parametrize("factor", [2.0, 5.0])
-def test_other_constants_of_a_function_are_seen(factor):
-    """In a closure, and in what it names of its module."""
-
-    def force(motion):
-        return factor * motion.slider_velocity
-
-    found = plain(load=ks.ProcessForce(force)).solve(ANGLES).guide_force
-    kernels = Dynamics(*_fields(plain()), loads=plain(load=ks.ProcessForce(lambda m: factor * m.slider_velocity)).loads)
-    assert np.array_equal(found, kernels.scalar("guide_force"))
-
-
-def test_what_is_zero_is_absent_and_makes_another_structure():
-    one, other = (Dynamics(*_fields(plain())), Dynamics(*_fields(cam())))
-    assert one.apart[0] != other.apart[0]
-    without = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 30.0)
-    assert programs.of(Dynamics(*_fields(without)))[0].recording.operations < programs.of(one)[0].recording.operations
-
-
-# Derivatives
+def middles(found, flint):
+    return {name: np.vectorize(lambda value: flint.arb(value).mid(), "O")(values) for name, values in found.items()}
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_derivatives_equal_central_differences_of_the_kernels_on_enclosures(name):
-    """At 300 bits, each number of the scene moved by 1e-30 of itself: both sides share no arithmetic of derivatives.
+def test_double_precision_lies_within_rounding_of_the_arb_enclosure(flint, name):
+    """The same binary inputs, so the enclosures hold the true values of what NumPy was asked."""
+    angles = np.array([flint.arb(angle) for angle in ANGLES.tolist()])
+    found = results(solve(SCENES[name], angles))
+    assert_narrow(found, flint)
+    assert_agree(middles(found, flint), results(solve(SCENES[name], ANGLES)))
 
-    Relative to the largest derivative over the angles, or to the quantity over the number where that is more.
+
+def sawframe(variant, flint):
+    """The sawframe at the crank angles of the tables, from decimal inputs."""
+    arb = flint.arb
+    angles = np.array([degrees * arb.pi() / 180 for degrees in range(0, 360, 5)])
+    speed = 320 * 2 * arb.pi() / 60
+    gravity = ks.Gravity(arb("9.81"), -arb.pi() / 2)
+    spring = ks.Spring.balancing(600, speed, 2)
+    cam = {
+        "plain": None,
+        "cam_circle": ks.cams.Circle(arb("0.3"), (arb("-0.0219"), arb(0))),
+        "cam_cosine": ks.cams.CosineLaw(arb("0.3"), arb(2)),
+    }[variant]
+    length = {"plain": arb(2), "cam_circle": arb("2.0219")}.get(variant) or cam.coupler_length
+    moving = {"coupler": ks.Link(150, length / 2, arb("20.5")), "slider": ks.Link(600)}
+    if cam is None:
+        return ks.solve(ks.crank_slider(arb("0.3"), length, **moving), angles, crank_speed=speed, loads=[gravity])
+    mechanism = ks.cam_crank_slider(cam, length, **moving)
+    return ks.solve(mechanism, angles, crank_speed=speed, loads=[gravity, spring])
+
+
+@pytest.mark.parametrize("variant", ["plain", "cam_circle", "cam_cosine"])
+def test_arb_enclosures_equal_the_50_digit_tables_to_24_digits(flint, variant):
+    path = DATA / f"sawframe_{variant}.json"
+    rows = json.loads(path.read_text(encoding="utf-8"))["rows"]
+    columns = {"guide_force": "N", "balancing_torque": "T", "cam_force": "cam", "slot_force": "slot"}
+    found = {name: values for name, values in results(sawframe(variant, flint)).items() if name != "guide"}
+    decimals = {name: np.array([row[columns.get(name, name)] for row in rows]).T for name in found}
+    expected = {name: np.vectorize(lambda text: flint.arb(str(text)), "O")(texts) for name, texts in decimals.items()}
+    assert_narrow(found, flint)
+    assert_agree(middles(found, flint), expected, tolerance=1e-24)
+
+
+# dask
+
+
+@pytest.mark.parametrize("name", DIVERSE)
+def test_dask_arrays_stay_lazy_in_chunks_and_equal_numpy(name):
+    dask = pytest.importorskip("dask", reason="dask is not installed (extra: distributed)")
+    array = pytest.importorskip("dask.array", reason="dask is not installed (extra: distributed)")
+    found = results(solve(SCENES[name], array.from_array(ANGLES, chunks=90)))
+    assert all(values.chunks[-1] == (90,) * 4 for values in found.values())
+    assert_agree(dask.compute(found)[0], results(solve(SCENES[name], ANGLES)))
+
+
+# Recorded and compiled programs
+
+
+@pytest.fixture
+def numba():
+    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+
+
+def program(solution, names, sizes=False):
+    """Program of some quantities, and a function that runs it: by NumPy unless told."""
+    made, leaves = programs.of(solution.dynamics, tuple(names), sizes)
+    return made, lambda compiled=False: made.run(solution.dynamics, leaves, compiled)
+
+
+def assert_program_equals(solution, tables=0):
+    """A program gives what the kernels give: the same NaN, and what differs by 1e-15 of the largest value.
+
+    By NumPy and by the loop. Sines and cosines of the loop are its own, which may differ from others in the last place.
     """
-    flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-    scene = SCENES[name]
-    quantities = ("balancing_torque", *(name for name in ("O", "B", "cam_force") if name in scene.mechanism.outputs))
-    program = ks.compile(scene, quantities, engine="numpy")
-    found = program.derivatives(ANGLES)
-    state = Dynamics(*_fields(scene), loads=scene.loads)
-    structure, leaves = state.apart
-    places = {path: int(number) for path, (number, _) in program._numbers.items()}
-    with flint.ctx.workprec(300):
-        angle = np.array([flint.arb(float(part)) for part in ANGLES], dtype=object)
-
-        def at(place, share):
-            numbers = [flint.arb(float(number)) for number in leaves.numbers]
-            numbers[place] *= 1 + share
-            given = iter(numbers)
-            mechanism, speed, acceleration, loads = put_together(structure, lambda: next(given), None, None)
-            moved = Dynamics(mechanism, angle, speed, acceleration, loads)
-            return {name: np.array([list(part) for part in components(moved, name)]) for name in quantities}
-
-        for path, place in places.items():
-            step = flint.arb("1e-30")
-            above, below = at(place, step), at(place, -step)
-            value = flint.arb(float(leaves.numbers[place]))
-            for quantity in quantities:
-                slope = ((above[quantity] - below[quantity]) / (2 * step * value)).astype(float)
-                own = np.reshape(found[quantity][path], slope.shape)
-                terms = np.abs(above[quantity].astype(float)).max() / abs(float(leaves.numbers[place]))
-                unit = max(np.abs(slope).max(), terms) or np.abs(own).max() or 1.0
-                assert np.abs(own - slope).max() <= 1e-12 * unit, (path, quantity)
+    names = everything(solution)
+    made, run = program(solution, names)
+    assert len(made.recording.tables) == tables
+    expected = KERNELS.values(solution.dynamics, names)
+    for compiled_loop, tolerance in ((False, 1e-15), (True, LOOP)):
+        found = made.recording.named(run(compiled_loop))
+        assert tuple(found) == tuple(dict.fromkeys(names))
+        for name in names:
+            assert found[name].shape == expected[name].shape, name
+            assert np.array_equal(np.isnan(found[name]), np.isnan(expected[name])), name
+            error, size = (np.nanmax(np.abs(part)) for part in (found[name] - expected[name], expected[name]))
+            assert error <= tolerance * size, name
 
 
-@pytest.mark.parametrize("name", ["sawframe_2r63 cam-circle", "six-bar"])
-def test_derivatives_are_the_same_compiled_and_by_either_sweep(name):
-    pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-    quantities = ("balancing_torque", "O")
-    found = [
-        ks.compile(SCENES[name], quantities, engine=engine).derivatives(ANGLES) for engine in ("numpy", "compiled")
+@pytest.mark.parametrize("name", SCENES)
+def test_recorded_program_equals_solve(interpreted, name):
+    assert_program_equals(solve(SCENES[name], ANGLES))
+
+
+@pytest.mark.parametrize("name", ["circle cam, everything", "six-bar"])
+def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba, name):
+    assert_program_equals(solve(SCENES[name], ANGLES))
+    sine, cosine = loops.turn(ANGLES[None])
+    assert largest(sine - np.sin(ANGLES)) <= 2**-52
+    assert largest(cosine - np.cos(ANGLES)) <= 2**-52
+
+
+@pytest.mark.parametrize("angles", [ANGLES[7:8], ANGLES[:5]])
+@pytest.mark.parametrize("name", SCENES)
+def test_program_on_plain_numbers_equals_the_kernels(name, angles):
+    """A few crank angles are computed one by one."""
+    s = solve(SCENES[name], angles)
+    names = everything(s)
+    made, run = program(s, names)
+    expected = KERNELS.values(s.dynamics, names)
+    for quantity, found in made.recording.named(run()).items():
+        assert largest(found - expected[quantity]) <= 1e-15 * max(1.0, largest(expected[quantity])), quantity
+
+
+def test_programs_in_pieces_of_many_angles_equal_one_in_a_piece(monkeypatch):
+    """NumPy takes so many crank angles at once that its buffers stay in the cache."""
+    s = solve(SCENES["six-bar"], np.linspace(0, 7, 5000))
+    found = [program(s, everything(s))[1]()]
+    monkeypatch.setattr(programs, "BLOCK", 10_000)
+    found.append(program(s, everything(s))[1]())
+    assert np.array_equal(*found)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_derivatives_by_every_number_equal_differences_with_60_digits(interpreted, flint, name):
+    """By NumPy and by the loop, against central differences of the kernels on arb numbers."""
+    s = solve(SCENES[name], ANGLES[5::45])
+    names, state = ("balancing_torque", *s.reactions), s.dynamics
+    made, leaves = programs.of(state, names)
+    places = tuple(range(len(leaves.numbers)))
+    assert len(places) > 4
+    angles = np.array([flint.arb(angle) for angle in s.crank_angle.tolist()])
+    structure, _ = programs.apart(state)
+    step = flint.arb(2) ** -60
+
+    def beside(place, way):
+        numbers = iter([flint.arb(value) + way * step * (k == place) for k, value in enumerate(leaves.numbers)])
+        mechanism, speed, acceleration, loads = put_together(structure, lambda: next(numbers), None, None)
+        moved = Dynamics(mechanism, angles, speed, acceleration, loads)
+        return [part for quantity in names for part in components(moved, quantity)]
+
+    slopes = [
+        [(ahead - behind) / (2 * step) for ahead, behind in zip(beside(place, 1), beside(place, -1), strict=True)]
+        for place in places
     ]
-    one_by_one = ks.compile(SCENES[name], quantities, engine="numpy")
-    for quantity in quantities:
-        for path, slope in found[0][quantity].items():
-            largest = np.abs(slope).max()
-            assert np.abs(found[1][quantity][path] - slope).max() <= 1e-13 * largest
-            alone = one_by_one.derivatives(ANGLES, path)[quantity][path]  # one parameter: forward
-            assert np.abs(alone - slope).max() <= 1e-12 * largest
+    expected = np.array(slopes).swapaxes(0, 1).astype(float)
+    for compiled_loop in (False, True):
+        found = made.by_parameters(places).run(state, leaves, compiled_loop).reshape(expected.shape)
+        size = np.abs(expected).max(axis=-1, keepdims=True)
+        assert np.all(np.abs(found - expected) <= 1e-12 * np.maximum(size, 1e-3 * size.max(axis=1, keepdims=True)))
+
+
+def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
+    """The six-bar with a second coupler that is too short over a part of the turn, and one that just reaches."""
+    scene = SCENES["six-bar"]
+    first, second = scene.mechanism.groups
+    pin = solve(scene, ANGLES).position("B")[1]
+    for length in (0.35, pin.max()):
+        groups = (first, replace(second, coupler_length=length))
+        s = solve(scene._replace(mechanism=replace(scene.mechanism, groups=groups)), ANGLES, on_gap="nan")
+        assert np.array_equal(np.isnan(s.balancing_torque), np.abs(pin) > length)
+        assert_program_equals(s)
+    assert s.condition[pin.argmax()] == np.inf
+
+
+# What users bring
+
+
+class Stop(Pan):
+    """A group that looks at values."""
+
+    def place(self, placement):
+        """Turn with the crank on one side."""
+        super().place(placement)
+        if placement.joints["A"].position[0] > 0:
+            placement.links["pan"] = placement.links["crank"]
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_program_of_a_users_own_cam_or_group_equals_solve(interpreted, name):
+    """What takes plain numbers only is computed by NumPy beforehand."""
+    scene, tables = OWN[name]
+    assert_program_equals(solve(scene, ANGLES), tables)
+
+
+@pytest.mark.parametrize("name", FORCES)
+def test_program_under_a_process_force_equals_solve(interpreted, name):
+    force, tables = FORCES[name]
+    s = ks.solve(SCENES["plain"].mechanism, ANGLES, crank_speed=SPEED, loads=ks.ProcessForce(force))
+    assert_program_equals(s, tables)
+
+
+@pytest.mark.parametrize("name", BATCHES)
+def test_program_of_many_designs_equals_solve(interpreted, name):
+    s = BATCHES[name]()
+    made, run = program(s, ["balancing_torque"])
+    assert run().shape == run(compiled=True).shape == (1, *s.shape)
+    assert_program_equals(s, len(made.recording.tables))
+
+
+@pytest.mark.parametrize("sizes", [False, True])
+@pytest.mark.parametrize("name", ["crank angles, other lengths, sampled cam, table", "one design"])
+def test_program_in_pieces_gives_the_same(interpreted, monkeypatch, name, sizes):
+    s = BATCHES[name]() if name in BATCHES else solve(SCENES["plain, everything"], SAMPLES)
+    _, run = program(s, ["O", "balancing_torque"], sizes)
+    whole = run(compiled=True)
+    expected = [magnitude(s.reaction("O"))] if sizes else s.reaction("O")
+    assert largest(whole[:-1] - expected) <= 1e-13 * largest(expected)
+    monkeypatch.setattr(loops, "SHARE", 20)
+    monkeypatch.setattr(loops, "cores", lambda: 3)
+    assert np.array_equal(run(compiled=True), whole)
+
+
+# What a program costs
+
+
+def operations(scene, *names):
+    s = solve(scene, ANGLES)
+    return program(s, names or everything(s))[0].recording.operations
+
+
+def test_what_is_absent_or_not_asked_for_costs_nothing():
+    plain, weightless = SCENES["plain"], SCENES["plain, weightless"]
+    light = plain._replace(mechanism=plain.mechanism.with_link("coupler", ks.Link()))
+    assert operations(light) < operations(weightless) < operations(plain) < operations(SCENES["plain, everything"])
+    assert operations(plain, "slider_position") <= 10
+    torque, reactions = operations(plain, "balancing_torque"), operations(plain, "O", "A", "B", "guide")
+    assert operations(plain, "coupler_rate") < torque < reactions < operations(plain)
+    assert operations(plain, "balancing_torque", "A", "A") == operations(plain, "A", "balancing_torque")
+
+
+def test_designs_of_one_structure_share_a_program_and_others_do_not():
+    def found(**changes):
+        values = {"guide_offset": 0.1, "assembly": 1, "slider": 600.0} | changes
+        mass = ks.Link(values.pop("slider"))
+        mechanism = ks.crank_slider(0.3, values.pop("coupler", 2.0), slider=mass, **values)
+        s = ks.solve(mechanism, ANGLES, crank_speed=changes.get("coupler", 5.0))
+        return program(s, ["balancing_torque"])[0]
+
+    same = [{"guide_offset": -0.2}, {"slider": 1.0}, {"coupler": 3.0}, {"coupler": np.array([[1.5], [2.5]])}]
+    assert {found(**changes) for changes in same} == {found()}
+    others = [{"guide_offset": 0.0}, {"slider": 0.0}, {"assembly": -1}, {"guide_angle": 0.3}]
+    assert len({found(), *(found(**changes) for changes in others)}) == 5
+
+
+def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monkeypatch, capsys):
+    """Nothing is compiled anew, neither there nor here for crank angles that are locked against writing."""
+    monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path))
+    code = (
+        "import kinetostatics as ks;"
+        " scene = ks.Scene(ks.crank_slider(0.3, 2.0), crank_speed=1.0);"
+        " made = ks.compile(scene, ['slider_position', 'coupler_rate'], engine='compiled');"
+        " locked = scene.solve([0.1, 0.2]).crank_angle;"
+        " print(made(locked)['coupler_rate'].tolist(), made([0.1, 0.2])['slider_position'].shape)"
+    )
+
+    def files():
+        kept = (path for path in tmp_path.rglob("*") if path.suffix in (".py", ".nbi", ".nbc"))
+        return sorted((path.name, path.stat().st_mtime_ns) for path in kept)
+
+    compiled._loaded.cache_clear()
+    programs._kept.clear()
+    exec(code)
+    here, compiled_here = capsys.readouterr().out, files()
+    sources, code_files = ([name for name, _ in compiled_here if name.endswith(end)] for end in (".py", ".nbc"))
+    assert len(sources) == len(code_files) == 2
+    assert all(name.endswith(".1.nbc") for name in code_files)
+    there = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert there.stdout == here
+    assert files() == compiled_here
+
+
+# What cannot be
+
+
+def test_kernel_that_branches_on_values_is_refused_with_the_reason():
+    s = solve(with_group(Stop(ks.Link(3.0, 0.1))), np.array([0.3]), on_gap="nan")
+    with pytest.raises(NotGivenError, match="kernels must not branch on values"):
+        program(s, ["O"])
+
+
+def test_values_of_recorded_numbers_cannot_be_looked_at():
+    recorded = []
+    force = ks.ProcessForce(lambda motion: recorded.append(motion.travel()[0]) or motion.travel())
+    program(ks.solve(SCENES["plain"].mechanism, [0.1], crank_speed=1.0, loads=force), ["A"])
+    node = next(value for value in recorded if isinstance(value, Node))
+    for look in (bool, float, int, lambda x: x == 0, lambda x: x != 0, lambda x: x > 0, lambda x: x <= 0.0):
+        with pytest.raises(TypeError, match="not known yet"):
+            look(node)
+    with pytest.raises(TypeError, match="only squares"):
+        node**3
+
+
+def test_program_of_a_table_at_other_angles_is_refused():
+    loads = ks.ProcessForce(np.sin(ANGLES))
+    scene = ks.Scene(SCENES["plain"].mechanism, crank_speed=1.0, loads=loads)
+    made = ks.compile(scene, ["A"], engine="numpy")
+    assert made(ANGLES)["A"].shape == (2, 360)
+    for angles in (ANGLES[:9], ANGLES[:9] * np.ones((2, 1))):
+        with pytest.raises(ks.ParameterError, match="do not fit"):
+            made(angles)
+
+
+def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    scene = ks.Scene(SCENES["plain"].mechanism, crank_speed=1.0)
+    with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]"'):
+        ks.compile(scene, ["O"], engine="compiled")

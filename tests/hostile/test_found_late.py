@@ -10,9 +10,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.mechanics import assembly
+from kinetostatics.numbers.units import to_si
 from kinetostatics.results.comparison import _ratio
 from kinetostatics.results.reductions import FOUND, parsed
-from kinetostatics.numbers.units import to_si
 
 TURN = 2 * np.pi * np.arange(72) / 72
 UNITS = pint.UnitRegistry()

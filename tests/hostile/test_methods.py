@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.machine.group import Group, Resolved
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.studies.methods import METHODS
 
@@ -19,15 +20,21 @@ OF_KNOWN_GROUPS = ["papers' formulas", "SymPy Kane, lambdified", *OTHER_MOTION]
 
 
 class OwnSlider(ks.SliderGroup):
-    """A group of a user's own, which places and resolves itself in another way than the library's."""
+    """A group of a user's own, which places itself in another way than the library's."""
+
+    def place(self, placement):
+        """As the library does, which nobody can know."""
+        super().place(placement)
 
 
-class Wheel:
+class Wheel(Group):
     """A group of a user's own with one link, massless, that turns with the crank."""
 
     links: ClassVar = {"wheel": ks.Link()}
     references: ClassVar = {"wheel": "O"}
-    bars = ()
+    joints: ClassVar = {}
+    outputs: ClassVar = {}
+    hangs_on = ("O",)
 
     def place(self, placement):
         """Put the wheel where the crank is."""
@@ -38,11 +45,11 @@ class Wheel:
         return 1.0
 
     def requirement(self, placement):
-        """Asks for nothing."""
-        return "none"
+        """Never asked for."""
 
-    def resolve(self, placement, loads, pushes, forces):
+    def resolve(self, placement, loads, along):
         """Bears nothing."""
+        return Resolved({}, {}, {})
 
 
 class OwnCam:

@@ -206,15 +206,31 @@ def test_a_cam_is_made_and_has_a_pitch_curve(bad):
         0.3,
         "level",
         (1.0, 0.0),
-        ks.Guide((1.0, np.nan)),
-        ks.Guide((2.0, 0.0)),
-        ks.Guide("ab"),
-        ks.Guide((1.0, 0.0), "3"),
+        ks.Guide,
+        None,
     ],
 )
 def test_a_guide_is_a_guide(bad):
     with pytest.raises(ks.ParameterError, match="guide"):
         ks.SliderGroup(1.0, bad)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        (None, 0.0, (1.0, np.nan)),
+        (None, 0.0, (2.0, 0.0)),
+        (None, 0.0, 3.0),
+        (None,),
+        ((1.0, 0.0),),
+        (np.nan,),
+        ("ab",),
+        (0.0, "3"),
+    ],
+)
+def test_a_guide_has_a_direction_and_an_offset(given):
+    with pytest.raises(ks.ParameterError, match="guide"):
+        ks.Guide(*given)
 
 
 @pytest.mark.parametrize(
@@ -409,7 +425,7 @@ ROCKER = ks.RockerGroup(0.4, 0.3, (0.35, 0.1))
         ((ROCKER, replace(ROCKER, on="B", pin="C", label="2")), "adds joint 'O2' a second time"),
         ((ks.SliderGroup(0.5, pin="guide"),), "adds reaction 'guide' a second time"),
         ((ks.SliderGroup(0.5, pin="slider"),), "adds link 'slider' a second time, after the joint"),
-        ((ks.SliderGroup(0.5, pin="guide_force"),), "adds reaction 'guide_force' a second time"),
+        ((ks.SliderGroup(0.5, pin="guide_force"),), "adds quantity 'guide_force' a second time"),
         ((ks.SliderGroup(0.5, pin="shaking_force"),), "adds reaction 'shaking_force' a second time"),
         ((ks.SliderGroup(0.5, pin="closure"),), "adds reaction 'closure' a second time"),
         ((ks.SliderGroup(0.5, pin="coupler_rate"),), "'coupler_rate' a second time"),

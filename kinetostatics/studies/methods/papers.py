@@ -12,6 +12,7 @@ import numpy as np
 
 from ...machine.cam_roller import CamRoller
 from ...machine.cams import Circle, CosineLaw
+from ...machine.group import Resolved
 from ...machine.links import Joint, LinkMotion, Wrench
 from ...machine.loads import ProcessForce, Spring
 from ...machine.rocker_group import RockerGroup, RockerMotion
@@ -208,19 +209,22 @@ class RollerByAngles(CamRoller):
 
     sign: float = EQUILIBRIUM
 
-    def resolve(self, placement, loads, pushes, forces):
+    TRUSTED = True
+
+    def resolve(self, placement, loads, along):
         radius, slope, _ = placement.details["cam"]
-        x, y = vector(subtracted(loads["block"].force, forces.demand.get("A")))
+        x, y = vector(loads["block"].force)
         R42, behind, nu = np.hypot(x, y), placement.angle - np.arctan2(y, x), np.arctan(slope / radius)
         R40 = -R42 * np.cos(behind) / np.cos(nu)
         R41 = R42 * np.sin(behind) + self.sign * R40 * np.sin(nu)
-        forces.scalars |= {"cam_force": -R40, "slot_force": R41}
-        torque = minus(R41 * radius, loads["block"].moment)
-        forces.crank_demand = Wrench(stretched(R41, left(placement.ray)), torque)
+        on_crank = Wrench(stretched(R41, left(placement.ray)), minus(R41 * radius, loads["block"].moment))
+        return Resolved({}, {"cam_force": -R40, "slot_force": R41}, {"crank": on_crank})
 
 
 class SliderByVectors(SliderGroup):
     """Slider by the mower study: `slider_by_double_cross`, then the loop equation, differentiated, with its vectors."""
+
+    TRUSTED = True
 
     def found(self, A):
         u, offset, length = self.guide.direction, self.guide.guide_offset, self.coupler_length
@@ -240,13 +244,13 @@ class SliderByVectors(SliderGroup):
         q = stretched(1 / length, AB)
         coupler, slider = LinkMotion(A, q, ratio, ratio_slope), LinkMotion(pin, u, None, None)
         sine, cosine, travel = dot(n, q), dot(u, q), Joint(dot(u, B), speed, gain)
-        placement.joints[self.pin] = pin
-        placement.links |= dict(zip(self.links, (coupler, slider), strict=True))
-        placement.details[self._slider] = SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel)
+        self._set(placement, SliderMotion(coupler, slider, sine, cosine, cosine, cosine * cosine, travel))
 
 
 class SliderByAsin(SliderByVectors):
     """Slider by the sawframe study: the coupler's angle from the guide by asin."""
+
+    TRUSTED = True
 
     def found(self, A):
         u, n = self.guide.direction, left(self.guide.direction)
@@ -261,6 +265,8 @@ class RockerByAtanAcos(RockerGroup):
 
     crank_length: Any = None
 
+    TRUSTED = True
+
     def place(self, placement):
         lengths = self.crank_length, self.coupler_length, self.rocker_length
         (theta, ratio, ratio_slope), (psi, swing, swing_slope) = four_bar_by_atan_acos(
@@ -272,9 +278,7 @@ class RockerByAtanAcos(RockerGroup):
         pin = Joint(added(self.pivot, arm), stretched(swing, left(arm)), second)
         coupler = LinkMotion(placement.joints[self.on], q, ratio, ratio_slope)
         rocker, sine = LinkMotion(pivot, p, swing, swing_slope), cross(q, p)
-        placement.joints |= {self.pin: pin, self.pivot_name: pivot}
-        placement.links |= dict(zip(self.links, (coupler, rocker), strict=True))
-        placement.details[self._rocker] = RockerMotion(coupler, rocker, pin, sine, dot(q, p), sine, sine * sine)
+        self._set(placement, RockerMotion(coupler, rocker, pin, sine, dot(q, p), sine, sine * sine))
 
 
 def _as(kind, original, **more):

@@ -1,0 +1,433 @@
+"""Four-bar characteristics: Grashof class, closed intervals, change points, swing; the study's formulas measured."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+import kinetostatics as ks
+from kinetostatics.design.linkage import (
+    chain_unit,
+    chain_unit_angle,
+    grashof,
+    rocker_angle,
+    swing,
+    transmission_angle,
+)
+from kinetostatics.studies.methods.papers import chain_unit_by_atan_acos
+from support.four_bars import FourBar, moved, turning
+from support.machines import largest, planar
+from support.strategies import four_bars, number, reproducible
+
+JOINTS = ("O", "A", "B", "O2")
+TURN = np.linspace(0.0, 2 * np.pi, 721) + 0.001
+EXAMPLES = {
+    "crank-rocker": (1.0, 3.0, 3.5, 4.0),
+    "double-crank": (3.5, 4.0, 3.0, 1.0),
+    "double-rocker": (3.5, 1.0, 3.0, 4.0),
+    "rocker-crank": (3.0, 4.0, 1.0, 3.5),
+    "triple-rocker": (2.0, 3.0, 3.5, 5.0),
+}
+CHANGE_POINTS = {
+    "crank and rocker equal, parallelogram": (1.0, 2.0, 1.0, 2.0),
+    "crank longer, parallelogram": (2.0, 1.0, 2.0, 1.0),
+    "crank and frame equal, kite": (1.0, 2.0, 2.0, 1.0),
+    "crank and coupler equal, kite": (1.0, 1.0, 2.0, 2.0),
+    "rocker and frame equal, kite": (3.0, 3.0, 1.0, 1.0),
+    "crank shortest": (1.0, 3.0, 2.5, 1.5),
+    "frame shortest": (2.5, 3.0, 1.5, 1.0),
+}
+DECIMAL = [(0.16, 2.5, 0.28, 2.38), (0.12, 0.9, 0.82, 1.6), (1.01, 1.77, 2.92, 3.68)]
+"""Shortest and longest link are as long as the other two in decimals, but not when rounded to binary."""
+
+
+def four_bar(lengths, frame_angle=0.0, assembly=1):
+    """Crank, coupler, rocker and frame length."""
+    *links, frame = lengths
+    pivot = frame * np.exp(1j * frame_angle)
+    return ks.four_bar(*links, rocker_pivot=(pivot.real, pivot.imag), assembly=assembly)
+
+
+def solved(mechanism, angle=TURN):
+    return ks.solve(mechanism, angle, crank_speed=1.0, on_gap="nan")
+
+
+def joints_that_turn(lengths):
+    """By sweeping: of each joint the inversion of the linkage in which it is the crank's pivot closes all the way."""
+    inversions = {joint: np.roll(lengths, -number).tolist() for number, joint in enumerate(JOINTS)}
+    return {joint for joint, found in inversions.items() if np.all(np.isfinite(solved(four_bar(found)).position("B")))}
+
+
+# Grashof's classes
+
+
+@pytest.mark.parametrize("kind", EXAMPLES)
+def test_kind_and_turning_joints_are_those_a_sweep_of_every_inversion_finds(kind):
+    found = grashof(four_bar(EXAMPLES[kind]))
+    assert found.kind == kind
+    assert set(found.turning_joints) == joints_that_turn(EXAMPLES[kind])
+
+
+@settings(reproducible, max_examples=60)
+@given(lengths=st.tuples(*4 * [number(0.1, 3.0)]))
+def test_turning_joints_of_random_four_bars_are_those_a_sweep_finds(lengths):
+    ordered = sorted(lengths)
+    assume(abs(ordered[0] + ordered[3] - ordered[1] - ordered[2]) > 0.02)
+    assume(ordered[3] < sum(ordered[:3]))
+    found = grashof(four_bar(lengths))
+    assert set(found.turning_joints) == joints_that_turn(lengths)
+    whole_turn = found.intervals == ((0.0, 2 * np.pi),)
+    assert whole_turn == ("O" in found.turning_joints)
+
+
+@pytest.mark.parametrize("assembly", [1, -1])
+@pytest.mark.parametrize("kind", ["crank-rocker", "double-crank"])
+def test_joints_that_turn_fully_are_those_whose_links_wind_around_each_other(kind, assembly):
+    s = solved(four_bar(EXAMPLES[kind], 0.3, assembly))
+    direction = {name: s.placement.links[name].direction for name in s.mechanism.links}
+    angle = {name: np.unwrap(np.arctan2(y, x)) for name, (x, y) in direction.items()} | {"frame": np.zeros(TURN.size)}
+    pairs = (("frame", "crank"), ("crank", "coupler"), ("coupler", "rocker"), ("rocker", "frame"))
+    turns = {
+        joint: np.ptp((angle[a] - angle[b])[[0, -1]]) / (2 * np.pi) for joint, (a, b) in zip(JOINTS, pairs, strict=True)
+    }
+    assert {joint for joint, number in turns.items() if round(number)} == set(grashof(s.mechanism).turning_joints)
+
+
+@pytest.mark.parametrize("name", CHANGE_POINTS)
+def test_change_point_linkages_are_known_and_close_all_the_way(name):
+    found = grashof(four_bar(CHANGE_POINTS[name]))
+    assert found.kind == "change-point"
+    assert found.intervals == ((0.0, 2 * np.pi),)
+    assert np.all(np.isfinite(solved(four_bar(CHANGE_POINTS[name])).position("B")))
+
+
+@pytest.mark.parametrize("lengths", [*DECIMAL, (0.4, 0.7, 0.9, 0.2), (0.3, 0.3, 1.9, 1.9)])
+def test_change_point_linkages_of_decimal_lengths_have_no_gap_from_rounding(lengths):
+    found = grashof(four_bar(lengths))
+    assert found.kind == "change-point"
+    assert found.intervals == ((0.0, 2 * np.pi),)
+
+
+@pytest.mark.parametrize("lengths", DECIMAL)
+def test_change_point_of_decimal_lengths_is_warned_of_but_not_refused(lengths):
+    with pytest.warns(ks.ConditionWarning, match="near a limit position"):
+        ks.solve(four_bar(lengths), np.radians([0.0, 90.0, 180.0, 270.0]), crank_speed=1.0)
+
+
+@pytest.mark.parametrize("name", CHANGE_POINTS)
+def test_turning_joints_of_change_point_linkages_are_those_a_sweep_finds(name):
+    """Two or four shortest links of one length turn each joint beside them."""
+    lengths = CHANGE_POINTS[name]
+    assert set(grashof(four_bar(lengths)).turning_joints) == joints_that_turn(lengths)
+
+
+def test_a_linkage_that_never_closes_has_no_interval():
+    mechanism = four_bar((1.0, 1.0, 1.0, 5.0))
+    found = grashof(mechanism)
+    assert (found.turning_joints, found.intervals) == ((), ())
+    with pytest.raises(ks.AssemblyError) as caught:
+        ks.solve(mechanism, TURN, crank_speed=1.0)
+    assert caught.value.intervals == ((0.0, 2 * np.pi),)
+
+
+# Closed intervals
+
+
+def assert_intervals_complement(mechanism):
+    """Closed intervals and those of the error make up one turn, and NaN is exactly in the latter."""
+    closed = grashof(mechanism).intervals
+    with pytest.raises(ks.AssemblyError, match="difference and the sum of coupler and rocker lengths") as caught:
+        ks.solve(mechanism, TURN, crank_speed=1.0)
+    gaps = caught.value.intervals
+    ends = np.sort(np.mod([end for interval in closed for end in interval], 2 * np.pi))
+    edges = np.sort(np.mod([end for interval in gaps for end in interval], 2 * np.pi))
+    assert_allclose(ends, edges, rtol=0, atol=1e-9)
+    assert sum(end - start for start, end in (*closed, *gaps)) == pytest.approx(2 * np.pi, abs=1e-9)
+    beside = np.concatenate([TURN, ends - 1e-9, ends + 1e-9])
+    inside = np.any([np.mod(beside - start, 2 * np.pi) < end - start for start, end in closed], axis=0)
+    s = solved(mechanism, beside)
+    for values in (s.position("B")[0], s.rate("coupler"), s.angular_acceleration("rocker"), s.reaction("O2")[1]):
+        assert np.array_equal(np.isfinite(values), inside)
+    assert np.all(np.isfinite(s.position("A")))
+
+
+@pytest.mark.parametrize("frame_angle", [0.0, 0.1, 2.0, -2.5, np.pi])
+@pytest.mark.parametrize("kind", ["double-rocker", "rocker-crank", "triple-rocker"])
+def test_closed_intervals_complement_those_of_the_assembly_error(kind, frame_angle):
+    assert_intervals_complement(four_bar(EXAMPLES[kind], frame_angle))
+
+
+@settings(reproducible, max_examples=40)
+@given(lengths=st.tuples(*4 * [number(0.1, 3.0)]), frame_angle=number(-3.1, 3.1))
+def test_closed_intervals_of_random_four_bars_complement_the_gaps(lengths, frame_angle):
+    """One interval or two, around the frame line or away from it."""
+    mechanism = four_bar(lengths, frame_angle)
+    closed = grashof(mechanism).intervals
+    widths = [end - start for start, end in closed]
+    assume(closed and min(widths) > 0.1 and sum(widths) < 6.1)
+    assume(len(closed) == 1 or min(np.diff(np.sort(np.ravel(closed)))) > 0.1)
+    assert_intervals_complement(mechanism)
+
+
+# Change points
+
+
+def sides(s, pivot):
+    """Sign of the side of the line A-O2 on which B lies."""
+    A, B = planar(s.position("A")), planar(s.position("B"))
+    return np.sign(turning(pivot - A, B - A))
+
+
+@pytest.mark.parametrize("assembly", [1, -1])
+@pytest.mark.parametrize("name", CHANGE_POINTS)
+def test_chosen_side_is_kept_on_both_sides_of_every_change_point(name, assembly):
+    """All around, and to 1e-7 rad before and after 0 and 180 degrees."""
+    lengths = CHANGE_POINTS[name]
+    steps = 10.0 ** -np.arange(1, 8)
+    near = np.concatenate([steps, -steps])
+    s = solved(four_bar(lengths, assembly=assembly), np.concatenate([TURN, near, np.pi + near]))
+    assert set(sides(s, lengths[3])) == {assembly}
+
+
+@pytest.mark.parametrize("step", 10.0 ** -np.arange(1, 8))
+def test_parallelogram_becomes_an_antiparallelogram_exactly_after_its_change_point(step):
+    """B = O2 + A before; after it B = A + the frame mirrored in the line A-O2. Errors grow as rounding over angle."""
+    s = solved(four_bar((1.0, 2.0, 1.0, 2.0)), np.array([step, -step]))
+    crank = np.exp(1j * s.crank_angle)
+    parallel = 2 + crank
+    along = (2 - crank) / abs(2 - crank)
+    crossed = crank + along**2 * 2
+    expected = [parallel[0], crossed[1]]
+    assert largest(planar(s.position("B")) - expected) < 1e-15 / step
+
+
+@pytest.mark.parametrize("assembly", [1, -1])
+@pytest.mark.parametrize("name", CHANGE_POINTS)
+def test_results_at_a_change_point_are_finite_and_that_they_mean_nothing_is_said(name, assembly):
+    """Every one of these has its links in line at crank angle 0, where no direction of motion is preferred."""
+    _, coupler, rocker, frame = lengths = CHANGE_POINTS[name]
+    with pytest.warns(ks.ConditionWarning, match=r"crank angle 0 deg.*about 0 correct digits.*solution\.condition"):
+        s = ks.solve(four_bar(lengths, assembly=assembly), np.array([0.0, 0.5]), crank_speed=1.0, loads=ks.Gravity())
+    for values in (s.rate("rocker"), s.angular_acceleration("coupler"), s.balancing_torque, s.reaction("O2")):
+        assert np.all(np.isfinite(values))
+    assert s.condition[0] > 1e15
+    assert s.condition[1] < 1e4
+    A, B = planar(s.position("A")), planar(s.position("B"))
+    assert_allclose(abs(B - A), coupler, rtol=0, atol=1e-15 * max(lengths))
+    assert_allclose(abs(B - frame), rocker, rtol=0, atol=1e-15 * max(lengths))
+
+
+# Transmission angle and swing
+
+
+@settings(reproducible, max_examples=20)
+@given(data=st.data())
+def test_transmission_angle_obeys_the_law_of_cosines(data):
+    bar, _ = data.draw(four_bars("crank-rocker"))
+    s = bar.solve()
+    square = abs(bar.pivot - planar(s.position("A"))) ** 2
+    cosine = (bar.coupler**2 + bar.rocker**2 - square) / (2 * bar.coupler * bar.rocker)
+    assert_allclose(transmission_angle(s), np.arccos(cosine), rtol=0, atol=1e-13)
+
+
+@settings(reproducible, max_examples=15)
+@given(data=st.data(), start=number(0.0, 6.28))
+def test_swing_reaches_from_one_limit_position_to_the_other(data, start):
+    """Crank and coupler in line make a triangle of coupler +- crank, rocker and frame; both assemblies swing alike."""
+    bar, _ = data.draw(four_bars("crank-rocker"))
+    s = bar.solve()
+    found, (b, h) = swing(s, start), (abs(bar.pivot), bar.rocker)
+    reach = np.array([bar.coupler + bar.crank, bar.coupler - bar.crank])
+    at_pivot = np.arccos((b * b + h * h - reach**2) / (2 * b * h))
+    assert found.range == pytest.approx(at_pivot[0] - at_pivot[1], rel=1e-11)
+    limits = s.at(np.array([found.largest_at, found.smallest_at]))
+    A, B = planar(limits.position("A")), planar(limits.position("B"))
+    assert_allclose(turning(A, B) / abs(A) / abs(B), 0.0, atol=1e-9)
+    assert_allclose(rocker_angle(limits, start), [found.largest, found.smallest], rtol=0, atol=1e-15)
+    assert found.asymmetry == abs(found.smallest) / found.largest
+    assert rocker_angle(s.at(np.array([start])), start) == 0.0
+
+
+# Chain unit
+
+
+def test_crank_angles_of_study_and_library_turn_into_each_other():
+    """+y, +x, -y, -x, clockwise, and back."""
+    clockwise = np.pi / 2 * np.arange(4)
+    assert_allclose(chain_unit_angle(clockwise), [np.pi / 2, 0.0, -np.pi / 2, -np.pi])
+    assert_allclose(chain_unit_angle(chain_unit_angle(TURN)), TURN)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
+def test_parallel_start_has_crank_and_rocker_parallel_at_y(ratio):
+    s = ks.solve(chain_unit(ratio, 1.0, 2 / 3), chain_unit_angle(0.0), crank_speed=1.0)
+    assert_allclose(s.placement.links["rocker"].direction, [0.0, 1.0], atol=4e-15)
+    assert_allclose(s.position("B"), [np.sqrt(1 - ratio**2), 0.0], atol=4e-15)
+
+
+def test_free_start_counts_from_the_rocker_angle_of_the_studys_triangle():
+    """psi_0 = psi_0' - beta, from the triangle A0 B0 O2 with |A0 O2|^2 = x_O2^2 + (h + r)^2."""
+    r, c, h, x = 0.075, 0.3, 0.2, 0.28
+    s = ks.solve(chain_unit(r, c, h, pivot_x=x), chain_unit_angle(np.radians([0.0, 40.0])), crank_speed=-1.0)
+    diagonal = np.hypot(x, h + r)
+    psi_0 = np.arccos((diagonal**2 + h**2 - c**2) / (2 * diagonal * h)) - np.arctan(x / (h + r))
+    along_x, along_y = s.placement.links["rocker"].direction
+    assert np.arctan2(along_x, along_y)[0] == pytest.approx(psi_0, abs=1e-15)
+    assert rocker_angle(s) == pytest.approx([0.0, np.arctan2(along_x, along_y)[1] - psi_0], abs=1e-15)
+
+
+def test_parallel_start_is_the_free_start_with_its_own_pivot():
+    free, parallel = (solved(chain_unit(0.3, 1.0, 0.6, pivot_x=x)) for x in (np.sqrt(0.91), None))
+    assert_allclose(free.position("B"), parallel.position("B"), rtol=0, atol=1e-15)
+
+
+def test_rocker_angle_of_a_sweep_over_rho_in_one_call_equals_the_loop():
+    rho = np.array([[0.1], [0.3], [0.5]])
+    batch = rocker_angle(solved(chain_unit(rho, 1.0, 2 / 3)))
+    for row, one in zip(batch, rho[:, 0].tolist(), strict=True):
+        assert_allclose(row, rocker_angle(solved(chain_unit(one, 1.0, 2 / 3))), rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(("crank", "words"), [(1.0, "got 1.0 m and 1.0 m"), (np.array([[0.5], [1.2]]), "1.2")])
+def test_parallel_start_with_a_coupler_no_longer_than_the_crank_is_refused(crank, words):
+    with pytest.raises(
+        ks.ParameterError, match=r"(?s)coupler longer than the crank.*pivot_x for a free start"
+    ) as caught:
+        chain_unit(crank, 1.0, 0.5)
+    assert words in str(caught.value)
+
+
+def test_grashofs_rule_is_refused_for_what_is_no_four_bar_and_for_batches():
+    cam_driven = ks.Mechanism(
+        "cam-driven four-bar",
+        ks.Crank(),
+        (ks.CamRoller(ks.cams.Circle(0.3, (0.0, 0.0))), ks.RockerGroup(0.8, 0.6, (0.7, 0.4))),
+    )
+    for mechanism in (ks.crank_slider(0.1, 0.3), cam_driven):
+        with pytest.raises(ks.ParameterError, match=f"for four-bars, not for a {mechanism.name}"):
+            grashof(mechanism)
+    with pytest.raises(ks.ParameterError, match="one design at a time"):
+        grashof(four_bar((np.array([[0.1], [0.2]]), 1.0, 1.0, 1.0)))
+
+
+# The study's formulas
+
+
+def study(lengths, angle):
+    """Directions and rates of coupler and rocker by the study, by the library, and by 50 digits; shape (2, N) each."""
+    r, c, h, x = lengths
+    gamma, psi, *rates = chain_unit_by_atan_acos(r, c, h, x, angle)
+    s = ks.solve(chain_unit(r, c, h, pivot_x=x), chain_unit_angle(angle), crank_speed=1.0, on_gap="nan")
+    links = [s.placement.links[name] for name in ("coupler", "rocker")]
+    exact = [moved(FourBar(r, c, h, complex(x, -h)), one) for one in chain_unit_angle(angle)]
+    turned = np.array([[pose[name][1] for pose in exact] for name in ("coupler", "rocker")], dtype=float)
+    return {
+        "study": (np.array([np.exp(-1j * gamma), 1j * np.exp(-1j * psi)]), np.array(rates)),
+        "library": (np.array([planar(link.direction) for link in links]), np.array([link.ratio for link in links])),
+        "exact": (np.exp(1j * turned[..., 0]), turned[..., 1]),
+    }
+
+
+def wrong(found, expected):
+    """Where directions or rates are off by more than rounding, even at a toggle."""
+    return np.abs(found - expected) > 1e-9
+
+
+CLOCKWISE = np.linspace(0.0, 2 * np.pi, 361)[:-1] + 0.001
+
+
+@pytest.mark.parametrize(
+    "lengths", [(0.1, 1.0, 2 / 3, 0.9), (0.5, 1.0, 2 / 3, np.sqrt(0.75)), (0.25, 1.0, 2 / 3, 0.93)]
+)
+def test_study_and_library_agree_to_rounding_where_the_studys_conditions_hold(lengths):
+    found = study(lengths, CLOCKWISE)
+    for name in ("study", "library"):
+        for values, expected in zip(found[name], found["exact"], strict=True):
+            assert_allclose(values, expected, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "closed", "coupler_wrong", "rocker_wrong"),
+    [((0.3, 0.6, 1.0, 0.2), 360, 97, 0), ((0.9, 1.0, 2 / 3, np.sqrt(0.19)), 274, 97, 12)],
+)
+def test_study_is_wrong_wherever_its_conditions_fail_and_the_library_is_not(
+    lengths, closed, coupler_wrong, rocker_wrong
+):
+    """Counted at 360 angles, those at which the linkage closes.
+
+    Half a turn off: the coupler where A is right of O2, the rocker where b <= r cos(phi). The first is a crank-rocker
+    whose crank turns fully, the second has a long crank. The rates have no atan and are right everywhere.
+    """
+    r, c, h, x = lengths
+    angle = CLOCKWISE[np.isfinite(solved(chain_unit(r, c, h, pivot_x=x), chain_unit_angle(CLOCKWISE)).rate("rocker"))]
+    found = study(lengths, angle)
+    coupler, rocker = wrong(found["study"][0], found["exact"][0])
+    assert np.array_equal(coupler, r * np.sin(angle) > x)
+    assert np.array_equal(rocker, np.hypot(x, h) <= r * np.cos(angle - np.pi / 2 - np.arctan(h / x)))
+    assert (angle.size, coupler.sum(), rocker.sum()) == (closed, coupler_wrong, rocker_wrong)
+    assert_allclose(found["study"][0][:, coupler][0], -found["exact"][0][:, coupler][0], atol=1e-9)
+    assert not np.any(wrong(found["study"][1], found["exact"][1]))
+    assert not any(np.any(wrong(a, b)) for a, b in zip(found["library"], found["exact"], strict=True))
+
+
+@pytest.mark.parametrize("margin", [1e-4, 1e-6, 1e-8, 1e-10])
+def test_near_a_toggle_study_and_library_lose_the_digits_that_rounded_lengths_cost(margin):
+    """Both: directions eps / sqrt(margin), rates 0.1 eps / margin; acos costs the study twice what the library loses.
+
+    At `margin` 0 crank and coupler could be stretched into one line with the frame. Worst of 40 angles around it.
+    """
+    r, h, x = 0.3, 2 / 3, 0.9
+    b, eps = np.hypot(x, h), np.finfo(float).eps
+    toggle = 1.5 * np.pi + np.arctan(h / x)
+    found = study((r, (b + r) * (1 + margin) - h, h, x), toggle + np.sqrt(margin) * np.linspace(-2.0, 2.0, 40))
+    for name, allowed in (("library", 2 * eps), ("study", 4 * eps)):
+        directions, rates = (largest(found[name][k] - found["exact"][k]) for k in (0, 1))
+        assert directions < allowed / np.sqrt(margin)
+        assert rates < 0.1 * allowed / margin
+
+
+@pytest.mark.parametrize("longer", [1e2, 1e4, 1e6])
+def test_long_rocker_costs_the_study_the_digits_that_the_library_keeps(longer):
+    """A coupler of 1 and a rocker of `longer`: the cosine from which psi comes is 1 but for 1 / longer^2."""
+    found = study((0.5, 1.0, longer, np.sqrt(0.75)), CLOCKWISE)
+    error = {name: largest((found[name][0] - found["exact"][0])[1]) for name in ("study", "library")}
+    assert error["library"] < 1e-15
+    assert error["study"] > 0.1 * longer * np.finfo(float).eps
+
+
+@pytest.mark.parametrize(
+    ("lengths", "words"),
+    [
+        ((3.5, 4.0, 3.0, 1.0), "this one is a double-crank"),
+        ((2.0, 2.0, 1.0, 4.0), "does not close all round"),
+        ((2.0, 3.0, 3.5, 5.0), "does not close all round"),
+    ],
+)
+def test_swing_is_refused_where_the_rocker_turns_fully_or_the_crank_does_not(lengths, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.linkage.swing(ks.solve(four_bar(lengths), [0.0], crank_speed=1.0, on_gap="nan"))
+
+
+def test_characteristics_are_refused_for_what_is_no_four_bar():
+    chain = ks.Mechanism(
+        "six-bar",
+        ks.Crank(0.1),
+        (ks.SliderGroup(0.4), ks.RockerGroup(0.5, 0.5, (0.9, 0.5), on="B", pin="C", label="2")),
+    )
+    slider = ks.solve(ks.crank_slider(0.1, 0.4), [0.0], crank_speed=1.0)
+    for ask in (
+        lambda: ks.linkage.grashof(chain),
+        lambda: ks.linkage.rocker_angle(slider),
+        lambda: ks.linkage.transmission_angle(slider),
+        lambda: ks.linkage.grashof(ks.four_bar(1.0, 2.0, 2.0, rocker_pivot=(0.0, 0.0))),
+        lambda: ks.linkage.chain_unit("0.1", 1.0, 0.5),
+    ):
+        with pytest.raises(ks.ParameterError):
+            ask()
+
+
+def test_rocker_angle_of_a_single_crank_angle_is_single():
+    solution = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 2 / 3), np.pi / 2, crank_speed=-1.0)
+    assert ks.linkage.rocker_angle(solution).shape == ()
+    assert ks.linkage.rocker_angle(solution) == 0.0

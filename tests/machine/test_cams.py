@@ -1,0 +1,266 @@
+"""Cams: exact at the singular angle, derivatives by other formulas, tables by their convergence."""
+
+from itertools import pairwise
+
+import mpmath as mp
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import kinetostatics as ks
+from support.machines import ANGLES, assert_close, assert_equal, largest, planar, results
+from support.newton_euler import (
+    DIGITS,
+    Body,
+    Scene,
+    critical_cosine,
+    critical_length,
+    path,
+    pin_by_cosine_law,
+    pin_on_circle,
+    solve,
+)
+
+ROUNDING = 4e-15
+"""A score of operations, none of which cancels, whatever the ratio of mean and amplitude."""
+LAWS = [(0.3, 2.0), (0.3, 0.31), (0.3, 0.6), (0.01, 5.0)]
+"""Amplitude and mean: the sawframe; a slider that nearly reaches O; between; a short stroke far away."""
+
+
+OFFSETS = [0.0] + [sign * 10.0**-power for power in range(1, 17) for sign in (1, -1)]
+
+
+def near_singular(amplitude, mean):
+    """Crank angles at and around both singular angles; the exact singular angle lies between two floats."""
+    with mp.workdps(30):
+        singular = float(mp.acos(critical_cosine(amplitude, mean)))
+    return np.concatenate([singular + np.array(OFFSETS), 2 * np.pi - singular + np.array(OFFSETS)])
+
+
+def polar(pin, angles):
+    """r, r', r'' of a path at each angle, from its derivatives as a curve, with its radius of curvature."""
+    rows = []
+    for angle in angles:
+        place, slope, bend = (part * np.exp(-1j * angle) for part in path(pin, angle))
+        rows.append((place.real, slope.real, bend.real + place.real, abs(slope) ** 3 / (np.conj(slope) * bend).imag))
+    return np.array(rows).T
+
+
+@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
+def test_cosine_law_derivatives_at_and_near_the_singular_angle(amplitude, mean):
+    """Against the naive radicand with its signed root, with 80 digits; r' and r'' relative to r."""
+    cam = ks.cams.CosineLaw(amplitude, mean)
+    angles = np.concatenate([near_singular(amplitude, mean), ANGLES])
+    *expected, curvature = polar(pin_by_cosine_law(amplitude, mean), angles)
+    for found, value in zip(cam.radius(angles), expected, strict=True):
+        assert largest(found - value) < ROUNDING * largest(expected[0])
+    assert_allclose(cam.pressure_angle(angles), np.arctan2(expected[1], expected[0]), rtol=0, atol=ROUNDING)
+    assert_close(1 / cam.curvature_radius(angles), 1 / curvature, 10 * ROUNDING)
+
+
+@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
+def test_cosine_law_coupler_length_and_singular_angle(amplitude, mean):
+    cam = ks.cams.CosineLaw(amplitude, mean)
+    with mp.workdps(DIGITS):
+        length, cosine = critical_length(amplitude, mean), critical_cosine(amplitude, mean)
+        assert abs(cam.coupler_length / length - 1) < 4e-16
+        assert abs(cam.singular_angle - mp.acos(cosine)) < 4e-16
+        for other in (cosine + mp.mpf("1e-20"), cosine - mp.mpf("1e-20")):
+            assert (mean + amplitude * other) * mp.sqrt(1 - other**2) < length
+
+
+@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
+@pytest.mark.parametrize("guide_angle", [0.0, 0.8])
+def test_slider_follows_the_cosine_law_exactly(amplitude, mean, guide_angle):
+    """Position, velocity and acceleration, at the singular angles too."""
+    cam = ks.cams.CosineLaw(amplitude, mean, guide_angle)
+    angles = np.concatenate([near_singular(amplitude, mean), ANGLES])
+    mechanism = ks.cam_crank_slider(cam, cam.coupler_length, guide_angle=guide_angle)
+    s = ks.solve(mechanism, angles + guide_angle, crank_speed=2.0, crank_acceleration=3.0)
+    assert_allclose(s.slider_position, mean + amplitude * np.cos(angles), rtol=0, atol=1e-15 * mean)
+    assert_close(s.slider_velocity, -2.0 * amplitude * np.sin(angles), ROUNDING)
+    acceleration = -amplitude * (4.0 * np.cos(angles) + 3.0 * np.sin(angles))
+    assert_close(s.slider_acceleration, acceleration, ROUNDING)
+
+
+def test_torque_and_cam_force_of_the_sawframe_at_and_near_the_singular_angle():
+    """Against the Newton-Euler reference with 80 digits of motion."""
+    amplitude, mean, speed = 0.3, 2.0, 33.5
+    cam = ks.cams.CosineLaw(amplitude, mean)
+    with mp.workdps(DIGITS):
+        length = critical_length(amplitude, mean)
+    stiffness = 600 * speed**2
+    scene = Scene(
+        pin=pin_by_cosine_law(amplitude, mean),
+        has_cam=True,
+        coupler_length=length,
+        bodies={"coupler": Body(150.0, (1.0, 0.0), 20.5), "slider": Body(600.0)},
+        speed=speed,
+        gravity=(9.81, -1.2),
+        push=lambda coordinate: -stiffness * (coordinate - mean),
+    )
+    mechanism = ks.cam_crank_slider(cam, cam.coupler_length, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
+    angles = near_singular(amplitude, mean)
+    s = ks.solve(mechanism, angles, crank_speed=speed, loads=[ks.Gravity(9.81, -1.2), ks.Spring(stiffness, mean)])
+    expected = [solve(scene, angle) for angle in angles]
+    for name in ("balancing_torque", "cam_force", "slot_force"):
+        assert_close(getattr(s, name), [found[name] for found in expected], tolerance=1e-12)
+    assert_close(planar(s.reaction("O")), [found["O"] for found in expected], tolerance=1e-12)
+
+
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (-0.0219, 0.0), (0.1, -0.2), (0.0, 0.29)])
+def test_circle_derivatives_equal_those_of_the_sine_rule(centre):
+    """The nearer O lies to the circle, the more digits of r are lost: by radius / (radius - distance) squared."""
+    cam = ks.cams.Circle(0.3, centre)
+    loss = (0.3 / (0.3 - np.hypot(*centre))) ** 2
+    *expected, _ = polar(pin_on_circle(0.3, centre), ANGLES)
+    for found, value in zip(cam.radius(ANGLES), expected, strict=True):
+        assert largest(found - value) < 1e-15 * loss
+    assert_allclose(cam.pressure_angle(ANGLES), np.arctan2(expected[1], expected[0]), rtol=0, atol=1e-15 * loss)
+    assert_allclose(cam.curvature_radius(ANGLES), 0.3, rtol=1e-14 * loss)
+
+
+def circle_table(count, start=0.3):
+    """An eccentric circle as unevenly measured points."""
+    circle = ks.cams.Circle(0.3, (0.05, -0.04))
+    even = 2 * np.pi * np.arange(count) / count
+    angle = start + even + 0.1 * np.sin(even)
+    return circle, angle, circle.radius(angle)[0]
+
+
+@pytest.mark.parametrize("start", [-4.0, 0.3])
+def test_sampled_cam_converges_to_the_circle_by_the_order_of_its_spline(start):
+    """Twice the points: a quintic spline errs 2^6 less in r, 2^5 in r', 2^4 in r''."""
+    phi = np.linspace(-7.0, 7.0, 400)
+    errors = []
+    for count in (32, 64, 128):
+        circle, angle, radius = circle_table(count, start)
+        sampled = ks.cams.Sampled(angle, radius)
+        errors.append([largest(a - b) for a, b in zip(sampled.radius(phi), circle.radius(phi), strict=True)])
+    for coarse, fine in pairwise(errors):
+        assert_allclose(np.log2(np.divide(coarse, fine)), [6, 5, 4], atol=0.7)
+
+
+def test_sampled_cam_passes_through_its_points_and_repeats_after_a_turn():
+    _, angle, radius = circle_table(40)
+    cam = ks.cams.Sampled(angle, radius)
+    assert_allclose(cam.radius(angle)[0], radius, rtol=1e-15)
+    for near, far in zip(cam.radius(ANGLES), cam.radius(ANGLES - 4 * np.pi), strict=True):
+        assert_allclose(far, near, rtol=0, atol=1e-13)
+
+
+def test_sampled_cam_has_a_continuous_second_derivative_at_its_points_and_across_the_seam():
+    """The step across a point vanishes in proportion to its width, also where the table ends and begins again."""
+    _, angle, radius = circle_table(24)
+    cam = ks.cams.Sampled(angle, radius)
+    third = largest(np.diff(cam.radius(np.linspace(0, 7, 7001))[2])) / 1e-3
+    for width in (1e-4, 1e-7):
+        ahead, behind = cam.radius(angle + width)[2], cam.radius(angle - width)[2]
+        assert largest(ahead - behind) < 2 * width * third * 1.01
+
+
+def test_sampled_cam_drives_a_mechanism_like_the_circle_it_was_taken_from():
+    circle, angle, radius = circle_table(360)
+    machines = [
+        ks.cam_crank_slider(cam, 1.1, coupler=ks.Link(7.0, 0.5, 0.9), slider=ks.Link(11.0))
+        for cam in (circle, ks.cams.Sampled(angle, radius))
+    ]
+    exact, sampled = (results(ks.solve(machine, ANGLES, crank_speed=9.0)) for machine in machines)
+    names = [name for name in exact if name != "guide_moment"]
+    assert_equal({name: sampled[name] for name in names}, {name: exact[name] for name in names}, tolerance=1e-9)
+
+
+@pytest.mark.parametrize("digits", [4, 5])
+def test_sampled_cam_warns_of_a_table_whose_rounding_shows_in_the_second_derivative(digits):
+    """A radius read to 0.1 or 0.01 mm at every degree: the error over the step squared is of the size of r."""
+    _, angle, radius = circle_table(360)
+    with pytest.warns(UserWarning, match=r"360 points are too coarse or too noisy: r'' is uncertain by up to"):
+        ks.cams.Sampled(angle, np.round(radius, digits))
+
+
+def test_sampled_cam_warns_of_too_few_points_for_its_harmonics():
+    angle = 2 * np.pi * np.arange(12) / 12
+    with pytest.warns(UserWarning, match="12 points are too coarse"):
+        ks.cams.Sampled(angle, 0.3 + 0.05 * np.cos(4 * angle))
+
+
+# What a table's own noise does to the forces
+
+
+class Harmonic(ks.cams.Cam):
+    def __init__(self, order, amplitude):
+        self.order, self.amplitude = order, amplitude
+
+    def polar(self, angle, ray):
+        """The radius as a mean and one cosine."""
+        k, a = self.order, self.amplitude
+        return 0.3 + a * np.cos(k * angle), -k * a * np.sin(k * angle), -k * k * a * np.cos(k * angle)
+
+
+LAW = ks.cams.CosineLaw(0.3, 2.0)
+CAMS = {
+    "circle": ks.cams.Circle(0.3, (-0.0219, 0.0)),
+    "circle off the guide": ks.cams.Circle(0.3, (0.05, -0.04)),
+    "nearly centred circle": ks.cams.Circle(0.3, (0.001, 0.0)),
+    "cosine law": LAW,
+    "second harmonic": Harmonic(2, 0.02),
+    "fourth harmonic": Harmonic(4, 0.005),
+}
+FINE = np.linspace(0.0, 2 * np.pi, 3601)
+SPEED = 320 * np.pi / 30
+
+
+def balanced_cam_force(cam):
+    """Of the sawframe, whose springs leave a fifth to a half of the inertia force."""
+    machine = ks.cam_crank_slider(cam, LAW.coupler_length, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
+    spring = ks.Spring.balancing(600.0, SPEED, 2.0)
+    return ks.solve(machine, FINE, crank_speed=SPEED, loads=[ks.Gravity(), spring]).cam_force
+
+
+def rounded(cam, count, step):
+    angle = 2 * np.pi * np.arange(count) / count
+    return angle, np.round(cam.radius(angle)[0] / step) * step
+
+
+@pytest.mark.filterwarnings("ignore:sampled cam")
+@pytest.mark.parametrize("step", [1e-7, 1e-6, 1e-5])
+@pytest.mark.parametrize("count", [90, 360, 3600])
+@pytest.mark.parametrize("name", CAMS)
+def test_stated_error_of_forces_bounds_the_true_one_within_ten_times(name, count, step):
+    sampled = ks.cams.Sampled(*rounded(CAMS[name], count, step))
+    exact = balanced_cam_force(CAMS[name])
+    true = largest(balanced_cam_force(sampled) - exact) / largest(exact)
+    assert true <= sampled.force_error <= 10 * true
+    assert sampled.noise == pytest.approx(step / np.sqrt(12), rel=0.5)
+    found = largest(sampled.radius(FINE)[2] - CAMS[name].radius(FINE)[2])
+    assert 0.5 * found <= sampled.second_derivative_error <= 2 * found
+
+
+@pytest.mark.parametrize("count", [90, 360, 3600])
+@pytest.mark.parametrize("name", CAMS)
+def test_exact_tables_are_silent_and_state_their_truncation(name, count):
+    angle = 2 * np.pi * np.arange(count) / count
+    sampled = ks.cams.Sampled(angle, CAMS[name].radius(angle)[0])
+    exact = balanced_cam_force(CAMS[name])
+    true = largest(balanced_cam_force(sampled) - exact) / largest(exact)
+    assert true <= sampled.force_error <= 10 * true + 1e-9
+    assert sampled.force_error < 1e-4
+
+
+@pytest.mark.parametrize(("step", "warned"), [(1e-6, True), (1e-7, True), (1e-8, False)])
+def test_a_warning_comes_from_one_per_cent(step, warned):
+    """Of the sawframe's circle at every degree: rounded to 1 um the cam force errs by 13 %, to 0.1 um by 2 %."""
+    table = rounded(CAMS["circle"], 360, step)
+    if warned:
+        with pytest.warns(UserWarning, match=r"scatter by [23].* m .* forces by up to .*% where"):
+            assert ks.cams.Sampled(*table).force_error >= 0.01
+    else:
+        assert ks.cams.Sampled(*table).force_error < 0.01
+
+
+def test_noise_of_uneven_points_and_a_point_read_wrongly_are_found():
+    _, angle, radius = circle_table(360)
+    noise = np.random.default_rng(0).normal(0.0, 1e-8, 360)
+    assert ks.cams.Sampled(angle, radius + noise).noise == pytest.approx(1e-8, rel=0.15)
+    with pytest.warns(UserWarning, match="too coarse or too noisy"):
+        ks.cams.Sampled(angle, radius + 1e-5 * (np.arange(360) == 77))

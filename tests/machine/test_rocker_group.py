@@ -1,0 +1,271 @@
+"""Four-bars: motion and forces equal an independent full system, laws, and accuracy near a toggle."""
+
+from dataclasses import replace
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_array_equal
+
+import kinetostatics as ks
+from support.four_bars import LINKS, FourBar, moved, reference, results, turning
+from support.machines import ANGLES, assert_close, assert_equal, largest, motions, planar
+from support.newton_euler import Body
+from support.strategies import columns, dimension, errors, four_bars, reproducible
+
+pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+"""Bodies drawn at random have any inertia."""
+
+CLOSE = 1e-13
+"""Error allowed relative to the largest of a kind; the sine of the transmission angle stays above 0.07 or so, and the
+longest link below a few hundred times the shortest.
+"""
+EPSILON = 2.0**-53
+
+
+# Random four-bars
+
+
+def motion_errors(s, expected):
+    found = {}
+    for order in ("position", "velocity", "acceleration"):
+        table = columns([row[order] for row in expected], ("A", "B", *LINKS))
+        found[order] = errors({name: planar(getattr(s, order)(name)) for name in table}, table)
+    for order, rate in (("velocity", s.rate), ("acceleration", s.angular_acceleration)):
+        table = {name: [row[order][name, "angle"] for row in expected] for name in LINKS}
+        found["angular " + order] = errors({name: rate(name) for name in LINKS}, table)
+    return {(order, name): error for order, table in found.items() for name, error in table.items()}
+
+
+def force_errors(bar, s, expected):
+    """Forces relative to the largest force; moments to that times the longest link."""
+    length, table, found = max(bar.crank, bar.coupler, bar.rocker), columns(expected, results(s)), results(s)
+    forces = {name: values for name, values in table.items() if np.iscomplexobj(values)}
+    moments = {name: values for name, values in table.items() if name not in forces}
+    return errors(found, forces) | errors(found, moments, length * max(map(largest, forces.values())))
+
+
+def wrong(errors):
+    return {name: error for name, error in errors.items() if not error < CLOSE}
+
+
+every_kind = pytest.mark.parametrize("kind", ["crank-rocker", "double-crank", "non-Grashof"])
+
+
+@every_kind
+@reproducible
+@given(data=st.data())
+def test_motion_and_forces_equal_the_full_system(kind, data):
+    """Positions, velocities, accelerations, rates; joint reactions, both torques, shaking force and moment.
+
+    And the pin lies on the chosen side, at both lengths.
+    """
+    bar, angles = data.draw(four_bars(kind))
+    s, expected = bar.solve(angles), [reference(bar, angle) for angle in angles]
+    assert wrong(motion_errors(s, expected)) == {}
+    assert wrong(force_errors(bar, s, expected)) == {}
+    assert s.power_residual < 1e-15 * (10 + s.condition.max())
+    A, B = planar(s.position("A")), planar(s.position("B"))
+    assert np.all(bar.assembly * turning(bar.pivot - A, B - A) > 0)
+    assert_close(abs(B - A), np.full(A.shape, bar.coupler))
+    assert_close(abs(B - bar.pivot), np.full(A.shape, bar.rocker))
+
+
+@every_kind
+@settings(reproducible, max_examples=10)
+@given(data=st.data())
+def test_forces_at_rest_equal_the_full_system(kind, data):
+    """Statics is no special case."""
+    bar, angles = data.draw(four_bars(kind))
+    resting = replace(bar, speed=0.0, acceleration=0.0)
+    assert wrong(force_errors(resting, resting.solve(angles), [reference(resting, angle) for angle in angles])) == {}
+
+
+# Laws
+
+
+def scaled(bar, length, mass):
+    """Lengths and masses changed at the same speed, accelerations growing with lengths."""
+    return replace(
+        bar,
+        crank=length * bar.crank,
+        coupler=length * bar.coupler,
+        rocker=length * bar.rocker,
+        pivot=length * bar.pivot,
+        links={
+            name: Body(mass * own.mass, tuple(length * part for part in own.centre), mass * length**2 * own.inertia)
+            for name, own in bar.links.items()
+        },
+        gravity=(length * bar.gravity[0], bar.gravity[1]),
+    )
+
+
+@pytest.mark.parametrize("power", [-200, -100, -12, 12, 100, 200])
+def test_no_absolute_number_hides_in_the_rocker_group(power):
+    """Scaling by powers of two, from 1e-60 to 1e60 m, is exact in binary arithmetic, so every bit must agree."""
+    length, mass = 2.0**power, 2.0**-15
+    expected = results(FourBar().solve())
+    for name, values in results(scaled(FourBar(), length, mass).solve()).items():
+        assert_array_equal(values, mass * length ** dimension(name) * expected[name], err_msg=name)
+
+
+@pytest.mark.parametrize("assembly", [1, -1])
+@pytest.mark.parametrize("turn", [0.7, np.pi / 2, -2.9])
+def test_turning_everything_turns_vectors_and_leaves_the_rest(turn, assembly):
+    """Pivot, gravity and the zero of the crank angle together."""
+    around = np.exp(1j * turn)
+    bar = FourBar(assembly=assembly)
+    turned = replace(bar, pivot=around * bar.pivot, gravity=(bar.gravity[0], bar.gravity[1] + turn))
+    before, after = bar.solve(), turned.solve(ANGLES + turn)
+    expected = {name: values * (around if np.iscomplexobj(values) else 1) for name, values in results(before).items()}
+    assert_equal(results(after), expected)
+    assert_equal(motions(after), {name: around * values for name, values in motions(before).items()})
+
+
+@pytest.mark.parametrize("assembly", [1, -1])
+def test_mirrored_four_bar_is_the_other_assembly_with_mirrored_forces(assembly):
+    """Mirror in the x axis: left becomes right, and moments change sign."""
+    bar = FourBar(assembly=assembly)
+    mirrored = replace(
+        bar,
+        pivot=bar.pivot.conjugate(),
+        assembly=-assembly,
+        links={name: replace(link, centre=(link.centre[0], -link.centre[1])) for name, link in bar.links.items()},
+        gravity=(bar.gravity[0], -bar.gravity[1]),
+        speed=-bar.speed,
+        acceleration=-bar.acceleration,
+    )
+    before, after = bar.solve(), mirrored.solve(-ANGLES)
+    expected = {name: np.conj(v) if np.iscomplexobj(v) else -v for name, v in results(before).items()}
+    assert_equal(results(after), expected)
+    assert_equal(motions(after), {name: np.conj(values) for name, values in motions(before).items()})
+
+
+@pytest.mark.parametrize("assembly", [1, -1])
+def test_derivatives_of_joints_and_links_are_the_slopes_of_positions(assembly):
+    """By complex steps, exact to rounding: f(x + ih) = f(x) + ih f'(x), with h so small that nothing is subtracted."""
+    step = 1e-30
+    mechanism = FourBar(assembly=assembly).solve().mechanism
+    placement, beside = mechanism.place(ANGLES), mechanism.place(ANGLES + 1j * step)
+
+    def slope(value):
+        return np.imag(value) / step
+
+    joint, changed = placement.joints["B"], beside.joints["B"]
+    assert_close(joint.first, [slope(part) for part in changed.position])
+    assert_close(joint.second, [slope(part) for part in changed.first])
+    for name in ("coupler", "rocker"):
+        link, changed = placement.links[name], beside.links[name]
+        x, y = (slope(part) for part in changed.direction)
+        assert_close(link.ratio, link.direction[0] * y - link.direction[1] * x)
+        assert_close(link.ratio_slope, slope(changed.ratio))
+
+
+def test_batch_of_designs_equals_the_loop_over_single_designs():
+    """Lengths, pivots and masses together."""
+    size = np.array([[0.2], [0.3], [0.37]])
+
+    def solved(size):
+        mechanism = ks.four_bar(
+            size,
+            3 * size,
+            2.5 * size + 0.1,
+            rocker_pivot=(2 * size, 0.3 - size),
+            crank=ks.Link(1.0, size / 2, 0.1),
+            coupler=ks.Link(5 * size, (size, -0.1 * size), size**2),
+            rocker=ks.Link(2.0, (0.1, size), size),
+        )
+        return ks.solve(mechanism, ANGLES, crank_speed=9.0, crank_acceleration=2.0, loads=ks.Gravity())
+
+    batch = solved(size)
+    assert batch.reaction("O2").shape == (2, 3, ANGLES.size)
+    found = results(batch) | motions(batch)
+    for i, design in enumerate(size[:, 0].tolist()):
+        single = solved(design)
+        expected = results(single) | motions(single)
+        assert_equal({name: values[i] for name, values in found.items()}, expected, tolerance=1e-15)
+
+
+@pytest.mark.parametrize("radius", [1e2, 1e4, 1e6])
+def test_long_rocker_makes_a_crank_slider(radius):
+    """Its pin runs on an arc that leaves the straight guide as 1 / radius; here the guide is +x through O."""
+    link = ks.Link(2.0, (0.3, 0.1), 0.5)
+    bar = ks.four_bar(0.3, 1.1, radius, rocker_pivot=(1.1, radius), assembly=-1, coupler=link)
+    slider = ks.crank_slider(0.3, 1.1, coupler=link)
+    found, expected = (ks.solve(mechanism, ANGLES, crank_speed=5.0) for mechanism in (bar, slider))
+    assert largest(found.balancing_torque - expected.balancing_torque) < 10 / radius
+    assert largest(found.reaction("A") - expected.reaction("A")) < 30 / radius
+
+
+# Near a toggle
+
+
+def quantities(bar, angle):
+    """Position of the pin, rates, accelerations at crank speed 1, with 50 digits."""
+    poses = moved(bar, angle)
+    coupler, rocker = poses["coupler"][1], poses["rocker"][1]
+    return [poses["B"].real, poses["B"].imag, coupler[1], rocker[1], coupler[2], rocker[2]]
+
+
+def with_condition(bar, angle):
+    """The quantities, and how much each changes, by rule of sums, for a relative change of lengths, pivot and angle."""
+    with mp.workdps(50):
+        step, at = mp.mpf("1e-25"), quantities(bar, angle)
+        more, x, y = 1 + step, mp.mpf(bar.pivot.real), mp.mpf(bar.pivot.imag)
+        changes = (
+            {"crank": bar.crank * more},
+            {"coupler": bar.coupler * more},
+            {"rocker": bar.rocker * more},
+            {"pivot": mp.mpc(x * more, y)},
+            {"pivot": mp.mpc(x, y * more)},
+        )
+        changed = [quantities(replace(bar, **change), angle) for change in changes] + [quantities(bar, angle * more)]
+        slopes = [[abs(after - before) / step for before, after in zip(at, row, strict=True)] for row in changed]
+        return np.array(at, dtype=float), np.array([sum(slope) for slope in zip(*slopes, strict=True)], dtype=float)
+
+
+def near_toggle(kind, margin):
+    """A crank-rocker that comes near a toggle, and the crank angle of that."""
+    r, b = 0.3, 1.0
+    if kind == "stretched":
+        return FourBar(r, 0.6, (b + r) * (1 + margin) - 0.6, b + 0j), np.pi
+    shorter, longer = 0.9, 0.9 + (b - r) * (1 - margin)
+    return FourBar(r, *((shorter, longer) if kind == "folded" else (longer, shorter)), b + 0j), 0.0
+
+
+def assert_error_is_that_of_rounded_lengths(bar, angles):
+    """Errors below ten times the condition, the sum over lengths, pivot and crank angle of |x df/dx|, times rounding.
+
+    Rounding the inputs alone makes errors a tenth as large. And the pin is on the chosen side.
+    """
+    for angle in angles:
+        s = bar.solve(angle, crank_speed=1.0, crank_acceleration=0.0, on_gap="nan")
+        rates = [rate(link) for rate in (s.rate, s.angular_acceleration) for link in ("coupler", "rocker")]
+        expected, condition = with_condition(bar, angle)
+        assert np.all(np.abs([*s.position("B"), *rates] - expected) < 10 * EPSILON * condition)
+        A, B = planar(s.position("A")), planar(s.position("B"))
+        assert bar.assembly * turning(bar.pivot - A, B - A) > 0
+
+
+@pytest.mark.parametrize("kind", ["stretched", "folded", "folded, long coupler"])
+@pytest.mark.parametrize("margin", 10.0 ** -np.arange(2, 15, 2))
+def test_error_near_a_toggle_is_that_of_rounded_lengths(kind, margin):
+    """A closing margin of 1e-14 leaves a sine of the transmission angle of 1e-7.
+
+    The condition grows as 1 / sine for positions, 1 / sine^2 for rates and 1 / sine^3 for accelerations.
+    """
+    for assembly in (1, -1):
+        bar, toggle = near_toggle(kind, margin)
+        angles = toggle + np.sqrt(margin) * np.array([0.0, 0.3, -1.0, 5.0])
+        assert_error_is_that_of_rounded_lengths(replace(bar, assembly=assembly), angles)
+
+
+@pytest.mark.parametrize("assembly", [1, -1])
+@pytest.mark.parametrize("longer", [1e2, 1e4, 1e6])
+def test_error_with_one_long_link_is_that_of_rounded_lengths(longer, assembly):
+    """Differences of squares would cost twice as many digits as the long link has more than the short one."""
+    for coupler, rocker in ((1.0, longer), (longer, 1.0)):
+        bar = FourBar(0.5, coupler, rocker, 0.8 + 1j * longer, assembly)
+        assert_error_is_that_of_rounded_lengths(bar, ANGLES[::6])

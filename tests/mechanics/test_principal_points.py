@@ -1,0 +1,311 @@
+"""Principal points: mass centre and shaking force from link masses, against sums over links and ground reactions."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import kinetostatics as ks
+from support.strategies import cases, either_sign, number, planar, reproducible
+
+CLOSE = 1e-13
+"""Relative to the largest part of a sum."""
+KINDS = ("plain", "circle", "cosine law", "four-bar", "six-bar")
+TURN = np.linspace(0.0, 2 * np.pi, 40, endpoint=False)
+each_kind = pytest.mark.parametrize("kind", KINDS)
+seeded = settings(reproducible, max_examples=8)
+
+
+def link(size):
+    """With its mass centre off the line, and never negligible beside another."""
+    offset = either_sign(0.05 * size, size)
+    return st.builds(ks.Link, number(0.1, 10.0), st.tuples(offset, offset), number(0.01, 10.0))
+
+
+@st.composite
+def linkages(draw, kind):
+    """A four-bar or a six-bar that closes at every crank angle, under load, solved at three of them."""
+    crank = draw(number(0.1, 1.0))
+    frame, towards = crank * draw(number(1.5, 4.0)), draw(number(-3.1, 3.1))
+    total = (frame + crank) * draw(number(1.2, 3.0))
+    difference = (frame - crank) * draw(number(-0.8, 0.8))
+    coupler, rocker = (total + difference) / 2, (total - difference) / 2
+    pivot = (frame * np.cos(towards), frame * np.sin(towards))
+    sign = st.sampled_from((-1, 1))
+    groups = [ks.RockerGroup(coupler, rocker, pivot, draw(sign), draw(link(coupler)), draw(link(rocker)))]
+    loads = [ks.Gravity(draw(number(1.0, 20.0)), draw(number(-3.1, 3.1)))]
+    if kind == "six-bar":
+        angle, aside = draw(number(-3.1, 3.1)), rocker * draw(number(-0.5, 0.5))
+        guide = ks.Guide.at(angle, aside - pivot[0] * np.sin(angle) + pivot[1] * np.cos(angle))
+        length = (rocker + abs(aside)) * draw(number(1.2, 4.0))
+        slider_links = draw(link(length)), draw(link(crank))
+        groups.append(ks.SliderGroup(length, guide, draw(sign), *slider_links, on="B", pin="C", label="2"))
+        loads += [ks.Spring(draw(number(1.0, 1e3)), 0.3, on="slider2"), ks.ProcessForce(50.0, on="slider2")]
+    mechanism = ks.Mechanism(kind, ks.Crank(crank, draw(link(crank))), tuple(groups))
+    speed, acceleration = draw(either_sign(0.1, 50.0)), draw(either_sign(0.1, 500.0))
+    angles = np.array([draw(number(0.0, 6.28)) for _ in range(3)])
+    return ks.solve(mechanism, angles, crank_speed=speed, crank_acceleration=acceleration, loads=loads)
+
+
+def solutions(kind):
+    """Random solutions: mass centres off the lines, inclined guides, both assemblies, crank acceleration, all loads."""
+    return linkages(kind) if kind.endswith("bar") else cases(kind).map(lambda pair: pair[1])
+
+
+def largest(values):
+    return np.max(np.abs(values))
+
+
+def mass_weighted(s, measure):
+    """Mean of a vector of the links' mass centres."""
+    links = s.mechanism.links
+    return sum(link.mass * measure(name) for name, link in links.items()) / sum(link.mass for link in links.values())
+
+
+def external(s):
+    """Every force on the mechanism from outside, as complex numbers."""
+    forces = [planar(s.reaction(name)) for name in s.reactions if name in ("O", "O2", "guide", "guide2")]
+    if "cam-balanced" in s.mechanism.name:
+        tangent = planar(s.velocity("A")) / s.crank_speed
+        forces.append(s.cam_force * 1j * tangent / np.abs(tangent))
+    for load in s.loads:
+        if isinstance(load, ks.Gravity):
+            forces += [link.mass * complex(*load.vector) for link in s.mechanism.links.values()]
+        else:
+            (slider,) = (group for group in s.mechanism.groups if isinstance(group, ks.SliderGroup))
+            forces.append(load.push(s) * complex(*slider.guide.direction))
+    return forces
+
+
+# Shaking force
+
+
+@each_kind
+@seeded
+@given(data=st.data())
+def test_shaking_force_is_minus_the_sum_of_mass_times_acceleration(kind, data):
+    s = data.draw(solutions(kind))
+    parts = [s.inertia_force(name) for name in s.mechanism.links]
+    by_points = ks.principal_points(s.mechanism).shaking_force(s)
+    assert largest(by_points - sum(parts)) < CLOSE * max(map(largest, parts))
+    for name, link in s.mechanism.links.items():
+        assert largest(s.inertia_force(name) + link.mass * s.acceleration(name)) < CLOSE * max(map(largest, parts))
+
+
+@each_kind
+@seeded
+@given(data=st.data())
+def test_shaking_force_balances_ground_reactions_weights_and_loads(kind, data):
+    """Pins O and O2, guide, cam along the inward normal of its pitch curve; spring, process force and weights."""
+    s = data.draw(solutions(kind))
+    forces = external(s)
+    assert len(forces) == {"plain": 4, "circle": 5, "cosine law": 5, "four-bar": 2, "six-bar": 5}[kind] + len(
+        s.mechanism.links
+    )
+    residual = planar(ks.principal_points(s.mechanism).shaking_force(s)) + sum(forces)
+    assert largest(residual) < CLOSE * max(map(largest, forces))
+
+
+# Mass centre
+
+
+@each_kind
+@seeded
+@given(data=st.data())
+def test_mass_centre_its_velocity_and_acceleration_are_the_mass_weighted_means_of_the_links(kind, data):
+    s = data.draw(solutions(kind))
+    points = ks.principal_points(s.mechanism)
+    for found, measure in (
+        (points.mass_centre(s), s.position),
+        (points.mass_centre_velocity(s), s.velocity),
+        (points.mass_centre_acceleration(s), s.acceleration),
+    ):
+        scale = max(largest(measure(name)) for name in s.mechanism.links)
+        assert largest(found - mass_weighted(s, measure)) < CLOSE * scale
+
+
+@each_kind
+@seeded
+@given(data=st.data())
+def test_contour_runs_from_the_crank_pivot_to_the_mass_centre_in_steps_of_the_principal_vectors(kind, data):
+    s = data.draw(solutions(kind))
+    points = ks.principal_points(s.mechanism)
+    corners, vectors = np.array(points.contour(s)), np.array(list(points.vectors(s).values()))
+    assert np.all(corners[0] == 0)
+    assert len(corners) == len(vectors) + 1
+    assert largest(np.diff(corners, axis=0) - vectors) < CLOSE * largest(corners)
+    assert largest(corners[-1] - mass_weighted(s, s.position)) < CLOSE * largest(corners)
+
+
+@each_kind
+@seeded
+@given(data=st.data())
+def test_principal_vectors_keep_their_length_and_turn_with_their_links(kind, data):
+    """Modulus along the link, offset across it; by joint, the mass carried times the joint's own position."""
+    s = data.draw(solutions(kind))
+    points = ks.principal_points(s.mechanism)
+    vectors = points.vectors(s)
+    for name in s.mechanism.links:
+        expected = complex(points.moduli[name], points.offsets[name]) * planar(s.placement.links[name].direction)
+        assert largest(planar(vectors[name]) - expected) < CLOSE * largest(expected)
+    for name, carried in points.carried.items():
+        assert largest(vectors[name] - carried / points.mass * s.position(name)) < CLOSE * largest(s.position(name))
+
+
+# Moduli
+
+
+class Masses(NamedTuple):
+    """A crank-slider as the textbook formula takes it."""
+
+    m: tuple
+    L_OA: float
+    L_AB: float
+    L_OS1: float
+    L_AS2: float
+    L_BS3: float
+
+    @property
+    def mechanism(self):
+        """Mass centres on the lines."""
+        arms = zip(self.m, (self.L_OS1, self.L_AS2, self.L_BS3), strict=True)
+        crank, coupler, slider = (ks.Link(mass, arm) for mass, arm in arms)
+        return ks.crank_slider(self.L_OA, self.L_AB, guide_angle=0.4, crank=crank, coupler=coupler, slider=slider)
+
+
+@seeded
+@given(
+    masses=st.builds(
+        Masses,
+        st.tuples(*3 * [number(0.1, 10.0)]),
+        number(0.05, 0.5),
+        number(0.6, 3.0),
+        *3 * [either_sign(0.01, 1.0)],
+    )
+)
+def test_moduli_of_the_crank_slider_follow_the_textbook_formula(masses):
+    """Kotov 2024, equation 15: h1, h2 and h3."""
+    m1, m2, m3 = masses.m
+    m = m1 + m2 + m3
+    moduli = ks.principal_points(masses.mechanism).moduli
+    assert moduli == pytest.approx(
+        {
+            "crank": (m1 * masses.L_OS1 + (m2 + m3) * masses.L_OA) / m,
+            "coupler": (m2 * masses.L_AS2 + m3 * masses.L_AB) / m,
+            "slider": m3 * masses.L_BS3 / m,
+        },
+        rel=0,
+        abs=2e-15 * masses.L_AB,
+    )
+
+
+CRANK, COUPLER, SLIDER = ks.Link(3.0, (0.1, 0.04)), ks.Link(7.0, (0.4, -0.06)), ks.Link(11.0, (-0.05, 0.08))
+LINKS = {"crank": CRANK, "coupler": COUPLER, "slider": SLIDER}
+
+
+def test_mass_across_a_link_shows_in_offsets_not_in_moduli():
+    points = ks.principal_points(ks.crank_slider(0.3, 0.8, **LINKS))
+    assert points.mass == 21.0
+    assert points.moduli == pytest.approx(
+        {"crank": (0.3 + 18 * 0.3) / 21, "coupler": (2.8 + 11 * 0.8) / 21, "slider": -0.55 / 21}, rel=1e-15
+    )
+    assert points.offsets == pytest.approx({"crank": 0.12 / 21, "coupler": -0.42 / 21, "slider": 0.88 / 21}, rel=1e-15)
+    assert points.carried == {}
+
+
+def test_pin_at_a_varying_radius_carries_the_masses_beyond_it_in_place_of_a_crank_modulus():
+    """Block, coupler and slider; of the slotted crank only its own static moment is left."""
+    cam = ks.cams.Circle(0.3, (-0.05, 0.03))
+    points = ks.principal_points(ks.cam_crank_slider(cam, 0.8, block=ks.Link(2.0, 0.01), **LINKS))
+    assert points.carried == {"A": 20.0}
+    assert points.static_moments["crank"] == pytest.approx((0.3, 0.12), rel=1e-15)
+    assert points.static_moments["block"] == pytest.approx((0.02, 0.0), rel=1e-15)
+    assert points.static_moments["coupler"] == pytest.approx((2.8 + 11 * 0.8, -0.42), rel=1e-15)
+
+
+def test_rocker_of_a_four_bar_hangs_on_its_fixed_pivot():
+    links = {"crank": CRANK, "coupler": COUPLER, "rocker": ks.Link(5.0, (0.2, 0.1))}
+    points = ks.principal_points(ks.four_bar(0.3, 0.8, 0.6, rocker_pivot=(0.7, 0.0), **links))
+    assert points.carried == {"O2": 5.0}
+    assert points.static_moments["crank"] == pytest.approx((0.3 + 7 * 0.3, 0.12), rel=1e-15)
+    assert points.static_moments["coupler"] == pytest.approx((2.8, -0.42), rel=1e-15)
+    assert points.static_moments["rocker"] == pytest.approx((1.0, 0.5), rel=1e-15)
+
+
+def test_round_cam_about_the_crank_pivot_gives_the_path_and_force_of_the_plain_crank():
+    """Though one counts mass carried by A and the other a modulus along the crank."""
+    made = ks.crank_slider(0.3, 0.8, **LINKS), ks.cam_crank_slider(ks.cams.Circle(0.3), 0.8, **LINKS)
+    plain, cam = (ks.solve(mechanism, TURN, crank_speed=9.0, crank_acceleration=-20.0) for mechanism in made)
+    points = [ks.principal_points(s.mechanism) for s in (plain, cam)]
+    assert (points[0].carried, points[1].carried) == ({}, {"A": 18.0})
+    np.testing.assert_allclose(points[1].mass_centre(cam), points[0].mass_centre(plain), rtol=0, atol=1e-15)
+    scale = largest(plain.shaking_force)
+    np.testing.assert_allclose(cam.shaking_force, plain.shaking_force, rtol=0, atol=CLOSE * scale)
+
+
+# Batches, absent masses
+
+
+def batched_crank_slider(length, mass):
+    links = {"crank": ks.Link(2.0, (length / 2, 0.01)), "coupler": ks.Link(mass, (length, 0.1))}
+    return ks.crank_slider(length, 3 * length, guide_angle=0.3, slider=ks.Link(2 * mass, 0.1), **links)
+
+
+def batched_cam(length, mass):
+    links = {"block": ks.Link(mass, 0.01), "slider": ks.Link(2 * mass, 0.05)}
+    return ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.05, 0.03)), 3 * length, crank=CRANK, **links)
+
+
+def batched_four_bar(length, mass):
+    links = {"crank": ks.Link(2.0, 0.1), "rocker": ks.Link(mass, (length, 0.1))}
+    return ks.four_bar(0.2, 0.8, 0.6 + length, rocker_pivot=(0.7, 0.0), coupler=COUPLER, **links)
+
+
+@pytest.mark.parametrize("make", [batched_crank_slider, batched_cam, batched_four_bar])
+@pytest.mark.parametrize("count", [2, 3])
+def test_batch_of_designs_equals_the_loop_over_single_designs(make, count):
+    """Two designs too: as many as a vector has components."""
+    lengths, masses = np.array([[0.2], [0.3], [0.37]])[:count], np.array([[4.0], [0.5], [9.0]])[:count]
+
+    def measured(mechanism):
+        s = ks.solve(mechanism, TURN, crank_speed=9.0, crank_acceleration=2.0)
+        points = ks.principal_points(mechanism)
+        asked = points.mass_centre, points.mass_centre_velocity, points.mass_centre_acceleration, points.shaking_force
+        return [function(s) for function in asked] + list(points.contour(s)[1:])
+
+    batch = measured(make(lengths, masses))
+    assert batch[0].shape == (2, count, TURN.size)
+    for i in range(count):
+        single = measured(make(float(lengths[i, 0]), float(masses[i, 0])))
+        for found, expected in zip(batch, single, strict=True):
+            one = found[:, i] if found.ndim == 3 else found
+            np.testing.assert_allclose(one, expected, rtol=0, atol=1e-14 * largest(expected))
+
+
+def test_mechanism_without_mass_has_no_mass_centre_and_no_shaking_force():
+    s = ks.solve(ks.crank_slider(0.3, 0.8), TURN, crank_speed=9.0)
+    points = ks.principal_points(s.mechanism)
+    for ask in (points.mass_centre, points.mass_centre_velocity, points.mass_centre_acceleration, points.contour):
+        with pytest.raises(ks.ParameterError, match="has no mass, so no mass centre; give at least one link a mass"):
+            ask(s)
+    with pytest.raises(ks.ParameterError, match="no mass"):
+        _ = points.moduli
+    np.testing.assert_array_equal(points.shaking_force(s), np.zeros((2, TURN.size)))
+
+
+def test_links_without_mass_change_nothing():
+    """The mass centre of a mechanism with one heavy link is that of the link."""
+    s = ks.solve(ks.four_bar(0.3, 0.8, 0.6, rocker_pivot=(0.7, 0.0), coupler=COUPLER), TURN, crank_speed=9.0)
+    points = ks.principal_points(s.mechanism)
+    np.testing.assert_allclose(points.mass_centre(s), s.position("coupler"), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(points.mass_centre_velocity(s), s.velocity("coupler"), rtol=0, atol=1e-14)
+    assert points.carried == {}
+
+
+def test_mass_centre_at_rest_on_the_crank_pivot_shakes_nothing():
+    s = ks.solve(ks.crank_slider(0.3, 0.8, crank=ks.Link(5.0)), TURN, crank_speed=9.0, crank_acceleration=3.0)
+    points = ks.principal_points(s.mechanism)
+    for found in (points.mass_centre(s), points.mass_centre_velocity(s), points.shaking_force(s)):
+        np.testing.assert_array_equal(found, np.zeros((2, TURN.size)))

@@ -1,0 +1,198 @@
+"""Extremes: where they must lie, that all are found, and what is refused."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.optimize import brentq
+
+import kinetostatics as ks
+from support.machines import ANGLES, KINDS, Machine, largest
+
+
+def turn_distance(found, expected):
+    """Distance of angles around the turn."""
+    return np.abs(np.angle(np.exp(1j * (np.asarray(found) - np.asarray(expected)))))
+
+
+@pytest.mark.parametrize("guide_angle", [0.0, 0.3, np.pi, -2.2])
+@pytest.mark.parametrize("offset", [0.0, 0.13, -0.4])
+@pytest.mark.parametrize("assembly", [1, -1])
+def test_slider_turns_back_where_crank_and_coupler_lie_in_line(guide_angle, offset, assembly):
+    """At sine = offset / (l + r), stretched, and offset / (l - r), folded, of the angle of the line to the guide.
+
+    Centred: at 0 and 180 degrees exactly. The place of an extremum is fixed by its slope, to 1e-12.
+    """
+    r, length = 0.3, 1.1
+    mechanism = ks.crank_slider(r, length, guide_angle=guide_angle, guide_offset=offset, assembly=assembly)
+    s = ks.solve(mechanism, 0.0, crank_speed=3.0)
+    found = ks.extremes(s, "slider_position")
+    stretched, folded = np.arcsin(offset / (length + r)), np.pi + np.arcsin(offset / (length - r))
+    places = np.array([stretched, folded]) if assembly == 1 else np.pi - np.array([stretched, folded])
+    positions = assembly * np.sqrt([(length + r) ** 2 - offset**2, (length - r) ** 2 - offset**2])
+    assert len(found) == 2
+    order = np.argsort(turn_distance(found.angle, guide_angle + places[0]))
+    assert np.max(turn_distance(found.angle[order], guide_angle + places)) < 1e-12
+    assert_allclose(found.value[order], positions, rtol=1e-15)
+    assert largest(s.at(found.angle).slider_velocity) < 1e-12 * largest(s.at(ANGLES).slider_velocity)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_extremes_of_speed_lie_where_the_acceleration_vanishes(kind):
+    machine = Machine(kind)
+    s = machine.solve(0.0, loads=(), crank_acceleration=0.0)
+    found = ks.extremes(s, "slider_velocity")
+    assert len(found) == 2
+    for angle, value in zip(found.angle, found.value, strict=True):
+        root = brentq(lambda a: s.at(a).slider_acceleration, angle - 0.01, angle + 0.01, xtol=1e-15)
+        assert angle == pytest.approx(root, abs=1e-12)
+        assert value == pytest.approx(float(s.at(root).slider_velocity), rel=1e-15)
+
+
+@pytest.mark.parametrize("order", [1, 2, 5, 12])
+def test_extremes_of_a_harmonic_are_found_all_and_at_their_places(order):
+    s = Machine("plain").solve()
+    found = ks.extremes(s, lambda s: 3.0 + 0.5 * np.cos(order * s.crank_angle - 0.4))
+    places = (0.4 + np.pi * np.arange(2 * order)) / order
+    assert_allclose(found.angle, places, rtol=0, atol=1e-12)
+    assert_allclose(found.value, 3.0 + 0.5 * np.cos(np.pi * np.arange(2 * order)), rtol=1e-15)
+
+
+def test_extremes_of_a_mixed_harmonic_equal_the_roots_of_its_slope():
+    """Slope of cos + 0.8 sin 2 + 1.5 cos 3 as a polynomial in exp(i angle)."""
+    s = Machine("plain").solve()
+    found = ks.extremes(
+        s, lambda s: np.cos(s.crank_angle) + 0.8 * np.sin(2 * s.crank_angle) + 1.5 * np.cos(3 * s.crank_angle)
+    )
+    roots = np.roots([2.25j, 0.8, 0.5j, 0.0, -0.5j, 0.8, -2.25j])
+    places = np.sort(np.mod(np.angle(roots[np.abs(np.abs(roots) - 1) < 1e-9]), 2 * np.pi))
+    assert len(places) == 6
+    assert_allclose(found.angle, places, rtol=0, atol=1e-12)
+    assert found.largest == found.value[np.argmax(np.abs(found.value))]
+
+
+def test_extremes_are_in_order_of_angle_and_alternate():
+    found = ks.extremes(Machine("circle").solve(0.0), "O")
+    assert np.all(np.diff(found.angle) > 0)
+    assert np.all((found.angle >= 0) & (found.angle < 2 * np.pi))
+    assert np.all(np.diff(found.value)[:-1] * np.diff(found.value)[1:] < 0)
+
+
+def test_extremes_do_not_depend_on_the_crank_angles_solved_for():
+    few, many = (ks.extremes(Machine("plain").solve(angle), "balancing_torque") for angle in (0.0, ANGLES))
+    assert_array_equal(few.angle, many.angle)
+    assert_array_equal(few.value, many.value)
+
+
+@pytest.mark.parametrize(
+    "quantity", ["guide_moment", "shaking_force", "O", lambda s: np.full(s.crank_angle.shape, 2.5)]
+)
+def test_a_constant_has_no_extremes(quantity):
+    s = ks.solve(ks.crank_slider(0.3, 1.1, crank=ks.Link(3.0, 0.2)), 0.0, crank_speed=5.0)
+    assert len(ks.extremes(s, quantity)) == 0
+
+
+def test_extremes_of_a_position_are_dead_centres_and_ends_of_the_closed_intervals():
+    """Crank 1 m, coupler 0.8 m: it closes where the sine is at most 0.8, with the slider under A at the ends."""
+    s = ks.solve(ks.crank_slider(1.0, 0.8), 0.0, crank_speed=1.0)
+    found = ks.extremes(s, "slider_position")
+    end = np.arcsin(0.8)
+    assert_allclose(found.value, [1.8, 0.6, -0.6, -0.2, -0.6, 0.6], rtol=1e-13)
+    assert_allclose(found.angle, [0, end, np.pi - end, np.pi, np.pi + end, 2 * np.pi - end], rtol=0, atol=1e-12)
+    assert found.maximum.tolist() == [True, False, False, True, False, False]
+
+
+def test_extremes_refuse_a_batch_of_designs():
+    s = ks.solve(ks.crank_slider(np.array([[0.2], [0.3]]), 1.1), ANGLES, crank_speed=1.0)
+    with pytest.raises(ks.ParameterError, match=r"one design at a time.*slider_position.*\(2, 1440\)"):
+        ks.extremes(s, "slider_position")
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("crank_speed", {"crank_speed": np.ones(ANGLES.size)}),
+        ("crank_acceleration", {"crank_acceleration": np.ones(ANGLES.size)}),
+        ("ProcessForce", {"loads": [ks.ProcessForce(np.ones(ANGLES.size))]}),
+    ],
+)
+def test_extremes_refuse_tables_over_the_crank_angles(name, change):
+    s = Machine("plain").solve(**change)
+    with pytest.raises(ks.ParameterError, match=f"{name} is a table over the crank angles"):
+        ks.extremes(s, "balancing_torque")
+
+
+def test_compared_torque_extrema_are_of_one_kind():
+    """By the cosine law the torque is (stiffness - mass speed^2) amplitude^2 sin cos up to sign: exactly reversed here.
+
+    The maximum of one stands where the other has its minimum, but is compared with the maximum.
+    """
+    cam, speed = ks.cams.CosineLaw(0.3, 2.0), 5.0
+    mechanism = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(4.0))
+    solutions = [
+        ks.solve(mechanism, 0.0, crank_speed=speed, loads=ks.Spring(stiffness, 2.0)) for stiffness in (0.0, 300.0)
+    ]
+    assert_allclose(ks.compare(*solutions).torque_extremum_ratios, 4 * [0.5], rtol=1e-14)
+
+
+def test_extremes_name_the_quantities_there_are():
+    with pytest.raises(ks.QuantityError, match=r"'balancing_torqe', allowed: .*did you mean 'balancing_torque'"):
+        ks.extremes(Machine("plain").solve(), "balancing_torqe")
+    with pytest.raises(ks.QuantityError, match="'cam_force'"):
+        ks.extremes(Machine("plain").solve(), "cam_force")
+
+
+SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+
+
+def loaded(force):
+    return ks.solve(SAW, [0.0], crank_speed=33.5, loads=[ks.ProcessForce(force)])
+
+
+def test_extremes_at_a_jump_and_at_the_seam_of_the_turn_are_those_of_the_samples():
+    ramp = ks.extremes(loaded(lambda motion: -3e4 * np.mod(motion.crank_angle / (2 * np.pi), 1.0)), "B")
+    assert np.all(np.isfinite(ramp.value))
+    assert ramp.range[1] == pytest.approx(600 * 33.5**2 * 0.3 * 1.15, rel=1e-12)
+    step = ks.extremes(loaded(lambda motion: np.where(np.mod(motion.crank_angle, 2 * np.pi) < np.pi, -3e4, 0.0)), "B")
+    assert np.all(np.isfinite(step.angle))
+    assert np.all(np.isfinite(step.value))
+
+
+def test_rounding_of_terms_that_cancel_is_no_extremum():
+    law = ks.cams.CosineLaw(0.3, 2.0)
+    balanced = ks.solve(
+        ks.cam_crank_slider(law, law.coupler_length, slider=ks.Link(600)),
+        [0.0],
+        crank_speed=33.5,
+        loads=[ks.Spring.balancing(600, 33.5, 2.0)],
+    )
+    assert len(ks.extremes(balanced, "balancing_torque")) == 0
+    assert np.all(np.isnan(ks.compare(loaded(0.0), balanced).torque_extremum_ratios))
+
+
+@pytest.mark.parametrize(
+    "wave", [lambda s: 1 + 1e-12 * np.cos(s.crank_angle), lambda s: np.round(10 * np.cos(s.crank_angle))]
+)
+def test_ripples_and_treads_are_no_extrema(wave):
+    assert list(ks.extremes(loaded(0.0), wave).maximum) in ([True, False], [False, True])
+
+
+def test_torque_extrema_are_matched_by_kind_where_their_numbers_differ():
+    """A cut on the way back adds extrema to the second; each ratio is still of two maxima or two minima."""
+    compared = ks.compare(loaded(0.0), loaded(lambda m: 6e4 * np.sin(5 * m.crank_angle)))
+    reference, matched = compared.torque_extremes
+    other = ks.extremes(compared.balanced, "balancing_torque")
+    assert len(other) != len(reference)
+    for value, maximum in zip(matched, reference.maximum, strict=True):
+        assert maximum == other.maximum[np.flatnonzero(other.value == value)[0]]
+
+
+def test_mean_torque_closes_in_on_the_jumps_of_a_load():
+    """Against the same integral parted at the jumps, each piece smooth."""
+    solution = loaded(lambda m: np.where(np.abs(np.mod(m.crank_angle, 2 * np.pi) - 1.25) < 0.75, -3e4, 0.0))
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    edges = np.sort(np.concatenate([np.linspace(0, 2 * np.pi, 2001), [0.5, 2.0]]))
+    half = np.diff(edges)[:, None] / 2
+    inner = edges[:-1, None] + half * (1 + nodes)
+    torque = np.abs(solution.at(inner.ravel()).balancing_torque).reshape(inner.shape)
+    expected = np.sum(half * weights * torque) / (2 * np.pi)
+    assert ks.compare(solution, solution).mean_torques[0] == pytest.approx(expected, rel=1e-7)

@@ -1,0 +1,326 @@
+"""What is handed in is kept as it was, groups of one's own are tested, and slips of units are hinted at."""
+
+import warnings
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import kinetostatics as ks
+from kinetostatics.machine.group import MEMBERS
+from kinetostatics.machine.links import Joint, Wrench
+from support.scenes import Pan
+
+TURN = 2 * np.pi * np.arange(72) / 72
+ROD = ks.Link(2.0, (0.2, 0.05), 0.03)
+SPEEDS = np.array([1.0, 3.0, 7.0])
+
+
+def mechanism(**changes):
+    values = {"crank_length": 0.1, "coupler_length": 0.4, "coupler": ROD, "slider": ks.Link(3.0)} | changes
+    return ks.crank_slider(**values)
+
+
+def solve(made=None, angle=TURN, **changes):
+    return ks.solve(made or mechanism(), angle, **{"crank_speed": 5.0, "loads": ks.Gravity()} | changes)
+
+
+# Arrays shared with the caller
+
+PLACES = {
+    "crank speed": lambda x: solve(crank_speed=x),
+    "crank acceleration": lambda x: solve(crank_acceleration=x),
+    "force": lambda x: solve(loads=ks.ProcessForce(x)),
+    "mass": lambda x: solve(mechanism(slider=ks.Link(x))),
+    "centre": lambda x: solve(mechanism(slider=ks.Link(2.0, (0.1, x), 0.1), crank=ks.Link(1.0, x))),
+    "inertia": lambda x: solve(mechanism(coupler=ks.Link(2.0, 0.1, x))),
+    "crank length": lambda x: solve(mechanism(crank_length=x / 100)),
+    "coupler length": lambda x: solve(mechanism(coupler_length=x)),
+    "guide offset": lambda x: solve(mechanism(guide_offset=x / 100)),
+    "guide by hand": lambda x: solve(mechanism(guide=ks.Guide(0.0, x / 100))),
+    "stiffness": lambda x: solve(loads=ks.Spring(x, 0.3)),
+    "gravity": lambda x: solve(loads=ks.Gravity(x)),
+    "pivot": lambda x: solve(ks.four_bar(0.1, 4.0, 4.0, rocker_pivot=(x / 9, 3.0), rocker=ks.Link(1.0, 0.1))),
+    "circle": lambda x: solve(ks.cam_crank_slider(ks.cams.Circle(x / 9, (x / 100, 0.0)), 2.0, slider=ks.Link(1.0))),
+    "cosine law": lambda x: solve(ks.crank_slider(0.1, ks.cams.CosineLaw(x / 100, 2.0).coupler_length)),
+    "crank angles": lambda x: solve(angle=TURN + x),
+}
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (1, 1)])
+@pytest.mark.parametrize("name", PLACES)
+def test_an_array_that_the_caller_fills_again_leaves_what_was_made_of_it(name, shape):
+    """Each in a loop over one buffer, read only when the loop is over."""
+    buffer, made = np.empty(shape), []
+    for value in SPEEDS:
+        buffer[...] = value
+        made.append(PLACES[name](buffer))
+    expected = [PLACES[name](np.full(shape, value)) for value in SPEEDS]
+    for found, wanted in zip(made, expected, strict=True):
+        assert_array_equal(found.balancing_torque, wanted.balancing_torque)
+
+
+def test_arrays_are_kept_as_copies_that_cannot_be_written_to():
+    mass, length, speed = np.full((3, 1), 2), np.full((3, 1), 0.1, dtype=np.float32), np.full(72, 5.0)
+    made = mechanism(crank_length=length, slider=ks.Link(mass))
+    s = solve(made, crank_speed=speed)
+    for kept in (made.links["slider"].mass, made.crank.length, s.crank_speed):
+        assert kept.dtype == float
+        with pytest.raises(ValueError, match="read-only"):
+            kept[0] = 1.0
+    assert mass.flags.writeable
+    assert speed.flags.writeable
+    assert replace(made.groups[0]).slider.mass is made.links["slider"].mass
+
+
+class Flat(ks.cams.Cam):
+    """A cam of the user's own that can be changed."""
+
+    def __init__(self, mean):
+        self.mean = mean
+
+    def polar(self, angle, ray):
+        """Nearly round."""
+        return self.mean + 0.01 * ray[0], -0.01 * ray[1], -0.01 * ray[0]
+
+
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.parametrize("mean", [0.3, np.array(0.3), np.array([0.3])])
+def test_a_cam_of_ones_own_is_taken_as_it_is_when_the_mechanism_is_made(interpreted, engine, mean):
+    cam = Flat(mean)
+    before = ks.cam_crank_slider(cam, 2.0, slider=ks.Link(3.0))
+    torque = solve(before, engine=engine).balancing_torque
+    if np.ndim(mean):
+        cam.mean[...] = 0.5
+    cam.mean = cam.mean * 0.0 + 0.5
+    after = ks.cam_crank_slider(cam, 2.0, slider=ks.Link(3.0))
+    assert_array_equal(solve(before, engine=engine).balancing_torque, torque)
+    assert_array_equal(
+        solve(after).balancing_torque,
+        solve(ks.cam_crank_slider(Flat(0.5), 2.0, slider=ks.Link(3.0))).balancing_torque,
+    )
+
+
+def test_a_load_of_ones_own_is_taken_as_it_is_when_solved():
+    push = type("Push", (), {"on": "slider", "push": lambda self, motion: self.force})()
+    made = []
+    for push.force in SPEEDS:
+        made.append(solve(loads=[push]))
+    for s, force in zip(made, SPEEDS, strict=True):
+        assert_array_equal(s.balancing_torque, solve(loads=ks.ProcessForce(force)).balancing_torque)
+
+
+# Groups of one's own
+
+
+@dataclass(frozen=True, eq=False)
+class Mine(ks.RockerGroup):
+    """A group of the user's own: the rocker group, with what is to be changed of it."""
+
+    change: Any = None
+
+    def place(self, placement):
+        """Place, then change."""
+        super().place(placement)
+        if self.change in DERIVATIVES:
+            DERIVATIVES[self.change](placement)
+
+    def resolve(self, placement, loads, along):
+        """Resolve, then change."""
+        found = super().resolve(placement, loads, along)
+        if self.change == "wrong force":
+            x, y = found.demands["A"].force
+            found.demands["A"] = Wrench((-x, y), None)
+        if self.change == "other name":
+            found.reactions["O"] = found.reactions.pop("B")
+        return found
+
+
+def _joint(placement, **changes):
+    placement.joints["B"] = placement.joints["B"]._replace(**changes)
+
+
+DERIVATIVES = {
+    "wrong first": lambda p: _joint(p, first=tuple(-part for part in p.joints["B"].first)),
+    "wrong second": lambda p: _joint(p, second=tuple(1.1 * part for part in p.joints["B"].second)),
+    "no second": lambda p: _joint(p, second=None),
+    "wrong ratio": lambda p: p.links.update(rocker=p.links["rocker"]._replace(ratio=2.0 * p.links["rocker"].ratio)),
+    "no ratio_slope": lambda p: p.links.update(coupler=p.links["coupler"]._replace(ratio_slope=None)),
+    "long direction": lambda p: p.links.update(
+        coupler=p.links["coupler"]._replace(direction=tuple(2.0 * part for part in p.links["coupler"].direction))
+    ),
+    "wrong length": lambda p: _joint(p, position=tuple(1.1 * part for part in p.joints["B"].position)),
+    "other joint": lambda p: p.links.update(coupler=p.links["coupler"]._replace(joint=Joint((9.0, 0.0), None, None))),
+}
+SEEN = {
+    "wrong first": "first derivative of joint B",
+    "wrong second": "second derivative of joint B",
+    "no second": "second derivative of joint B",
+    "wrong ratio": "ratio of rocker",
+    "no ratio_slope": "ratio_slope of coupler",
+    "long direction": "direction of coupler",
+    "wrong length": "length of coupler",
+    "other joint": "reference joint of coupler",
+    "wrong force": "work of the forces along x",
+}
+
+
+def mine(change=None):
+    return Mine(0.4, 0.3, (0.35, 0.1), coupler=ROD, rocker=ROD, change=change)
+
+
+@pytest.mark.parametrize("change", SEEN)
+def test_check_says_what_is_wrong_with_a_group(change):
+    report = ks.check(mine(change))
+    assert not report
+    assert any(problem.startswith(SEEN[change]) for problem in report.problems)
+    assert f"WRONG  {report.errors[SEEN[change]]:7.1e}  {SEEN[change]}" in repr(report)
+
+
+TABLE = 0.3 + 0.05 * np.cos(TURN)
+
+
+@pytest.mark.parametrize(
+    "group",
+    [
+        mine(),
+        Pan(ROD),
+        ks.SliderGroup(0.5, ks.Guide.at(0.3, 0.1), -1, ROD, ROD),
+        ks.SliderGroup(0.5, on="B", pin="C", label="2"),
+        ks.RockerGroup(0.4, 0.3, (0.35, 0.1), -1, ROD, ROD),
+        ks.RockerGroup(4.0, 30.0, (30.5, 10.0), on="B", pin="C", pivot_name="O3", label="2"),
+        ks.CamRoller(ks.cams.Circle(0.3, (0.05, 0.1)), ROD),
+        ks.CamRoller(ks.cams.CosineLaw(0.3, 2.0), ROD),
+        ks.CamRoller(ks.cams.Sampled(TURN, TABLE), ROD),
+    ],
+)
+def test_check_passes_right_groups(group):
+    report = ks.check(group)
+    assert report.ok, report
+    assert max(report.errors.values()) < 1e-8
+    assert "checks pass" in repr(report)
+
+
+@pytest.mark.parametrize(
+    ("group", "words"),
+    [
+        (3.0, "group must be a group"),
+        (ks.RockerGroup, "it is a class"),
+        (ks.Link(), "group must be a group|lacks"),
+        (ks.RockerGroup(1.0, 1.0, (500.0, 0.0)), "closes nowhere within 30 m of O"),
+        (ks.SliderGroup(np.array([[0.5], [0.6]])), "one design, not a batch"),
+    ],
+)
+def test_check_refuses_what_it_cannot_test(group, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.check(group)
+
+
+def chain(change=None):
+    return ks.Mechanism("mine", ks.Crank(0.1, ROD), (mine(change),))
+
+
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.parametrize("change", ["wrong force", "wrong ratio"])
+def test_a_group_whose_forces_lose_power_is_warned_of(interpreted, engine, change):
+    with pytest.warns(
+        UserWarning, match=r"mine: the balancing torque .* differ by up to .*ks\.check\(group\) says where"
+    ):
+        solve(chain(change), engine=engine).reaction("O")
+
+
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+def test_a_right_group_of_ones_own_gives_what_the_librarys_gives_without_a_warning(interpreted, engine):
+    right = ks.Mechanism("mine", ks.Crank(0.1, ROD), (ks.RockerGroup(0.4, 0.3, (0.35, 0.1), 1, ROD, ROD),))
+    assert_array_equal(solve(chain(), engine=engine).balancing_torque, solve(right, engine=engine).balancing_torque)
+
+
+@pytest.mark.parametrize("on", [3, None, ["A"], "Q"])
+def test_the_joint_that_a_group_of_ones_own_hangs_on_is_named_by_text_and_there(on):
+    with pytest.raises(ks.ParameterError, match=r"on of Pan must be a name|hangs on joint 'Q'"):
+        ks.Mechanism("pan", ks.Crank(0.1), (Pan(ROD, on=on),))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("on_gap", ["raise", "nan"])
+@pytest.mark.parametrize("shape", [(72,), (2, 36), (72, 1)])
+def test_crank_angles_that_are_not_finite_are_refused_whatever_gaps_do(bad, on_gap, shape):
+    angle = TURN.copy()
+    angle[40] = bad
+    with pytest.raises(ks.ParameterError, match="crank angles must be finite"):
+        solve(angle=angle.reshape(shape), on_gap=on_gap)
+
+
+def test_a_reaction_that_is_not_declared_so_that_it_could_overwrite_another_is_refused():
+    words = r"mine: Mine resolves reaction 'O', which its outputs do not declare; Mine declares reaction 'B', but"
+    with pytest.raises(ks.ParameterError, match=words):
+        solve(chain("other name")).reaction("O")
+
+
+def test_a_group_that_is_not_derived_from_group_is_refused():
+    lone = type("Lone", (), dict.fromkeys(MEMBERS))()
+    with pytest.raises(ks.ParameterError, match=r"Lone is not derived from kinetostatics\.machine\.group\.Group"):
+        ks.Mechanism("lone", ks.Crank(0.1), (lone,))
+
+
+# Hints
+
+
+@pytest.mark.parametrize(
+    "angles",
+    [
+        np.arange(0, 360, 5),
+        np.arange(0, 360, 10.0),
+        np.linspace(0, 360, 73),
+        np.linspace(0, 360, 720, endpoint=False),
+        np.arange(-180, 181, 1),
+        np.arange(360, -1, -1),
+        [0, 90, 180, 270],
+        np.linspace(0, 720, 145),
+    ],
+)
+def test_angles_in_degrees_are_hinted_at(angles):
+    with pytest.warns(ks.HintWarning, match="look like degrees; they are taken as radians") as caught:
+        solve(angle=angles)
+    assert [item.filename for item in caught] == [__file__]
+
+
+@pytest.mark.parametrize(
+    "angles",
+    [TURN, 10 * TURN, np.arange(7.0), np.arange(0, 100, 0.1), np.linspace(0, 50, 101), 90.0, [3.0, 90.0], TURN - 100],
+)
+def test_angles_in_radians_are_not(angles):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ks.HintWarning)
+        solve(angle=angles, on_gap="nan")
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"coupler": ks.Link(2.0, 200.0)}, "mass centre of the coupler is 200 m .* 500 times the longest link .*mm?"),
+        ({"slider": ks.Link(2.0, (0.0, 9.0))}, "mass centre of the slider is 9 m"),
+        ({"coupler": ks.Link(150.0, 0.2, 1e-3)}, "inertia of the coupler, 0.001 kg m2, is less than a thousandth"),
+        ({"coupler": ks.Link(np.array([[1.0], [150.0]]), 0.2, 1e-3)}, "inertia of the coupler"),
+        ({"coupler": ks.Link(1.0, np.array([[1.0], [150.0]]))}, "mass centre of the coupler is 150 m"),
+    ],
+)
+def test_slips_of_units_in_links_are_hinted_at_by_solve_and_not_by_constructors(changes, words):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        made = mechanism(**changes)
+    with pytest.warns(ks.HintWarning, match=words):
+        solve(made)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ks.HintWarning)
+        solve(made)
+
+
+@pytest.mark.parametrize("name", ["sawframe_2r63", "mower_drive", "chain_unit"])
+def test_shipped_cases_are_free_of_hints(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ks.HintWarning)
+        for variant in ks.load_case(name).variants.values():
+            variant.solve(36)

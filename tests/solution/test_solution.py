@@ -1,0 +1,134 @@
+"""A solution as its user meets it: results on demand, tables, other angles."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.machine.mechanism import Mechanism
+
+TURN = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+
+
+def solved(angle=TURN, **change):
+    return ks.solve(SAW, angle, **{"crank_speed": 33.5, "loads": [ks.Gravity()], **change})
+
+
+def test_torque_by_power_computes_no_reaction(monkeypatch):
+    expected = solved().balancing_torque
+
+    def refuse(*_):
+        raise AssertionError("forces were resolved")
+
+    monkeypatch.setattr(Mechanism, "resolve", refuse)
+    np.testing.assert_allclose(solved().balancing_torque_by_power, expected, atol=1e-9)
+
+
+def test_motion_and_shaking_force_compute_no_reaction(monkeypatch):
+    monkeypatch.setattr(Mechanism, "resolve", None)
+    solution = solved()
+    assert solution.position("B").shape == solution.shaking_force.shape == (2, TURN.size)
+
+
+def test_results_are_kept():
+    solution = solved()
+    assert solution.balancing_torque is solution.balancing_torque
+    assert solution.placement is solution.placement
+
+
+def test_frame_has_a_row_for_each_angle_and_a_unit_in_every_column():
+    table = solved().frame()
+    assert len(table) == TURN.size
+    assert all(name.endswith("]") for name in table.columns)
+    np.testing.assert_allclose(table["crank_angle [deg]"], np.arange(0, 360, 15))
+    np.testing.assert_array_equal(table["balancing_torque [N m]"], solved().balancing_torque)
+    np.testing.assert_array_equal(table["reaction_O_x [N]"], solved().reaction("O")[0])
+
+
+def test_frame_of_a_batch_numbers_its_designs():
+    batch = ks.solve(ks.crank_slider(np.array([[0.2], [0.3]]), 2.0, slider=ks.Link(600)), TURN, crank_speed=33.5)
+    table = batch.frame()
+    assert len(table) == 2 * TURN.size
+    np.testing.assert_array_equal(table["design"], np.repeat([0, 1], TURN.size))
+    np.testing.assert_array_equal(table["A_x [m]"], batch.position("A")[0].ravel())
+
+
+def test_other_angles_give_the_same_as_a_new_solution():
+    elsewhere = np.array([0.1, 0.2])
+    np.testing.assert_array_equal(solved().at(elsewhere).balancing_torque, solved(elsewhere).balancing_torque)
+
+
+def test_a_table_over_the_angles_cannot_be_moved_to_others():
+    solution = solved(loads=[ks.ProcessForce(np.linspace(0, 1, TURN.size))])
+    with pytest.raises(ks.ParameterError, match="ProcessForce is a table"):
+        solution.at([0.0])
+
+
+def test_a_process_force_may_follow_the_motion():
+    def cut(motion):
+        return np.where(motion.slider_velocity < 0, 1000.0, 0.0)
+
+    with_cut = solved(loads=[ks.Gravity(), ks.ProcessForce(cut)])
+    difference = with_cut.balancing_torque - solved().balancing_torque
+    expected = np.where(with_cut.slider_velocity < 0, -1000.0 * with_cut.slider_velocity / 33.5, 0.0)
+    np.testing.assert_allclose(difference, expected, atol=1e-9)
+
+
+def test_a_single_crank_angle_gives_single_values():
+    solution = solved(0.5)
+    assert solution.balancing_torque.shape == ()
+    assert solution.reaction("O").shape == (2,)
+    assert solution.power_residual < 1e-14
+
+
+def test_a_standing_mechanism_is_held_by_the_statics_of_its_loads():
+    standing = solved(crank_speed=0.0)
+    work = 150 * 9.81 * standing.at(TURN).position("coupler")[1]
+    slope = np.fft.irfft(1j * np.arange(TURN.size // 2 + 1) * np.fft.rfft(work), TURN.size)
+    np.testing.assert_allclose(standing.balancing_torque, slope, atol=1e-6)
+    assert standing.power_residual < 1e-14
+
+
+def test_power_residual_shows_a_torque_that_is_wrong(monkeypatch):
+    monkeypatch.setattr(ks.Solution, "balancing_torque", property(lambda s: s.scalar("balancing_torque") + 1.0))
+    solution = solved()
+    assert solution.power_residual == pytest.approx(1.0 / solution.largest_torque_term, rel=1e-9)
+    assert 1e-5 < solution.power_residual < 1e-4
+
+
+def test_results_cannot_be_written_to_and_follow_no_later_change_of_the_angles():
+    turn = TURN.copy()
+    solution = solved(turn)
+    before = solution.guide_force.copy()
+    turn[:] = 0.0
+    np.testing.assert_array_equal(solution.at(TURN).guide_force, before)
+    with pytest.raises(ValueError, match="read-only"):
+        solution.guide_force[0] = 0.0
+
+
+def test_whole_numbers_as_crank_angles_do_not_cut_results_off():
+    np.testing.assert_array_equal(solved(np.arange(4)).rate("crank"), np.full(4, 33.5))
+
+
+def test_spring_acts_on_the_slider_it_names():
+    spring = ks.Spring.balancing(10.0, 3.0, 0.5, on="slider2")
+    assert (spring.stiffness, spring.free_position, spring.on) == (90.0, 0.5, "slider2")
+
+
+def test_groups_that_do_not_hang_together_are_refused():
+    with pytest.raises(ks.ParameterError, match="SliderGroup hangs on joint 'D'"):
+        ks.Mechanism("loose", ks.Crank(0.1), (ks.SliderGroup(0.5, on="D"),))
+    with pytest.raises(ks.ParameterError, match="adds joint 'B' a second time"):
+        ks.Mechanism("twice", ks.Crank(0.1), (ks.SliderGroup(0.5), ks.SliderGroup(0.5, label="2")))
+    with pytest.raises(ks.ParameterError, match="adds joint 'A' a second time"):
+        ks.Mechanism("both", ks.Crank(0.1), (ks.CamRoller(ks.cams.Circle(0.1)), ks.SliderGroup(0.5)))
+    with pytest.raises(ks.ParameterError, match="direction must have length 1"):
+        ks.SliderGroup(0.5, ks.Guide(None, 0.0, (2.0, 0.0)))
+
+
+def test_cosine_law_cam_warns_of_a_mechanism_that_breaks_the_law():
+    law = ks.cams.CosineLaw(0.3, 2.0)
+    with pytest.warns(UserWarning, match=r"coupler_length 2.0 m is not the cam's 2.02"):
+        ks.cam_crank_slider(law, 2.0)
+    with pytest.warns(UserWarning, match="guide_offset 0.1 m is not 0"):
+        ks.cam_crank_slider(law, law.coupler_length, guide_offset=0.1)

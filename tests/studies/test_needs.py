@@ -1,0 +1,379 @@
+"""How much model a scene needs: known answers, every combination tried, and the smallest model run again here."""
+
+import itertools
+from dataclasses import replace
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.engines import programs
+from kinetostatics.engines.engines import Kernels
+from kinetostatics.engines.series import harmonic_series
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.studies import needs as ingredients
+from kinetostatics.studies.needs import INGREDIENTS, two_mass_coupler
+
+TURN = np.linspace(0.0, 2 * np.pi, 72, endpoint=False)
+SPEED = 30.0
+COUPLER = ks.Link(4.0, (0.5, 0.06), 0.3)
+
+
+def cranked(**options):
+    links = {"crank": ks.Link(2.0, 0.1, 0.02), "coupler": COUPLER, "slider": ks.Link(5.0, (0.02, 0.01), 0.1)}
+    return ks.crank_slider(0.2, 1.3, **links | options)
+
+
+MECHANISMS = {
+    "crank-slider": cranked(guide_angle=0.3, guide_offset=0.05),
+    "cam": ks.cam_crank_slider(
+        ks.cams.Circle(0.2, (-0.02, 0.01)), 1.3, block=ks.Link(1.0), coupler=COUPLER, slider=ks.Link(5.0)
+    ),
+    "four-bar": ks.four_bar(
+        0.2, 1.3, 0.7, rocker_pivot=(1.2, 0.2), coupler=COUPLER, rocker=ks.Link(3.0, (0.3, 0.02), 0.2)
+    ),
+}
+
+
+def operations(solution, quantity):
+    """Number of operations of a quantity at each crank angle, as recorded."""
+    program, _ = programs.of(solution.dynamics, (quantity,))
+    return program.recording.operations
+
+
+def solved(mechanism, loads=(ks.Gravity(),), angle=TURN, **options):
+    return ks.solve(mechanism, angle, crank_speed=SPEED, loads=loads, **options)
+
+
+def change(solution, full, quantity):
+    """Largest difference of a quantity, relative to its largest value in the full scene."""
+    found, exact = (np.array(components(s, quantity)) for s in (solution, full))
+    return np.max(np.linalg.norm(found - exact, axis=0)) / np.max(np.linalg.norm(exact, axis=0))
+
+
+@pytest.fixture
+def few_models(monkeypatch):
+    """Of combinations, for tests of simplifications alone."""
+    monkeypatch.setattr(ingredients, "MOST_MODELS", 10)
+
+
+@pytest.fixture(scope="module")
+def saw():
+    case = ks.load_case("sawframe_2r63")
+    return {name: case.solve(name, 72) for name in case.variants}
+
+
+@pytest.fixture(scope="module")
+def mower():
+    return ks.load_case("mower_drive").solve("unbalanced", 72)
+
+
+def alone(needs):
+    return {made.name: made for made in needs.alone}
+
+
+# Known answers
+
+
+def test_massless_crank_is_free_for_the_torque_of_the_mower_at_constant_speed_but_not_for_its_bearing(mower):
+    """There is no gravity, and the crank only turns."""
+    torque, bearing = (ks.needs(mower, quantity) for quantity in ("balancing_torque", "O"))
+    assert alone(torque)["massless crank"].error < 1e-16
+    assert torque.smallest.simplifications == ("massless crank",)
+    assert torque.smallest.operations < torque.full.operations
+    centrifugal = 1.0 * 0.019 * (600 * 2 * np.pi / 60) ** 2 / np.max(np.hypot(*mower.reaction("O")))
+    assert alone(bearing)["massless crank"].error == pytest.approx(centrifugal, rel=1e-12)
+    assert "massless crank" not in bearing.smallest.simplifications
+
+
+@pytest.mark.parametrize("quantity", ["balancing_torque", "O"])
+def test_spring_and_slider_that_cancel_by_the_cosine_law_are_dropped_together_and_only_together(saw, quantity):
+    needs = ks.needs(saw["cam-cosine"], quantity, within=1e-13)
+    assert needs.smallest.simplifications == ("no spring", "massless slider")
+    assert 1e-16 < needs.smallest.error < 1e-13
+    assert min(alone(needs)[name].error for name in needs.smallest.simplifications) > 5
+
+
+def test_ordinary_scene_needs_all_of_its_model_for_thirteen_digits(saw):
+    needs = ks.needs(saw["plain"], "balancing_torque", within=1e-13)
+    assert needs.smallest.name == "full scene"
+    assert needs.smallest is needs.ladder[0]
+    assert min(made.error for made in needs.alone) > 1e-3
+
+
+def test_everything_may_go_within_100_per_cent(saw):
+    needs = ks.needs(saw["plain"], "O", within=1.0)
+    assert needs.smallest.operations == needs.ladder[-1].operations < needs.full.operations / 3
+
+
+def test_ingredient_of_no_effect_is_dropped_but_the_full_scene_stays_the_measure(saw):
+    """A process force that is zero throughout, as a function that costs operations."""
+    plain = saw["plain"]
+    idle = ks.ProcessForce(lambda motion: 0.0 * motion.travel())
+    scene = ks.solve(plain.mechanism, TURN, crank_speed=plain.crank_speed, loads=[*plain.loads, idle])
+    needs = ks.needs(scene, "balancing_torque", within=1e-13)
+    assert needs.smallest.simplifications == ("no process force",)
+    assert needs.smallest.error == 0.0
+    assert needs.full.name == "full scene"
+    assert needs.full.operations == operations(scene, "balancing_torque") > needs.smallest.operations
+
+
+def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_models):
+    mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
+    loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0)]
+    everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0), "O"))
+    absent = {"massless block", "no rocker inertia", "massless rocker"}
+    assert set(everything) == {choice.name for choices in INGREDIENTS.values() for choice in choices} - absent
+    bare = ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))
+    assert set(alone(ks.needs(solved(bare, ()), "O"))) == {"massless slider", "two harmonics", "one harmonic"}
+    rocking = alone(ks.needs(solved(MECHANISMS["four-bar"]), "O"))
+    assert {"no rocker inertia", "massless rocker"} < set(rocking)
+    assert "massless block" in alone(ks.needs(solved(MECHANISMS["cam"]), "O"))
+
+
+def test_simplification_with_which_the_mechanism_does_not_close_is_no_model_of_it():
+    """The crank is longer than the coupler, which reaches the guide at these angles only because of its offset."""
+    angle = np.pi / 2 + np.linspace(-0.1, 0.1, 9)
+    mechanism = ks.crank_slider(0.3, 0.25, guide_offset=0.2, slider=ks.Link(5.0), coupler=ks.Link(4.0, 0.1))
+    needs = ks.needs(solved(mechanism, angle=angle), "O", within=1e9)
+    assert alone(needs)["guide through O"].error == np.inf
+    assert not {"one harmonic", "two harmonics"} & set(alone(needs))
+    assert "guide through O" not in needs.smallest.simplifications
+
+
+# The smallest of all
+
+
+@pytest.mark.parametrize(
+    ("quantity", "within"), [("O", 1e-13), ("balancing_torque", 0.01), ("O", 0.05), ("slider_acceleration", 0.3)]
+)
+def test_smallest_model_keeps_the_quantity_within_the_tolerance_when_run_again(saw, quantity, within):
+    for scene in (saw["plain"], saw["cam-cosine"]):
+        needs = ks.needs(scene, quantity, within)
+        found = change(needs.smallest.solution.at(TURN), scene.at(TURN), quantity)
+        assert found <= within
+        assert found == pytest.approx(needs.smallest.error, rel=1e-9, abs=1e-15)
+        assert needs.smallest.operations == operations(needs.smallest.solution, quantity)
+
+
+@pytest.mark.parametrize("quantity", ["balancing_torque", "O"])
+def test_no_combination_of_fewer_operations_is_within_the_tolerance(mower, quantity):
+    """All combinations, each made and run here."""
+    needs = ks.needs(mower, quantity, 0.05)
+    found = []
+    for choices in itertools.product(*((None, *choices) for choices in INGREDIENTS.values())):
+        made = mower
+        for choice in filter(None, choices):
+            made = made and choice.simplified(made)
+        if made is not None:
+            found.append((operations(made, quantity), change(made, mower, quantity)))
+    assert len(found) == needs.tried
+    assert min(operations for operations, error in found if error <= 0.05) == needs.smallest.operations
+    for rung in needs.ladder:
+        assert min(operations for operations, error in found if error <= rung.error * (1 + 1e-9)) == rung.operations
+
+
+def test_ladder_falls_in_operations_as_the_error_grows_and_the_smallest_costs_as_its_last_rung_within(saw):
+    for scene, within in (("plain", 1e-3), ("plain", 0.5), ("cam-circle", 0.05)):
+        needs = ks.needs(saw[scene], "balancing_torque", within)
+        errors, operations = ([getattr(made, name) for made in needs.ladder] for name in ("error", "operations"))
+        assert errors == sorted(set(errors))
+        assert operations == sorted(set(operations), reverse=True)
+        last = [made for made in needs.ladder if made.error <= within][-1]
+        assert needs.smallest.operations == last.operations
+        assert len(needs.smallest.simplifications) >= len(last.simplifications)
+        assert (needs.ladder[0].name, needs.ladder[0].error) == ("full scene", 0.0)
+        assert all(made.operations < needs.full.operations for made in needs.ladder[1:])
+
+
+def test_too_many_models_drop_what_changes_most(saw, monkeypatch):
+    everything = ks.needs(saw["plain"], "balancing_torque")
+    monkeypatch.setattr(ingredients, "MOST_MODELS", 10)
+    few = ks.needs(saw["plain"], "balancing_torque")
+    assert everything.tried == 48
+    assert few.tried <= 10
+    assert len(few.alone) == len(everything.alone)
+    worst = max(everything.alone, key=lambda made: made.error).name
+    assert not any(worst in made.simplifications for made in few.ladder)
+    assert few.smallest.name == everything.smallest.name
+
+
+# Simplified models
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_two_masses_are_a_coupler_with_the_inertia_mass_times_both_distances(name):
+    """Mass m and centre at s along the length l are kept; the moment of inertia becomes m s (l - s)."""
+    mechanism = MECHANISMS[name]
+    bar = ks.Link(4.0, (0.5, 0.0), 4.0 * 0.5 * (1.3 - 0.5))
+    same = solved(mechanism.with_link("coupler", bar), crank_acceleration=-40.0)
+    masses = solved(two_mass_coupler(mechanism), crank_acceleration=-40.0)
+    assert masses.mechanism.links["coupler"].mass == 0
+    total, kept = (sum(link.mass for link in made.links.values()) for made in (mechanism, masses.mechanism))
+    assert kept == pytest.approx(total, rel=1e-15)
+    for quantity in ("balancing_torque", "O", "shaking_force", "shaking_moment"):
+        assert change(masses, same, quantity) < 1e-14, quantity
+    assert change(masses, solved(mechanism, crank_acceleration=-40.0), "balancing_torque") > 1e-3
+
+
+def test_mechanism_without_coupler_mass_has_no_two_masses():
+    assert two_mass_coupler(ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))) is None
+
+
+@pytest.mark.parametrize(("name", "output"), [("crank-slider", "slider"), ("cam", "slider"), ("four-bar", "rocker")])
+def test_link_without_mass_of_its_own_still_carries_its_share_of_the_coupler(name, output):
+    made = solved(MECHANISMS[name])
+    for choices in INGREDIENTS.values():
+        for choice in choices:
+            if choice.name in (f"massless {output}", "two-mass coupler"):
+                made = choice.simplified(made)
+    assert made.mechanism.links[output].mass == pytest.approx(4.0 * 0.5 / 1.3)
+
+
+def by_series(solution, order):
+    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_truncated_series_has_the_first_harmonics_of_the_slider_motion(order):
+    full = solved(cranked(guide_offset=0.05))
+    series = by_series(full, order)
+    spectrum = np.fft.rfft(full.slider_acceleration)
+    spectrum[order + 1 :] = 0.0
+    expected = np.fft.irfft(spectrum, n=TURN.size)
+    assert np.max(np.abs(series.slider_acceleration - expected)) < 1e-12 * np.max(np.abs(expected))
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_error_of_truncated_series_falls_with_the_order(few_models, name):
+    full = solved(MECHANISMS[name])
+    errors = [change(by_series(full, order), full, "O") for order in (1, 2, 4, 8, 16)]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[0] > 1e-2
+    assert errors[-1] < 1e-5
+    found = alone(ks.needs(full, "O"))
+    assert [found[name].error for name in ("one harmonic", "two harmonics")] == pytest.approx(errors[:2])
+
+
+# What it gives
+
+
+def test_case_is_looked_at_in_its_reference_variant_or_the_one_named(few_models):
+    case = ks.load_case("sawframe_2r63")
+    for variant, name in ((None, "plain"), ("cam-circle", "cam-circle")):
+        by_case, by_solution = ks.needs(case, "O", variant=variant), ks.needs(case.solve(name), "O")
+        for one, two in zip(by_case.ladder, by_solution.ladder, strict=True):
+            assert (one.name, one.error, one.operations) == (two.name, two.error, two.operations)
+    with pytest.raises(ks.CaseError, match="cam-circle"):
+        ks.needs(case, "O", variant="cam")
+
+
+def test_tables_have_a_row_for_each_model_with_units(saw):
+    needs = ks.needs(saw["plain"], "O", 0.05)
+    frame, ladder = needs.frame(), needs.ladder_frame()
+    for table, models in ((frame, (needs.full, *needs.alone)), (ladder, needs.ladder)):
+        assert list(table.columns) == ["change", "operations", "operations saved", "time [ns/angle]"]
+        assert list(table.index) == [made.name for made in models]
+        assert list(table["change"]) == [made.error for made in models]
+        assert np.all(table["operations"] + table["operations saved"] == needs.full.operations)
+        assert np.all(table["time [ns/angle]"] > 0)
+
+
+def test_answer_reads_as_a_sentence(saw):
+    needs = ks.needs(saw["plain"], "O", 0.05)
+    few, all_of_them = needs.smallest.operations, needs.full.operations
+    assert str(needs) == (
+        f"reaction O within 0.05: no gravity, two-mass coupler, {few} of {all_of_them} operations "
+        f"({1 - few / all_of_them:.0%} saved), error {needs.smallest.error:.2g}; 48 models run"
+    )
+
+
+def test_chart_shows_each_simplification_the_ladder_the_tolerance_and_the_smallest_model(saw):
+    needs = ks.needs(saw["cam-cosine"], "O", 0.05)
+    figure, ax = plt.subplots()
+    assert ks.plots.model_ladder(needs, ax=ax) is ax
+    assert ax.get_xlabel() == "operations per crank angle [1]"
+    assert ax.get_ylabel() == "change of reaction O, relative to largest value [1]"
+    assert (ax.get_xscale(), ax.get_yscale()) == ("linear", "log")
+    assert ax.xaxis_inverted()
+    alone_drawn, rungs, tolerance, smallest = lines = ax.lines
+    floor = rungs.get_ydata().min()
+    assert ax.get_ylim()[0] < floor < needs.within / 100
+    for line, models in ((alone_drawn, needs.alone), (rungs, needs.ladder), (smallest, [needs.smallest])):
+        expected = [(made.operations, max(made.error, floor)) for made in models]
+        np.testing.assert_allclose(line.get_xydata(), expected, rtol=1e-12)
+    assert list(tolerance.get_ydata()) == [0.05, 0.05]
+    assert tolerance.get_label() == "tolerance 0.05"
+    assert smallest.get_label() == f"smallest: {needs.smallest.name}"
+    assert {text.get_text() for text in ax.texts} == {made.name for made in needs.alone}
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [line.get_label() for line in lines]
+    figure.canvas.draw()
+    plt.close(figure)
+
+
+# What cannot be
+
+
+@pytest.mark.parametrize("within", [0.0, -0.1, np.nan, np.inf])
+def test_tolerance_that_is_not_positive_is_refused(saw, within):
+    with pytest.raises(ks.ParameterError, match="within"):
+        ks.needs(saw["plain"], "O", within)
+
+
+def test_batch_is_refused_with_its_shape():
+    batch = solved(ks.crank_slider(np.array([[0.2], [0.3]]), 1.3, slider=ks.Link(5.0)))
+    with pytest.raises(ks.ParameterError, match=r"one design.*\(2, 72\)"):
+        ks.needs(batch, "O")
+
+
+def test_quantity_that_is_zero_throughout_is_refused(saw):
+    with pytest.raises(ks.ParameterError, match=r"guide_moment is 0\.0"):
+        ks.needs(saw["plain"], "guide_moment")
+
+
+def test_unknown_quantity_is_refused_with_those_there_are(saw):
+    with pytest.raises(
+        ks.QuantityError, match=r"'torqe', allowed: 'balancing_torque'.*'guide_force'.*'A', 'B', 'guide', 'O'"
+    ):
+        ks.needs(saw["plain"], "torqe")
+
+
+# What cannot be simplified
+
+BEYOND = {"before A": -0.2, "behind B": 1.5}
+
+
+@pytest.mark.parametrize("place", BEYOND)
+def test_a_coupler_with_its_mass_beyond_its_joints_is_no_two_masses_and_the_result_says_so(place):
+    """One of them would be negative; all else is tried."""
+    found = ks.needs(solved(cranked(coupler=ks.Link(4.0, (BEYOND[place], 0.06), 0.3))), "O")
+    why = found.left_out["two-mass coupler"]
+    assert why == (
+        f"the mass centre of the coupler, {BEYOND[place]} m along its 1.3 m, lies beyond its joints, so one of two "
+        "masses there would be negative"
+    )
+    assert f"two-mass coupler left out: {why}" in str(found)
+    assert {"massless coupler", "no coupler inertia", "one harmonic"} <= set(alone(found))
+    assert "two-mass coupler" not in alone(found)
+
+
+@pytest.mark.parametrize("place", [0.0, 1.3])
+def test_a_coupler_with_its_mass_at_a_joint_is_still_two_masses(place):
+    found = ks.needs(solved(cranked(coupler=ks.Link(4.0, place, 0.3))), "O")
+    assert "two-mass coupler" in alone(found)
+    assert found.left_out == {}
+
+
+def test_simplifications_left_out_for_their_number_are_told(monkeypatch):
+    monkeypatch.setattr(ingredients, "MOST_MODELS", 2)
+    found = ks.needs(solved(cranked()), "O")
+    assert found.tried <= 2
+    assert "massless slider" in found.left_out
+    assert found.left_out["massless slider"].endswith("and there are more than 2 models")
+
+
+def test_harmonics_of_what_does_not_close_are_told_as_left_out():
+    gapping = ks.crank_slider(1.0, 0.8, slider=ks.Link(1.0))
+    found = ks.needs(solved(gapping, angle=np.linspace(-0.5, 0.5, 12)), "O")
+    assert "does not close all around the turn" in found.left_out["one harmonic"]

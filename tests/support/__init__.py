@@ -1,0 +1,6 @@
+"""What tests share: mechanisms, loads and scenes, random ones, case files, and two independent oracles."""
+
+from pathlib import Path
+
+DATA = Path(__file__).parents[1] / "data"
+"""Tables of references."""
