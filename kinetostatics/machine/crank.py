@@ -59,8 +59,11 @@ class Crank(checks.Checked):
         return {"crank": "O"}
 
     PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
+    own_names: ClassVar = {"crank": "crank"}
     guides: ClassVar = {}
     motions: ClassVar = {}
+    curves: ClassVar = {}
+    slots = ()
     hangs_on = ()
 
     @property

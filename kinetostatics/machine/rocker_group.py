@@ -175,7 +175,7 @@ class RockerGroup(checks.Checked, Group):
     @property
     def outputs(self):
         return {
-            self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}"),
+            self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
             self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
         }

@@ -191,9 +191,9 @@ class SliderGroup(checks.Checked, Group):
     def outputs(self):
         label = self.label
         return {
-            self.on + label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}"),
+            self.on + label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._slider}"),
-            "guide" + label: Output("N", True, f"ground on {self._slider}"),
+            "guide" + label: Output("N", True, f"ground on {self._slider}", self.pin),
             "guide_force" + label: Output("N", False, f"ground on {self._slider} along the guide's left normal"),
             "guide_moment" + label: Output("N m", False, f"ground on {self._slider} about {self.pin}"),
         }
