@@ -52,6 +52,7 @@ Nothing else in the library knows what a group looks like, nor the names of its 
 """
 
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -157,7 +158,7 @@ class Group:
     @property
     def shortest(self):
         """Its shortest link or cam radius."""
-        return min((bar.length for bar in self.bars), default=np.inf)
+        return reduce(np.minimum, (bar.length for bar in self.bars), np.inf)
 
     @property
     def bars(self):
