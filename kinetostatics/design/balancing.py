@@ -295,8 +295,8 @@ def _refuse(mechanism):
         carried = principal_points(mechanism).carried
         pin = next(iter(mechanism.curves), "A")
         raise ParameterError(
-            f"the pin {pin} of a {mechanism.name} runs at a varying distance from O with {carried.get(pin, 0.0):g} kg on "
-            "it, so no counterweight on the crank balances it; use `optimal`, or a plain crank-slider"
+            f"the pin {pin} of a {mechanism.name} runs at a varying distance from O with {carried.get(pin, 0.0):g} kg "
+            "on it, so no counterweight on the crank balances it; use `optimal`, or a plain crank-slider"
         )
 
 

@@ -14,7 +14,6 @@ from ..results.extremes import extremes
 from ..solution.scene import solve
 from .shapes import crank_sliders
 
-
 PARALLEL = 1e-9
 """Sine of the angle between guides up to which they are parallel."""
 
@@ -249,8 +248,8 @@ def guide_direction(mechanism, slider=None):
     x, y = directions[0]
     if any(abs(x * v - y * u) > PARALLEL for u, v in directions):
         raise ParameterError(
-            f"along and across the guide mean nothing for a {mechanism.name} with guides of {' and '.join(guides)} that "
-            'are not parallel; use "largest" or "mean"'
+            f"along and across the guide mean nothing for a {mechanism.name} with guides of {' and '.join(guides)} "
+            'that are not parallel; use "largest" or "mean"'
         )
     return directions[0]
 

@@ -178,7 +178,7 @@ def grashof(mechanism):
     -------
     Grashof
     """
-    crank, coupler, rocker, pivot = _four_bar(mechanism)
+    crank, coupler, rocker, pivot = four_bar_of(mechanism)
     frame = np.hypot(*pivot)
     lengths = {"crank": crank.length, "coupler": coupler.length, "rocker": rocker.length, "frame": frame}
     ends = {
@@ -207,7 +207,7 @@ def grashof(mechanism):
     return Grashof(kind, joints, _closed_intervals(lengths, atan2(pivot[1], pivot[0]), slack))
 
 
-def _four_bar(mechanism):
+def four_bar_of(mechanism):
     """The bars of a four-bar; an error for any other mechanism."""
     checks.require("linkage", checks.mechanism("mechanism", mechanism))
     bars = shapes.four_bar(mechanism)
@@ -218,7 +218,7 @@ def _four_bar(mechanism):
 
 def _bars_of(solution):
     checks.require("linkage", checks.solution("solution", solution))
-    return _four_bar(solution.mechanism)
+    return four_bar_of(solution.mechanism)
 
 
 def _closed_intervals(lengths, frame_angle, slack):

@@ -24,10 +24,11 @@ frozen dataclass derived from `Group`. It declares, by name,
 
 How to write one
 ----------------
-*Fields.* A frozen dataclass (``eq=False``) of lengths, a `Guide` or a pivot, an assembly of +1 or -1, a `Link` for each
-link, called as the link but for the label; ``on`` and ``pin``, names of joints; ``label``, put behind the names of links
-and forces so that a mechanism may have two of the kind. Lengths may be arrays (designs, 1): write kernels with ``+ - * /``
-and `numbers.elementary`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers, on numbers with
+*Fields.* A frozen dataclass (``eq=False``) of lengths, a `Guide` or a pivot, an assembly of +1 or -1, a `Link` for
+each link, called as the link but for the label; ``on`` and ``pin``, names of joints; ``label``, put behind the names of
+links and forces so that a mechanism may have two of the kind. ``PATHS`` renames fields in paths such as
+"coupler_length2"; "" leaves a name out. Lengths may be arrays (designs, 1): write kernels with ``+ - * /`` and
+`numbers.elementary`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers, on numbers with
 derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`numbers.planar` adds such numbers).
 
 *place.* Read ``placement.joints[self.on]``, a `Joint`: position, first and second derivative by the crank angle, each
@@ -41,12 +42,12 @@ what `resolve` wants to find again.
 moment about the link's reference joint, either of them None where there is none. ``along`` holds by slider the applied
 force along its guide, kept apart since it may nearly cancel with inertia. Write down the equilibrium of the links for
 the unknown forces *on* them; what the group needs from others goes into ``demands`` with the sign that it has on the
-group: the mechanism sees to the reaction on the link that carries the joint. No joint outside `hangs_on` and no link but
-its own and the crank can be asked.
+group: the mechanism sees to the reaction on the link that carries the joint. No joint outside `hangs_on` and no link
+but the crank can be asked.
 
-*outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come units
-in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives, forces and
-power; tests/test_a_group_of_ones_own.py has a whole example.
+*outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
+units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives, forces
+and power; tests/test_a_group_of_ones_own.py has a whole example.
 
 Nothing else in the library knows what a group looks like, nor the names of its links.
 """

@@ -140,7 +140,7 @@ class Mechanism(Batched):
     @property
     def couplers(self):
         """Bars from a joint of one link to a joint of another."""
-        return tuple(bar for bar in self.bars if bar.link not in (self.joints[bar.start].link, self.joints[bar.end].link))
+        return tuple(bar for bar in self.bars if all(self.joints[end].link != bar.link for end in (bar.start, bar.end)))
 
     def _collected(self, table):
         return {name: item for part in self.parts for name, item in getattr(part, table).items()}

@@ -102,7 +102,8 @@ class Comparison:
                 rows.append((f"largest {label_of(self.reference, joint)}", "N", *row))
         for name in ("shaking_force", "shaking_moment"):
             peaks = [abs(extremes(solution, name).largest) for solution in (self.reference, self.balanced)]
-            rows.append((f"largest {label_of(self.reference, name)}", unit_of(self.reference, name), *peaks, _ratio(*peaks)))
+            label, unit = label_of(self.reference, name), unit_of(self.reference, name)
+            rows.append((f"largest {label}", unit, *peaks, _ratio(*peaks)))
         couplers = (bar.link for bar in self.reference.mechanism.couplers)
         for name, ranges in (
             *((f"{link} inertia force", self.inertia_force_range(link)) for link in couplers),

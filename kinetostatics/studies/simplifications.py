@@ -31,8 +31,8 @@ def two_mass_coupler(mechanism, only=None):
     """The mechanism with each coupler replaced by two point masses at its joints; None if no coupler has mass.
 
     Total mass and the place of the mass centre along the link are kept; the moment of inertia becomes
-    m s (l - s), whatever it was (Biezeno and Grammel, *Technische Dynamik*). A coupler is a bar from a joint of one link
-    to a joint of another (`Mechanism.couplers`); a mass at a joint of the frame does not count.
+    m s (l - s), whatever it was (Biezeno and Grammel, *Technische Dynamik*). A coupler is a bar from a joint of one
+    link to a joint of another (`Mechanism.couplers`); a mass at a joint of the frame does not count.
 
     Parameters
     ----------
