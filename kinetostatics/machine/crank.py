@@ -60,9 +60,9 @@ class Crank(checks.Checked):
 
     PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
     own_names: ClassVar = {"crank": "crank"}
-    guides: ClassVar = {}
-    motions: ClassVar = {}
-    curves: ClassVar = {}
+    guides: ClassVar[dict] = {}
+    motions: ClassVar[dict] = {}
+    curves: ClassVar[dict] = {}
     slots = ()
     hangs_on = ()
 

@@ -148,7 +148,7 @@ class Group:
         return [value for value in vars(self).values() if type(value) is str]
 
     @property
-    def hangs_on(self):
+    def hangs_on(self: Any):
         return (self.on,)
 
     @property
@@ -174,11 +174,11 @@ class Group:
         return {}
 
     @property
-    def own_names(self):
+    def own_names(self: Any):
         """What each of its links is called without the label: what it is, whatever else the mechanism has."""
         return {name: name.removesuffix(self.label) or name for name in self.links}
 
-    def with_link(self, name, link):
+    def with_link(self: Any, name, link):
         """The group with other mass properties of one link, whose field is called as the link but for the label."""
         return replace(self, **{self.own_names[name]: link})
 
