@@ -10,6 +10,7 @@ import mpmath as mp
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
 from kinetostatics.machine.group import Group, Output, Point, Resolved, Slot
@@ -252,7 +253,7 @@ def test_principal_points_find_the_shaking_force(solution):
     assert np.max(np.abs(solution.shaking_force - direct)) < 1e-13 * np.max(np.abs(direct))
 
 
-def test_it_is_drawn_with_its_slot_slider_and_guide_and_moves_in_the_animation(solution):
+def test_it_is_drawn_with_its_slot_slider_and_guide_and_moves_in_the_animation(solution, tmp_path):
     figure, ax = plt.subplots()
     ks.plots.mechanism(solution, angles=(30,), ax=ax)
     pose = solution.at(np.radians([30.0]))
@@ -263,13 +264,13 @@ def test_it_is_drawn_with_its_slot_slider_and_guide_and_moves_in_the_animation(s
     ks.plots.over_turn(solution, "guide_moment", ax=ax)
     assert ax.get_ylabel() == "guide moment [N m]"
     film = ks.plots.animation(scene("_saw").solve(ANGLES), joints=("O", "A_saw"), frames=3)
-    film._draw_frame(0)
+    film.save(tmp_path / "yoke.gif", writer=PillowWriter(fps=10))
     plt.close("all")
 
 
 def test_sweeps_vary_its_numbers_by_path():
     designs = pd.DataFrame({"slot_angle": [1.0, 1.2, 1.4], "slider.mass [kg]": [5.0, 6.0, 7.0]})
-    swept = ks.sweep(scene(), designs, ["largest guide_moment"], angles=36, progress=False)
+    swept = ks.sweep(scene(), designs, ["largest guide_moment"], progress=False)
     assert (swept["failed"] == "").all()
     for row, (angle, mass) in enumerate(designs.to_numpy()):
         yoke = replace(
@@ -278,4 +279,4 @@ def test_sweeps_vary_its_numbers_by_path():
         alone = ks.Mechanism("one", ks.Crank(0.1, LINKS["crank"]), (yoke,))
         s = ks.solve(alone, ANGLES, crank_speed=30.0, crank_acceleration=50.0, loads=LOADS)
         expected = abs(ks.extremes(s, "guide_moment").largest)
-        assert swept["largest guide_moment [N m]"][row] == pytest.approx(expected, rel=1e-12)
+        assert swept["largest guide_moment [N m]"][row] == pytest.approx(expected, rel=1e-8)

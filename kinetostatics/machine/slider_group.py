@@ -60,8 +60,8 @@ class SliderForces(NamedTuple):
 def place(joint, coupler_length, guide, assembly):
     """Coupler and slider for a given inner joint (kernel); a guide direction of None is +x, an offset of None zero."""
     position = unturned(joint.position, guide.direction)
-    first = unturned(joint.first, guide.direction)
-    second = unturned(joint.second, guide.direction)
+    first = unturned(vector(joint.first), guide.direction)
+    second = unturned(vector(joint.second), guide.direction)
 
     across = minus(guide.offset, position[1])
     square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
