@@ -21,6 +21,7 @@ from kinetostatics.numbers.planar import dot, minus, number, plus, stretched, su
 from kinetostatics.results.tables import extremes_frame
 from kinetostatics.solution.compile import compile as compiled
 from kinetostatics.solution.scene import Scene
+from kinetostatics.studies.methods.enclosures import enclosure
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +50,13 @@ class Yoke(Group):
 
     @property
     def outputs(self):
+        """Pin force, and what slot and guide bear."""
         units = {"slot_force": "N", "slot_moment": "N m", "guide_force": "N", "guide_moment": "N m"}
         pin = Output("N", True, f"on the block at {self.on}", self.on)
         return {self.on + self.label: pin} | {name + self.label: Output(unit) for name, unit in units.items()}
 
     def place(self, placement):
+        """Slider where the slot's line meets the guide."""
         slope = cos(self.slot_angle) / sin(self.slot_angle)
         parts = [unturned(vector(part), self.guide.direction) for part in placement.joints[self.on]]
         rise = [parts[0][1] - self.guide.guide_offset, parts[1][1], parts[2][1]]
@@ -63,6 +66,7 @@ class Yoke(Group):
         self.follow(placement, {self.pin: Joint(*(turned(pair, self.guide.direction) for pair in pairs))})
 
     def follow(self, placement, joints):
+        """Block and slider at joints that are known."""
         slider, u = "slider" + self.label, self.guide.direction
         slot = turned((cos(self.slot_angle), sin(self.slot_angle)), u)
         placement.joints[self.pin] = joints[self.pin]
@@ -71,12 +75,15 @@ class Yoke(Group):
         placement.links["block" + self.label] = LinkMotion(placement.joints[self.on], slot, None, None)
 
     def closure(self, placement):
+        """Squared sine of the slot's angle."""
         return sin(self.slot_angle) ** 2 + 0.0 * placement.angle
 
     def requirement(self, placement):
+        """Say when it closes."""
         return "the slot must not be parallel to the guide"
 
     def resolve(self, placement, loads, along):
+        """Slider along the guide, block, slider across it."""
         label, on, block = self.label, loads["slider" + self.label], loads["block" + self.label]
         pin, base = (placement.joints[name].position for name in (self.on, self.pin))
         push = unturned(vector(on.force), self.guide.direction)
@@ -120,16 +127,16 @@ def solution():
 def reference(angle):
     """All forces by one system of nine equations; motion by differentiating positions with 40 digits."""
     guide, slot = mp.expj(TILT), mp.expj(TILT + SLOT)
-    base = {"crank": lambda t: 0, "block": lambda t: A(t), "slider": lambda t: B(t)}
+    base = {"crank": lambda t: 0, "block": lambda t: pin(t), "slider": lambda t: foot_of(t)}
 
-    def A(t):
+    def pin(t):
         return mp.mpf("0.1") * mp.expj(angle + 30 * t + 25 * t * t)
 
-    def B(t):
+    def foot_of(t):
         """Where the line through A along the slot meets the guide, from the two equations of the lines."""
         foot = 1j * OFFSET * guide
         matrix = mp.matrix([[guide.real, -slot.real], [guide.imag, -slot.imag]])
-        far = mp.lu_solve(matrix, mp.matrix([(A(t) - foot).real, (A(t) - foot).imag]))[0]
+        far = mp.lu_solve(matrix, mp.matrix([(pin(t) - foot).real, (pin(t) - foot).imag]))[0]
         return foot + far * guide
 
     def direction(name, t):
@@ -138,7 +145,7 @@ def reference(angle):
     def centre(name, t):
         return base[name](t) + mp.mpc(*LINKS[name].centre) * direction(name, t)
 
-    at = {"O": 0, "A": A(0), "B": B(0)}
+    at = {"O": 0, "A": pin(0), "B": foot_of(0)}
     columns = [
         *(("O", part, 0, "O", "crank", None) for part in (1, 1j)),
         *(("A", part, 0, "A", "block", "crank") for part in (1, 1j)),
@@ -151,7 +158,7 @@ def reference(angle):
     names = list(LINKS)
     matrix, right = mp.zeros(9), mp.zeros(9, 1)
     gravity = mp.mpf("9.81") * mp.expj(mp.mpf("-1.3"))
-    reach = (mp.conj(guide) * B(0)).real
+    reach = (mp.conj(guide) * foot_of(0)).real
     applied = (35 - 800 * (reach - mp.mpf("0.02"))) * guide
     for row, name in enumerate(names):
         middle = centre(name, 0)
@@ -254,7 +261,7 @@ def test_principal_points_find_the_shaking_force(solution):
 
 
 def test_it_is_drawn_with_its_slot_slider_and_guide_and_moves_in_the_animation(solution, tmp_path):
-    figure, ax = plt.subplots()
+    ax = plt.subplots()[1]
     ks.plots.mechanism(solution, angles=(30,), ax=ax)
     pose = solution.at(np.radians([30.0]))
     A, B = pose.position("A")[:, 0], pose.position("B")[:, 0]
@@ -280,3 +287,10 @@ def test_sweeps_vary_its_numbers_by_path():
         s = ks.solve(alone, ANGLES, crank_speed=30.0, crank_acceleration=50.0, loads=LOADS)
         expected = abs(ks.extremes(s, "guide_moment").largest)
         assert swept["largest guide_moment [N m]"][row] == pytest.approx(expected, rel=1e-8)
+
+
+def test_its_kernels_run_on_intervals_and_are_enclosed(solution):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    found = enclosure(solution, "guide_moment")
+    error = np.abs(solution.scalar("guide_moment") - found.middle)
+    assert np.max(error) < 1e-13 * np.max(np.abs(found.middle))

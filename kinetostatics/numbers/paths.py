@@ -48,9 +48,8 @@ def _rules(item):
 
 def _of_value(value, rule, path, label):
     rule = rule.rule if isinstance(rule, checks.Optional | checks.OrFunction) else rule
-    if isinstance(rule, checks.Number):
-        if _is_number(value):
-            return {path: Place((), rule)}
+    if isinstance(rule, checks.Number) and _is_number(value):
+        return {path: Place((), rule)}
     if isinstance(rule, checks.Pair) and value is not None:
         return {f"{path}.{part}": Place((number,), rule.rule) for number, part in enumerate(rule.parts)}
     if isinstance(value, tuple):
