@@ -21,6 +21,11 @@ frozen dataclass derived from `Group`. It declares, by name,
     requirement(placement)            what must hold for it to be assembled, with its numbers, for the error message
     resolve(placement, loads, along)  the forces on its links, and what they demand of other links: a `Resolved`
     follow(placement, joints)         its links where the joints it adds are known: for methods under study
+    motion(name, placement)           a quantity of `motions`
+    elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
+
+The last three may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
+not be arithmetic: engines then tabulate it.
 
 How to write one
 ----------------
