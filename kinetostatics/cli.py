@@ -249,11 +249,18 @@ def _precision(options):
 
     from .casefile.case import load_case
     from .studies import precision
+    from .views.charts import precision_page
 
     case = load_case(options.case)
     quantities = options.quantity or [precision.QUANTITY]
     paths = precision.case_study(
-        case, options.out, variants=options.variant, quantities=quantities, angles=options.angles, progress=_tell
+        case,
+        options.out,
+        variants=options.variant,
+        quantities=quantities,
+        angles=options.angles,
+        progress=_tell,
+        page=precision_page,
     )
     print(f"{case.title}\n\nno other method is both faster and nearer than these:\n")
     table = pd.read_csv(paths[0])
@@ -270,8 +277,9 @@ def _stability(options):
     import pandas as pd
 
     from .studies import stability
+    from .views.charts import stability_page
 
-    paths = stability.write(options.out, progress=_tell)
+    paths = stability.write(options.out, progress=_tell, page=stability_page)
     _print(pd.read_csv(paths[1]).drop(columns=["machine", "versions"]).set_index("place"))
     print(*paths, sep="\n")
 

@@ -12,14 +12,13 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.rocker_group import RockerGroup
-from ..machine.slider_group import SliderGroup
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from ..results.extremes import extremes
 from ..solution.scene import solve
-from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight
+from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
+from .shapes import crank_sliders, four_bar
 
 __all__ = ["Balanced", "Counterweight", "counterweight", "full", "optimal", "partial"]
 
@@ -45,15 +44,18 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
         A counterweight is missing or not needed, breaks its limits, or the mechanism cannot be balanced so.
     """
     given = {name: item for name, item in [("coupler", coupler), ("rocker", rocker)] if item is not None}
-    outer = "rocker" if mechanism.group(RockerGroup) else "coupler"
     _refuse(mechanism)
+    bars, chains = four_bar(mechanism), crank_sliders(mechanism)
+    if bars is None and not chains:
+        raise ParameterError(f"full balancing is for crank-sliders and four-bars, not for a {mechanism.name}")
+    outer, link = ("coupler", chains[0].coupler.link) if bars is None else ("rocker", bars.rocker.link)
     if set(given) != {outer}:
         raise ParameterError(
             f"full balancing of a {mechanism.name} takes a counterweight on crank and {outer}, got crank"
             f"{''.join(f' and {name}' for name in given) or ' only'}"
         )
-    first = _set(mechanism, outer, (0.0, 0.0), given[outer])
-    second = _set(first.mechanism, "crank", (0.0, 0.0), crank)
+    first = _set(mechanism, link, (0.0, 0.0), given[outer])
+    second = _set(first.mechanism, _crank(mechanism), (0.0, 0.0), crank)
     return Balanced(mechanism, second.mechanism, {**second.counterweights, **first.counterweights})
 
 
@@ -80,17 +82,22 @@ def partial(mechanism, ratio="overall", *, crank):
     """
     value = _ratio(ratio)
     _refuse(mechanism)
-    if mechanism.group(SliderGroup) is None:
+    if not crank_sliders(mechanism):
         raise ParameterError(f"partial balancing by ratio is for crank-sliders, not for a {mechanism.name}")
-    lengths = {bar.link: bar.length for bar in mechanism.bars}
-    moments = principal_points(mechanism).static_moments
-    along, across = moments["coupler"]
+    first, second, _ = crank_sliders(mechanism)[0]
+    along, across = principal_points(mechanism).static_moments[second.link]
     if value == 1 and abs(across) > 1e-12 * abs(along):
         raise ParameterError(
-            f"partial balancing: the coupler's mass centre lies {mechanism.links['coupler'].centre[1]:g} m off the "
-            "line A-B, so no counterweight on the crank takes the force across the guide away; balance the coupler too"
+            f"partial balancing: the {second.link}'s mass centre lies {mechanism.links[second.link].centre[1]:g} m off "
+            f"the line {second.start}-{second.end}, so no counterweight on the crank takes the force across the guide "
+            f"away; balance the {second.link} too"
         )
-    return _set(mechanism, "crank", (value * lengths["crank"] * along / lengths["coupler"], 0.0), crank)
+    return _set(mechanism, first.link, (value * first.length * along / second.length, 0.0), crank)
+
+
+def _crank(mechanism):
+    (name,) = mechanism.crank.links
+    return name
 
 
 NORMS = ("largest", "mean", "along", "across", "weighted")
@@ -122,7 +129,8 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     Raises
     ------
     ParameterError
-        An unknown norm, a link that does not exist, no counterweight at all, or limits that cannot be kept.
+        An unknown norm, a link that does not exist, no counterweight at all, limits that cannot be kept, or forces
+        along and across guides that are not parallel.
     """
     _refuse_massless(mechanism)
     checks.require(
@@ -131,6 +139,8 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         checks.pair("weights", weights),
         *_search_problems(mechanism, counterweights),
     )
+    if norm in ("along", "across"):
+        guide_direction(mechanism)
     turn = np.linspace(0, 2 * np.pi, angles, endpoint=False)
     size = 2 if phase else 1
 
@@ -257,11 +267,11 @@ def _static_moment(mechanism, link):
     crank and rocker in proportion to their lengths (Berkof and Lowen 1969).
     """
     moments = {name: complex(*pair) for name, pair in principal_points(mechanism).static_moments.items()}
-    group = mechanism.group(RockerGroup)
-    if group is not None:
-        share = moments["coupler"] / group.coupler_length
-        moments["crank"] -= share * mechanism.crank.length
-        moments["rocker"] += share * group.rocker_length
+    bars = four_bar(mechanism)
+    if bars is not None:
+        share = moments[bars.coupler.link] / bars.coupler.length
+        moments[bars.crank.link] -= share * bars.crank.length
+        moments[bars.rocker.link] += share * bars.rocker.length
     return moments[link]
 
 
@@ -282,10 +292,11 @@ def _refuse(mechanism):
             f"{len(mechanism.groups)}: use `optimal` or `counterweight`"
         )
     if mechanism.crank.length is None:
-        carried = principal_points(mechanism).carried.get("A", 0.0)
+        carried = principal_points(mechanism).carried
+        pin = next(iter(mechanism.curves), "A")
         raise ParameterError(
-            f"the pin A of a {mechanism.name} runs at a varying distance from O with {carried:g} kg on it, so no "
-            "counterweight on the crank balances it; use `optimal`, or a plain crank-slider"
+            f"the pin {pin} of a {mechanism.name} runs at a varying distance from O with {carried.get(pin, 0.0):g} kg "
+            "on it, so no counterweight on the crank balances it; use `optimal`, or a plain crank-slider"
         )
 
 

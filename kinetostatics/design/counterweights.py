@@ -1,17 +1,21 @@
 """A counterweight on a link, the mechanism with it, and what it did: masses, arms, and the price elsewhere."""
 
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from ..errors import ParameterError
 from ..machine.mechanism import Mechanism
-from ..machine.slider_group import SliderGroup
 from ..mechanics.principal_points import principal_points
-from ..mechanics.quantities import label
+from ..mechanics.quantities import label_of
 from ..numbers import checks
 from ..results.extremes import extremes
 from ..solution.scene import solve
+from .shapes import crank_sliders
+
+PARALLEL = 1e-9
+"""Sine of the angle between guides up to which they are parallel."""
 
 
 @dataclass(frozen=True)
@@ -111,14 +115,15 @@ class Balanced:
     @property
     def ratio(self):
         """Ratio (h1 / L_OA) / (h2 / L_AB) reached; NaN where it has no meaning, as after full balancing."""
-        found = principal_points(self.mechanism).static_moments
-        lengths = {bar.link: bar.length for bar in self.mechanism.bars}
-        slider = self.mechanism.group(SliderGroup)
-        if slider is None or "crank" not in lengths:
+        chains = crank_sliders(self.mechanism)
+        if not chains:
             return np.nan
-        if abs(found["coupler"][0]) <= 1e-12 * principal_points(self.mechanism).mass * lengths["coupler"]:
+        crank, coupler, _ = chains[0]
+        points = principal_points(self.mechanism)
+        first, second = (points.static_moments[bar.link][0] for bar in (crank, coupler))
+        if abs(second) <= 1e-12 * points.mass * coupler.length:
             return np.nan
-        return (found["crank"][0] / lengths["crank"]) / (found["coupler"][0] / lengths["coupler"])
+        return (first / crank.length) / (second / coupler.length)
 
     @property
     def added_mass(self):
@@ -157,10 +162,9 @@ class Balanced:
         rows = {"mass of links [kg]": [principal_points(item.mechanism).mass for item in (before, after)]}
         for name, unit, quantity in [
             ("largest shaking force", "N", "shaking_force"),
-            ("largest shaking force along guide", "N", along_guide),
-            ("largest shaking force across guide", "N", across_guide),
+            *_by_guide(self.mechanism),
             ("largest shaking moment", "N m", "shaking_moment"),
-            *((f"largest {label(joint)}", "N", joint) for joint in before.reactions),
+            *((f"largest {label_of(before, joint)}", "N", joint) for joint in before.reactions),
             ("largest balancing torque", "N m", "balancing_torque"),
         ]:
             rows[f"{name} [{unit}]"] = [abs(extremes(item, quantity).largest) for item in (before, after)]
@@ -218,15 +222,42 @@ def _signed(place):
     return float(np.copysign(np.hypot(*place), place[0]))
 
 
-def along_guide(solution):
-    return np.tensordot(_guide_direction(solution), solution.shaking_force, 1)
+def along_guide(solution, slider=None):
+    """Shaking force along a guide, N."""
+    return np.tensordot(guide_direction(solution.mechanism, slider), solution.shaking_force, 1)
 
 
-def across_guide(solution):
-    x, y = _guide_direction(solution)
+def across_guide(solution, slider=None):
+    """Shaking force across a guide, to the left of it, N."""
+    x, y = guide_direction(solution.mechanism, slider)
     return np.tensordot((-y, x), solution.shaking_force, 1)
 
 
-def _guide_direction(solution):
-    group = solution.mechanism.group(SliderGroup)
-    return (1.0, 0.0) if group is None else group.guide.direction
+def guide_direction(mechanism, slider=None):
+    """Direction of the guide of a slider, or of all guides, +x without any.
+
+    Raises
+    ------
+    ParameterError
+        The guides are not parallel.
+    """
+    guides = mechanism.guides
+    if slider is not None:
+        return guides[slider].direction
+    directions = [guide.direction for guide in guides.values()] or [(1.0, 0.0)]
+    x, y = directions[0]
+    if any(abs(x * v - y * u) > PARALLEL for u, v in directions):
+        raise ParameterError(
+            f"along and across the guide mean nothing for a {mechanism.name} with guides of {' and '.join(guides)} "
+            'that are not parallel; use "largest" or "mean"'
+        )
+    return directions[0]
+
+
+def _by_guide(mechanism):
+    """Rows of the shaking force along and across each guide."""
+    several = len(mechanism.guides) > 1
+    for slider in mechanism.guides or (None,):
+        for way, component in (("along", along_guide), ("across", across_guide)):
+            text = f"largest shaking force {way} guide{f' of {slider}' if several else ''}"
+            yield text, "N", partial(component, slider=slider)

@@ -12,9 +12,10 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.builders import four_bar
-from ..machine.rocker_group import RockerGroup
 from ..numbers import checks
+from ..numbers.planar import cross, dot
 from ..results.extremes import extremes
+from . import shapes
 
 QUARTER = pi / 2
 CHANGE_POINT = 1e-12
@@ -69,22 +70,17 @@ def chain_unit_angle(angle):
 
 def rocker_angle(solution, start=QUARTER):
     """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad."""
-    _require_four_bar(solution)
+    link = _bars_of(solution).rocker.link
     checks.require("rocker_angle", checks.finite("start", start))
-    x, y = _rocker(solution)
-    x0, y0 = _rocker(solution.at(start))
-    return np.arctan2(x * y0 - y * x0, x * x0 + y * y0)
-
-
-def _rocker(solution):
-    return solution.placement.links["rocker"].direction
+    here, before = (at.placement.links[link].direction for at in (solution, solution.at(start)))
+    return np.arctan2(cross(here, before), dot(here, before))
 
 
 def transmission_angle(solution):
     """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi."""
-    _require_four_bar(solution)
-    motion = solution.placement.details["rocker"]
-    return np.arctan2(abs(motion.sine), motion.cosine)
+    bars, links = _bars_of(solution), solution.placement.links
+    coupler, rocker = (links[bar.link].direction for bar in (bars.coupler, bars.rocker))
+    return np.arctan2(abs(cross(coupler, rocker)), dot(coupler, rocker))
 
 
 @dataclass(frozen=True)
@@ -129,10 +125,10 @@ def swing(solution, start=QUARTER):
     -------
     Swing
     """
-    _require_four_bar(solution)
+    bars = _bars_of(solution)
     found_class = grashof(solution.mechanism)
     whole = found_class.intervals == ((0.0, 2 * pi),)
-    if not whole or "O2" in found_class.turning_joints:
+    if not whole or bars.rocker.start in found_class.turning_joints:
         raise ParameterError(
             "swing is for four-bars whose crank turns fully and whose rocker does not; this one is a "
             f"{found_class.kind}{'' if whole else ' that does not close all round'}"
@@ -162,13 +158,8 @@ class Grashof:
     intervals: tuple[tuple[float, float], ...]
 
 
-KINDS = {
-    "crank": ("crank-rocker", ("O", "A")),
-    "coupler": ("double-rocker", ("A", "B")),
-    "rocker": ("rocker-crank", ("B", "O2")),
-    "frame": ("double-crank", ("O2", "O")),
-}
-"""Kind of a Grashof linkage and the joints that turn fully, by its shortest link."""
+KINDS = {"crank": "crank-rocker", "coupler": "double-rocker", "rocker": "rocker-crank", "frame": "double-crank"}
+"""Kind of a Grashof linkage by its shortest link."""
 
 
 def grashof(mechanism):
@@ -187,13 +178,14 @@ def grashof(mechanism):
     -------
     Grashof
     """
-    group = _four_bar(mechanism)
-    frame = np.hypot(*group.pivot)
-    lengths = {
-        "crank": mechanism.crank.length,
-        "coupler": group.coupler_length,
-        "rocker": group.rocker_length,
-        "frame": frame,
+    crank, coupler, rocker, pivot = four_bar_of(mechanism)
+    frame = np.hypot(*pivot)
+    lengths = {"crank": crank.length, "coupler": coupler.length, "rocker": rocker.length, "frame": frame}
+    ends = {
+        "crank": (crank.start, crank.end),
+        "coupler": (coupler.start, coupler.end),
+        "rocker": (rocker.end, rocker.start),
+        "frame": (rocker.start, crank.start),
     }
     if any(np.ndim(length) for length in lengths.values()):
         raise ParameterError("Grashof's rule is for one design at a time, got a batch of lengths")
@@ -202,32 +194,31 @@ def grashof(mechanism):
     ordered = sorted(lengths, key=lambda name: lengths[name])
     outer = lengths[ordered[0]] + lengths[ordered[3]]
     inner = lengths[ordered[1]] + lengths[ordered[2]]
-    kind: str
     joints: tuple[str, ...]
-    kind, joints = KINDS[ordered[0]]
+    kind, joints = KINDS[ordered[0]], ends[ordered[0]]
     change_point = abs(outer - inner) <= CHANGE_POINT * inner
     if change_point:
         kind = "change-point"
         shortest = (name for name in ordered if lengths[name] <= lengths[ordered[0]] * (1 + CHANGE_POINT))
-        joints = tuple(dict.fromkeys(joint for name in shortest for joint in KINDS[name][1]))
+        joints = tuple(dict.fromkeys(joint for name in shortest for joint in ends[name]))
     elif outer > inner:
         kind, joints = "triple-rocker", ()
     slack = 8 * CHANGE_POINT if change_point else 0.0
-    return Grashof(kind, joints, _closed_intervals(lengths, atan2(group.pivot[1], group.pivot[0]), slack))
+    return Grashof(kind, joints, _closed_intervals(lengths, atan2(pivot[1], pivot[0]), slack))
 
 
-def _four_bar(mechanism):
-    """The rocker group of a four-bar; an error for any other mechanism."""
+def four_bar_of(mechanism):
+    """The bars of a four-bar; an error for any other mechanism."""
     checks.require("linkage", checks.mechanism("mechanism", mechanism))
-    group = mechanism.groups[0]
-    if len(mechanism.groups) > 1 or not isinstance(group, RockerGroup) or mechanism.crank.length is None:
+    bars = shapes.four_bar(mechanism)
+    if bars is None:
         raise ParameterError(f"this is for four-bars, not for a {mechanism.name}")
-    return group
+    return bars
 
 
-def _require_four_bar(solution):
+def _bars_of(solution):
     checks.require("linkage", checks.solution("solution", solution))
-    _four_bar(solution.mechanism)
+    return four_bar_of(solution.mechanism)
 
 
 def _closed_intervals(lengths, frame_angle, slack):
@@ -298,7 +289,7 @@ def characteristics(solutions, reference):
     columns = {}
     for name, solution in solutions.items():
         found = swing(solution)
-        fastest = abs(extremes(solution, "rocker_rate").largest / solution.crank_speed)
+        fastest = abs(extremes(solution, f"{_bars_of(solution).rocker.link}_rate").largest / solution.crank_speed)
         transmission = np.degrees(extremes(solution, transmission_angle).range)
         columns[name] = {
             "largest rocker angle psi [deg]": np.degrees(found.largest),

@@ -14,7 +14,7 @@ from ..numbers import checks
 from ..numbers.elementary import namespace, sqrt
 from ..numbers.planar import cross, dot, minus, vector
 from .crank import ray
-from .group import Group, Output, Point, Resolved
+from .group import Group, Output, Point, Resolved, Slot
 from .links import Joint, Link, LinkMotion, Wrench
 
 GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
@@ -109,6 +109,14 @@ class CamRoller(checks.Checked, Group):
     @property
     def joints(self):
         return {"A": Point("block")}
+
+    @property
+    def slots(self):
+        return (Slot("crank", "A"),)
+
+    @property
+    def curves(self):
+        return {"A": "pitch curve of the cam"}
 
     @property
     def outputs(self):

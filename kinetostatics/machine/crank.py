@@ -59,8 +59,11 @@ class Crank(checks.Checked):
         return {"crank": "O"}
 
     PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
-    guides: ClassVar = {}
-    motions: ClassVar = {}
+    own_names: ClassVar = {"crank": "crank"}
+    guides: ClassVar[dict] = {}
+    motions: ClassVar[dict] = {}
+    curves: ClassVar[dict] = {}
+    slots = ()
     hangs_on = ()
     trusted = True
 

@@ -8,18 +8,51 @@ frozen dataclass derived from `Group`. It declares, by name,
     joints      the joints it adds, each a `Point` of a link, or of the frame
     hangs_on    the joints it hangs on
     bars        the links that keep two joints at a distance
+    guides      the guide of each link that slides along one, without turning
+    slots       the links in which a joint slides, each a `Slot`
+    curves      the joints that run on a curve, with what drawings call it
     outputs     the reactions and other forces it finds, each an `Output` with its unit
+    motions     quantities of its motion besides those of joints and links, each an `Output`
 
-and computes, by kernels without branches on values,
+(those that it has none of are left out: `Group` says so), and computes, by kernels without branches on values,
 
     place(placement)                  its joints and links, from the joints it hangs on
     closure(placement)                margin: negative where it cannot be assembled, small near a limit position
     requirement(placement)            what must hold for it to be assembled, with its numbers, for the error message
     resolve(placement, loads, along)  the forces on its links, and what they demand of other links: a `Resolved`
     follow(placement, joints)         its links where the joints it adds are known: for methods under study
+    motion(name, placement)           a quantity of `motions`
+    elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
 
-`loads` are wrenches by link about its reference joint, `along` the forces along a guide by slider, kept apart from them
-since they may cancel with inertia.
+The last three may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
+not be arithmetic: engines then tabulate it.
+
+How to write one
+----------------
+*Fields.* A frozen dataclass (``eq=False``) of lengths, a `Guide` or a pivot, an assembly of +1 or -1, a `Link` for
+each link, called as the link but for the label; ``on`` and ``pin``, names of joints; ``label``, put behind the names of
+links and forces so that a mechanism may have two of the kind. ``PATHS`` renames fields in paths such as
+"coupler_length2"; "" leaves a name out. Lengths may be arrays (designs, 1): write kernels with ``+ - * /`` and
+`numbers.elementary`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers, on numbers with
+derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`numbers.planar` adds such numbers).
+
+*place.* Read ``placement.joints[self.on]``, a `Joint`: position, first and second derivative by the crank angle, each
+(x, y). Put into ``placement.joints`` each joint of `joints`, into ``placement.links`` a `LinkMotion` for each link: its
+reference joint, its direction (unit vector), d theta / d phi and the slope of that (None: it never turns); into
+``placement.travels`` for each slider its coordinate along its guide with both derivatives; into ``placement.details``
+what `resolve` wants to find again.
+
+*resolve.* A pure function from what acts on its links to what it finds: nothing is written to, and nothing is kept.
+``loads`` holds by link the wrench on it, inertia, weight and all that groups further out ask of it, a force and its
+moment about the link's reference joint, either of them None where there is none. ``along`` holds by slider the applied
+force along its guide, kept apart since it may nearly cancel with inertia. Write down the equilibrium of the links for
+the unknown forces *on* them; what the group needs from others goes into ``demands`` with the sign that it has on the
+group: the mechanism sees to the reaction on the link that carries the joint. No joint outside `hangs_on` and no link
+but the crank can be asked.
+
+*outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
+units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
+forces and power; tests/test_a_group_of_ones_own.py has a whole example.
 
 Nothing else in the library knows what a group looks like, nor the names of its links.
 """
@@ -61,12 +94,23 @@ class Bar(NamedTuple):
     length: Any
 
 
+class Slot(NamedTuple):
+    """A link with a straight slot, from its reference joint through `joint` and beyond."""
+
+    link: str
+    joint: str
+
+
 class Output(NamedTuple):
-    """What a quantity is: its SI unit, whether it is a vector, and what it acts on and from what, in words."""
+    """What a quantity is: its SI unit, whether it is a vector, and what it acts on and from what, in words.
+
+    `at` is the joint that a reaction acts at, where it is not called like it.
+    """
 
     unit: str
     vector: bool = False
     text: str = ""
+    at: str = ""
 
 
 class Resolved(NamedTuple):
@@ -121,7 +165,7 @@ class Group:
         return [value for value in vars(self).values() if type(value) is str]
 
     @property
-    def hangs_on(self):
+    def hangs_on(self: Any):
         return (self.on,)
 
     @property
@@ -138,9 +182,22 @@ class Group:
     def bars(self):
         return ()
 
-    def with_link(self, name, link):
+    @property
+    def slots(self):
+        return ()
+
+    @property
+    def curves(self):
+        return {}
+
+    @property
+    def own_names(self: Any):
+        """What each of its links is called without the label: what it is, whatever else the mechanism has."""
+        return {name: name.removesuffix(self.label) or name for name in self.links}
+
+    def with_link(self: Any, name, link):
         """The group with other mass properties of one link, whose field is called as the link but for the label."""
-        return replace(self, **{name.removesuffix(self.label): link})
+        return replace(self, **{self.own_names[name]: link})
 
     @property
     def guides(self):

@@ -105,9 +105,20 @@ class Mechanism(Batched):
         """Guide by slider."""
         return {name: guide for group in self.groups for name, guide in group.guides.items()}
 
-    def group(self, kind):
-        """First group of a kind, or None (to go)."""
-        return next((group for group in self.groups if isinstance(group, kind)), None)
+    @cached_property
+    def own_names(self):
+        """What each link is called without the label of its group."""
+        return self._collected("own_names")
+
+    @cached_property
+    def curves(self):
+        """What drawings call the curve that a joint runs on, by joint."""
+        return self._collected("curves")
+
+    @property
+    def slots(self):
+        """Links in which a joint slides, each as a `Slot`."""
+        return sum((group.slots for group in self.groups), ())
 
     @cached_property
     def hints(self):
@@ -125,6 +136,11 @@ class Mechanism(Batched):
     def bars(self):
         """Links that keep two joints at a distance, from the crank outwards."""
         return sum((group.bars for group in self.groups), self.crank.bars)
+
+    @property
+    def couplers(self):
+        """Bars from a joint of one link to a joint of another."""
+        return tuple(bar for bar in self.bars if all(self.joints[end].link != bar.link for end in (bar.start, bar.end)))
 
     def _collected(self, table):
         return {name: item for part in self.parts for name, item in getattr(part, table).items()}

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
-from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted
+from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
 from .group import FRAME, Bar, Group, Output, Point, Resolved, smaller
 from .links import Joint, Link, LinkMotion, Wrench, between
 
@@ -63,11 +63,12 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     sine = area / product
     cosine = (c * c + h * h - square) / product
 
-    ratio = -dot(joint.first, p) / (c * divided)
-    swing = -dot(joint.first, q) / (h * divided)
+    first, second = vector(joint.first), vector(joint.second)
+    ratio = -dot(first, p) / (c * divided)
+    swing = -dot(first, q) / (h * divided)
     lag, swing_lag = c * ratio * ratio, h * swing * swing
-    ratio_slope = (lag * cosine - swing_lag - dot(joint.second, p)) / (c * divided)
-    swing_slope = (lag - swing_lag * cosine - dot(joint.second, q)) / (h * divided)
+    ratio_slope = (lag * cosine - swing_lag - dot(second, p)) / (c * divided)
+    swing_slope = (lag - swing_lag * cosine - dot(second, q)) / (h * divided)
 
     arm = stretched(h, p)
     aside = left(arm)
@@ -179,7 +180,7 @@ class RockerGroup(checks.Checked, Group):
     @property
     def outputs(self):
         return {
-            self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}"),
+            self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
             self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
         }

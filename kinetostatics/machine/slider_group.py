@@ -60,8 +60,8 @@ class SliderForces(NamedTuple):
 def place(joint, coupler_length, guide, assembly):
     """Coupler and slider for a given inner joint (kernel); a guide direction of None is +x, an offset of None zero."""
     position = unturned(joint.position, guide.direction)
-    first = unturned(joint.first, guide.direction)
-    second = unturned(joint.second, guide.direction)
+    first = unturned(vector(joint.first), guide.direction)
+    second = unturned(vector(joint.second), guide.direction)
 
     across = minus(guide.offset, position[1])
     square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
@@ -195,9 +195,9 @@ class SliderGroup(checks.Checked, Group):
     def outputs(self):
         label = self.label
         return {
-            self.on + label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}"),
+            self.on + label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._slider}"),
-            "guide" + label: Output("N", True, f"ground on {self._slider}"),
+            "guide" + label: Output("N", True, f"ground on {self._slider}", self.pin),
             "guide_force" + label: Output("N", False, f"ground on {self._slider} along the guide's left normal"),
             "guide_moment" + label: Output("N m", False, f"ground on {self._slider} about {self.pin}"),
         }

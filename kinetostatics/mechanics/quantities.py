@@ -58,9 +58,8 @@ def _declared(mechanism):
 
     outputs = mechanism.outputs
     for name in ("balancing_torque", *(name for name in outputs if name != "balancing_torque")):
-        unit, vector, _ = outputs[name]
-        if not vector:
-            add(name, unit, methodcaller("scalar", name))
+        if not outputs[name].vector:
+            add(name, outputs[name].unit, methodcaller("scalar", name))
     add("balancing_torque_by_power", "N m", attrgetter("balancing_torque_by_power"), kind="whole")
     add("shaking_force", "N", attrgetter("shaking_force"), True, "whole")
     add("shaking_moment", "N m", attrgetter("shaking_moment"), kind="whole")
@@ -114,6 +113,17 @@ def components(solution, name):
     return tuple(values) if found.vector else (values,)
 
 
+def unit_of(solution, name):
+    """Unit of a quantity of a solution; "" for a function of the user's."""
+    return "" if callable(name) else quantity(solution, name).unit
+
+
+def label_of(solution, name):
+    """What a table or an axis calls a quantity of a solution; a name that it has not stays as it is."""
+    known = of_mechanism(solution.mechanism)
+    return known[name].label if name in known else name
+
+
 def values(solution, name):
     """Values of a quantity over the crank angles; of a vector the magnitude; of a function what it returns."""
     if callable(name):
@@ -134,7 +144,7 @@ def scale(solution, name):
 
     What is small beside it may be rounding of terms that cancel.
     """
-    unit = "" if callable(name) else quantity(solution, name).unit
+    unit = unit_of(solution, name)
     if unit == "N m":
         return solution.largest_torque_term
     return solution.largest_force_term if unit == "N" else 0.0

@@ -12,7 +12,7 @@ what was computed says nothing.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import reduce
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -20,14 +20,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import NotGivenError
-from ..machine.cam_roller import CamRoller
 from ..machine.cams import Cam
 from ..machine.crank import ray
+from ..machine.group import Group
 from ..machine.guide import Guide
 from ..machine.links import Link, arm, first_at, second_at, virtual_work
 from ..machine.loads import Gravity, ProcessForce, Spring
-from ..numbers.elementary import APART, ROUNDING
-from ..numbers.leaves import mapped, with_fields
+from ..numbers.duals import Dual
+from ..numbers.leaves import is_structural, mapped, with_fields
 from ..numbers.planar import product, vector
 from .dynamics import Dynamics
 
@@ -36,137 +36,12 @@ SAFETY = 3.0
 """Factor that makes a bound of a magnification: other signs of errors, and rounding of the derivatives."""
 CERTAIN = 4.0
 """Roundings of all lengths and the crank angle that a value is uncertain by."""
-BESIDES = ("cam_force", "slot_force")
-"""Scalars that are reactions and not among the vectors."""
 PASSING = 0.1
 """Share of its worst case that a term counts as where it passes through zero."""
 BLOCK = 4096
 """Crank angles differentiated at a time."""
 STEP = 1e-4
 """Step of the crank angle for the third derivative of a cam that takes plain numbers only, rad."""
-
-
-class Dual:
-    """Values at some crank angles (B,) or one for all, with derivatives by the seeds (seeds, B); None: they are zero.
-
-    What kernels do with the elements of object arrays, as with recorded numbers (`tracing.Node`).
-    """
-
-    __slots__ = ("slopes", "value")
-
-    def __init__(self, value, slopes=None):
-        self.value, self.slopes = value, slopes
-
-    def _chained(self, value, factor):
-        return Dual(value, None if self.slopes is None else self.slopes * factor)
-
-    def __add__(self, other):
-        if isinstance(other, np.ndarray):
-            return NotImplemented
-        other = _dual(other)
-        return Dual(self.value + other.value, _sum(self.slopes, other.slopes))
-
-    __radd__ = __add__
-
-    def __neg__(self):
-        return self._chained(-self.value, -1.0)
-
-    def __sub__(self, other):
-        return NotImplemented if isinstance(other, np.ndarray) else self + -_dual(other)
-
-    def __rsub__(self, other):
-        return NotImplemented if isinstance(other, np.ndarray) else -self + other
-
-    def __mul__(self, other):
-        if isinstance(other, np.ndarray):
-            return NotImplemented
-        other = _dual(other)
-        value = self.value * other.value
-        return Dual(value, _sum(_scaled(self.slopes, other.value), _scaled(other.slopes, self.value)))
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other):
-        if isinstance(other, np.ndarray):
-            return NotImplemented
-        other = _dual(other)
-        value = np.divide(self.value, other.value)
-        return Dual(
-            value, _sum(_scaled(self.slopes, np.divide(1.0, other.value)), _scaled(other.slopes, -value / other.value))
-        )
-
-    def __rtruediv__(self, other):
-        return NotImplemented if isinstance(other, np.ndarray) else _dual(other) / self
-
-    def __pow__(self, exponent):
-        if exponent != 2:
-            raise TypeError(f"only squares are differentiated, not powers of {exponent}")
-        return self * self
-
-    def __abs__(self):
-        return self._chained(np.abs(self.value), np.copysign(1.0, self.value))
-
-    def sin(self):
-        """Called by `numpy.sin` for an array of objects, as `cos`, `sqrt` and `arctan` are."""
-        return self._chained(np.sin(self.value), np.cos(self.value))
-
-    def cos(self):
-        return self._chained(np.cos(self.value), -np.sin(self.value))
-
-    def sqrt(self):
-        root = np.sqrt(self.value)
-        return self._chained(root, np.divide(0.5, root))
-
-    def arctan(self):
-        return self._chained(np.arctan(self.value), 1.0 / (1.0 + self.value * self.value))
-
-    def forgiving_root(self, unit):
-        """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
-        closed = self.value >= -ROUNDING * _dual(unit).value
-        root = np.where(closed, np.sqrt(np.maximum(self.value, 0.0)), np.nan)
-        return self._chained(root, np.divide(0.5, root))
-
-    def kept_off_zero(self, unit):
-        return Dual(np.maximum(self.value, _dual(unit).value), self.slopes)
-
-    def moved_apart(self, unit):
-        return self + APART * unit
-
-    def _one(self):
-        if np.size(self.value) != 1:
-            raise TypeError("a kernel that looks at values takes one crank angle at a time")
-        return float(np.ravel(self.value)[0])
-
-    __float__ = _one
-
-    def __bool__(self):
-        return bool(self._one())
-
-    def __lt__(self, other):
-        return self._one() < float(other)
-
-    def __le__(self, other):
-        return self._one() <= float(other)
-
-    def __gt__(self, other):
-        return self._one() > float(other)
-
-    def __ge__(self, other):
-        return self._one() >= float(other)
-
-
-def _dual(value):
-    return value if isinstance(value, Dual) else Dual(value)
-
-
-def _sum(a, b):
-    if a is None or b is None:
-        return a if b is None else b
-    return a + b
-
-
-def _scaled(slopes, factor):
-    return None if slopes is None else slopes * factor
 
 
 def condition(solution, points=None):
@@ -189,7 +64,6 @@ def condition(solution, points=None):
         A group of the user's own does more than arithmetic and comparisons.
     """
     points = np.arange(math.prod(solution.shape)) if points is None else np.asarray(points)
-    points = np.arange(math.prod(solution.shape)) if points is None else points
     with np.errstate(all="ignore"):
         blocks = [_at(solution, points[start : start + BLOCK]) for start in range(0, points.size, BLOCK)]
     return np.concatenate(blocks)
@@ -216,7 +90,7 @@ class _Seeded:
         self._geometry(plain.mechanism, lengths.append)
         self._seeds, self._count = 0, len(lengths) + len(plain.loads) + 2
         self._angle = _array(self._seed(plain.crank_angle))
-        mechanism = self._geometry(plain.mechanism, self._seed, {CamRoller: self._roller})
+        mechanism = self._geometry(plain.mechanism, self._seed, {Group: self._group})
         drive = mapped((plain.crank_speed, plain.crank_acceleration), self._constant)
         idle = Dynamics(mechanism, self._angle, *drive)
         self.solution = replace(idle, loads=tuple(self._load(item, idle) for item in plain.loads))
@@ -257,16 +131,26 @@ class _Seeded:
         self._seeds += 1
         return slopes
 
-    def _roller(self, roller):
-        block = self._geometry(roller.block, self._seed)
-        known, plain = self._seeds, self._plain.placement.details["cam"]
+    def _group(self, group):
+        parts = {
+            field.name: self._geometry(getattr(group, field.name), self._seed)
+            for field in fields(group)
+            if not is_structural(field) and field.name != "cam"
+        }
+        if hasattr(group, "cam"):
+            parts["cam"] = self._cam(group.cam)
+        return with_fields(group, **parts)
+
+    def _cam(self, cam):
+        known, angle = self._seeds, self._plain.crank_angle
+        plain = cam.polar(angle, ray(angle))
         try:
-            cam = self._geometry(roller.cam, self._seed)
-            self._require_equal(cam.polar(self._angle, ray(self._angle)), plain)
+            copied = self._geometry(cam, self._seed)
+            self._require_equal(copied.polar(self._angle, ray(self._angle)), plain)
         except Exception:  # whatever fails on numbers that are not plain
             self._seeds = known
-            cam = _Values(self._tabled(roller.cam, plain))
-        return with_fields(roller, cam=cam, block=block)
+            return _Values(self._tabled(cam, plain))
+        return copied
 
     def _tabled(self, cam, plain):
         """Radius and derivatives of a cam that takes plain numbers only, by its size and by the crank angle."""
@@ -426,6 +310,7 @@ def _of_forces(solution, links, largest_pushes):
         torques += [_Sized(work).certain, PASSING * size * links[name].speed]
     force, torque = reduce(np.maximum, forces), reduce(np.maximum, torques)
     found = solution.resolved
-    supports = [*found.reactions.values(), *(found.scalars[name] for name in BESIDES if name in found.scalars)]
+    outputs = solution.mechanism.outputs
+    supports = [*found.reactions.values(), *(part for name, part in found.scalars.items() if outputs[name].unit == "N")]
     shares = [_quotient(_Sized(vector(part) if part is None else part).change, force) for part in supports]
     return [*shares, _quotient(_Sized(found.scalars["balancing_torque"]).change, torque)]

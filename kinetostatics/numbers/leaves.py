@@ -157,10 +157,15 @@ def with_fields(item, **changes):
     return made
 
 
+def is_structural(field):
+    """Whether a field of a dataclass belongs to the structure, and is no number."""
+    return field.type in STRUCTURAL or bool(field.metadata.get("structural"))
+
+
 def _kinds(kind):
     """Names of the fields of a dataclass, and whether each belongs to the structure."""
     for field in fields(kind):
-        yield field.name, field.type in STRUCTURAL or bool(field.metadata.get("structural"))
+        yield field.name, is_structural(field)
 
 
 def batch_shape(numbers):

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import checks
+from .leaves import is_structural
 
 
 class Place(NamedTuple):
@@ -42,13 +43,13 @@ def _rules(item):
         return rules.rules
     if not is_dataclass(item):
         return {}
-    return {field.name: checks.Number() for field in fields(item) if field.type in (Any, float, "Any", "float")}
+    return {field.name: checks.Number() for field in fields(item) if not is_structural(field)}
 
 
 def _of_value(value, rule, path, label):
     rule = rule.rule if isinstance(rule, checks.Optional | checks.OrFunction) else rule
-    if isinstance(rule, checks.Number):
-        return {path: Place((), rule)} if _is_number(value) else {}
+    if isinstance(rule, checks.Number) and _is_number(value):
+        return {path: Place((), rule)}
     if isinstance(rule, checks.Pair) and value is not None:
         return {f"{path}.{part}": Place((number,), rule.rule) for number, part in enumerate(rule.parts)}
     if isinstance(value, tuple):

@@ -3,13 +3,13 @@
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from ..errors import ConditionWarning, ParameterError, QuantityError
-from ..mechanics.quantities import label, magnitude, unit
+from ..mechanics.quantities import label_of, magnitude, unit_of
 from ..numbers import checks
-from ..solution.solution import Solution
 from .extremes import UNIT, extrema, extremes, warning
 from .turn import SAME, USABLE, require_single
 
@@ -36,8 +36,8 @@ class Comparison:
     Every ratio is reference / balanced: above 1 the balanced mechanism is better.
     """
 
-    reference: Solution
-    balanced: Solution
+    reference: Any
+    balanced: Any
     names: tuple[str, str] = ("reference", "balanced")
 
     @cached_property
@@ -99,12 +99,14 @@ class Comparison:
         for joint in self.reference.reactions:
             if joint in self.balanced.reactions:
                 row = *self.peak_reactions(joint), self.peak_reaction_ratio(joint)
-                rows.append((f"largest {label(joint)}", "N", *row))
+                rows.append((f"largest {label_of(self.reference, joint)}", "N", *row))
         for name in ("shaking_force", "shaking_moment"):
             peaks = [abs(extremes(solution, name).largest) for solution in (self.reference, self.balanced)]
-            rows.append((f"largest {label(name)}", unit(name), *peaks, _ratio(*peaks)))
+            label, unit = label_of(self.reference, name), unit_of(self.reference, name)
+            rows.append((f"largest {label}", unit, *peaks, _ratio(*peaks)))
+        couplers = (bar.link for bar in self.reference.mechanism.couplers)
         for name, ranges in (
-            ("coupler inertia force", self.inertia_force_range()),
+            *((f"{link} inertia force", self.inertia_force_range(link)) for link in couplers),
             ("cam force", self.cam_force_range()),
         ):
             for which, of_each in zip(("smallest", "largest"), zip(*ranges, strict=True), strict=True):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import ConditionWarning, ParameterError
-from ..mechanics.quantities import scale, unit, values
+from ..mechanics.quantities import scale, unit_of, values
 from ..numbers import checks
 from .turn import SAME, require_single, runs
 
@@ -139,7 +139,7 @@ def extrema(solution, quantity):
 
     require_single(solution, "extremes", quantity)
     turn = solution.sampled
-    position = not callable(quantity) and unit(quantity) == "m"
+    position = unit_of(solution, quantity) == "m"
     left_out = np.empty(0) if position else turn.lost
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         samples = np.asarray(function(turn.at))

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
+from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
 from .methods import METHODS
 from .methods.certified import certified, relative_errors
@@ -62,7 +63,10 @@ def study(solution, quantity=QUANTITY, *, methods=METHODS, repeats=5, progress=N
             except (NotGivenError, MissingLibraryError) as why:
                 row |= {"error": np.nan, "not given": str(why)}
             rows.append(row)
-    table = pd.DataFrame(rows).assign(quantity=quantity, angles=solution.crank_angle.size)
+    known = declared(solution, quantity)
+    table = pd.DataFrame(rows).assign(
+        quantity=quantity, label=known.label, unit=known.unit, angles=solution.crank_angle.size
+    )
     times = pd.Series(seconds(*runs.values(), repeats=repeats), index=list(runs), dtype=float)
     table.insert(4, "time [ns/angle]", 1e9 * times / solution.crank_angle.size)
     return table
@@ -74,8 +78,8 @@ def front(table):
     return given[given["error"] < given["error"].cummin().shift(fill_value=np.inf)]
 
 
-def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=360, progress=None):
-    """Study a case: one CSV and one chart, as PNG and SVG, into a folder; returns their paths.
+def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=360, progress=None, page=None):
+    """Study a case: one CSV, and a chart as PNG and SVG if told how to draw it, into a folder; returns their paths.
 
     Parameters
     ----------
@@ -86,6 +90,8 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     quantities : sequence of str
     angles : int
         Crank angles over the turn.
+    page : function, optional
+        ``page(table, path)`` draws the chart, as `views.charts.precision_page`, and returns the paths of its files.
 
     Raises
     ------
@@ -95,7 +101,6 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     import pandas as pd
 
     from ..numbers.files import unwritable, written_whole
-    from ..views.charts import precision_page
 
     checks.require("precision", checks.case("case", case))
     path = Path(folder) / f"{case.path.stem}_precision.csv"
@@ -113,13 +118,13 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     table = pd.concat(tables, ignore_index=True).assign(**circumstances())
     with written_whole(path) as temporary:
         table.to_csv(temporary, index=False)
-    return [path, *precision_page(table, path.with_suffix(""))]
+    return [path, *(page(table, path.with_suffix("")) if page else ())]
 
 
 def kinds(case):
     """First variant of each kind of mechanism and cam in a case."""
     found: dict[tuple, str] = {}
     for name, variant in case.variants.items():
-        cams = tuple(type(getattr(group, "cam", None)) for group in variant.mechanism.groups)
-        found.setdefault((variant.mechanism.name, cams), name)
+        parts = tuple(type(part) for group in variant.mechanism.groups for part in (group, *vars(group).values()))
+        found.setdefault((variant.mechanism.name, parts), name)
     return list(found.values())

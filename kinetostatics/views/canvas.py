@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from ..errors import ParameterError
-from ..mechanics.quantities import label
+from ..mechanics.quantities import label_of
 from ..numbers import checks
 
 INK, STEEL, ACCENT = "0.15", "slategray", "tab:red"
@@ -23,12 +23,14 @@ def axes(ax):
 def labelled(solutions, name):
     """Solutions by label; a single one is labelled by the quantity shown."""
     checks.require("plots", checks.quantity(name))
-    named = dict(solutions) if isinstance(solutions, Mapping) else {label(name): solutions}
+    several = isinstance(solutions, Mapping)
+    named = dict(solutions) if several else {"solution": solutions}
     checks.require(
         "plots",
         None if named else "there are no solutions to draw",
         *(checks.solution(str(name) if len(named) > 1 else "solution", solution) for name, solution in named.items()),
     )
+    named = named if several else {label_of(solutions, name): solutions}
     for name, solution in named.items():
         if len(solution.shape) != 1:
             raise ParameterError(

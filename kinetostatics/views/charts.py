@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib import rc_context
 
 from ..errors import ParameterError
-from ..mechanics.quantities import label
 from ..numbers.files import written_whole
 from .canvas import ACCENT, axes, require_columns
 
@@ -80,7 +79,7 @@ def error_by_distance(table, ax=None):
     -------
     Axes
     """
-    shown = ("method", "ours", "number", "error", "nan", "raised", "not given", "condition", "axis", "quantity")
+    shown = ("method", "ours", "number", "error", "nan", "raised", "not given", "condition", "axis", "label")
     require_columns("error_by_distance", table, shown)
     ax = axes(ax)
     for name, style in _styles(table).items():
@@ -96,7 +95,7 @@ def error_by_distance(table, ax=None):
         label="condition x rounding",
     )
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3 * USELESS), xlabel=table["axis"].iloc[0])
-    ax.set_ylabel(f"error of {label(table['quantity'].iloc[0])} [1]")
+    ax.set_ylabel(f"error of {table['label'].iloc[0]} [1]")
     ax.grid(visible=True, alpha=0.3)
     return ax
 
@@ -132,7 +131,7 @@ def model_ladder(needs, ax=None):
     ax.axhline(needs.within, color="0.3", linestyle="--", linewidth=1.0, label=f"tolerance {needs.within:g}")
     drawn([needs.smallest], "*", color="tab:green", markersize=16, zorder=4, label=f"smallest: {needs.smallest.name}")
     ax.set(yscale="log", xlabel="operations per crank angle [1]", ylim=(floor / 2, 30))
-    ax.set_ylabel(f"change of {label(needs.quantity)}, relative to largest value [1]")
+    ax.set_ylabel(f"change of {needs.label}, relative to largest value [1]")
     ax.invert_xaxis()
     ax.margins(x=0.15)
     ax.legend(fontsize=7, loc="lower right")
@@ -218,8 +217,8 @@ def _scatter_matrix(table, columns):
 def precision_page(table, path):
     """Chart of a study, a panel for each variant and quantity, saved as PNG and SVG; returns the paths."""
     panels = {
-        f"{part['case'].iloc[0]}, {variant}: {label(quantity)}": part
-        for (variant, quantity), part in table.groupby(["variant", "quantity"], sort=False)
+        f"{part['case'].iloc[0]}, {variant}: {part['label'].iloc[0]}": part
+        for (variant, _), part in table.groupby(["variant", "quantity"], sort=False)
     }
     return _page(work_precision, panels, path)
 

@@ -3,8 +3,7 @@
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.cam_roller import CamRoller
-from ..machine.slider_group import SliderGroup
+from ..machine.group import FRAME
 from ..mechanics.motion import Motion
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
@@ -68,13 +67,13 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
         pose = _posed(solution, [angle])
         for bar, (x, y) in zip(_bars(ax, pose, shade), _bar_lines(pose), strict=True):
             bar.set_data(x, y)
-        for group in _slider_groups(pose):
-            ax.plot(*pose.position(group.pin), "s", ms=13, mfc=STEEL, mec="none", alpha=shade, zorder=3)
+        for joint in _sliding(pose.mechanism):
+            ax.plot(*pose.position(joint), "s", ms=13, mfc=STEEL, mec="none", alpha=shade, zorder=3)
         for joint in pose.placement.joints:
             ax.plot(*pose.position(joint), "o", ms=5, mfc="white", mec=INK, alpha=shade, zorder=4)
         ax.annotate(
             f"{angle:g}°",
-            pose.position("A")[:, 0],
+            pose.position(_leading(pose.mechanism))[:, 0],
             xytext=(5, 5),
             textcoords="offset points",
             fontsize="x-small",
@@ -93,7 +92,7 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     ----------
     solution : Solution
     joints : sequence of str
-        Reactions drawn as arrows from their joints ("guide" starts at B); the largest of all is as long as
+        Reactions drawn as arrows from the joints that they act at ("guide" at B); the largest of all is as long as
         the crank. NaN where the mechanism does not close draws nothing.
     frames : int
         Poses shown, of the solution's crank angles.
@@ -120,14 +119,15 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     _frame(ax, solution)
     bars = _bars(ax, solution, 1.0)
     lines = list(_bar_lines(solution))
-    blocks = [solution.position(group.pin) for group in _slider_groups(solution)]
+    blocks = [solution.position(joint) for joint in _sliding(solution.mechanism)]
     sliders = [ax.plot([], [], "s", ms=13, mfc=STEEL, mec="none", zorder=3)[0] for _ in blocks]
     pins = [ax.plot([], [], "o", ms=6, mfc="white", mec=INK, zorder=4)[0] for _ in solution.placement.joints]
     positions = [solution.position(joint) for joint in solution.placement.joints]
     forces = [solution.reaction(joint) for joint in joints]
     largest = max(float(np.nanmax(magnitude(force))) for force in forces)
-    length = float(np.nanmax(magnitude(solution.position("A"))))
-    starts = [solution.position("B" if joint == "guide" else joint) for joint in joints]
+    length = float(np.nanmax(magnitude(solution.position(_leading(solution.mechanism)))))
+    outputs = solution.mechanism.outputs
+    starts = [solution.position(outputs[joint].at or joint) for joint in joints]
     arrows = ax.quiver(
         *np.zeros((2, len(joints))),
         *np.zeros((2, len(joints))),
@@ -158,15 +158,15 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
 
 def _frame(ax, solution):
     """What does not move: the support, the guide over the stroke, the pitch curve of the cam or the crank circle."""
-    turn = _posed(solution, np.linspace(0, 360, 721))
-    if solution.mechanism.group(CamRoller) is not None:
-        ax.plot(*turn.position("A"), color=ACCENT, lw=1, ls="--", label="pitch curve of the cam")
-    else:
-        ax.plot(*turn.position("A"), color=INK, lw=0.5, ls=":")
+    turn, made = _posed(solution, np.linspace(0, 360, 721)), solution.mechanism
+    for joint, text in made.curves.items():
+        ax.plot(*turn.position(joint), color=ACCENT, lw=1, ls="--", label=text)
+    for bar in made.crank.bars:
+        ax.plot(*turn.position(bar.end), color=INK, lw=0.5, ls=":")
     ax.plot(0, 0, "o", ms=14, mfc="0.8", mec="none")
-    for group in _slider_groups(solution):
-        path = turn.position(group.pin)
-        along = path.T @ group.guide.direction
+    for slider, guide in made.guides.items():
+        path = turn.position(made.references[slider])
+        along = path.T @ guide.direction
         start, end = path[:, np.nanargmin(along)], path[:, np.nanargmax(along)]
         reach = 0.15 * (end - start)
         ax.plot(*np.column_stack([start - reach, end + reach]), color=INK, lw=6, alpha=0.15)
@@ -177,21 +177,27 @@ def _posed(solution, degrees):
     return Motion(solution.mechanism, np.radians(degrees), 0.0, 0.0)
 
 
-def _slider_groups(solution):
-    return [group for group in solution.mechanism.groups if isinstance(group, SliderGroup)]
+def _sliding(made):
+    """Joints of the sliders."""
+    return [made.references[slider] for slider in made.guides]
+
+
+def _leading(made):
+    """First joint that moves, from the crank outwards; O where none does."""
+    return next((name for name, point in made.joints.items() if point.link != FRAME), "O")
 
 
 def _bars(ax, pose, shade):
-    """One empty line for each bar, and one for the slotted crank."""
+    """One empty line for each bar and slot."""
     count = len(list(_bar_lines(pose)))
     return [ax.plot([], [], color=STEEL, lw=2.5, alpha=shade, solid_capstyle="round")[0] for _ in range(count)]
 
 
 def _bar_lines(pose):
-    """Ends, x and y, of every bar, (2, N) each; the slotted crank reaches a little beyond the block."""
-    if pose.mechanism.crank.length is None:
-        tip = 1.15 * pose.position("A")
-        yield _ends(pose.position("O"), tip)
+    """Ends, x and y, of every bar and slotted link, (2, N) each; slots reach a little beyond the joint in them."""
+    for slot in pose.mechanism.slots:
+        start = pose.position(pose.mechanism.references[slot.link])
+        yield _ends(start, start + 1.15 * (pose.position(slot.joint) - start))
     for bar in pose.mechanism.bars:
         yield _ends(pose.position(bar.start), pose.position(bar.end))
 

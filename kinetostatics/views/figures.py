@@ -7,10 +7,9 @@ import matplotlib.pyplot as plt
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from ..design import shapes
 from ..errors import ParameterError
-from ..machine.cam_roller import CamRoller
-from ..machine.rocker_group import RockerGroup
-from ..machine.slider_group import SliderGroup
+from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
 from . import plots
@@ -59,24 +58,24 @@ def _saved(draw, solutions, path, case, file_format):
     return path
 
 
-def _with_cam(items):
-    return {name: item for name, item in items.items() if item.mechanism.group(CamRoller) is not None}
+def _that_have(quantity, items):
+    return {name: item for name, item in items.items() if quantity in of_mechanism(item.mechanism)}
 
 
 def _always(case):
     return True
 
 
-def _has_cam(case):
-    return bool(_with_cam(case.variants))
+def _has(quantity):
+    return lambda case: bool(_that_have(quantity, case.variants))
 
 
-def _has_slider(case):
-    return all(item.mechanism.group(SliderGroup) is not None for item in case.variants.values())
+def _all_have(quantity):
+    return lambda case: len(_that_have(quantity, case.variants)) == len(case.variants)
 
 
 def _is_four_bar(case):
-    return all(item.mechanism.group(RockerGroup) is not None for item in case.variants.values())
+    return all(shapes.four_bar(item.mechanism) for item in case.variants.values())
 
 
 def _is_balanced(case):
@@ -92,9 +91,9 @@ def _single(plot, width=6.4, height=4.0, **axes):
     return draw
 
 
-def _of_cams(plot):
-    single = _single(plot)
-    return lambda solutions: single(_with_cam(solutions))
+def _of_those_that_have(quantity):
+    single = _single(partial(plots.over_turn, quantity=quantity))
+    return lambda solutions: single(_that_have(quantity, solutions))
 
 
 def _one_each(plot, width, height, stacked=False):
@@ -140,10 +139,10 @@ FIGURES = {
     "overview": (_overview, _always),
     "mechanism": (_one_each(plots.mechanism, 8, 2.6, stacked=True), _always),
     "torque": (_single(plots.torque), _always),
-    "acceleration_error": (_single(plots.acceleration_error), _has_slider),
+    "acceleration_error": (_single(plots.acceleration_error), _all_have("slider_acceleration")),
     "hodograph": (_one_each(plots.hodograph, 4.4, 4.2), _always),
-    "pressure_angle": (_of_cams(plots.pressure_angle), _has_cam),
-    "cam_force": (_of_cams(plots.cam_force), _has_cam),
+    "pressure_angle": (_of_those_that_have("pressure_angle"), _has("pressure_angle")),
+    "cam_force": (_of_those_that_have("cam_force"), _has("cam_force")),
     "mass_centres": (_single(plots.mass_centres, 9.0, 3.6), _is_balanced),
     "shaking_by_direction": (_single(plots.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
     "shaking_by_crank_angle": (

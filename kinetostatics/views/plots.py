@@ -10,9 +10,9 @@ from collections.abc import Mapping
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..design.linkage import chain_unit_angle
-from ..machine.slider_group import SliderGroup
-from ..mechanics.quantities import label, magnitude, unit, values
+from ..design.linkage import chain_unit_angle, four_bar_of
+from ..errors import QuantityError
+from ..mechanics.quantities import magnitude, of_mechanism, values
 from ..numbers.checks import choice, problem, require
 from ..results.extremes import extremes
 from .canvas import INK, axes, closed, display, labelled, styled
@@ -56,14 +56,13 @@ def over_turn(solutions, quantity, ax=None):
     Axes
     """
     ax = axes(ax)
-    curves = {
-        name: (_degrees(solution), values(solution, quantity))
-        for name, solution in labelled(solutions, quantity).items()
-    }
-    factor, shown = display(unit(quantity), [value for _, value in curves.values()])
+    named = labelled(solutions, quantity)
+    curves = {name: (_degrees(solution), values(solution, quantity)) for name, solution in named.items()}
+    declared = _declared(named, quantity)
+    factor, shown = display(declared.unit, [value for _, value in curves.values()])
     for name, (angle, value), style in styled(curves):
         ax.plot(angle, factor * value, linestyle=style, label=name)
-    return _finished(ax, f"{label(quantity)} [{shown}]", len(curves) > 1)
+    return _finished(ax, f"{declared.label} [{shown}]", len(curves) > 1)
 
 
 def torque(solutions, ax=None):
@@ -81,21 +80,21 @@ def pressure_angle(solutions, ax=None):
     return over_turn(solutions, "pressure_angle", ax)
 
 
-def acceleration_error(solutions, ax=None):
+def acceleration_error(solutions, ax=None, slider="slider"):
     """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
 
     With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
     -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2.
     """
     ax = axes(ax)
-    named = labelled(solutions, "slider_acceleration")
+    named = labelled(solutions, f"{slider}_acceleration")
     _require_turning(named)
     for name, solution, style in styled(named):
-        half_stroke = np.ptp(extremes(solution, "slider_position").value) / 2
+        half_stroke = np.ptp(extremes(solution, f"{slider}_position").value) / 2
         square, alpha = solution.crank_speed**2, solution.crank_acceleration
-        psi = solution.crank_angle - solution.mechanism.group(SliderGroup).guide.guide_angle
+        psi = solution.crank_angle - solution.mechanism.guides[slider].guide_angle
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
-        error = (solution.slider_acceleration - law) / (half_stroke * square)
+        error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
         ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
     return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1)
 
@@ -121,16 +120,16 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     ax = axes(ax)
     named = labelled(solutions, joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
-    factor, shown = display("N", curves.values())
+    declared = _declared(named, joint)
+    factor, shown = display(declared.unit, curves.values())
     for name, solution, style in styled(named):
         (line,) = ax.plot(*closed(factor * curves[name]), linestyle=style, label=name)
         _mark_angles(ax, solution, joint, factor, np.arange(0, 360, marks), line.get_color())
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
     ax.set_aspect("equal", adjustable="datalim")
-    name = label(joint)
-    ax.set_xlabel(f"{name}, x [{shown}]")
-    ax.set_ylabel(f"{name}, y [{shown}]")
+    ax.set_xlabel(f"{declared.label}, x [{shown}]")
+    ax.set_ylabel(f"{declared.label}, y [{shown}]")
     if len(named) > 1 or isinstance(solutions, Mapping):
         ax.legend(frameon=False)
     return ax
@@ -146,6 +145,7 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     ----------
     solutions : Solution or mapping of label to Solution
     link : "coupler" or "rocker"
+        Which link of the four-bar, whatever it is called.
     order : 1 or 2
         Velocity or acceleration.
     ax : Axes, optional
@@ -160,14 +160,17 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
         choice("link", link, ("coupler", "rocker")),
     )
     ax = axes(ax)
-    named = labelled(solutions, f"{link}_rate")
+    named = labelled(solutions, f"{link} rate")
     _require_turning(named)
     for name, solution, style in styled(named):
+        turning = getattr(four_bar_of(solution.mechanism), link).link
         angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
         rows = np.argsort(angle)
         speed = solution.crank_speed
         relative = (
-            solution.rate(link) / speed if order == 1 else solution.angular_acceleration(link) / (speed * abs(speed))
+            solution.rate(turning) / speed
+            if order == 1
+            else solution.angular_acceleration(turning) / (speed * abs(speed))
         )
         ax.plot(angle[rows], relative[rows], linestyle=style, label=name)
     kind = "velocity" if order == 1 else "acceleration"
@@ -233,8 +236,17 @@ def _finished(ax, ylabel, legend):
     return ax
 
 
-def _vector(solution, joint):
-    return solution.shaking_force if joint == "shaking_force" else solution.reaction(joint)
+def _vector(solution, name):
+    """Values of a vector, (2, N)."""
+    vectors = {known: found for known, found in of_mechanism(solution.mechanism).items() if found.vector}
+    if name not in vectors:
+        raise QuantityError(choice(f"{solution.mechanism.name}: reaction", name, tuple(vectors)))
+    return vectors[name].read(solution)
+
+
+def _declared(named, name):
+    """Unit and label of a quantity that all solutions have."""
+    return of_mechanism(next(iter(named.values())).mechanism)[name]
 
 
 def _mark_angles(ax, solution, joint, factor, angles, color):

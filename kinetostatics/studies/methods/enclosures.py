@@ -7,12 +7,14 @@ direction counts: its length is 1 but for rounding, and no guide has any other.
 
 import importlib
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ...errors import MissingLibraryError, NotGivenError
 from ...machine.crank import ray
+from ...machine.guide import Guide
 from ...machine.loads import Gravity, ProcessForce
 from ...mechanics.dynamics import Dynamics
 from ...mechanics.quantities import components
@@ -125,13 +127,9 @@ def on_arb(arb, solution) -> Dynamics:
     """The solution with arb numbers in place of its own, every push on a slider evaluated."""
     angle = _copied(np.atleast_1d(np.asarray(solution.crank_angle, dtype=float)), arb)
     mechanism = _copied(solution.mechanism, arb)
-    for group, own in zip(mechanism.groups, solution.mechanism.groups, strict=True):
-        if hasattr(group, "guide"):
-            exact = with_fields(group.guide, angle=None, exact=_direction(own.guide.direction, arb))
-            object.__setattr__(group, "guide", exact)
     for cam in (group.cam for group in mechanism.groups if hasattr(group, "cam")):
         what = f"cam {type(cam).__name__}"
-        for values in _attempted(what, lambda: cam.polar(angle, ray(angle))):
+        for values in _attempted(what, partial(cam.polar, angle, ray(angle))):
             _require_exact(what, values, arb)
     drive = _copied((solution.crank_speed, solution.crank_acceleration), arb)
     idle = Dynamics(mechanism, angle, *drive)
@@ -150,14 +148,18 @@ def _load_on_arb(arb, item, place, motion):
 
 
 def _copied(item, arb):
-    """The item with arb numbers in place of its own."""
+    """The item with arb numbers in place of its own; guides by direction, not by the rounding of its length."""
 
     def number(value):
         if isinstance(value, np.ndarray):
             return np.frompyfunc(lambda part: arb(float(part)), 1, 1)(value)
         return arb(value) if isinstance(value, int) else arb(float(value))
 
-    return mapped(item, number)
+    def guide(own):
+        offset, direction = mapped(own.guide_offset, number), _direction(own.direction, arb)
+        return with_fields(own, angle=None, guide_offset=offset, exact=direction)
+
+    return mapped(item, number, {Guide: guide})
 
 
 def _direction(pair, arb):

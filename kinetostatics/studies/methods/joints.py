@@ -8,7 +8,7 @@ from ...engines.engines import Kernels
 from ...engines.series import assembled, closed_paths, harmonic_series, joints_of, positions
 from ...errors import NotGivenError
 from ...mechanics.quantities import components
-from ..needs import two_mass_coupler
+from ..simplifications import two_mass_coupler
 from .engines import compiled_run
 from .method import Method, require_one_design
 

@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.design.linkage import chain_unit, chain_unit_angle
 from kinetostatics.mechanics import quantities
-from kinetostatics.studies.methods import kane, papers
+from kinetostatics.studies.methods import kane, kane_equations, papers
 from kinetostatics.studies.methods.method import NotGivenError
 from support.four_bars import FourBar
 from support.machines import ANGLES, CLOSE, Machine, largest
@@ -62,7 +62,7 @@ def test_all_forces_come_from_one_function(s):
 
 def test_second_mechanism_of_a_kind_derives_nothing_and_of_a_pattern_compiles_nothing(monkeypatch):
     kane.all_forces(LOADED["plain"])
-    monkeypatch.setattr(kane, "KanesMethod", None)
+    monkeypatch.setattr(kane_equations, "KanesMethod", None)
     level = Machine("plain", guide_angle=0.0, acceleration=0.0).solve()
     assert max(error(level, name, parts) for name, parts in kane.all_forces(level)().items()) < CLOSE
     monkeypatch.setattr(kane.sp, "lambdify", None)

@@ -1,0 +1,170 @@
+"""What a scene is made of, and how each part of it can be left out or put more simply, read off what groups declare."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..engines.engines import Kernels
+from ..engines.series import harmonic_series
+from ..errors import NotGivenError
+from ..machine.group import FRAME
+from ..machine.guide import Guide
+from ..machine.links import Link
+from ..machine.loads import Gravity, ProcessForce, Spring
+from ..numbers.leaves import mapped
+from ..solution.solution import Solution
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One simplification: what it is called, and how it is made; None where it changes nothing.
+
+    Where it cannot be made it raises `NotGivenError`, which says why.
+    """
+
+    name: str
+    simplified: Callable[[Solution], Solution | None]
+
+
+def two_mass_coupler(mechanism, only=None):
+    """The mechanism with each coupler replaced by two point masses at its joints; None if no coupler has mass.
+
+    Total mass and the place of the mass centre along the link are kept; the moment of inertia becomes
+    m s (l - s), whatever it was (Biezeno and Grammel, *Technische Dynamik*). A coupler is a bar from a joint of one
+    link to a joint of another (`Mechanism.couplers`); a mass at a joint of the frame does not count.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    only : str, optional
+        What the couplers to be replaced are called without the labels of their groups; all unless told.
+
+    Raises
+    ------
+    NotGivenError
+        A mass centre lies beyond a joint, so that the mass at the other would be negative.
+    """
+    made = mechanism
+    for bar in reversed(mechanism.couplers):
+        coupler = made.links[bar.link]
+        if only not in (None, mechanism.own_names[bar.link]) or _is_zero(coupler.mass):
+            continue
+        outer = coupler.mass * coupler.centre[0] / bar.length
+        if np.any(outer < 0) or np.any(outer > coupler.mass):
+            raise NotGivenError(
+                f"the mass centre of the {bar.link}, {coupler.centre[0]} m along its {bar.length} m, lies beyond "
+                "its joints, so one of two masses there would be negative"
+            )
+        made = made.with_link(bar.link, Link())
+        for joint, mass in ((bar.start, coupler.mass - outer), (bar.end, outer)):
+            link, along, across = mechanism.joints[joint]
+            if link != FRAME:
+                made = made.with_link(link, made.links[link].joined(mass, (along, across)))
+    return None if made is mechanism else made
+
+
+def _is_zero(value):
+    return isinstance(value, int | float) and value == 0
+
+
+# Simplifications of a scene, each a function of the solution; None if there is nothing to simplify
+
+
+def _without_load(kind):
+    def simplified(solution):
+        kept = tuple(item for item in solution.loads if not isinstance(item, kind))
+        return replace(solution, loads=kept) if len(kept) < len(solution.loads) else None
+
+    return simplified
+
+
+def _at_constant_speed(solution):
+    return None if _is_zero(solution.crank_acceleration) else replace(solution, crank_acceleration=0.0)
+
+
+def _with_links(changed):
+    """Simplification that changes every link by ``changed(mechanism, name, link)``."""
+
+    def simplified(solution):
+        mechanism = solution.mechanism
+        for name, link in solution.mechanism.links.items():
+            new = changed(solution.mechanism, name, link)
+            if new is not None:
+                mechanism = mechanism.with_link(name, new)
+        return None if mechanism is solution.mechanism else replace(solution, mechanism=mechanism)
+
+    return simplified
+
+
+def _massless(kind):
+    def changed(mechanism, name, link):
+        absent = _is_zero(link.mass) and _is_zero(link.inertia)
+        return None if absent or mechanism.own_names[name] != kind else Link()
+
+    return _with_links(changed)
+
+
+def _without_inertia(kind):
+    def changed(mechanism, name, link):
+        absent = _is_zero(link.inertia) or mechanism.own_names[name] != kind
+        return None if absent else replace(link, inertia=0.0)
+
+    return _with_links(changed)
+
+
+def _centred(mechanism, name, link):
+    return None if _is_zero(link.centre[1]) else replace(link, centre=(link.centre[0], 0.0))
+
+
+def _as_two_masses(kind):
+    def simplified(solution):
+        mechanism = two_mass_coupler(solution.mechanism, kind)
+        return None if mechanism is None else replace(solution, mechanism=mechanism)
+
+    return simplified
+
+
+def _guides_through_crank_centre(solution):
+    mechanism = solution.mechanism
+    if all(_is_zero(guide.guide_offset) for guide in mechanism.guides.values()):
+        return None
+    through = {Guide: lambda guide: replace(guide, guide_offset=0.0)}
+    return replace(solution, mechanism=mapped(mechanism, lambda number: number, through))
+
+
+def _up_to_harmonic(order):
+    return lambda solution: replace(solution, engine=Kernels(harmonic_series(solution, order)))
+
+
+BEFORE = {
+    "gravity": (Choice("no gravity", _without_load(Gravity)),),
+    "spring": (Choice("no spring", _without_load(Spring)),),
+    "process force": (Choice("no process force", _without_load(ProcessForce)),),
+    "crank acceleration": (Choice("constant crank speed", _at_constant_speed),),
+    "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
+    "mass-centre offsets": (Choice("mass centres on the links", _with_links(_centred)),),
+}
+AFTER = {
+    "kinematics": (
+        Choice("two harmonics", _up_to_harmonic(2)),
+        Choice("one harmonic", _up_to_harmonic(1)),
+    ),
+}
+
+
+def ingredients(mechanism):
+    """By ingredient: how it can be simplified, from the least to the most; applied in this order.
+
+    Links go by what they are called without the labels of their groups; others come before couplers, which share their
+    masses out to them, and kinematics come last.
+    """
+    kinds = mechanism.own_names
+    couplers = {kinds[bar.link] for bar in mechanism.couplers}
+    hung = {kinds[bar.link] for group in mechanism.groups for bar in group.bars}
+    links = {}
+    for kind in sorted(dict.fromkeys(kinds.values()), key=lambda kind: kind in couplers):
+        choices = [Choice(f"no {kind} inertia", _without_inertia(kind))] if kind in hung else []
+        choices += [Choice(f"two-mass {kind}", _as_two_masses(kind))] if kind in couplers else []
+        links[kind] = (*choices, Choice(f"massless {kind}", _massless(kind)))
+    return BEFORE | links | AFTER

@@ -1,0 +1,296 @@
+"""A new kind of group in one class: what it declares is all that the rest of the library needs to know of it."""
+
+import ast
+import inspect
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import matplotlib.pyplot as plt
+import mpmath as mp
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.animation import PillowWriter
+
+import kinetostatics as ks
+from kinetostatics.machine.group import Group, Output, Point, Resolved, Slot
+from kinetostatics.machine.links import Joint, LinkMotion, Wrench
+from kinetostatics.mechanics.principal_points import principal_points
+from kinetostatics.numbers.elementary import cos, sin
+from kinetostatics.numbers.planar import dot, minus, number, plus, stretched, subtracted, turned, unturned, vector
+from kinetostatics.results.tables import extremes_frame
+from kinetostatics.solution.compile import compile as compiled
+from kinetostatics.solution.scene import Scene
+from kinetostatics.studies.methods.enclosures import enclosure
+
+
+@dataclass(frozen=True, eq=False)
+class Yoke(Group):
+    """Scotch yoke (RPP): a block on joint `on` slides in the slot of a slider, at an angle to the slider's guide.
+
+    The slider's joint is where the slot's line meets the guide; the slot pushes across itself, from the slider on the
+    block.
+    """
+
+    guide: ks.Guide = ks.Guide()
+    slot_angle: Any = np.pi / 2
+    slider: ks.Link = ks.Link()
+    block: ks.Link = ks.Link()
+    on: str = "A"
+    pin: str = "B"
+    label: str = ""
+
+    PATHS: ClassVar = {"guide": ""}
+    links = property(lambda self: {"block" + self.label: self.block, "slider" + self.label: self.slider})
+    references = property(lambda self: {"block" + self.label: self.on, "slider" + self.label: self.pin})
+    joints = property(lambda self: {self.pin: Point("slider" + self.label)})
+    guides = property(lambda self: {"slider" + self.label: self.guide})
+    slots = property(lambda self: (Slot("slider" + self.label, self.on),))
+    lengths = property(lambda self: (self.guide.guide_offset, *self.slider.centre, *self.block.centre))
+
+    @property
+    def outputs(self):
+        """Pin force, and what slot and guide bear."""
+        units = {"slot_force": "N", "slot_moment": "N m", "guide_force": "N", "guide_moment": "N m"}
+        pin = Output("N", True, f"on the block at {self.on}", self.on)
+        return {self.on + self.label: pin} | {name + self.label: Output(unit) for name, unit in units.items()}
+
+    def place(self, placement):
+        """Slider where the slot's line meets the guide."""
+        slope = cos(self.slot_angle) / sin(self.slot_angle)
+        parts = [unturned(vector(part), self.guide.direction) for part in placement.joints[self.on]]
+        rise = [parts[0][1] - self.guide.guide_offset, parts[1][1], parts[2][1]]
+        along = [part[0] - slope * up for part, up in zip(parts, rise, strict=True)]
+        across = (self.guide.guide_offset, 0.0, 0.0)
+        pairs = zip(along, across, strict=True)
+        self.follow(placement, {self.pin: Joint(*(turned(pair, self.guide.direction) for pair in pairs))})
+
+    def follow(self, placement, joints):
+        """Block and slider at joints that are known."""
+        slider, u = "slider" + self.label, self.guide.direction
+        slot = turned((cos(self.slot_angle), sin(self.slot_angle)), u)
+        placement.joints[self.pin] = joints[self.pin]
+        placement.travels[slider] = Joint(*(dot(u, part) for part in joints[self.pin]))
+        placement.links[slider] = LinkMotion(joints[self.pin], u, None, None)
+        placement.links["block" + self.label] = LinkMotion(placement.joints[self.on], slot, None, None)
+
+    def closure(self, placement):
+        """Squared sine of the slot's angle."""
+        return sin(self.slot_angle) ** 2 + 0.0 * placement.angle
+
+    def requirement(self, placement):
+        """Say when it closes."""
+        return "the slot must not be parallel to the guide"
+
+    def resolve(self, placement, loads, along):
+        """Slider along the guide, block, slider across it."""
+        label, on, block = self.label, loads["slider" + self.label], loads["block" + self.label]
+        pin, base = (placement.joints[name].position for name in (self.on, self.pin))
+        push = unturned(vector(on.force), self.guide.direction)
+        slot = -plus(push[0], along.get("slider" + label)) / sin(self.slot_angle)
+        way = placement.links["block" + label].direction
+        guide = cos(self.slot_angle) * slot - push[1]
+        couple = minus(None, block.moment)
+        moment = plus(minus(couple, on.moment), dot(subtracted(pin, base), way) * slot)
+        force = vector(subtracted(stretched(-slot, turned(way, (0.0, 1.0))), block.force))
+        found = {"slot_force": slot, "slot_moment": number(couple), "guide_force": guide, "guide_moment": moment}
+        scalars = {name + label: part for name, part in found.items()}
+        return Resolved({self.on + label: force}, scalars, {self.on: Wrench(force, None)})
+
+
+LINKS = {
+    "crank": ks.Link(2.0, (0.04, 0.02), 0.03),
+    "block": ks.Link(0.7, (0.01, -0.02), 0.002),
+    "slider": ks.Link(5.0, (0.03, 0.05), 0.1),
+}
+ANGLES = np.linspace(0.0, 2 * np.pi, 12, endpoint=False) + 0.1
+SLOT, TILT, OFFSET = 1.2, 0.4, 0.03
+LOADS = (ks.Gravity(9.81, -1.3), ks.Spring(800.0, 0.02), ks.ProcessForce(35.0))
+QUANTITIES = ("balancing_torque", "O", "A", "slot_force", "slot_moment", "guide_force", "guide_moment")
+
+
+def mechanism(label="", **changes):
+    yoke = Yoke(ks.Guide.at(TILT, OFFSET), SLOT, LINKS["slider"], LINKS["block"], label=label, **changes)
+    return ks.Mechanism("Scotch yoke", ks.Crank(0.1, LINKS["crank"]), (yoke,))
+
+
+def scene(label=""):
+    loads = (LOADS[0], *(ks.Spring(800.0, 0.02, on="slider" + label), ks.ProcessForce(35.0, on="slider" + label)))
+    return Scene(mechanism(label), 30.0, 50.0, loads)
+
+
+@pytest.fixture(scope="module")
+def solution():
+    return scene().solve(ANGLES)
+
+
+def reference(angle):
+    """All forces by one system of nine equations; motion by differentiating positions with 40 digits."""
+    guide, slot = mp.expj(TILT), mp.expj(TILT + SLOT)
+    base = {"crank": lambda t: 0, "block": lambda t: pin(t), "slider": lambda t: foot_of(t)}
+
+    def pin(t):
+        return mp.mpf("0.1") * mp.expj(angle + 30 * t + 25 * t * t)
+
+    def foot_of(t):
+        """Where the line through A along the slot meets the guide, from the two equations of the lines."""
+        foot = 1j * OFFSET * guide
+        matrix = mp.matrix([[guide.real, -slot.real], [guide.imag, -slot.imag]])
+        far = mp.lu_solve(matrix, mp.matrix([(pin(t) - foot).real, (pin(t) - foot).imag]))[0]
+        return foot + far * guide
+
+    def direction(name, t):
+        return {"crank": mp.expj(angle + 30 * t + 25 * t * t), "block": slot, "slider": guide}[name]
+
+    def centre(name, t):
+        return base[name](t) + mp.mpc(*LINKS[name].centre) * direction(name, t)
+
+    at = {"O": 0, "A": pin(0), "B": foot_of(0)}
+    columns = [
+        *(("O", part, 0, "O", "crank", None) for part in (1, 1j)),
+        *(("A", part, 0, "A", "block", "crank") for part in (1, 1j)),
+        ("slot_force", 1j * slot, 0, "A", "block", "slider"),
+        ("slot_moment", 0, 1, "A", "block", "slider"),
+        ("guide_force", 1j * guide, 0, "B", "slider", None),
+        ("guide_moment", 0, 1, "B", "slider", None),
+        ("balancing_torque", 0, 1, "O", "crank", None),
+    ]
+    names = list(LINKS)
+    matrix, right = mp.zeros(9), mp.zeros(9, 1)
+    gravity = mp.mpf("9.81") * mp.expj(mp.mpf("-1.3"))
+    reach = (mp.conj(guide) * foot_of(0)).real
+    applied = (35 - 800 * (reach - mp.mpf("0.02"))) * guide
+    for row, name in enumerate(names):
+        middle = centre(name, 0)
+        inertia = LINKS[name].mass * (mp.diff(lambda t, name=name: centre(name, t), 0, 2) - gravity)
+        inertia -= applied if name == "slider" else 0
+        turning = LINKS[name].inertia * (50 if name == "crank" else 0)
+        turning -= (mp.conj(at["B"] - middle) * applied).imag if name == "slider" else 0
+        right[3 * row], right[3 * row + 1], right[3 * row + 2] = inertia.real, inertia.imag, turning
+        for column, (_, force, couple, joint, on, by) in enumerate(columns):
+            sign = (name == on) - (name == by)
+            moment = couple + (mp.conj(at[joint] - middle) * force).imag
+            for part, value in enumerate((mp.mpc(force).real, mp.mpc(force).imag, moment)):
+                matrix[3 * row + part, column] = sign * value
+    found = {}
+    for (name, part, *_), value in zip(columns, mp.lu_solve(matrix, right), strict=True):
+        found[name] = found.get(name, 0) + complex(value) * (part if name in ("O", "A") else 1)
+    return found
+
+
+def test_its_forces_are_those_of_a_full_system_that_shares_no_formula(solution):
+    with mp.workdps(40):
+        expected = [reference(angle) for angle in ANGLES]
+    for name in QUANTITIES:
+        found = solution.reaction(name) if name in ("O", "A") else (solution.scalar(name), 0.0)
+        error = found[0] + 1j * found[1] - np.array([row[name] for row in expected])
+        assert np.max(np.abs(error)) < 1e-12 * max(np.max(np.abs(found[0])), 1.0), name
+
+
+def test_its_class_takes_at_most_sixty_lines_of_code():
+    source = inspect.getsource(Yoke)
+    (made,) = ast.parse(source).body
+    documented = made.body[0].end_lineno - made.body[0].lineno + 1
+    assert sum(bool(line.strip()) for line in source.splitlines()) - documented <= 60
+
+
+def test_it_passes_the_check_of_groups_and_balances_its_powers(solution):
+    report = ks.check(mechanism().groups[0])
+    assert report.ok, report
+    assert solution.power_residual < 1e-13
+
+
+def test_its_outputs_stand_in_the_frame_and_among_the_extremes_with_the_units_declared():
+    s = scene("_saw").solve(ANGLES)
+    columns = set(s.frame().columns)
+    assert {"guide_moment_saw [N m]", "guide_force_saw [N]", "slot_moment_saw [N m]"} <= columns
+    assert {"slider_saw_position [m]", "reaction_A_saw_x [N]", "B_x [m]"} <= columns
+    table = extremes_frame(s)
+    assert table.loc["guide moment saw", "unit"] == "N m"
+    assert table.loc["slot force saw", "unit"] == "N"
+
+
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+def test_engines_and_programs_agree_with_the_kernels(solution, engine):
+    if engine == "compiled":
+        pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+    program = compiled(scene(), QUANTITIES, engine=engine)
+    values = program(ANGLES)
+    solved = ks.solve(mechanism(), ANGLES, crank_speed=30.0, crank_acceleration=50.0, loads=LOADS, engine=engine)
+    for name in QUANTITIES:
+        expected = solution.reaction(name) if name in ("O", "A") else solution.scalar(name)
+        found = solved.reaction(name) if name in ("O", "A") else solved.scalar(name)
+        scale = np.max(np.abs(expected)) + 1e-300
+        assert np.max(np.abs(values[name] - expected)) <= 1e-13 * scale, name
+        assert np.max(np.abs(found - expected)) <= 1e-13 * scale, name
+
+
+def test_derivatives_by_its_own_numbers_are_those_of_differences():
+    program = compiled(scene(), ("balancing_torque", "guide_moment"), engine="numpy")
+    paths = ("slot_angle", "guide_offset", "slider.mass", "block.centre.along", "crank_length")
+    assert set(paths) <= set(program.parameters)
+    slopes = program.derivatives(ANGLES, by=paths)
+    for path in paths:
+        value = program.parameters[path]
+        step = 1e-5 * abs(value)
+        above, below = (program(ANGLES, {path: value + sign * step}) for sign in (1, -1))
+        for name, found in slopes.items():
+            expected = (above[name] - below[name]) / (2 * step)
+            assert np.max(np.abs(found[path] - expected)) < 1e-7 * np.max(np.abs(expected)) + 1e-6, (path, name)
+
+
+def test_condition_is_small_where_nothing_is_lost(solution):
+    assert np.all((solution.condition >= 1.0) & (solution.condition < 1e4))
+
+
+def test_needs_offers_what_it_is_made_of_and_a_series_follows_it():
+    s = ks.solve(mechanism(), np.linspace(0, 2 * np.pi, 24, endpoint=False), crank_speed=30.0, loads=LOADS)
+    found = ks.needs(s, "balancing_torque", 0.01)
+    names = {made.name for made in found.alone}
+    assert {"massless slider", "massless block", "massless crank", "guide through O", "one harmonic"} <= names
+    series = next(made for made in found.alone if made.name == "one harmonic")
+    assert series.error < 1e-13  # a Scotch yoke moves by the first harmonic
+    assert str(found).startswith("balancing torque within 0.01")
+
+
+def test_principal_points_find_the_shaking_force(solution):
+    points = principal_points(solution.mechanism)
+    assert points.mass == pytest.approx(7.7)
+    direct = sum(solution.inertia_force(link) for link in LINKS)
+    assert np.max(np.abs(solution.shaking_force - direct)) < 1e-13 * np.max(np.abs(direct))
+
+
+def test_it_is_drawn_with_its_slot_slider_and_guide_and_moves_in_the_animation(solution, tmp_path):
+    ax = plt.subplots()[1]
+    ks.plots.mechanism(solution, angles=(30,), ax=ax)
+    pose = solution.at(np.radians([30.0]))
+    A, B = pose.position("A")[:, 0], pose.position("B")[:, 0]
+    lines = [line.get_xydata() for line in ax.lines]
+    assert any(np.allclose(line, [B, B + 1.15 * (A - B)]) for line in lines if len(line) == 2)
+    assert any(len(line) == 1 and np.allclose(line[0], B) for line in lines)
+    ks.plots.over_turn(solution, "guide_moment", ax=ax)
+    assert ax.get_ylabel() == "guide moment [N m]"
+    film = ks.plots.animation(scene("_saw").solve(ANGLES), joints=("O", "A_saw"), frames=3)
+    film.save(tmp_path / "yoke.gif", writer=PillowWriter(fps=10))
+    plt.close("all")
+
+
+def test_sweeps_vary_its_numbers_by_path():
+    designs = pd.DataFrame({"slot_angle": [1.0, 1.2, 1.4], "slider.mass [kg]": [5.0, 6.0, 7.0]})
+    swept = ks.sweep(scene(), designs, ["largest guide_moment"], progress=False)
+    assert (swept["failed"] == "").all()
+    for row, (angle, mass) in enumerate(designs.to_numpy()):
+        yoke = replace(
+            mechanism().groups[0], slot_angle=float(angle), slider=replace(LINKS["slider"], mass=float(mass))
+        )
+        alone = ks.Mechanism("one", ks.Crank(0.1, LINKS["crank"]), (yoke,))
+        s = ks.solve(alone, ANGLES, crank_speed=30.0, crank_acceleration=50.0, loads=LOADS)
+        expected = abs(ks.extremes(s, "guide_moment").largest)
+        assert swept["largest guide_moment [N m]"][row] == pytest.approx(expected, rel=1e-8)
+
+
+def test_its_kernels_run_on_intervals_and_are_enclosed(solution):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    found = enclosure(solution, "guide_moment")
+    error = np.abs(solution.scalar("guide_moment") - found.middle)
+    assert np.max(error) < 1e-13 * np.max(np.abs(found.middle))
