@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled
+from kinetostatics.engines import compiled, loops, programs
 from kinetostatics.studies.methods import kane
 from support.speed import (
     CENTRE,
@@ -55,7 +55,7 @@ pytestmark = pytest.mark.skipif(not compiled.available(), reason="numba is not i
 
 @pytest.fixture
 def one_core(monkeypatch):
-    monkeypatch.setattr(compiled, "cores", lambda: 1)
+    monkeypatch.setattr(loops, "cores", lambda: 1)
 
 
 @pytest.fixture(scope="module")
@@ -84,28 +84,42 @@ def called(function, *arguments):
 
 
 def program(variant, forces=FORCES):
-    return compiled.program(SAW.solve(variant, 8), forces)
+    """Program of a variant, and its numbers."""
+    made, leaves = programs.of(SAW.solve(variant, 8).dynamics, tuple(forces))
+    return made, leaves.numbers
 
 
-def shared(made, designs=BLOCK):
+def one_design(angles):
+    """Function that computes the plain variant, (outputs, N)."""
+    made, numbers = program("plain")
+    return partial(made.by_loop, angles, numbers, [], angles.shape)
+
+
+def shared(made, numbers, designs=BLOCK):
     """Function that computes designs with crank angles in common, and the sines and cosines it takes."""
     angle = turn(360)[None].copy()
-    sine, cosine = made.turn(angle)
-    parameters = np.repeat(made.parameters, designs, axis=0)
-    return partial(made.at, angle, sine, cosine, NONE, parameters), sine, cosine
+    sine, cosine = loops.turn(angle)
+    parameters = np.repeat(loops.table_of_parameters(numbers, ()), designs, axis=0)
+
+    def run():
+        results = np.empty((designs, len(made.outputs), 360))
+        loops.run(made.loop, angle, sine, cosine, parameters, NONE, results)
+        return results.swapaxes(0, 1)
+
+    return run, sine, cosine
 
 
 def test_one_turn_takes_12_us_and_is_near_c_and_far_from_sympy(benchmark, tell, one_core, c):
-    made, rows, few = program("plain"), np.empty((9, 360)), turn(360)
-    ours, plain_c = partial(made, few), called(c[0].turn, DESIGN, 360, few, rows)
+    rows, few = np.empty((9, 360)), turn(360)
+    ours, plain_c = one_design(few), called(c[0].turn, DESIGN, 360, few, rows)
     by_kane = [kane.all_forces(SAW.solve("plain", count)) for count in (360, 3600)]
     plain_c()
-    found = benchmark(ours)[:, 0]
+    found = benchmark(ours)
     assert_same(found, rows)
     named = by_kane[0]()
     assert_same(found, [row for name in FORCES for row in named[name]])
 
-    spent, in_c, theirs, more, theirs_more = seconds(ours, plain_c, by_kane[0], partial(made, turn(3600)), by_kane[1])
+    spent, in_c, theirs, more, theirs_more = seconds(ours, plain_c, by_kane[0], one_design(turn(3600)), by_kane[1])
     benchmark.extra_info.update(us=spent * 1e6, times_c=spent / in_c, sympy_times=theirs / spent)
     tell(
         f"360 angles in a call: {spent * 1e6:.1f} us, {spent / in_c:.2f} times as long as C, {in_c * 1e6:.1f} us;"
@@ -119,11 +133,11 @@ def test_one_turn_takes_12_us_and_is_near_c_and_far_from_sympy(benchmark, tell, 
 
 
 def test_one_long_turn_takes_30_ns_an_angle_and_is_near_c(benchmark, tell, one_core, c):
-    made, angles = program("plain"), turn(MANY)
+    angles = turn(MANY)
     rows = np.empty((9, angles.size))
-    ours, plain_c = partial(made, angles), called(c[0].turn, DESIGN, angles.size, angles, rows)
+    ours, plain_c = one_design(angles), called(c[0].turn, DESIGN, angles.size, angles, rows)
     plain_c()
-    assert_same(benchmark(ours)[:, 0], rows)
+    assert_same(benchmark(ours), rows)
     spent, in_c = seconds(ours, plain_c) / angles.size * 1e9
     benchmark.extra_info.update(ns_an_angle=spent, times_c=spent / in_c)
     tell(f"{MANY} angles: {spent:.1f} ns each, {spent / in_c:.2f} times as long as C, {in_c:.1f} ns")
@@ -132,7 +146,7 @@ def test_one_long_turn_takes_30_ns_an_angle_and_is_near_c(benchmark, tell, one_c
 
 
 def test_designs_with_angles_in_common_take_12_ns_an_angle_and_are_near_c(benchmark, tell, one_core, c):
-    ours, sine, cosine = shared(program("plain"))
+    ours, sine, cosine = shared(*program("plain"))
     rows = np.empty((BLOCK, 9, 360))
     plain_c, fewer_divisions = (
         called(library.sweep, np.repeat(DESIGN[None], BLOCK, axis=0), BLOCK, 360, sine, cosine, rows) for library in c
@@ -151,7 +165,7 @@ def test_designs_with_angles_in_common_take_12_ns_an_angle_and_are_near_c(benchm
 
 def test_cam_takes_at_most_two_and_a_half_times_as_long_as_none(benchmark, tell, one_core):
     plain, *cams = (
-        shared(program(*pair))[0]
+        shared(*program(*pair))[0]
         for pair in (("plain", FORCES), ("cam-circle", CAM_FORCES), ("cam-cosine", CAM_FORCES))
     )
     benchmark(cams[0])

@@ -71,8 +71,9 @@ def assert_same(found, expected):
 
 def run(code, environment):
     """What Python prints in a fresh process that finds what tests share and the package."""
-    here = Path(__file__).parents[1]
-    path = {"PYTHONPATH": os.pathsep.join((str(here), str(Path(ks.__file__).parents[1])))}
+    tests = Path(__file__).parents[1]
+    folders = tests, tests / "benchmarks", Path(ks.__file__).parents[1]
+    path = {"PYTHONPATH": os.pathsep.join(map(str, folders))}
     command = [sys.executable, "-c", code]
     done = subprocess.run(
         command, env={**os.environ, **path, **environment}, check=True, capture_output=True, text=True
