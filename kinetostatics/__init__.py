@@ -53,7 +53,7 @@ from .machine.rocker_group import RockerGroup
 from .machine.slider_group import SliderGroup
 from .mechanics.principal_points import principal_points
 from .results.extremes import extremes
-from .solution.scene import solve
+from .solution.scene import Scene, solve
 from .solution.solution import Solution
 
 __version__ = "0.1.0"
@@ -74,6 +74,7 @@ __all__ = [
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
+    "Scene",
     "SliderGroup",
     "Solution",
     "Spring",

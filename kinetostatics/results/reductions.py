@@ -7,14 +7,15 @@ Written as text, the reduction before the quantity: "largest O", "mean_absolute 
 import math
 import re
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import polynomial
 
 from ..errors import ParameterError
-from ..mechanics.quantities import label, unit
+from ..mechanics.quantities import quantity
 from ..numbers import checks
+from ..numbers.headings import heading
 
 REACH = 4
 """Samples on either side of a peak that tell how high it is between them."""
@@ -233,26 +234,38 @@ class Output:
         A name of `REDUCTIONS`, or "harmonic_K": amplitude of the K-th harmonic of the crank angle.
     ratio : bool
         Whether the reference mechanism's value is divided by the design's: a dynamic coefficient.
+    unit : str
+        SI unit of the number; empty until it is told of a mechanism, by `of`.
     """
 
     quantity: str
     reduction: str
     ratio: bool = False
+    unit: str = ""
 
     def __str__(self):
         return f"{'ratio ' * self.ratio}{self.reduction} {self.quantity}"
 
+    def of(self, scene) -> "Output":
+        """The output with the unit that its quantity has in a scene, or whatever has a mechanism.
+
+        Raises
+        ------
+        QuantityError
+            The mechanism has no such quantity; the message lists those it has.
+        """
+        return replace(self, unit=quantity(scene, self.quantity).unit)
+
     @property
     def column(self):
         """Heading with unit."""
-        if self.ratio:
-            return f"{self} [1]"
-        return f"{self} [{'rad' if self.reduction.endswith('_at') else unit(self.quantity)}]"
+        own = "rad" if self.reduction.endswith("_at") else self.unit
+        measure = "1" if self.ratio else own
+        return heading(self, measure) if measure else str(self)
 
-    @property
-    def label(self):
-        """What an axis calls it."""
-        return f"{'ratio of ' * self.ratio}{self.reduction.replace('_', ' ')} {label(self.quantity)}"
+    def label(self, scene):
+        """What an axis calls it, in a scene or whatever has a mechanism."""
+        return f"{'ratio of ' * self.ratio}{self.reduction.replace('_', ' ')} {quantity(scene, self.quantity).label}"
 
     @property
     def order(self):

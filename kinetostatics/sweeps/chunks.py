@@ -14,16 +14,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..casefile.case import Variant
 from ..engines import loops, programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from ..machine.loads import TURN, period_of
-from ..mechanics.quantities import components, sizes, unit
+from ..machine.loads import TURN
+from ..mechanics.quantities import components, quantity, sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
 from ..results.reductions import Output, lowest
 from ..results.turn import NEAR, repeating_problem
-from ..solution.scene import solve
+from ..solution.scene import Scene
 
 VALUES = 100_000
 """Values over designs and angles computed at a time on each core: about what its cache holds."""
@@ -50,15 +49,15 @@ class Job:
     Attributes
     ----------
     make, make_reference : function
-        From values in SI by name to a `Variant`; the reference's is None without ratios.
+        From values in SI by name to a `Scene`, or what has one; the reference's is None without ratios.
     columns : tuple of (column, name, factor)
         Where the values stand in the table of designs.
     threads : int
         Cores to use for a chunk.
     """
 
-    make: Callable[[dict], Variant]
-    make_reference: Callable[[dict], Variant] | None
+    make: Callable[[dict], Any]
+    make_reference: Callable[[dict], Any] | None
     columns: tuple[tuple[str, str, float], ...]
     outputs: tuple[Output, ...]
     angles: int
@@ -72,7 +71,7 @@ class Job:
 
     @property
     def sides(self):
-        """Functions that make variants, each with the outputs wanted of what it makes."""
+        """Functions that make scenes, each with the outputs wanted of what it makes."""
         own = [(self.make, self.outputs)]
         return [*own, (self.make_reference, [self.outputs[place] for place in self.ratios])] if self.ratios else own
 
@@ -99,26 +98,26 @@ def rows(job, frame, numbers, reasons):
     return pd.DataFrame({**found, FAILED: pd.Series(reasons, frame.index, dtype=str)}, index=frame.index)
 
 
-def suitable_engine(job, designs, engines):
-    """First of the engines that takes the mechanism, tried on the first design that can be built.
+def tried(job, designs, engines):
+    """The job with the first of the engines that takes the mechanism, and units of its outputs.
 
-    Raises what would otherwise be the reason of every design: `QuantityError` for a quantity that the mechanism does
-    not have, `ParameterError` for a function that makes something else than a variant, `NotGivenError` if no engine
-    takes it. The same for fewer crank angles than tell anything, and loads that do not repeat after their period.
+    Tried on the first design that can be built; None if none can. Raises what would otherwise be the reason of every
+    design: `QuantityError` for a quantity that the mechanism does not have, `ParameterError` for a function that makes
+    something else than a scene, `NotGivenError` if no engine takes it. The same for fewer crank angles than tell
+    anything, and loads that do not repeat after their period.
     """
     few = None if job.angles >= FEWEST else f"angles must be at least {FEWEST}, got {job.angles}: they miss every peak"
     checks.require("sweep", few)
     for row in range(len(designs)):
         *_, plain = job.values(designs.iloc[row : row + 1])
         try:
-            variants = [make(plain) for make, _ in job.sides]
+            scenes = [_scene(make, plain) for make, _ in job.sides]
+        except _NoSceneError:
+            raise
         except Exception:
             continue
-        for variant in variants:
-            if not isinstance(variant, Variant):
-                raise ParameterError(f"sweep: the function must return a kinetostatics.case.Variant, got {variant!r}")
         try:
-            solutions = [_solution(variant, job.angles) for variant in variants]
+            solutions = [_solution(scene, job.angles) for scene in scenes]
             for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
                 for name in _quantities(outputs):
                     components(solution, name)
@@ -128,8 +127,22 @@ def suitable_engine(job, designs, engines):
         except Exception:
             continue
         checks.require("sweep", *problems)
-        return _engine(job, solutions, engines)
-    return engines[-1]
+        outputs = tuple(item.of(scenes[0]) for item in job.outputs)
+        return replace(job, engine=_engine(job, solutions, engines), outputs=outputs)
+    return None
+
+
+class _NoSceneError(ParameterError):
+    """A function makes something else than a scene."""
+
+
+def _scene(make, values):
+    """What a function makes of values, if it is a scene or has one."""
+    found = make(values)
+    scene = getattr(found, "scene", found)
+    if not isinstance(scene, Scene):
+        raise _NoSceneError(f"sweep: the function must return a kinetostatics.Scene, got {checks.shown(found)}")
+    return scene
 
 
 def _engine(job, solutions, engines):
@@ -150,14 +163,9 @@ def _quantities(outputs):
     return list(dict.fromkeys(item.quantity for item in outputs))
 
 
-def _solution(variant, angles):
-    turn = np.linspace(0.0, period_of(variant.loads), angles, endpoint=False)
-    return _solved(variant, turn)
-
-
-def _solved(variant, turn):
-    drive = {"crank_speed": variant.crank_speed, "crank_acceleration": variant.crank_acceleration}
-    return solve(variant.mechanism, turn, **drive, loads=variant.loads, on_gap="nan", engine="numpy")
+def _solution(scene, angles):
+    """Solution at so many crank angles over the period, or at these."""
+    return scene.solve(angles, on_gap="nan", engine="numpy")
 
 
 # Designs set apart
@@ -180,7 +188,7 @@ def _compared(job, frame):
 
 
 def _reduced(make, job, frame, outputs, earlier=None):
-    """Numbers of a variant (outputs, designs) and reasons (designs,) why it cannot be made or solved.
+    """Numbers of a scene (outputs, designs) and reasons (designs,) why it cannot be made or solved.
 
     `earlier` are the numbers from half as many crank angles.
     """
@@ -189,7 +197,7 @@ def _reduced(make, job, frame, outputs, earlier=None):
         return _alone(make, job, frame, outputs, earlier)
     (values,) = job.values(frame)
     try:
-        variant = make(values)
+        scene = _scene(make, values)
     except Exception as error:
         wrong = _told(error, count)
         if wrong is None:
@@ -198,7 +206,7 @@ def _reduced(make, job, frame, outputs, earlier=None):
         parts = [np.delete(np.arange(count), apart), *apart[:, None]]
     else:
         try:
-            return _settled(make, job, frame, outputs, _run(variant, job, count, outputs), earlier)
+            return _settled(make, job, frame, outputs, _run(scene, job, count, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -217,7 +225,7 @@ def _alone(make, job, frame, outputs, earlier):
     """The same for a single design, as an array of one, so that it does not matter which designs come together."""
     for values in job.values(frame):
         try:
-            return _settled(make, job, frame, outputs, _run(make(values), job, 1, outputs), earlier)
+            return _settled(make, job, frame, outputs, _run(_scene(make, values), job, 1, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -255,21 +263,21 @@ def _near_limits(make, job, frame, nearest, outputs):
     Looked at anew around the crank angle at which each is nearest to a limit position.
     """
     values = job.values(frame)[-1]
-    variant = make(values)
-    step = period_of(variant.loads) / job.angles
+    scene = _scene(make, values)
+    step = scene.period / job.angles
     shape = len(frame), 1
     angle = np.broadcast_to(nearest[:, None], shape) + step * np.linspace(-1.5, 1.5, 25)
-    around = np.broadcast_arrays(*_solved(variant, angle).closure)
+    around = np.broadcast_arrays(*_solution(scene, angle).closure)
     margin, place, bend = lowest(np.array(around).min(axis=0), step / 8)
-    place = np.round(angle[:, 12] + place, 9) % period_of(variant.loads)
+    place = np.round(angle[:, 12] + place, 9) % scene.period
     reasons = np.full(len(frame), "", dtype=object)
     for row in np.flatnonzero(margin < -ROUNDING):
         where = f"between the crank angles, at {np.degrees(place[row]):.6g} deg"
-        reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
-    if all(unit(item.quantity) == "m" for item in outputs):
+        reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
+    if all(quantity(scene, item.quantity).unit == "m" for item in outputs):
         return reasons, np.zeros(len(frame), dtype=bool)
     with np.errstate(all="ignore"):
-        lost = _solved(variant, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
+        lost = _solution(scene, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
         narrow = step > np.sqrt(2.0 * np.maximum(margin, 0.0) / bend)
     for row in np.flatnonzero(np.ravel(lost) & (reasons == "")):
         reasons[row] = f"has no correct digit at crank angle {np.degrees(place[row]):.6g} deg, a limit position"
@@ -299,24 +307,24 @@ def _unbuildable(make, job, frame):
 # Designs together
 
 
-def _run(variant, job, count, outputs):
+def _run(scene, job, count, outputs):
     """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
 
     That is which numbers so many crank angles do not tell (outputs, designs), and the crank angle at which a design is
     nearest to a limit position (designs,), NaN if it is not near.
     """
-    solution = _solution(variant, job.angles)
+    solution = _solution(scene, job.angles)
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
         raise ParameterError(
-            f"the variant made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
+            f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
             "(designs, 1) of the values handed in"
         )
     names = _quantities(outputs)
     evaluate = (_by_loop if job.engine == "compiled" else _by_numpy)(solution, [*names, "closure"], made)
     numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
-    turns = round(period_of(variant.loads) / TURN)
+    turns = round(scene.period / TURN)
     step = max(1, VALUES // job.angles)
 
     def fill(start):
@@ -342,7 +350,7 @@ def _run(variant, job, count, outputs):
     reasons = np.full(made, "", dtype=object)
     for row in np.flatnonzero(gaps):
         where = f"at {gaps[row]} of {job.angles} crank angles"
-        reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
+        reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
     shape = len(outputs), count
     rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
     return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
