@@ -81,14 +81,16 @@ def _deeper(table, depth):
 
 
 def merged(common, own):
-    merged = dict(common)
+    """A table with what it has in common with others."""
+    found = dict(common)
     for key, value in own.items():
         both = isinstance(value, dict) and isinstance(common.get(key), dict)
-        merged[key] = merged(common[key], value) if both else value
-    return merged
+        found[key] = merged(common[key], value) if both else value
+    return found
 
 
 def holds(table, keys):
+    """Whether keys, each within the one before, lead to something."""
     for key in keys:
         if not isinstance(table, dict) or key not in table:
             return False
@@ -121,6 +123,7 @@ def _sentence(model, item, place):
 
 
 def key_path(keys):
+    """Keys as a file has them: "variants.plain.cam.centre[1]"."""
     text = ""
     for key in keys:
         text += f"[{key + 1}]" if isinstance(key, int) else f".{key}" if text else str(key)

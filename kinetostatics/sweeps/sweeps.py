@@ -17,7 +17,7 @@ import pandas as pd
 from ..engines import compiled
 from ..errors import ParameterError
 from ..numbers import checks
-from ..numbers.headings import si_columns
+from ..numbers.headings import parted, si_columns
 from ..results.reductions import Output, parsed
 from ..solution.scene import WORTH_COMPILING, Scene
 from .chunks import FAILED, PROBED, Job, tried
@@ -129,17 +129,7 @@ def _tried(job, designs, engines, hands):
     """The job made ready by a trial; designs with which workers die are passed over, some of them."""
     for first in range(min(ATTEMPTS, len(designs))):
         for ready in hands.survived(tried, job, designs[first : first + PROBED], engines):
-            return _named(ready or job, designs)
-    return _named(job, designs)
-
-
-def _named(job, designs):
-    """The job, if no column of the designs would stand in the table twice."""
-    taken = {item.column for item in job.outputs} | {FAILED}
-    checks.require(
-        "sweep",
-        *(f"column {name!r} of the designs has the name of an output; rename it" for name in designs if name in taken),
-    )
+            return ready or job
     return job
 
 
@@ -169,6 +159,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
     columns, wrong = si_columns(designs.columns, known)
     problems += [
         *wrong,
+        *_name_problems(designs.columns, wanted),
         *_type_problems(designs),
         None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
         checks.count("angles", angles, size=checks.ANGLE),
@@ -264,6 +255,14 @@ def _outputs(outputs):
         except ParameterError as error:
             problems.append(str(error))
     return tuple(dict.fromkeys(wanted)), problems or ([] if wanted else ["no outputs are asked for"])
+
+
+def _name_problems(columns, wanted):
+    """Columns of the designs that would stand in the table twice."""
+    taken = {*map(str, wanted), FAILED}
+    for name in columns:
+        if parted(name)[0] in taken:
+            yield f"column {name!r} of the designs has the name of an output; rename it"
 
 
 def _type_problems(designs):
