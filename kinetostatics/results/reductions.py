@@ -30,8 +30,8 @@ TINY = np.finfo(float).tiny
 _own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
 _POWERS = np.arange(_AROUND.size)[:, None]
-_INNER = polynomial.Polynomial.fromroots(_AROUND[1:-1])
-_THROUGH = np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True))
+INNER = polynomial.Polynomial.fromroots(_AROUND[1:-1])
+THROUGH = np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True))
 
 
 def _peak(values, sign=1.0):
@@ -98,7 +98,7 @@ def _between(near):
     with np.errstate(all="ignore"):
         shift = 0.5 * (before - after) / bend
         height = here - 0.25 * (before - after) * shift
-        series = sum(weights[:, None] * sample for weights, sample in zip(_THROUGH.T, curve, strict=True))
+        series = sum(weights[:, None] * sample for weights, sample in zip(THROUGH.T, curve, strict=True))
         slope = series[1:] * _POWERS[1:]
         change = slope[1:] * _POWERS[1:-1]
         place = shift
@@ -106,7 +106,7 @@ def _between(near):
             place = place - polynomial.polyval(place, slope, tensor=False) / polynomial.polyval(place, change, False)
         top = polynomial.polyval(place, series, tensor=False)
         fits = (abs(top - height) < 0.05 * abs(bend)) & (abs(place) < 1)
-        fewer = top - _INNER(place) * (series[-2] + series[-1] * place)
+        fewer = top - INNER(place) * (series[-2] + series[-1] * place)
     smooth = (bends < 0).all(axis=0)
     other = np.where(smooth, np.where(fits, fewer, top), here + abs(bend))
     found = np.where(smooth, np.where(fits, top, height), here)

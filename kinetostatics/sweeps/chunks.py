@@ -20,12 +20,15 @@ from ..machine.loads import TURN
 from ..mechanics.quantities import components, quantity, sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
+from ..results.passes import Passes
 from ..results.reductions import Output, lowest
 from ..results.turn import NEAR, repeating_problem
 from ..solution.scene import Scene
 
 VALUES = 100_000
-"""Values over designs and angles computed at a time on each core: about what its cache holds."""
+"""Values over designs and angles that NumPy computes at a time: about what the cache holds."""
+BLOCK = 60_000
+"""Values of all quantities over designs and angles that a compiled loop leaves at a time: half of a core's cache."""
 PROBED = 64
 """Designs among which one that can be built is looked for, to try a sweep before it begins."""
 NEGLIGIBLE = 1e-12
@@ -320,27 +323,10 @@ def _run(scene, job, count, outputs):
             f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
             "(designs, 1) of the values handed in"
         )
-    names = _quantities(outputs)
-    evaluate = (_by_loop if job.engine == "compiled" else _by_numpy)(solution, [*names, "closure"], made)
     numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
-    turns = round(scene.period / TURN)
-    step = max(1, VALUES // job.angles)
-
-    def fill(start):
-        block = slice(start, start + step)
-        with np.errstate(all="ignore"):
-            *found, closure = evaluate(block)
-            values = {name: parts[0] for name, parts in zip(names, found, strict=True)}
-            for row, item in enumerate(outputs):
-                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity], turns)
-            margin = closure.min(axis=-1)
-            gaping = ~(margin >= -ROUNDING).all(axis=0)
-            gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
-            near = ~gaping & (margin < NEAR).any(axis=0)
-            if near.any():
-                nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
-
+    way = _by_loop if job.engine == "compiled" else _by_numpy
+    fill, step = way(solution, outputs, made, (numbers, rough, gaps, nearest))
     starts = range(0, made, step)
     if min(job.threads, len(starts)) == 1:
         list(map(fill, starts))
@@ -356,35 +342,58 @@ def _run(scene, job, count, outputs):
     return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
 
 
-def _by_loop(solution, quantities, count):
-    """Function from a block of designs to the size of each quantity over the turn (parts, block, N), compiled.
+def _by_loop(solution, outputs, count, found):
+    """Function that fills in what is found of a block of designs, from its first on, and how many are a block.
 
-    Values stay until the same thread takes its next block: memory is asked for once.
+    Each block is computed and reduced by machine code, in memory that the same thread takes again.
     """
-    state = solution.dynamics
-    program, leaves = programs.of(state, tuple(quantities), sizes=True)
+    state, names = solution.dynamics, _quantities(outputs)
+    program, leaves = programs.of(state, (*names, "closure"), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
     turn, tables = loops.turn(angle), loops.table_of_rows(program.rows(state, leaves), solution.shape)
     parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
-    edges, held, rows = np.cumsum(program.recording.widths)[:-1], threading.local(), len(program.outputs)
+    first = np.cumsum([0, *program.recording.widths])
+    rows = [first[names.index(item.quantity)] for item in outputs]
+    held, size = threading.local(), len(program.outputs)
+    passes = Passes(outputs, rows, first[len(names)], angle[0], round(solution.period / TURN))
+    step = max(1, BLOCK // (size * angle.shape[1]))
 
-    def evaluate(block):
+    def fill(start):
+        block = slice(start, start + step)
         designs = len(parameters[block])
-        if len(getattr(held, "results", ())) < designs:
-            held.results = np.empty((designs, rows, angle.shape[1]))
-            held.parts = np.empty((rows, designs, angle.shape[1]))
+        if not hasattr(held, "results"):
+            held.results = np.empty((step, size, angle.shape[1]))
         shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
-        results, values = held.results[:designs], held.parts[:, :designs]
+        results = held.results[:designs]
         loops.run(program.loop, angle, *turn, parameters[block], shared, results)
-        values[:] = results.swapaxes(0, 1)
-        return np.split(values, edges)
+        passes(results, start, *found)
 
-    return evaluate
+    return fill, step
 
 
-def _by_numpy(solution, quantities, count):
+def _by_numpy(solution, outputs, count, found):
     """The same by NumPy, all designs at a time."""
+    numbers, rough, gaps, nearest = found
     with np.errstate(all="ignore"):
-        found = [sizes(solution, name) for name in quantities]
-    shaped = [np.reshape(parts, (len(parts), count, solution.shape[-1])) for parts in found]
-    return lambda block: [parts[:, block] for parts in shaped]
+        values = {
+            name: np.reshape(parts, (len(parts), count, solution.shape[-1]))
+            for name in (*_quantities(outputs), "closure")
+            for parts in [sizes(solution, name)]
+        }
+    turns = round(solution.period / TURN)
+    step = max(1, VALUES // solution.shape[-1])
+
+    def fill(start):
+        block = slice(start, start + step)
+        with np.errstate(all="ignore"):
+            for row, item in enumerate(outputs):
+                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity][0, block], turns)
+            closure = values["closure"][:, block]
+            margin = closure.min(axis=-1)
+            gaping = ~(margin >= -ROUNDING).all(axis=0)
+            gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
+            near = ~gaping & (margin < NEAR).any(axis=0)
+            if near.any():
+                nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
+
+    return fill, step
