@@ -266,7 +266,8 @@ class Passes:
     def __init__(self, outputs, rows, first, angle, turns):
         self._module = compiled._loaded(SOURCE)
         self._outputs, self._rows = outputs, np.array(rows, dtype=np.int64)
-        self._kinds = np.array([KINDS.index(item.reduction) if item.order is None else -1 for item in outputs])
+        kinds = [KINDS.index(item.reduction) if item.order is None else -1 for item in outputs]
+        self._kinds = np.array(kinds, dtype=np.int64)
         self._first, self._angle, self._turns = first, np.array(angle, dtype=float), turns
 
     def __call__(self, results, start, numbers, rough, gaps, nearest):

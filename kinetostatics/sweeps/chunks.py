@@ -27,7 +27,7 @@ from ..solution.scene import Scene
 
 VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
-BLOCK = 60_000
+BLOCK = 120_000
 """Values of all quantities over designs and angles that a compiled loop leaves at a time: half of a core's cache."""
 PROBED = 64
 """Designs among which one that can be built is looked for, to try a sweep before it begins."""
@@ -328,11 +328,12 @@ def _run(scene, job, count, outputs):
     way = _by_loop if job.engine == "compiled" else _by_numpy
     fill, step = way(solution, outputs, made, (numbers, rough, gaps, nearest))
     starts = range(0, made, step)
-    if min(job.threads, len(starts)) == 1:
-        list(map(fill, starts))
+    threads = min(job.threads, len(starts))
+    if threads == 1:
+        _each(fill, starts)
     else:
-        with ThreadPoolExecutor(job.threads) as threads:
-            list(threads.map(fill, starts))
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(_each, [fill] * threads, [starts[first::threads] for first in range(threads)]))
     reasons = np.full(made, "", dtype=object)
     for row in np.flatnonzero(gaps):
         where = f"at {gaps[row]} of {job.angles} crank angles"
@@ -340,6 +341,11 @@ def _run(scene, job, count, outputs):
     shape = len(outputs), count
     rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
     return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
+
+
+def _each(fill, starts):
+    for start in starts:
+        fill(start)
 
 
 def _by_loop(solution, outputs, count, found):
