@@ -33,11 +33,12 @@ from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
 sums = dict(options, fastmath={{"reassoc", "nsz"}})
-THROUGH = np.array({THROUGH.tolist()!r})
+curves = dict(options, fastmath={{"contract"}})
+THROUGH = np.array({THROUGH.T.tolist()!r})
 INNER = np.array({INNER.coef.tolist()!r})
 
 
-@njit(**options)
+@njit(**curves)
 def polyval(place, series):
     value = series[series.size - 1]
     for k in range(series.size - 2, -1, -1):
@@ -45,7 +46,7 @@ def polyval(place, series):
     return value
 
 
-@njit(**options)
+@njit(**curves)
 def between(values, at, side, work):
     """Height of a peak, how far from its highest sample, and about how much the height may be wrong."""
     curve, series, slope, change = work[0], work[1], work[2, : {2 * REACH}], work[3, : {2 * REACH - 1}]
@@ -70,11 +71,10 @@ def between(values, at, side, work):
     if first < 0.0 and bend < 0.0 and last < 0.0:
         shift = 0.5 * (before - after) / bend
         found = here - 0.25 * (before - after) * shift
-        for k in range({2 * REACH + 1}):
-            total = 0.0
-            for j in range({2 * REACH + 1}):
-                total += THROUGH[k, j] * curve[j]
-            series[k] = total
+        series[:] = 0.0
+        for j in range({2 * REACH + 1}):
+            for k in range({2 * REACH + 1}):
+                series[k] += THROUGH[j, k] * curve[j]
         for k in range({2 * REACH}):
             slope[k] = series[k + 1] * (k + 1.0)
         for k in range({2 * REACH - 1}):
@@ -107,41 +107,58 @@ def marked(values, marks):
 
 
 @njit(**options)
-def peak(values, side, marks, words, places, work):
-    """Highest peak of values times a sign, where, in samples, and about how much it may be wrong."""
-    count, tops, bound, best = values.size, 0, -inf, -inf
+def turned(values, marks, words, places):
+    """Places of tops, from the first on, and of bottoms, from the last back; how many each, and where one is no number.
+
+    There is at least one of each: of what is constant the first sample.
+    """
+    count, tops, bottoms = values.size, 0, 0
     for word in range(words.size):
         if words[word] == 0:
             continue
         for i in range(8 * word, min(8 * word + 8, count)):
-            if not marks[i]:
-                continue
-            before, after = side * values[i - 1], side * values[i + 1 if i + 1 < count else 0]
-            here = side * values[i]
-            if here != here:
-                return nan, nan, nan
-            if here > before and not after > here:
-                places[tops] = i
-                tops += 1
-                bound = max(bound, here - abs(before - 2.0 * here + after))
-                best = max(best, here)
-    if tops == 0 or (side * values[0] == best and side * values[count - 1] == best and places[0] != 0):
-        for k in range(tops, 0, -1):
-            places[k] = places[k - 1]
+            if marks[i]:
+                before, here, after = values[i - 1 if i else count - 1], values[i], values[i + 1 if i + 1 < count else 0]
+                if here != here:
+                    return 0, 0, False
+                if here > before and not after > here:
+                    places[tops] = i
+                    tops += 1
+                if here < before and not after < here:
+                    bottoms += 1
+                    places[places.size - bottoms] = i
+    if tops == 0:
         places[0] = 0
-        tops += 1
+        places[places.size - 1] = 0
+        return 1, 1, True
+    return tops, bottoms, True
+
+
+@njit(**options)
+def peak(values, side, places, work):
+    """Highest peak of values times a sign among places, where, in samples, and about how much it may be wrong."""
+    count, bound, best = values.size, -inf, -inf
+    for i in places:
+        before, after = side * values[i - 1 if i else count - 1], side * values[i + 1 if i + 1 < count else 0]
+        here = side * values[i]
+        bound = max(bound, here - abs(before - 2.0 * here + after))
+        best = max(best, here)
+    wrapped = side * values[0] == best and side * values[count - 1] == best
+    if wrapped:  # a plateau goes on across the end of the turn, and its first sample counts too
+        bound = max(bound, best - abs(side * values[1] - best))
     highest, where, worst = -inf, nan, 0.0
-    for k in range(tops):
-        i = places[k]
-        before, after = side * values[i - 1], side * values[i + 1 if i + 1 < count else 0]
+    for k in range(places.size + wrapped):
+        i = places[k] if k < places.size else 0
+        before, after = side * values[i - 1 if i else count - 1], side * values[i + 1 if i + 1 < count else 0]
         here = side * values[i]
         if here + abs(before - 2.0 * here + after) < bound:
             continue
         height, shift, error = between(values, i, side, work)
         worst = max(worst, error)
-        if height > highest or k == 0:
+        if height > highest or (height == highest and i + shift < where) or where != where:
             highest, where = height, i + shift
-    return highest, where % count, worst
+    where += count if where < 0.0 else -count if where >= count else 0
+    return highest, where, worst
 
 
 @njit(**sums)
@@ -188,11 +205,14 @@ def estimated(values, kind, turns, marks, words, places, work):
             size = max(size, abs(value))
         return found, error > {MEAN / 10!r} * size
     marked(values, marks)
+    tops, bottoms, whole = turned(values, marks, words, places)
+    if not whole:
+        return nan, False
     high, low, above, below, at, under = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if kind <= 1 or kind >= 4:
-        high, at, above = peak(values, 1.0, marks, words, places, work)
+        high, at, above = peak(values, 1.0, places[:tops], work)
     if kind >= 2:
-        low, under, below = peak(values, -1.0, marks, words, places, work)
+        low, under, below = peak(values, -1.0, places[places.size - bottoms :], work)
         low = -low
     error = max(above, below)
     if kind == 1 or kind == 3:
@@ -208,12 +228,11 @@ def estimated(values, kind, turns, marks, words, places, work):
     return found, error > {PEAK / 100!r} * (most - least)
 
 
-@njit("void(Array(float64, 3, 'C'), int64[::1], int64[::1], int64, float64[:, ::1], boolean[:, ::1], int64)",
-      cache=KEEP, **options)
+@njit(**options)
 def reduced(results, rows, kinds, turns, numbers, rough, start):
     designs, count = results.shape[0], results.shape[2]
     words = np.zeros((count + 7) // 8, np.uint64)
-    marks, places, work = words.view(np.uint8), np.empty(count + 1, np.int64), np.empty((4, {2 * REACH + 1}))
+    marks, places, work = words.view(np.uint8), np.empty(2 * count, np.int64), np.empty((4, {2 * REACH + 1}))
     for design in range(designs):
         for k in range(rows.size):
             if kinds[k] >= 0:
@@ -223,7 +242,7 @@ def reduced(results, rows, kinds, turns, numbers, rough, start):
                 )
 
 
-@njit("void(Array(float64, 3, 'C'), int64, float64[::1], int64[::1], float64[::1], int64)", cache=KEEP, **options)
+@njit(**options)
 def closed(results, first, angle, gaps, nearest, start):
     designs, count = results.shape[0], results.shape[2]
     for design in range(designs):
@@ -246,6 +265,13 @@ def closed(results, first, angle, gaps, nearest, start):
         gaps[start + design] = gaping
         if gaping:
             nearest[start + design] = nan
+
+
+@njit("void(Array(float64, 3, 'C'), int64[::1], int64[::1], int64, float64[::1], int64, float64[:, ::1],"
+      "boolean[:, ::1], int64[::1], float64[::1], int64)", cache=KEEP, **options)
+def passes(results, rows, kinds, first, angle, turns, numbers, rough, gaps, nearest, start):
+    reduced(results, rows, kinds, turns, numbers, rough, start)
+    closed(results, first, angle, gaps, nearest, start)
 '''
 
 
@@ -264,11 +290,10 @@ class Passes:
     """
 
     def __init__(self, outputs, rows, first, angle, turns):
-        self._module = compiled._loaded(SOURCE)
-        self._outputs, self._rows = outputs, np.array(rows, dtype=np.int64)
         kinds = [KINDS.index(item.reduction) if item.order is None else -1 for item in outputs]
-        self._kinds = np.array(kinds, dtype=np.int64)
-        self._first, self._angle, self._turns = first, np.array(angle, dtype=float), turns
+        self._passes, self._turns = compiled._loaded(SOURCE).passes, turns
+        self._given = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64), int(first), np.array(angle), turns
+        self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
     def __call__(self, results, start, numbers, rough, gaps, nearest):
         """Fill in, from a design on, what results (designs, rows, N) tell.
@@ -276,8 +301,7 @@ class Passes:
         That is numbers (outputs, designs), whether so many angles do not tell them, at how many angles a design does
         not close, and the angle at which it is nearest to a limit position, left as it is where it is not near.
         """
-        self._module.reduced(results, self._rows, self._kinds, self._turns, numbers, rough, start)
-        self._module.closed(results, self._first, self._angle, gaps, nearest, start)
-        part = slice(start, start + len(results))
-        for k in np.flatnonzero(self._kinds < 0):
-            numbers[k, part], rough[k, part] = self._outputs[k].estimated(results[:, self._rows[k]], self._turns)
+        self._passes(results, *self._given, numbers, rough, gaps, nearest, start)
+        for k, item, row in self._others:
+            part = slice(start, start + len(results))
+            numbers[k, part], rough[k, part] = item.estimated(results[:, row], self._turns)
