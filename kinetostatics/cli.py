@@ -288,7 +288,7 @@ def _sweep(options):
     from .casefile.case import load_case
     from .results.reductions import parsed
     from .sweeps import designs
-    from .sweeps.sweeps import FAILED, sweep
+    from .sweeps.sweeps import FAILED, chosen, sweep
 
     case = load_case(options.case)
     folder = options.out if options.out and not Path(options.out).suffix else None
@@ -297,7 +297,8 @@ def _sweep(options):
     checks.require("--out", files.unwritable_folder(folder) if folder else None)
     spreads = _spreads(options.vary)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
-    wanted = [parsed(text) for text in options.output or SWEEP_OUTPUTS]
+    varied, _ = chosen(case, options.variant, options.reference)
+    wanted = [parsed(text).of(varied) for text in options.output or SWEEP_OUTPUTS]
     outputs = [item.column for item in wanted]
     found = sweep(
         case,
@@ -314,7 +315,7 @@ def _sweep(options):
     print(f"{case.title}: {len(found)} designs, {len(failed)} failed\n")
     _print(found[outputs].describe().drop("count").rename_axis("over the designs"))
     first = wanted[0]
-    print(f"\nbest five by {first.label}, {'largest' if first.ratio else 'smallest'} first\n")
+    print(f"\nbest five by {first.label(varied)}, {'largest' if first.ratio else 'smallest'} first\n")
     best = found.dropna(subset=[first.column]).sort_values(first.column, ascending=not first.ratio).head(5)
     _print(best.drop(columns=FAILED).rename_axis("design"))
     for reason, count in failed[FAILED].value_counts().head(3).items():

@@ -3,8 +3,6 @@
 import typing
 from typing import Any
 
-from ..numbers import checks
-from ..numbers.units import factor
 from .schema import Table
 
 PARTS = {"x": 0, "y": 1, "along": 0, "across": 1}
@@ -37,46 +35,6 @@ def _unit(field):
     """SI unit of a field: the text in its annotation; None if it is no number."""
     candidates = [field.metadata, *(getattr(part, "__metadata__", ()) for part in typing.get_args(field.annotation))]
     return next((item for metadata in candidates for item in metadata if isinstance(item, str)), None)
-
-
-def si_columns(columns, known=None):
-    """Name and factor to SI of each column of a table of designs, and what is wrong with them.
-
-    Parameters
-    ----------
-    columns : sequence of str
-        Names, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI.
-    known : mapping of name to SI unit, optional
-        What there is to vary, as from `paths`; any name and unit will do if not given.
-
-    Returns
-    -------
-    columns : tuple of (column, name, factor)
-    problems : list of str
-    """
-    found: dict[str, tuple[str, str, float]] = {}
-    problems = []
-    for column in columns:
-        name, unit = heading(column)
-        problem = checks.choice("parameter", name, tuple(known)) if known is not None else None
-        if name in found:
-            problem = f"parameter {name!r} has two columns"
-        scale = 1.0
-        if unit and not problem:
-            try:
-                scale = factor(unit, unit if known is None else known[name])
-            except ValueError as error:
-                problem = f"parameter {column!r}: {error}"
-        found[name] = (column, name, scale)
-        problems += [problem] if problem else []
-    return tuple(found.values()), problems
-
-
-def heading(column):
-    """Path and unit of a column's name; the unit may be empty."""
-    text = str(column).strip()
-    path, _, unit = text.removesuffix("]").partition("[") if text.endswith("]") else (text, "", "")
-    return path.strip(), unit.strip()
 
 
 def value(table, path):

@@ -13,11 +13,11 @@ import numpy as np
 
 from ..errors import CaseError, FileError
 from . import checks
+from .headings import parted
 from .units import NUMBER, factor, shown
 
 LARGEST_TABLE = 10_000_000
 """Bytes that a table may have: half a million rows."""
-_HEADING = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")
 _NUMBER = re.compile(NUMBER)
 
 
@@ -91,19 +91,18 @@ def read_columns(path, wanted):
 
 def _column(headings, rows, name, wanted):
     """Values of a column in the SI unit wanted; `ValueError` says what is wrong with it."""
-    named = [_HEADING.fullmatch(heading) for heading in headings]
-    names = [found[1].strip() if found else heading for found, heading in zip(named, headings, strict=True)]
+    names, units = zip(*map(parted, headings), strict=True)
     places = [place for place, found in enumerate(names) if found == name]
     if len(places) != 1:
         there = ", ".join(map(repr, headings[:20]))
         twice = f"{len(places)} columns are {name!r}, of {there}; keep one"
         raise ValueError(twice if places else f"no column {name!r}; it has {there}{checks.hint(name, names)}")
     (place,) = places
-    heading, found = headings[place], named[place]
-    if not found or not found[2]:
+    heading, unit = headings[place], units[place]
+    if not unit:
         raise ValueError(f'column {heading!r}: has no unit; head it for example "{name} [{wanted}]"')
     try:
-        scale = factor(found[2].strip(), wanted)
+        scale = factor(unit, wanted)
     except ValueError as error:
         raise ValueError(f"column {heading!r}: {error}") from None
     for line, cells in rows:

@@ -7,14 +7,15 @@ Written as text, the reduction before the quantity: "largest O", "mean_absolute 
 import math
 import re
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import polynomial
 
 from ..errors import ParameterError
-from ..mechanics.quantities import label, unit
+from ..mechanics.quantities import quantity
 from ..numbers import checks
+from ..numbers.headings import heading
 
 REACH = 4
 """Samples on either side of a peak that tell how high it is between them."""
@@ -29,8 +30,8 @@ TINY = np.finfo(float).tiny
 _own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
 _POWERS = np.arange(_AROUND.size)[:, None]
-_INNER = polynomial.Polynomial.fromroots(_AROUND[1:-1])
-_THROUGH = np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True))
+INNER = polynomial.Polynomial.fromroots(_AROUND[1:-1])
+THROUGH = np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True))
 
 
 def _peak(values, sign=1.0):
@@ -97,7 +98,7 @@ def _between(near):
     with np.errstate(all="ignore"):
         shift = 0.5 * (before - after) / bend
         height = here - 0.25 * (before - after) * shift
-        series = sum(weights[:, None] * sample for weights, sample in zip(_THROUGH.T, curve, strict=True))
+        series = sum(weights[:, None] * sample for weights, sample in zip(THROUGH.T, curve, strict=True))
         slope = series[1:] * _POWERS[1:]
         change = slope[1:] * _POWERS[1:-1]
         place = shift
@@ -105,7 +106,7 @@ def _between(near):
             place = place - polynomial.polyval(place, slope, tensor=False) / polynomial.polyval(place, change, False)
         top = polynomial.polyval(place, series, tensor=False)
         fits = (abs(top - height) < 0.05 * abs(bend)) & (abs(place) < 1)
-        fewer = top - _INNER(place) * (series[-2] + series[-1] * place)
+        fewer = top - INNER(place) * (series[-2] + series[-1] * place)
     smooth = (bends < 0).all(axis=0)
     other = np.where(smooth, np.where(fits, fewer, top), here + abs(bend))
     found = np.where(smooth, np.where(fits, top, height), here)
@@ -252,26 +253,38 @@ class Output:
         A name of `REDUCTIONS`, or "harmonic_K": amplitude of the K-th harmonic of the crank angle.
     ratio : bool
         Whether the reference mechanism's value is divided by the design's: a dynamic coefficient.
+    unit : str
+        SI unit of the number; empty until it is told of a mechanism, by `of`.
     """
 
     quantity: str
     reduction: str
     ratio: bool = False
+    unit: str = ""
 
     def __str__(self):
         return f"{'ratio ' * self.ratio}{self.reduction} {self.quantity}"
 
+    def of(self, scene) -> "Output":
+        """The output with the unit that its quantity has in a scene, or whatever has a mechanism.
+
+        Raises
+        ------
+        QuantityError
+            The mechanism has no such quantity; the message lists those it has.
+        """
+        return replace(self, unit=quantity(scene, self.quantity).unit)
+
     @property
     def column(self):
         """Heading with unit."""
-        if self.ratio:
-            return f"{self} [1]"
-        return f"{self} [{'rad' if self.reduction.endswith('_at') else unit(self.quantity)}]"
+        own = "rad" if self.reduction.endswith("_at") else self.unit
+        measure = "1" if self.ratio else own
+        return heading(self, measure) if measure else str(self)
 
-    @property
-    def label(self):
-        """What an axis calls it."""
-        return f"{'ratio of ' * self.ratio}{self.reduction.replace('_', ' ')} {label(self.quantity)}"
+    def label(self, scene):
+        """What an axis calls it, in a scene or whatever has a mechanism."""
+        return f"{'ratio of ' * self.ratio}{self.reduction.replace('_', ' ')} {quantity(scene, self.quantity).label}"
 
     @property
     def order(self):

@@ -14,19 +14,21 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..casefile.case import Variant
 from ..engines import loops, programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from ..machine.loads import TURN, period_of
-from ..mechanics.quantities import components, sizes, unit
+from ..machine.loads import TURN
+from ..mechanics.quantities import components, quantity, sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
+from ..results.passes import Passes
 from ..results.reductions import Output, lowest
 from ..results.turn import NEAR, repeating_problem
-from ..solution.scene import solve
+from ..solution.scene import Scene
 
 VALUES = 100_000
-"""Values over designs and angles computed at a time on each core: about what its cache holds."""
+"""Values over designs and angles that NumPy computes at a time: about what the cache holds."""
+BLOCK = 120_000
+"""Values of all quantities over designs and angles that a compiled loop leaves at a time: half of a core's cache."""
 PROBED = 64
 """Designs among which one that can be built is looked for, to try a sweep before it begins."""
 NEGLIGIBLE = 1e-12
@@ -50,15 +52,15 @@ class Job:
     Attributes
     ----------
     make, make_reference : function
-        From values in SI by name to a `Variant`; the reference's is None without ratios.
+        From values in SI by name to a `Scene`, or what has one; the reference's is None without ratios.
     columns : tuple of (column, name, factor)
         Where the values stand in the table of designs.
     threads : int
         Cores to use for a chunk.
     """
 
-    make: Callable[[dict], Variant]
-    make_reference: Callable[[dict], Variant] | None
+    make: Callable[[dict], Any]
+    make_reference: Callable[[dict], Any] | None
     columns: tuple[tuple[str, str, float], ...]
     outputs: tuple[Output, ...]
     angles: int
@@ -72,7 +74,7 @@ class Job:
 
     @property
     def sides(self):
-        """Functions that make variants, each with the outputs wanted of what it makes."""
+        """Functions that make scenes, each with the outputs wanted of what it makes."""
         own = [(self.make, self.outputs)]
         return [*own, (self.make_reference, [self.outputs[place] for place in self.ratios])] if self.ratios else own
 
@@ -99,26 +101,26 @@ def rows(job, frame, numbers, reasons):
     return pd.DataFrame({**found, FAILED: pd.Series(reasons, frame.index, dtype=str)}, index=frame.index)
 
 
-def suitable_engine(job, designs, engines):
-    """First of the engines that takes the mechanism, tried on the first design that can be built.
+def tried(job, designs, engines):
+    """The job with the first of the engines that takes the mechanism, and units of its outputs.
 
-    Raises what would otherwise be the reason of every design: `QuantityError` for a quantity that the mechanism does
-    not have, `ParameterError` for a function that makes something else than a variant, `NotGivenError` if no engine
-    takes it. The same for fewer crank angles than tell anything, and loads that do not repeat after their period.
+    Tried on the first design that can be built; None if none can. Raises what would otherwise be the reason of every
+    design: `QuantityError` for a quantity that the mechanism does not have, `ParameterError` for a function that makes
+    something else than a scene, `NotGivenError` if no engine takes it. The same for fewer crank angles than tell
+    anything, and loads that do not repeat after their period.
     """
     few = None if job.angles >= FEWEST else f"angles must be at least {FEWEST}, got {job.angles}: they miss every peak"
     checks.require("sweep", few)
     for row in range(len(designs)):
         *_, plain = job.values(designs.iloc[row : row + 1])
         try:
-            variants = [make(plain) for make, _ in job.sides]
+            scenes = [_scene(make, plain) for make, _ in job.sides]
+        except _NoSceneError:
+            raise
         except Exception:
             continue
-        for variant in variants:
-            if not isinstance(variant, Variant):
-                raise ParameterError(f"sweep: the function must return a kinetostatics.case.Variant, got {variant!r}")
         try:
-            solutions = [_solution(variant, job.angles) for variant in variants]
+            solutions = [_solution(scene, job.angles) for scene in scenes]
             for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
                 for name in _quantities(outputs):
                     components(solution, name)
@@ -128,8 +130,22 @@ def suitable_engine(job, designs, engines):
         except Exception:
             continue
         checks.require("sweep", *problems)
-        return _engine(job, solutions, engines)
-    return engines[-1]
+        outputs = tuple(item.of(scenes[0]) for item in job.outputs)
+        return replace(job, engine=_engine(job, solutions, engines), outputs=outputs)
+    return None
+
+
+class _NoSceneError(ParameterError):
+    """A function makes something else than a scene."""
+
+
+def _scene(make, values):
+    """What a function makes of values, if it is a scene or has one."""
+    found = make(values)
+    scene = getattr(found, "scene", found)
+    if not isinstance(scene, Scene):
+        raise _NoSceneError(f"sweep: the function must return a kinetostatics.Scene, got {checks.shown(found)}")
+    return scene
 
 
 def _engine(job, solutions, engines):
@@ -150,14 +166,9 @@ def _quantities(outputs):
     return list(dict.fromkeys(item.quantity for item in outputs))
 
 
-def _solution(variant, angles):
-    turn = np.linspace(0.0, period_of(variant.loads), angles, endpoint=False)
-    return _solved(variant, turn)
-
-
-def _solved(variant, turn):
-    drive = {"crank_speed": variant.crank_speed, "crank_acceleration": variant.crank_acceleration}
-    return solve(variant.mechanism, turn, **drive, loads=variant.loads, on_gap="nan", engine="numpy")
+def _solution(scene, angles):
+    """Solution at so many crank angles over the period, or at these."""
+    return scene.solve(angles, on_gap="nan", engine="numpy")
 
 
 # Designs set apart
@@ -181,7 +192,7 @@ def _compared(job, frame):
 
 
 def _reduced(make, job, frame, outputs, earlier=None):
-    """Numbers of a variant (outputs, designs) and reasons (designs,) why it cannot be made or solved.
+    """Numbers of a scene (outputs, designs) and reasons (designs,) why it cannot be made or solved.
 
     `earlier` are the numbers from half as many crank angles.
     """
@@ -190,7 +201,7 @@ def _reduced(make, job, frame, outputs, earlier=None):
         return _alone(make, job, frame, outputs, earlier)
     (values,) = job.values(frame)
     try:
-        variant = make(values)
+        scene = _scene(make, values)
     except Exception as error:
         wrong = _told(error, count)
         if wrong is None:
@@ -199,7 +210,7 @@ def _reduced(make, job, frame, outputs, earlier=None):
         parts = [np.delete(np.arange(count), apart), *apart[:, None]]
     else:
         try:
-            return _settled(make, job, frame, outputs, _run(variant, job, count, outputs), earlier)
+            return _settled(make, job, frame, outputs, _run(scene, job, count, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -218,7 +229,7 @@ def _alone(make, job, frame, outputs, earlier):
     """The same for a single design, as an array of one, so that it does not matter which designs come together."""
     for values in job.values(frame):
         try:
-            return _settled(make, job, frame, outputs, _run(make(values), job, 1, outputs), earlier)
+            return _settled(make, job, frame, outputs, _run(_scene(make, values), job, 1, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -256,21 +267,21 @@ def _near_limits(make, job, frame, nearest, outputs):
     Looked at anew around the crank angle at which each is nearest to a limit position.
     """
     values = job.values(frame)[-1]
-    variant = make(values)
-    step = period_of(variant.loads) / job.angles
+    scene = _scene(make, values)
+    step = scene.period / job.angles
     shape = len(frame), 1
     angle = np.broadcast_to(nearest[:, None], shape) + step * np.linspace(-1.5, 1.5, 25)
-    around = np.broadcast_arrays(*_solved(variant, angle).closure)
+    around = np.broadcast_arrays(*_solution(scene, angle).closure)
     margin, place, bend = lowest(np.array(around).min(axis=0), step / 8)
-    place = np.round(angle[:, 12] + place, 9) % period_of(variant.loads)
+    place = np.round(angle[:, 12] + place, 9) % scene.period
     reasons = np.full(len(frame), "", dtype=object)
     for row in np.flatnonzero(margin < -ROUNDING):
         where = f"between the crank angles, at {np.degrees(place[row]):.6g} deg"
-        reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
-    if all(unit(item.quantity) == "m" for item in outputs):
+        reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
+    if all(quantity(scene, item.quantity).unit == "m" for item in outputs):
         return reasons, np.zeros(len(frame), dtype=bool)
     with np.errstate(all="ignore"):
-        lost = _solved(variant, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
+        lost = _solution(scene, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
         narrow = step > np.sqrt(2.0 * np.maximum(margin, 0.0) / bend)
     for row in np.flatnonzero(np.ravel(lost) & (reasons == "")):
         reasons[row] = f"has no correct digit at crank angle {np.degrees(place[row]):.6g} deg, a limit position"
@@ -300,33 +311,91 @@ def _unbuildable(make, job, frame):
 # Designs together
 
 
-def _run(variant, job, count, outputs):
+def _run(scene, job, count, outputs):
     """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
 
     That is which numbers so many crank angles do not tell (outputs, designs), and the crank angle at which a design is
     nearest to a limit position (designs,), NaN if it is not near.
     """
-    solution = _solution(variant, job.angles)
+    solution = _solution(scene, job.angles)
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
         raise ParameterError(
-            f"the variant made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
+            f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
             "(designs, 1) of the values handed in"
         )
-    names = _quantities(outputs)
-    evaluate = (_by_loop if job.engine == "compiled" else _by_numpy)(solution, [*names, "closure"], made)
     numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
-    turns = round(period_of(variant.loads) / TURN)
-    step = max(1, VALUES // job.angles)
+    way = _by_loop if job.engine == "compiled" else _by_numpy
+    fill, step = way(solution, outputs, made, (numbers, rough, gaps, nearest))
+    starts = range(0, made, step)
+    threads = min(job.threads, len(starts))
+    if threads == 1:
+        _each(fill, starts)
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(_each, [fill] * threads, [starts[first::threads] for first in range(threads)]))
+    reasons = np.full(made, "", dtype=object)
+    for row in np.flatnonzero(gaps):
+        where = f"at {gaps[row]} of {job.angles} crank angles"
+        reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
+    shape = len(outputs), count
+    rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
+    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
+
+
+def _each(fill, starts):
+    for start in starts:
+        fill(start)
+
+
+def _by_loop(solution, outputs, count, found):
+    """Function that fills in what is found of a block of designs, from its first on, and how many are a block.
+
+    Each block is computed and reduced by machine code, in memory that the same thread takes again.
+    """
+    state, names = solution.dynamics, _quantities(outputs)
+    program, leaves = programs.of(state, (*names, "closure"), sizes=True)
+    angle = np.array(solution.crank_angle, ndmin=2)
+    turn, tables = loops.turn(angle), loops.table_of_rows(program.rows(state, leaves), solution.shape)
+    parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
+    first = np.cumsum([0, *program.recording.widths])
+    rows = [first[names.index(item.quantity)] for item in outputs]
+    held, size = threading.local(), len(program.outputs)
+    passes = Passes(outputs, rows, first[len(names)], angle[0], round(solution.period / TURN))
+    step = max(1, BLOCK // (size * angle.shape[1]))
+
+    def fill(start):
+        block = slice(start, start + step)
+        designs = len(parameters[block])
+        if not hasattr(held, "results"):
+            held.results = np.empty((step, size, angle.shape[1]))
+        shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
+        results = held.results[:designs]
+        loops.run(program.loop, angle, *turn, parameters[block], shared, results)
+        passes(results, start, *found)
+
+    return fill, step
+
+
+def _by_numpy(solution, outputs, count, found):
+    """The same by NumPy, all designs at a time."""
+    numbers, rough, gaps, nearest = found
+    with np.errstate(all="ignore"):
+        values = {
+            name: np.reshape(parts, (len(parts), count, solution.shape[-1]))
+            for name in (*_quantities(outputs), "closure")
+            for parts in [sizes(solution, name)]
+        }
+    turns = round(solution.period / TURN)
+    step = max(1, VALUES // solution.shape[-1])
 
     def fill(start):
         block = slice(start, start + step)
         with np.errstate(all="ignore"):
-            *found, closure = evaluate(block)
-            values = {name: parts[0] for name, parts in zip(names, found, strict=True)}
             for row, item in enumerate(outputs):
-                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity], turns)
+                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity][0, block], turns)
+            closure = values["closure"][:, block]
             margin = closure.min(axis=-1)
             gaping = ~(margin >= -ROUNDING).all(axis=0)
             gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
@@ -334,50 +403,4 @@ def _run(variant, job, count, outputs):
             if near.any():
                 nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
 
-    starts = range(0, made, step)
-    if min(job.threads, len(starts)) == 1:
-        list(map(fill, starts))
-    else:
-        with ThreadPoolExecutor(job.threads) as threads:
-            list(threads.map(fill, starts))
-    reasons = np.full(made, "", dtype=object)
-    for row in np.flatnonzero(gaps):
-        where = f"at {gaps[row]} of {job.angles} crank angles"
-        reasons[row] = f"{variant.mechanism.name} cannot be assembled {where}; change the lengths"
-    shape = len(outputs), count
-    rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
-    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
-
-
-def _by_loop(solution, quantities, count):
-    """Function from a block of designs to the size of each quantity over the turn (parts, block, N), compiled.
-
-    Values stay until the same thread takes its next block: memory is asked for once.
-    """
-    state = solution.dynamics
-    program, leaves = programs.of(state, tuple(quantities), sizes=True)
-    angle = np.array(solution.crank_angle, ndmin=2)
-    turn, tables = loops.turn(angle), loops.table_of_rows(program.rows(state, leaves), solution.shape)
-    parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
-    edges, held, rows = np.cumsum(program.recording.widths)[:-1], threading.local(), len(program.outputs)
-
-    def evaluate(block):
-        designs = len(parameters[block])
-        if len(getattr(held, "results", ())) < designs:
-            held.results = np.empty((designs, rows, angle.shape[1]))
-            held.parts = np.empty((rows, designs, angle.shape[1]))
-        shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
-        results, values = held.results[:designs], held.parts[:, :designs]
-        loops.run(program.loop, angle, *turn, parameters[block], shared, results)
-        values[:] = results.swapaxes(0, 1)
-        return np.split(values, edges)
-
-    return evaluate
-
-
-def _by_numpy(solution, quantities, count):
-    """The same by NumPy, all designs at a time."""
-    with np.errstate(all="ignore"):
-        found = [sizes(solution, name) for name in quantities]
-    shaped = [np.reshape(parts, (len(parts), count, solution.shape[-1])) for parts in found]
-    return lambda block: [parts[:, block] for parts in shaped]
+    return fill, step

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from ..numbers import checks
+from ..numbers.headings import heading
 from ..numbers.units import LONGEST, NUMBER, base_factor, factor, respelled, shown
 
 LARGEST = 50_000_000
@@ -148,7 +149,7 @@ def _require_room(count, parameters):
 
 def columns(found):
     """Headings of parameters with units, from pairs that end with the unit, by parameter."""
-    return [f"{name} [{unit}]" for name, (_, unit) in found.items()]
+    return [heading(name, unit) for name, (_, unit) in found.items()]
 
 
 def _axis(text):

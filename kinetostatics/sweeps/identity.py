@@ -1,4 +1,4 @@
-"""Whether it is the same sweep: what a case's variant or a function is made of, told by a digest.
+"""Whether it is the same sweep: what a case's variant, a scene or a function is made of, told by a digest.
 
 Of a function that is its compiled code with all that it holds and names: constants, defaults, cells, what a `partial`
 binds, what a decorator wraps, the object of a method, and the values and functions of its own module that it names. Of
@@ -38,12 +38,12 @@ UNTOLD = ("__dict__", "__weakref__", "__doc__", "__module__", "__annotations__",
 def identity(job, designs, compared, chunk):
     """What makes a sweep the same sweep, by name."""
     hashed = pd.util.hash_pandas_object(designs, index=True).to_numpy().tobytes()
-    of_case = hasattr(compared[0], "table")
-    names = ("variant", "reference") if of_case else ("function", "reference")
+    of_case = hasattr(compared[0], "content")
+    varied = "variant" if of_case else "scene" if hasattr(compared[0], "mechanism") else "function"
     return {
         "version": __version__,
         **({} if of_case else {"python": sys.implementation.cache_tag}),  # whose code differs from release to release
-        **{name: digest(item) for name, item in zip(names, compared, strict=False)},
+        **{name: digest(item) for name, item in zip((varied, "reference"), compared, strict=False)},
         "outputs": [str(item) for item in job.outputs],
         "angles": int(job.angles),
         "chunk": int(chunk),
@@ -53,10 +53,8 @@ def identity(job, designs, compared, chunk):
 
 
 def digest(item):
-    """Digest of a variant or a function, the same in every session."""
-    if getattr(item, "table", None) is None:
-        return _Told().digest(item)
-    return _digested(item.content)
+    """Digest of a variant, a scene or a function, the same in every session."""
+    return _digested(item.content) if hasattr(item, "content") else _Told().digest(item)
 
 
 class _Told:

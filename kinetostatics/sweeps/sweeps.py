@@ -9,23 +9,21 @@ import pickle
 from collections.abc import Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import closing
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pandas as pd
 
-from ..casefile.case import Case, Variant
-from ..casefile.parameters import paths, si_columns
 from ..engines import compiled
 from ..errors import ParameterError
 from ..numbers import checks
+from ..numbers.headings import parted, si_columns
 from ..results.reductions import Output, parsed
-from ..solution.scene import WORTH_COMPILING
-from .chunks import FAILED, PROBED, Job, suitable_engine
+from ..solution.scene import WORTH_COMPILING, Scene
+from .chunks import FAILED, PROBED, Job, tried
 from .dataset import Dataset, Parts
 from .identity import identity
-from .workers import Workers, computed
+from .workers import ATTEMPTS, Workers, computed
 
 __all__ = ["FAILED", "sweep"]
 
@@ -49,20 +47,21 @@ def sweep(
 
     Parameters
     ----------
-    source : Case or function
-        A case, or a function that takes the parameters as keywords, arrays (designs, 1) in SI, and returns a
-        `case.Variant` of a mechanism, drive and loads. A function of plain numbers will do, but then each design is
-        solved by itself, which takes some milliseconds; so it is with variants that are balanced by counterweights.
+    source : Case, Scene or function
+        Of a case what its file derives from other numbers follows (`Variant.varied`); of a scene all numbers stay but
+        those that vary. Or a function that takes the parameters as keywords, arrays (designs, 1) in SI, and returns a
+        `Scene`. A function of plain numbers will do, but then each design is solved by itself, which takes some
+        milliseconds; so it is with variants that are balanced by counterweights.
     designs : pandas.DataFrame
-        A column for each parameter: of a case its path with a unit, "spring.stiffness [kN/m]" (see
+        A column for each parameter: of a case or scene its path with a unit, "spring.stiffness [kN/m]" (see
         `designs.grid`, `.latin_hypercube` ...); of a function its keyword. Without a unit in SI.
     outputs : sequence of str
         "largest O", "mean_absolute balancing_torque", "range cam_force", "harmonic_2 balancing_torque" ...; with
         "ratio" in front the reference's number divided by the design's. All reductions: `reductions.REDUCTIONS`.
     variant, reference : str
         Of a case: which variant the designs vary (the only one, or the first besides the reference), and which one
-        ratios refer to (the case's reference); the reference takes those parameters that it has too. With a function,
-        `reference` is a `Variant`.
+        ratios refer to (the case's reference). Of a scene or function `reference` is a `Scene`. It takes those
+        parameters that it has too, but stays as it is for a function.
     angles : int
         Crank angles over the period of the loads, at least 12; extremes are refined between them. Where they do not
         resolve an output of a design, they are doubled for it, up to 5760.
@@ -114,8 +113,7 @@ def sweep(
         source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
     )
     with Workers(executor, workers) as hands:
-        for suitable in hands.survived(suitable_engine, job, designs[:PROBED], engines):
-            job = replace(job, engine=suitable)
+        job = _tried(job, designs, engines, hands)
         parts = Parts(designs, chunk)
         if folder is not None:
             parts = Dataset(designs, chunk, folder, identity(job, designs, compared, chunk))
@@ -128,6 +126,14 @@ def sweep(
     return parts.table()
 
 
+def _tried(job, designs, engines, hands):
+    """The job made ready by a trial; designs with which workers die are passed over, some of them."""
+    for first in range(min(ATTEMPTS, len(designs))):
+        for ready in hands.survived(tried, job, designs[first : first + PROBED], engines):
+            return ready or job
+    return job
+
+
 def _bar(shown, total):
     from tqdm.auto import tqdm
 
@@ -138,18 +144,18 @@ def _bar(shown, total):
 
 
 def _job(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk):
-    """The job, the engines to try, and what is compared: variants of a case, or a function and a variant."""
+    """The job, the engines to try, and what is compared: what is varied, or a function, and what ratios refer to."""
     if not isinstance(designs, pd.DataFrame):
         raise ParameterError(
             f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
         )
-    if not isinstance(source, Case) and not callable(source):
+    if not (is_case(source) or is_varied(source) or callable(source)):
         raise ParameterError(
-            f"sweep: source must be a Case, as of ks.load_case, or a function that makes a Variant, got {source!r}"
+            "sweep: source must be a Case, as of ks.load_case, a Scene or a function that makes a Scene, got "
+            f"{checks.shown(source)}"
         )
-    make, known, compared = (
-        _of_case(source, variant, reference) if isinstance(source, Case) else _of_function(source, reference)
-    )
+    compared = chosen(source, variant, reference) if is_case(source) else (source, reference)
+    known = compared[0].units if is_varied(compared[0]) else None
     wanted, problems = _outputs(outputs)
     columns, wrong = si_columns(designs.columns, known)
     problems += [
@@ -166,16 +172,19 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
         *_order_problems(wanted, angles),
     ]
     ratios = any(item.ratio for item in wanted)
-    if ratios and not isinstance(compared[1], Variant):
-        problems.append("ratios need a reference: a Variant, as the function makes")
+    if ratios and not _is_scene(compared[1]):
+        problems.append(f"ratios need a reference: a Scene, got {checks.shown(compared[1])}")
     checks.require("sweep", *problems)
+    if known is not None:
+        wanted = tuple(item.of(compared[0]) for item in wanted)
 
     if engine == "compiled":
         compiled.require()
     large = len(designs) * angles >= WORTH_COMPILING and compiled.available()
     engines = [engine] if engine else ["compiled", "numpy"] if large else ["numpy"]
     threads = compiled.cores() if executor is None and workers is None else 1
-    job = Job(make[0], make[1] if ratios else None, columns, wanted, angles, engines[0], threads)
+    make, make_reference = _makers(known, *compared)
+    job = Job(make, make_reference if ratios else None, columns, wanted, angles, engines[-1], threads)
     if workers:
         from cloudpickle import dumps
 
@@ -187,10 +196,14 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
     return job, engines, compared if ratios else compared[:1]
 
 
-def _of_case(case, variant, reference):
-    """Functions that make the varied variant and the reference, what may be varied, and the variants themselves."""
-    pair = chosen(case, variant, reference)
-    return [partial(_varied, item) for item in pair], paths(pair[0].table), pair
+def is_case(source):
+    """Whether it offers variants by name, as a `Case` does."""
+    return hasattr(source, "variants") and hasattr(source, "reference")
+
+
+def is_varied(source):
+    """Whether it can be varied by path, as a `Scene` and a case's variant can."""
+    return not isinstance(source, type) and hasattr(source, "varied") and hasattr(source, "units")
 
 
 def chosen(case, variant=None, reference=None):
@@ -200,22 +213,29 @@ def chosen(case, variant=None, reference=None):
     return case.variant(variant), case.variant(reference)
 
 
-def _of_function(function, reference):
-    return [partial(_called, function), partial(_fixed, reference)], None, (function, reference)
+def _is_scene(item):
+    return isinstance(getattr(item, "scene", item), Scene)
 
 
-def _varied(variant, values):
-    """The variant with those of the values that it has a place for; the loads are made anew."""
-    known = paths(variant.table)
-    return variant.varied({path: value for path, value in values.items() if path in known})
+def _makers(known, source, reference):
+    """Functions from values to what is varied, and to what ratios refer to."""
+    if known is None:
+        return partial(_called, source), partial(_fixed, reference)
+    return partial(_varied, source), partial(_varied, reference)
+
+
+def _varied(item, values):
+    """The item with those of the values that it has a place for."""
+    known = item.units
+    return item.varied({path: value for path, value in values.items() if path in known})
 
 
 def _called(function, values):
     return function(**values)
 
 
-def _fixed(variant, values):
-    return variant
+def _fixed(item, values):
+    return item
 
 
 def listed(outputs):
@@ -240,8 +260,10 @@ def _outputs(outputs):
 
 def _name_problems(columns, wanted):
     """Columns of the designs that would stand in the table twice."""
-    taken = {item.column for item in wanted} | {FAILED}
-    return [f"column {name!r} of the designs has the name of an output; rename it" for name in columns if name in taken]
+    taken = {*map(str, wanted), FAILED}
+    for name in columns:
+        if parted(name)[0] in taken:
+            yield f"column {name!r} of the designs has the name of an output; rename it"
 
 
 def _type_problems(designs):

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..casefile.case import Case
-from ..casefile.parameters import paths
 from ..errors import ParameterError
 from ..numbers import checks
+from ..numbers.headings import parted
 from ..results.reductions import parsed
 from . import designs
-from .sweeps import FAILED, chosen, listed, sweep
+from .sweeps import FAILED, chosen, is_case, is_varied, listed, sweep
 
 LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 
@@ -46,7 +45,10 @@ class Tolerances:
 
     def share(self, output, *, above=-np.inf, below=np.inf):
         """Share of all designs whose output lies between."""
-        values = self.table[parsed(output).column]
+        named = {parted(column)[0]: column for column in self.outputs}
+        name = str(parsed(output))
+        checks.require("tolerances", checks.choice("output", name, tuple(named)))
+        values = self.table[named[name]]
         return float(((values > above) & (values < below)).mean())
 
 
@@ -55,7 +57,8 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
 
     Parameters
     ----------
-    case : Case or function
+    case : Case, Scene or function
+        As for `sweep`.
     outputs : sequence of str
         As for `sweep`: "ratio mean_absolute balancing_torque" ...
     spreads : dict of parameter to text, optional
@@ -80,11 +83,13 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         No spreads, a text that cannot be read, a count that is no power of two, or designs within the spread that
         cannot be computed or have an infinite output, which makes quantiles and indices meaningless.
     """
-    if spreads is None and isinstance(case, Case):
-        known = paths(chosen(case, options.get("variant"), options.get("reference"))[0].table)
+    if not (is_case(case) or is_varied(case) or callable(case)):
+        raise ParameterError(
+            f"tolerances: case must be a Case, a Scene or a function that makes a Scene, got {checks.shown(case)}"
+        )
+    if spreads is None and is_case(case):
+        known = chosen(case, options.get("variant"), options.get("reference"))[0].units
         spreads = {name: text for name, text in case.tolerances.items() if name in known}
-    if not isinstance(case, Case) and not callable(case):
-        raise ParameterError(f"tolerances: case must be a Case or a function that makes a Variant, got {case!r}")
     power = isinstance(count, int) and count > 1 and not count & (count - 1)
     checks.require(
         "tolerances",
@@ -95,19 +100,24 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         None if power else f"count must be a power of two, got {count!r}",
     )
     found = designs.distributions(spreads)
-    names = tuple(dict.fromkeys(parsed(item).column for item in listed(outputs)))
+    wanted = tuple(dict.fromkeys(map(parsed, listed(outputs))))
     sweeps = itertools.count()
 
-    def run(table):
+    def run(designed):
         place = None if folder is None else Path(folder) / f"sweep-{next(sweeps)}"
-        table = sweep(case, table, outputs, folder=place, **options)
-        _require_finite(table, names)
+        table = sweep(case, designed, wanted, folder=place, **options)
+        _require_finite(table, names_in(table))
         return table
 
+    def names_in(table):
+        return tuple(table.columns[len(found) : -1])
+
     def values(numbers):
-        return np.array(run(pd.DataFrame(numbers.T, columns=designs.columns(found)))[list(names)]).T
+        table = run(pd.DataFrame(numbers.T, columns=designs.columns(found)))
+        return np.array(table[list(names_in(table))]).T
 
     table = run(designs.sobol(spreads, count, seed))
+    names = names_in(table)
     return Tolerances(table, names, _sensitivity(values, found, names, count, seed), dict(spreads))
 
 

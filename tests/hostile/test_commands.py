@@ -65,7 +65,7 @@ def idle(monkeypatch):
         raise AssertionError("work began")
 
     monkeypatch.setattr("kinetostatics.casefile.case.Case.solve", lambda case, name, *_: work(case.variant(name)))
-    monkeypatch.setattr("kinetostatics.sweeps.sweeps.suitable_engine", work)
+    monkeypatch.setattr("kinetostatics.sweeps.sweeps.tried", work)
     monkeypatch.setattr("kinetostatics.studies.stability.study", work)
 
 

@@ -13,7 +13,6 @@ import pytest
 from pyarrow import parquet
 
 import kinetostatics as ks
-from kinetostatics.casefile.case import Variant
 from kinetostatics.errors import CacheWarning, KinetostaticsError
 from kinetostatics.sweeps.dataset import MANIFEST, Dataset
 
@@ -22,7 +21,7 @@ OUTPUT = "rms O"
 
 
 def pump(crank):
-    return Variant(ks.crank_slider(crank, 4.0 * crank, slider=ks.Link(1.0)), 10.0, 0.0, (ks.Gravity(),))
+    return ks.Scene(ks.crank_slider(crank, 4.0 * crank, slider=ks.Link(1.0)), 10.0, 0.0, (ks.Gravity(),))
 
 
 def sweep(folder, designs=DESIGNS, output=OUTPUT):

@@ -8,7 +8,6 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.casefile.case import Variant
 from kinetostatics.mechanics import assembly, quantities
 from kinetostatics.results.comparison import mean_absolute_torque
 from kinetostatics.results.tables import extremes_frame
@@ -119,7 +118,7 @@ def test_sweeps_give_a_reason_in_place_of_numbers_at_change_points(name, angles)
     (crank, coupler, rocker, frame), limits = CHANGE_POINTS[name]
 
     def made(coupler):
-        return Variant(four_bar(crank, coupler, rocker, frame), 5.0, 0.0, GRAVITY)
+        return ks.Scene(four_bar(crank, coupler, rocker, frame), 5.0, 0.0, GRAVITY)
 
     table = swept(made, {"coupler": [coupler, 1.2 * coupler]}, ["largest_absolute balancing_torque"], angles=angles)
     assert table["failed"][0].startswith("has no correct digit at crank angle")
@@ -188,7 +187,7 @@ def test_gaps_between_samples_are_found(name, short):
     assert any(start <= np.radians(place) <= stop for start, stop in caught.value.intervals)
     assembly.require_turn(make(-short))
     table = swept(
-        lambda short: Variant(make(short), 5.0, 0.0, ()), {"short": [short, -0.1]}, ["range balancing_torque"]
+        lambda short: ks.Scene(make(short), 5.0, 0.0, ()), {"short": [short, -0.1]}, ["range balancing_torque"]
     )
     assert "cannot be assembled" in table["failed"][0]
     told = re.search(r"between the crank angles, at ([\d.]+) deg", table["failed"][0])
@@ -254,7 +253,7 @@ def test_what_is_no_force_is_refused_by_name(name, way):
 @pytest.mark.parametrize("name", WRONG)
 def test_sweeps_give_what_is_no_force_as_the_reason(name):
     function, _ = WRONG[name]
-    made = lambda mass: Variant(SAW, 33.5, 0.0, (ks.ProcessForce(function),))  # noqa: E731
+    made = lambda mass: ks.Scene(SAW, 33.5, 0.0, (ks.ProcessForce(function),))  # noqa: E731
     with np.errstate(all="ignore"):
         table = swept(made, {"mass": [1.0, 2.0]}, ["rms O"], angles=36)
     assert table["failed"].str.contains("ProcessForce on 'slider'").all()
@@ -289,7 +288,7 @@ def test_a_load_that_repeats_after_turns_is_refused_with_its_period(turns):
         with pytest.raises(ks.ParameterError, match=rf"repeats after {turns} turns only: give period={2 * turns}\*pi"):
             way()
     with pytest.raises(ks.ParameterError, match=rf"give period={2 * turns}\*pi"):
-        swept(lambda mass: Variant(SAW, 33.5, 0.0, solution.loads), {"mass": [1.0]}, ["rms O"])
+        swept(lambda mass: ks.Scene(SAW, 33.5, 0.0, solution.loads), {"mass": [1.0]}, ["rms O"])
 
 
 @pytest.mark.parametrize("turns", REPEATING)
@@ -304,7 +303,7 @@ def test_extremes_means_and_sweeps_run_over_the_period(turns):
     assert found.angle.max() > 2 * np.pi * (turns - 1)
     assert mean_absolute_torque(solution) == pytest.approx(np.abs(torque).mean(), rel=1e-7)
     outputs = ["largest balancing_torque", "largest_at balancing_torque", "harmonic_1 balancing_torque"]
-    row = swept(lambda mass: Variant(SAW, 33.5, 0.0, (load,)), {"mass": [1.0]}, outputs, angles=720).iloc[0]
+    row = swept(lambda mass: ks.Scene(SAW, 33.5, 0.0, (load,)), {"mass": [1.0]}, outputs, angles=720).iloc[0]
     assert row.iloc[1] == pytest.approx(torque.max(), rel=1e-5)
     assert row.iloc[2] == pytest.approx(fine[torque.argmax()], abs=1e-3)
     assert row.iloc[3] == pytest.approx(2 * abs(np.mean(torque * np.exp(-1j * fine))), rel=1e-6)
@@ -358,7 +357,7 @@ def test_sweeps_take_as_many_angles_as_peaks_need(angles):
 
     def made(mass):
         links = {"coupler": ks.Link(mass, 0.3, 0.1), "rocker": ks.Link(2.0, 0.3, 0.1)}
-        return Variant(ks.four_bar(*lengths, rocker_pivot=pivot, **links), 10.0, 0.0, GRAVITY)
+        return ks.Scene(ks.four_bar(*lengths, rocker_pivot=pivot, **links), 10.0, 0.0, GRAVITY)
 
     outputs = ["largest O", "smallest O2", "largest_absolute balancing_torque", "mean_absolute balancing_torque"]
     row = swept(made, {"mass": [3.0]}, outputs, angles=angles).iloc[0]
@@ -373,11 +372,11 @@ def test_sweeps_take_as_many_angles_as_peaks_need(angles):
 @pytest.mark.parametrize("angles", [1, 2, 3, 11])
 def test_sweeps_of_too_few_angles_are_refused(angles):
     with pytest.raises(ks.ParameterError, match=f"angles must be at least 12, got {angles}"):
-        swept(lambda mass: Variant(SAW, 33.5, 0.0, ()), {"mass": [1.0]}, ["rms O"], angles=angles)
+        swept(lambda mass: ks.Scene(SAW, 33.5, 0.0, ()), {"mass": [1.0]}, ["rms O"], angles=angles)
 
 
 def test_a_peak_too_narrow_for_any_number_of_angles_is_no_number():
-    made = lambda short: Variant(ks.crank_slider(1.0, 1.0 + short, slider=ks.Link(1.0)), 30.0, 0.0, ())  # noqa: E731
+    made = lambda short: ks.Scene(ks.crank_slider(1.0, 1.0 + short, slider=ks.Link(1.0)), 30.0, 0.0, ())  # noqa: E731
     table = swept(made, {"short": [1e-9, 0.2]}, ["largest O"])
     assert "passes so near a limit position" in table["failed"][0] or "no correct digit" in table["failed"][0]
     assert np.isnan(table.iloc[0, 1])
@@ -396,4 +395,4 @@ def test_the_period_is_the_turns_that_all_loads_have_in_common():
     assert at_rest(SAW, loads[:2]).period == pytest.approx(4 * np.pi)
     assert at_rest(SAW, loads).period == pytest.approx(12 * np.pi)
     assert at_rest(SAW, [ks.Spring(1.0, 0.0), ks.Gravity()]).period == pytest.approx(2 * np.pi)
-    assert Variant(SAW, 5.0, 0.0, tuple(loads[:2])).solve(8).crank_angle[-1] == pytest.approx(3.5 * np.pi)
+    assert ks.Scene(SAW, 5.0, 0.0, tuple(loads[:2])).solve(8).crank_angle[-1] == pytest.approx(3.5 * np.pi)

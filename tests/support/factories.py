@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 
 import kinetostatics as ks
-from kinetostatics.casefile.case import Variant
 
 OUTPUTS = ["largest O", "mean_absolute balancing_torque"]
 DESIGNS = pd.DataFrame({"crank [mm]": np.linspace(100.0, 500.0, 41), "mass": np.linspace(1.0, 9.0, 41)})
@@ -19,7 +18,7 @@ DESIGNS = pd.DataFrame({"crank [mm]": np.linspace(100.0, 500.0, 41), "mass": np.
 
 def pump(crank, mass=1.0, speed=100.0):
     """A crank-slider with a coupler four times the crank."""
-    return Variant(ks.crank_slider(crank, 4.0 * crank, slider=ks.Link(mass)), speed, 0.0, (ks.Gravity(),))
+    return ks.Scene(ks.crank_slider(crank, 4.0 * crank, slider=ks.Link(mass)), speed, 0.0, (ks.Gravity(),))
 
 
 def by_plain_numbers(crank, mass):

@@ -7,6 +7,7 @@ from scipy import stats
 
 import kinetostatics as ks
 from kinetostatics.casefile import parameters, schema
+from kinetostatics.numbers.headings import si_columns
 from kinetostatics.sweeps import designs
 
 SPREADS = {
@@ -101,7 +102,7 @@ def test_no_parameters_are_no_designs(kind):
 
 
 def known(case, variant):
-    return parameters.paths(ks.load_case(case).variant(variant).table)
+    return ks.load_case(case).variant(variant).units
 
 
 def test_paths_are_the_numbers_of_a_variant_with_their_units():
@@ -126,17 +127,17 @@ def test_what_the_file_fixes_otherwise_is_no_path():
 
 def test_columns_are_read_with_their_units_and_all_that_is_wrong_with_them():
     paths = {"slider.mass": "kg", "cam.centre.x": "m"}
-    columns, problems = parameters.si_columns(["cam.centre.x [mm]", "slider.mass"], paths)
+    columns, problems = si_columns(["cam.centre.x [mm]", "slider.mass"], paths)
     assert columns == (("cam.centre.x [mm]", "cam.centre.x", 0.001), ("slider.mass", "slider.mass", 1.0))
     assert not problems
-    _, problems = parameters.si_columns(
+    _, problems = si_columns(
         ["slider.mas [kg]", "cam.centre.x [kg]", "slider.mass [x]", "slider.mass"], paths
     )
     assert "did you mean 'slider.mass'" in problems[0]
     assert '"kg" does not measure the same as "m"' in problems[1]
     assert 'unit "x" is not known' in problems[2]
     assert problems[3] == "parameter 'slider.mass' has two columns"
-    columns, problems = parameters.si_columns(["ratio [1]", "speed [rpm]", "size [foo]"])
+    columns, problems = si_columns(["ratio [1]", "speed [rpm]", "size [foo]"])
     assert [name for _, name, _ in columns] == ["ratio", "speed", "size"]
     assert columns[1][2] == pytest.approx(np.pi / 30)
     assert len(problems) == 1

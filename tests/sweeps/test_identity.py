@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.casefile.case import Variant
 from kinetostatics.sweeps.identity import digest
 
 BASE = """
@@ -200,7 +199,7 @@ def test_objects_that_hold_themselves_come_to_an_end():
 def test_variants_made_by_hand_are_told_apart_by_every_number():
     def made(mass, law=np.sin):
         loads = (ks.ProcessForce(lambda motion: law(motion.crank_angle)),)
-        return Variant(ks.crank_slider(np.full((2000, 1), 0.3), 2.0, slider=ks.Link(mass)), 10.0, 0.0, loads)
+        return ks.Scene(ks.crank_slider(np.full((2000, 1), 0.3), 2.0, slider=ks.Link(mass)), 10.0, 0.0, loads)
 
     masses = np.linspace(1.0, 2.0, 2000)[:, None]
     changed = masses + 1e-9 * (np.arange(2000) == 1000)[:, None]

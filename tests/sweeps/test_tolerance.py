@@ -8,7 +8,6 @@ import pytest
 from scipy import stats
 
 import kinetostatics as ks
-from kinetostatics.casefile.case import Variant
 from support.case_files import written
 
 SPREADS = {"mass": "normal 1 kg +- 0.1 kg", "push": "100..300 N"}
@@ -22,7 +21,7 @@ tolerances = partial(ks.tolerances, progress=False, angles=24)
 def ram(mass, push=0.0):
     """A slider that is pushed outwards: the largest reaction at its pin is mass times acceleration plus the push."""
     mechanism = ks.crank_slider(0.1, 0.4, slider=ks.Link(mass))
-    return Variant(mechanism, 100.0, 0.0, (ks.ProcessForce(push),))
+    return ks.Scene(mechanism, 100.0, 0.0, (ks.ProcessForce(push),))
 
 
 def fragile(mass, push):

@@ -1,0 +1,52 @@
+"""Headings of columns, a name with its unit in brackets: "slider.mass [kg]"."""
+
+import re
+
+from . import checks
+from .units import factor
+
+_HEADING = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")
+
+
+def heading(name, unit):
+    """Heading of a column."""
+    return f"{name} [{unit}]"
+
+
+def parted(text):
+    """Name and unit of a heading; the unit is empty where there is none."""
+    found = _HEADING.fullmatch(str(text).strip())
+    return (found[1].strip(), (found[2] or "").strip()) if found else (str(text).strip(), "")
+
+
+def si_columns(columns, known=None):
+    """Name and factor to SI of each column of a table of designs, and what is wrong with them.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Names, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI.
+    known : mapping of name to SI unit, optional
+        What there is to vary; any name and unit will do if not given.
+
+    Returns
+    -------
+    columns : tuple of (column, name, factor)
+    problems : list of str
+    """
+    found: dict[str, tuple[str, str, float]] = {}
+    problems = []
+    for column in columns:
+        name, unit = parted(column)
+        problem = checks.choice("parameter", name, tuple(known)) if known is not None else None
+        if name in found:
+            problem = f"parameter {name!r} has two columns"
+        scale = 1.0
+        if unit and not problem:
+            try:
+                scale = factor(unit, unit if known is None else known[name])
+            except ValueError as error:
+                problem = f"parameter {column!r}: {error}"
+        found[name] = (column, name, scale)
+        problems += [problem] if problem else []
+    return tuple(found.values()), problems

@@ -1,0 +1,81 @@
+"""Reductions by machine code: the same numbers as those of NumPy, whatever the values."""
+
+import numpy as np
+import pytest
+
+from kinetostatics.engines import compiled
+from kinetostatics.results.passes import KINDS, Passes
+from kinetostatics.results.reductions import parsed
+
+pytestmark = pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)")
+OUTPUTS = [parsed(f"{kind} O") for kind in (*KINDS, "harmonic_2")]
+
+
+def signals(count):
+    """Values of many designs: waves, magnitudes, jumps, plateaus, noise, constants, what is no number."""
+    generator = np.random.default_rng(5)
+    turn = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    orders = np.arange(1, 6)[:, None]
+    waves = [
+        sum(generator.normal() * np.cos(order * turn + generator.uniform(0, 7)) for order in orders) for _ in range(60)
+    ]
+    made = [
+        *waves,
+        *map(np.abs, waves[:10]),
+        *(-np.abs(wave) for wave in waves[:10]),
+        *(np.hypot(wave, other) for wave, other in zip(waves, waves[1:], strict=False)),
+        *np.round(waves[:20]),
+        *np.clip(waves[:20], -0.5, 0.5),
+        *generator.normal(size=(20, count)),
+        *(1e6 + np.array(waves[:5])),
+        np.zeros(count),
+        np.full(count, -3.0),
+        np.where(turn < 1, 0.0, 10.0),
+        np.where((turn < 1) | (turn > 6), 10.0, 0.0),
+        np.where(np.arange(count) == 0, 1.0, 0.0),
+        np.where(np.arange(count) == 5, np.nan, np.sin(turn)),
+        np.where(np.arange(count) == 5, np.nan, 1.0),
+        np.full(count, np.nan),
+        np.where(np.arange(count) == 0, np.nan, np.sin(turn)),
+        np.where(np.arange(count) == count - 1, np.nan, 2.0),
+    ]
+    return np.array(made)
+
+
+def reduced(values, closure=None, turns=1):
+    """What `Passes` finds of values (designs, N), and of closure."""
+    closure = np.ones_like(values) if closure is None else closure
+    results = np.ascontiguousarray(np.stack([values, closure], axis=1))
+    count, shape = len(values), (len(OUTPUTS), len(values))
+    numbers, rough = np.empty(shape), np.zeros(shape, dtype=bool)
+    gaps, nearest = np.zeros(count, dtype=int), np.full(count, np.nan)
+    passes = Passes(OUTPUTS, [0] * len(OUTPUTS), 1, np.linspace(0, 6, values.shape[1]), turns)
+    half = count // 2
+    for part, start in ((results[:half], 0), (results[half:], half)):
+        passes(part.copy(), start, numbers, rough, gaps, nearest)
+    return numbers, rough, gaps, nearest
+
+
+@pytest.mark.parametrize("count", [12, 13, 45, 360, 361])
+@pytest.mark.parametrize("turns", [1, 2])
+def test_numbers_and_doubts_are_those_of_numpy(count, turns):
+    values = signals(count)
+    numbers, rough, *_ = reduced(values, turns=turns)
+    for item, found, doubtful in zip(OUTPUTS, numbers, rough, strict=True):
+        with np.errstate(all="ignore"):
+            expected, doubted = item.estimated(values, turns)
+        size = np.nanmax(np.abs(values), axis=1, initial=0.0)
+        np.testing.assert_array_equal(np.isnan(found), np.isnan(expected), err_msg=str(item))
+        same = np.abs(found - expected) <= 1e-13 * np.maximum(size, 1.0)
+        assert (same | np.isnan(expected)).all(), (item, np.flatnonzero(~same), found[~same], expected[~same])
+        np.testing.assert_array_equal(doubtful, doubted, err_msg=str(item))
+
+
+def test_designs_that_do_not_close_or_nearly_do_not_are_told():
+    closure = np.ones((4, 20))
+    closure[1, 7] = 0.005
+    closure[2, 3:6] = -0.1
+    closure[3, 2] = np.nan
+    *_, gaps, nearest = reduced(np.ones((4, 20)), closure)
+    assert gaps.tolist() == [0, 0, 3, 1]
+    np.testing.assert_array_equal(nearest, [np.nan, np.linspace(0, 6, 20)[7], np.nan, np.nan])
