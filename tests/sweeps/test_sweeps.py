@@ -30,7 +30,6 @@ from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support.case_files import written
 from support.factories import DESIGNS, OUTPUTS
-from support.scenes import OneSided
 
 SAW = ks.load_case("sawframe_2r63")
 sweep = partial(ks.sweep, progress=False)
