@@ -63,6 +63,8 @@ class RollerByAngles(CamRoller):
 
     sign: float = EQUILIBRIUM
 
+    TRUSTED = True
+
     def resolve(self, placement, loads, along) -> Resolved:
         radius, slope, _ = placement.details["cam"]
         x, y = vector(loads["block"].force)
@@ -76,6 +78,8 @@ class RollerByAngles(CamRoller):
 
 class SliderByVectors(SliderGroup):
     """Slider by the mower study: `slider_by_double_cross`, then the loop equation, differentiated, with its vectors."""
+
+    TRUSTED = True
 
     def found(self, A):
         u, offset, length = self.guide.direction, self.guide.guide_offset, self.coupler_length
@@ -101,6 +105,8 @@ class SliderByVectors(SliderGroup):
 class SliderByAsin(SliderByVectors):
     """Slider by the sawframe study: the coupler's angle from the guide by asin."""
 
+    TRUSTED = True
+
     def found(self, A):
         u, n = self.guide.direction, left(self.guide.direction)
         angle = np.arcsin((self.guide.guide_offset - dot(n, A)) / self.coupler_length)
@@ -113,6 +119,8 @@ class RockerByAtanAcos(RockerGroup):
     """Rocker by the chain unit study, `four_bar_by_atan_acos`."""
 
     crank_length: Any = None
+
+    TRUSTED = True
 
     def place(self, placement):
         lengths = self.crank_length, self.coupler_length, self.rocker_length
