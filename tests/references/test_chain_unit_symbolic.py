@@ -16,7 +16,7 @@ from sympy.polys.orderings import lex
 
 from kinetostatics.machine import rocker_group
 from kinetostatics.machine.links import Joint
-from kinetostatics.studies.methods import papers
+from kinetostatics.studies.methods import printed
 
 FIELD, S, a, s, k, r, c, h, b = field("S, a, s, k, r, c, h, b", QQ, lex)
 HERON = (a + c + h) * (a + c - h) * (a - c + h) * (c + h - a)
@@ -76,8 +76,8 @@ def study_rates():
         "arccos": lambda ratio: 0,
     }
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(papers, "np", SimpleNamespace(**functions))
-        return dict(zip(("coupler", "rocker"), papers.chain_unit_by_atan_acos(r, c, h, b, 0)[2:], strict=True))
+        patch.setattr(printed, "np", SimpleNamespace(**functions))
+        return dict(zip(("coupler", "rocker"), printed.chain_unit_by_atan_acos(r, c, h, b, 0)[2:], strict=True))
 
 
 def test_directions_are_unit_vectors_that_close_the_loop(placed):
