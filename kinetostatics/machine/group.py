@@ -147,11 +147,12 @@ class Group:
     label = ""
     TRUSTED = False
     """Whether its forces are known to balance and its names to come from its texts: the library's own, as tested."""
+    trusted = False
+    """Whether its class itself says so: one derived from it may do otherwise."""
 
-    @property
-    def trusted(self):
-        """Whether its class says so itself: one derived from it may do otherwise."""
-        return vars(type(self)).get("TRUSTED", False)
+    def __init_subclass__(cls, **options):
+        super().__init_subclass__(**options)
+        cls.trusted = vars(cls).get("TRUSTED", False)
 
     @property
     def follows(self):

@@ -52,9 +52,9 @@ def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa
     >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
     >>> program = ks.compile(ks.Scene(pump, crank_speed=100.0), "balancing_torque", engine="numpy")
     >>> round(float(program(0.5)["balancing_torque"]), 6)
-    -5.945034
+    14.875291
     >>> round(float(program(0.5, {"slider.mass": 2.0})["balancing_torque"]), 6)
-    -11.890069
+    29.750582
     """
     names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     checks.require(

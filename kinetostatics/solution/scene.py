@@ -49,7 +49,7 @@ class Scene:
     >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
     >>> scene = ks.Scene(pump, crank_speed=100.0, loads=ks.Gravity())
     >>> print(f"{ks.extremes(scene.solve(360), 'O').largest:.3f} N")
-    625.077 N
+    625.000 N
     >>> scene.varied({"slider.mass": 2.0}).parameters["slider.mass"]
     2.0
     """

@@ -10,6 +10,9 @@ from hypothesis import strategies as st
 import kinetostatics as ks
 from support.strategies import cases, either_sign, number, planar, reproducible
 
+pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+"""Bodies drawn at random have any inertia."""
+
 CLOSE = 1e-13
 """Relative to the largest part of a sum."""
 KINDS = ("plain", "circle", "cosine law", "four-bar", "six-bar")

@@ -103,6 +103,12 @@ def test_a_cam_of_ones_own_is_taken_as_it_is_when_the_mechanism_is_made(interpre
     )
 
 
+def test_cams_of_the_library_that_cannot_change_are_not_copied_and_those_of_ones_own_are():
+    fixed, own = ks.cams.Circle(0.3, (0.02, 0.0)), Flat(0.3)
+    assert ks.CamRoller(fixed).cam is fixed
+    assert ks.CamRoller(own).cam is not own
+
+
 def test_a_load_of_ones_own_is_taken_as_it_is_when_solved():
     push = type("Push", (), {"on": "slider", "push": lambda self, motion: self.force})()
     made = []
