@@ -1,5 +1,7 @@
 """Reductions by machine code: the same numbers as those of NumPy, whatever the values."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -23,7 +25,7 @@ def signals(count):
         *waves,
         *map(np.abs, waves[:10]),
         *(-np.abs(wave) for wave in waves[:10]),
-        *(np.hypot(wave, other) for wave, other in zip(waves, waves[1:], strict=False)),
+        *(np.hypot(wave, other) for wave, other in itertools.pairwise(waves)),
         *np.round(waves[:20]),
         *np.clip(waves[:20], -0.5, 0.5),
         *generator.normal(size=(20, count)),

@@ -292,7 +292,13 @@ class Passes:
     def __init__(self, outputs, rows, first, angle, turns):
         kinds = [KINDS.index(item.reduction) if item.order is None else -1 for item in outputs]
         self._passes, self._turns = compiled._loaded(SOURCE).passes, turns
-        self._given = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64), int(first), np.array(angle), turns
+        self._given = (
+            np.array(rows, dtype=np.int64),
+            np.array(kinds, dtype=np.int64),
+            int(first),
+            np.array(angle),
+            turns,
+        )
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
     def __call__(self, results, start, numbers, rough, gaps, nearest):
