@@ -21,10 +21,12 @@ def programs(tmp_path_factory):
 @pytest.fixture
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    from kinetostatics.engines import compiled, machine_code
+    from kinetostatics.engines import compiled, loops, machine_code, programs
 
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function
     numba.__spec__ = ModuleSpec("numba", None)
     monkeypatch.setitem(sys.modules, "numba", numba)
-    monkeypatch.setattr(compiled, "_loaded", cache(machine_code.load))
+    load = cache(machine_code.load)
+    for module in (compiled, loops, programs):
+        monkeypatch.setattr(module, "_loaded", load)

@@ -118,7 +118,8 @@ def turned(values, marks, words, places):
             continue
         for i in range(8 * word, min(8 * word + 8, count)):
             if marks[i]:
-                before, here, after = values[i - 1 if i else count - 1], values[i], values[i + 1 if i + 1 < count else 0]
+                before, after = values[i - 1 if i else count - 1], values[i + 1 if i + 1 < count else 0]
+                here = values[i]
                 if here != here:
                     return 0, 0, False
                 if here > before and not after > here:

@@ -410,7 +410,7 @@ def test_a_sweep_that_is_stopped_says_so_in_a_line_and_leaves_no_process(saw, ho
     """The signal goes to all its processes, as from a terminal."""
     out = saw.parent / "out"
     vary = "slider.mass=600..700 kg:400000"
-    command = [*COMMAND, "sweep", saw, "--vary", vary, "--variant", "plain", "--angles", "4", "--workers", "1"]
+    command = [*COMMAND, "sweep", saw, "--vary", vary, "--variant", "plain", "--angles", "12", "--workers", "1"]
     process = subprocess.Popen(
         [*command, "--output", "rms O", "--out", out], stderr=subprocess.PIPE, text=True, start_new_session=True
     )
