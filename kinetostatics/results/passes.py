@@ -118,7 +118,8 @@ def turned(values, marks, words, places):
             continue
         for i in range(8 * word, min(8 * word + 8, count)):
             if marks[i]:
-                before, here, after = values[i - 1 if i else count - 1], values[i], values[i + 1 if i + 1 < count else 0]
+                before, after = values[i - 1 if i else count - 1], values[i + 1 if i + 1 < count else 0]
+                here = values[i]
                 if here != here:
                     return 0, 0, False
                 if here > before and not after > here:
@@ -292,7 +293,13 @@ class Passes:
     def __init__(self, outputs, rows, first, angle, turns):
         kinds = [KINDS.index(item.reduction) if item.order is None else -1 for item in outputs]
         self._passes, self._turns = compiled._loaded(SOURCE).passes, turns
-        self._given = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64), int(first), np.array(angle), turns
+        self._given = (
+            np.array(rows, dtype=np.int64),
+            np.array(kinds, dtype=np.int64),
+            int(first),
+            np.array(angle),
+            turns,
+        )
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
     def __call__(self, results, start, numbers, rough, gaps, nearest):

@@ -357,7 +357,8 @@ def _by_loop(solution, outputs, count, found):
     state, names = solution.dynamics, _quantities(outputs)
     program, leaves = programs.of(state, (*names, "closure"), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
-    turn, tables = loops.turn(angle), loops.table_of_rows(program.rows(state, leaves), solution.shape)
+    sine, cosine = loops.turn(angle)
+    tables = loops.table_of_rows(program.rows(state, leaves), solution.shape)
     parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
     first = np.cumsum([0, *program.recording.widths])
     rows = [first[names.index(item.quantity)] for item in outputs]
@@ -372,7 +373,7 @@ def _by_loop(solution, outputs, count, found):
             held.results = np.empty((step, size, angle.shape[1]))
         shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
         results = held.results[:designs]
-        loops.run(program.loop, angle, *turn, parameters[block], shared, results)
+        loops.run(program.loop, angle, sine, cosine, parameters[block], shared, results)
         passes(results, start, *found)
 
     return fill, step

@@ -130,9 +130,7 @@ def test_columns_are_read_with_their_units_and_all_that_is_wrong_with_them():
     columns, problems = si_columns(["cam.centre.x [mm]", "slider.mass"], paths)
     assert columns == (("cam.centre.x [mm]", "cam.centre.x", 0.001), ("slider.mass", "slider.mass", 1.0))
     assert not problems
-    _, problems = si_columns(
-        ["slider.mas [kg]", "cam.centre.x [kg]", "slider.mass [x]", "slider.mass"], paths
-    )
+    _, problems = si_columns(["slider.mas [kg]", "cam.centre.x [kg]", "slider.mass [x]", "slider.mass"], paths)
     assert "did you mean 'slider.mass'" in problems[0]
     assert '"kg" does not measure the same as "m"' in problems[1]
     assert 'unit "x" is not known' in problems[2]

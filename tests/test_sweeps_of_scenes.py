@@ -1,0 +1,143 @@
+"""Sweeps and tolerances of scenes by path, and of case files, whose derived numbers follow."""
+
+from functools import partial
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.sweeps.sweeps import FAILED
+
+sweep = partial(ks.sweep, progress=False, angles=36)
+SAW = ks.load_case("sawframe_2r63")
+
+
+def four_bar(mass=2.0, crank=0.1):
+    """A crank-rocker under its weight."""
+    links = {"coupler": ks.Link(mass, 0.2, 0.03), "rocker": ks.Link(2.0, 0.1, 0.02)}
+    return ks.Scene(ks.four_bar(crank, 0.4, 0.3, rocker_pivot=(0.35, 0.1), **links), 20.0, 0.0, ks.Gravity())
+
+
+def six_bar(mass=3.0):
+    """A four-bar whose rocker pin drives a slider."""
+    mechanism = ks.Mechanism(
+        "six-bar",
+        ks.Crank(0.1, ks.Link(1.0, 0.05, 0.01)),
+        (
+            ks.RockerGroup(0.4, 0.3, (0.35, 0.1), coupler=ks.Link(2.0, 0.2, 0.03), rocker=ks.Link(2.0, 0.1, 0.02)),
+            ks.SliderGroup(0.5, on="B", pin="C", label="2", coupler=ks.Link(1.0, 0.2, 0.02), slider=ks.Link(mass)),
+        ),
+    )
+    return ks.Scene(mechanism, 20.0, 0.0, ks.Gravity())
+
+
+ROWS = [
+    (six_bar(), "slider2.mass [kg]", [1.0, 3.0, 9.0], six_bar),
+    (four_bar(), "coupler.mass [g]", [500.0, 4000.0], lambda mass: four_bar(1e-3 * mass)),
+    (four_bar(), "crank_length", [0.05, 0.08], lambda length: four_bar(crank=length)),
+]
+
+
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.parametrize(("scene", "column", "values", "made"), ROWS)
+def test_a_scene_is_swept_by_path_and_all_else_stays(scene, column, values, made, engine):
+    if engine == "compiled":
+        pytest.importorskip("numba")
+    outputs = ["rms balancing_torque", "rms O2"]
+    found = sweep(scene, pd.DataFrame({column: values}), outputs, angles=360, engine=engine)
+    assert found[FAILED].tolist() == [""] * len(values)
+    for row, value in enumerate(values):
+        s = made(value).solve(360)
+        expected = [np.sqrt((s.balancing_torque**2).mean()), np.sqrt((s.reaction("O2") ** 2).sum(axis=0).mean())]
+        assert found.iloc[row, 1:3].tolist() == pytest.approx(expected, rel=1e-12)
+
+
+def test_units_of_outputs_are_those_that_the_mechanism_declares():
+    outputs = ["largest guide_moment2", "largest guide_force2", "range slider2_velocity", "largest_at O", "ratio rms O"]
+    found = sweep(six_bar(), pd.DataFrame({"slider2.mass": [1.0]}), outputs, reference=six_bar(6.0))
+    assert found.columns[1:-1].tolist() == [
+        "largest guide_moment2 [N m]",
+        "largest guide_force2 [N]",
+        "range slider2_velocity [m/s]",
+        "largest_at O [rad]",
+        "ratio rms O [1]",
+    ]
+    with pytest.raises(ks.QuantityError, match="did you mean 'guide_force2'"):
+        sweep(six_bar(), pd.DataFrame({"slider2.mass": [1.0]}), ["rms guide_force"])
+
+
+def test_a_reference_takes_the_parameters_that_it_has_too():
+    designs = pd.DataFrame({"slider2.mass": [1.0, 5.0], "crank_speed": [10.0, 30.0]})
+    assert sweep(six_bar(), designs, "ratio rms O", reference=six_bar(7.0)).iloc[:, 2].tolist() == [1.0, 1.0]
+    found = sweep(six_bar(), designs, "ratio rms O", reference=four_bar())
+    expected = [
+        ks.sweep(scene, designs[columns], "rms O", progress=False, angles=36).iloc[:, -2].to_numpy()
+        for scene, columns in ((four_bar(), ["crank_speed"]), (six_bar(), ["slider2.mass", "crank_speed"]))
+    ]
+    assert found.iloc[:, 2].to_numpy() == pytest.approx(expected[0] / expected[1], rel=1e-12)
+
+
+WRONG = [
+    (six_bar(), {"slider.mass": [1.0]}, {}, "did you mean 'slider2.mass'"),
+    (six_bar(), {"slider2.mass [m]": [1.0]}, {}, '"m" does not measure the same as "kg"'),
+    (six_bar(), {"slider2.mass": [1.0]}, {"reference": "plain"}, "ratios need a reference: a Scene, got 'plain'"),
+    (six_bar(), {"slider2.mass": [1.0]}, {}, "ratios need a reference: a Scene, got None"),
+    (3, {"slider2.mass": [1.0]}, {}, "source must be a Case, as of ks.load_case, a Scene or a function"),
+    (six_bar().mechanism, {"slider2.mass": [1.0]}, {}, "source must be a Case"),
+]
+
+
+@pytest.mark.parametrize(("source", "designs", "options", "message"), WRONG)
+def test_what_cannot_be_varied_is_refused(source, designs, options, message):
+    with pytest.raises(ks.ParameterError, match=message):
+        sweep(source, pd.DataFrame(designs), "ratio rms O", **options)
+
+
+def test_designs_of_a_scene_that_cannot_be_have_their_reasons():
+    found = sweep(six_bar(), pd.DataFrame({"slider2.mass": [1.0, -1.0], "coupler_length2": [0.5, 0.5]}), "rms O")
+    assert found[FAILED].tolist() == ["", "Link: mass must be at least 0, got -1.0"]
+
+
+def test_a_sweep_of_a_scene_goes_on_from_its_folder_and_is_told_from_others(tmp_path):
+    designs = pd.DataFrame({"slider2.mass": [1.0, 5.0]})
+    first = sweep(six_bar(), designs, "rms O", folder=tmp_path)
+    pd.testing.assert_frame_equal(sweep(six_bar(), designs, "rms O", folder=tmp_path), first, check_exact=True)
+    with pytest.raises(ks.ParameterError, match="differs in scene;"):
+        sweep(six_bar(4.0), designs, "rms O", folder=tmp_path)
+
+
+def test_tolerances_of_a_scene_are_those_of_a_function_that_makes_it():
+    spreads = {"slider2.mass": "normal 3 kg +- 0.1 kg"}
+    options = {"count": 16, "progress": False, "angles": 36}
+    found = ks.tolerances(six_bar(), "rms O", spreads, **options)
+    made = ks.tolerances(lambda mass: six_bar(mass), "rms O", {"mass": spreads["slider2.mass"]}, **options)
+    assert found.outputs == made.outputs == ("rms O [N]",)
+    np.testing.assert_allclose(found.table.iloc[:, 1], made.table.iloc[:, 1], rtol=1e-13)
+    assert found.share("rms O", above=0.0) == 1.0
+    with pytest.raises(ks.ParameterError, match="output is 'rms B'"):
+        found.share("rms B")
+
+
+def test_what_a_file_derives_follows_in_its_variant_and_stays_in_its_scene():
+    """The spring balances the slider, the coupler's centre is at mid-length."""
+    variant = SAW.variant("cam-circle")
+    assert variant.parameters["spring.stiffness"] == "balance the slider"
+    assert variant.units["spring.stiffness"] == "N/m"
+    values = {"slider.mass": 700.0, "coupler_length": 2.1}
+    varied, scene = variant.varied(values).scene, variant.scene.varied(values)
+    before = variant.scene.parameters
+    changed = {path for path, value in varied.parameters.items() if value != before[path]}
+    assert changed == {*values, "spring.stiffness", "coupler.centre.along"}
+    assert varied.parameters["spring.stiffness"] == pytest.approx(before["spring.stiffness"] * 7 / 6, rel=1e-14)
+    assert {path for path, value in scene.parameters.items() if value != before[path]} == set(values)
+
+
+def test_a_variant_is_swept_like_its_case():
+    designs = pd.DataFrame({"slider.mass": [500.0, 700.0]})
+    of_case = sweep(SAW, designs, "ratio rms O", variant="cam-circle")
+    of_variant = sweep(SAW.variant("cam-circle"), designs, "ratio rms O", reference=SAW.variant("plain"))
+    pd.testing.assert_frame_equal(of_case, of_variant, check_exact=True)
+    kept = sweep(SAW.variant("cam-circle").scene, designs, "rms O").iloc[:, 1]
+    followed = sweep(SAW, designs, "rms O", variant="cam-circle").iloc[:, 1]
+    assert (abs(kept - followed) > 1e-3 * followed).all()
