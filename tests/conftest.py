@@ -33,3 +33,19 @@ def interpreted(monkeypatch):
     programs._kept.clear()
     yield
     programs._kept.clear()
+
+
+@pytest.fixture(scope="session")
+def tell(request):
+    """Prints a line past pytest's capturing; first of all the machine and the versions."""
+    from kinetostatics.studies import timing
+
+    capturing = request.config.pluginmanager.getplugin("capturemanager")
+
+    def line(text):
+        with capturing.global_and_fixture_disabled():
+            print(f"\n{text}", end="")
+
+    for text in timing.circumstances().values():
+        line(text)
+    return line

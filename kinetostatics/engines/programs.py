@@ -206,7 +206,7 @@ _ARRAYS = {
 # Programs kept by structure
 
 
-_kept: OrderedDict[Any, Program] = OrderedDict()
+_kept: OrderedDict[Any, Program | NotGivenError] = OrderedDict()
 _lock = threading.Lock()
 
 
@@ -236,12 +236,17 @@ def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Lea
     key = structure, quantities, sizes
     found = _kept.get(key)
     if found is None:
-        found = _recorded(state, structure, quantities, sizes)
+        try:
+            found = _recorded(state, structure, quantities, sizes)
+        except NotGivenError as refusal:
+            found = refusal
     with _lock:
         _kept[key] = found
         _kept.move_to_end(key)
         while len(_kept) > KEPT:
             _kept.popitem(last=False)
+    if isinstance(found, NotGivenError):
+        raise found
     return found, leaves
 
 

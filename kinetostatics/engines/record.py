@@ -155,7 +155,10 @@ class _Recorder:
     def _is_elementwise(self, part, compute):
         """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""
         try:
-            alone = [np.broadcast_to(found, 1)[0] for found in compute(self.angle)]
+            given = compute(self.angle)
+            if not all(isinstance(found, float | np.ndarray) for found in given):
+                return False
+            alone = [np.broadcast_to(found, 1)[0] for found in given]
             if getattr(part, "ELEMENTWISE", False):
                 return True
             other = self.graph.angle()
@@ -166,6 +169,13 @@ class _Recorder:
         except Exception:  # whatever fails on recorded numbers
             return False
         return True
+
+
+class _Beforehand:
+    """Stands for a part that declares to be computed beforehand: whoever asks it for more fails."""
+
+    def __call__(self, motion):
+        raise TypeError("its values are computed beforehand")
 
 
 @dataclass(frozen=True, eq=False)

@@ -104,6 +104,10 @@ class Graph(list):
 
     def node(self, operation, *arguments):
         arguments = tuple(part if isinstance(part, Node) else float(part) for part in arguments)
+        if operation in "+-":
+            operation, arguments = _with_signs_taken_in(operation, *arguments)
+            if len(arguments) == 1 and operation == "+":
+                return arguments[0]
         factors = [part for part in arguments if isinstance(part, Node) or part != 1.0]
         if operation == "*" and len(factors) == 1:
             return factors[0]
@@ -122,6 +126,20 @@ class Graph(list):
     def row(self, place):
         """A row of the tables."""
         return Node(self, "table", (place,), BY_ANGLE)
+
+
+def _with_signs_taken_in(operation, *arguments):
+    """The same sum or difference, to the last bit, without operations that only turn a sign."""
+    *left, right = arguments
+    if _is_negative(right):
+        operation, right = "-" if operation == "+" else "+", right.arguments[0]
+    if left and _is_negative(left[0]) and operation == "+":
+        return "-", (right, left[0].arguments[0])
+    return operation, (*left, right)
+
+
+def _is_negative(part):
+    return isinstance(part, Node) and part.operation == "-" and len(part.arguments) == 1
 
 
 def needed(outputs):

@@ -115,7 +115,7 @@ class ProcessForce(checks.Checked, Batched):
     on: str = "slider"
     period: float = field(default=TURN, kw_only=True, metadata={"structural": True})
 
-    PATH = "process_force"
+    PATH, OVER_ANGLES = "process_force", ("force",)
 
     def _periods(self):
         """Say where the force has a period of its own."""
@@ -161,6 +161,8 @@ class Tabulated:
     angle: Any = field(repr=False)
     force: Any = field(repr=False)
     period: float = TURN
+
+    TABULATED = True
 
     def __init__(self, angle, force, period=TURN):
         checks.require(

@@ -155,24 +155,5 @@ def magnitude(vector):
     return sqrt(vector[0] * vector[0] + vector[1] * vector[1])
 
 
-_SPELLED = {"torque": "N m", "power": "N m", "moment": "N m", "velocity": "m/s", "position": "m", "rate": "rad/s"}
-
-
-def unit(name):
-    """Unit by spelling (to go)."""
-    base = name.rstrip("0123456789")
-    if base.endswith("angular_acceleration"):
-        return "rad/s2"
-    if base.endswith("slider_acceleration"):
-        return "m/s2"
-    if base == "pressure_angle":
-        return "rad"
-    return next((text for ending, text in _SPELLED.items() if base.endswith(ending)), "N")
-
-
-def label(name):
-    """Label by spelling (to go)."""
-    return name.replace("_", " ") if "_" in name else f"reaction {name}"
-
-
 RATES = {"_rate": "rad/s", "_angular_acceleration": "rad/s2"}
+"""Units of the quantities whose names these endings make of a link's."""

@@ -227,6 +227,13 @@ def _table(item, leaves):
     return TABLE
 
 
+def _constants(item, leaves):
+    """Array of one axis that has nothing to do with crank angles: what it holds belongs to the structure."""
+    if type(item) is np.ndarray and item.ndim == 1 and item.size > 1:
+        return Opaque(item, (item.shape, item.tobytes()))
+    return taken_apart(item, leaves)
+
+
 def _part(item, leaves):
     leaves.parts.append(item)
     return PART
@@ -308,6 +315,7 @@ def _taker(kind):
 
 def _of_dataclass(kind):
     """Function written for the type, as a hand would write it: it runs for each part of each scene that is solved."""
+    over_angles = getattr(kind, "OVER_ANGLES", ())
     lines = ["def taker(item, leaves):"]
     for place, (name, structural) in enumerate(_kinds(kind)):
         lines.append(f"    v{place} = item.{name}")
@@ -317,10 +325,10 @@ def _of_dataclass(kind):
                 f"        leaves.numbers.append(v{place})",
                 f"        v{place} = NUMBER",
                 "    else:",
-                f"        v{place} = taken_apart(v{place}, leaves)",
+                f"        v{place} = {'taken_apart' if name in over_angles else 'constants'}(v{place}, leaves)",
             ]
     lines.append(f"    return (kind, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
-    scope = {"kind": kind, "NUMBER": NUMBER, "taken_apart": taken_apart}
+    scope = {"kind": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants}
     exec("\n".join(lines), scope)
     return scope["taker"]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..engines.engines import NUMPY
 from ..errors import ParameterError
-from ..machine.loads import period_of
+from ..machine.loads import is_given, period_of
 from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
@@ -201,6 +201,11 @@ class Solution(Motion):
     def _values(self):
         return {}
 
+    @property
+    def _is_given(self):
+        """Whether nothing of it is code of the user's, which may be wrong and is to be told when it is asked."""
+        return self.mechanism.trusted and all(map(is_given, self.loads))
+
     def _force(self, kind, name, vector):
         """A force by name; all are computed together if they are not too many."""
         if name not in self._values:
@@ -212,6 +217,7 @@ class Solution(Motion):
         if name not in self._values:
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
-            together = math.prod(self.shape) <= SHARE and (name == "closure" or name in self.mechanism.outputs)
+            of_all = self._is_given if name == "closure" else name in self.mechanism.outputs
+            together = of_all and math.prod(self.shape) <= SHARE
             self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
         return self._values[name]

@@ -9,11 +9,11 @@ from functools import partial
 
 import numpy as np
 import pytest
-from test_speed import COUPLER, COUPLER_INERTIA, COUPLER_MASS, CRANK, SLIDER_MASS, SPEED, seconds, turn
 
 import kinetostatics as ks
 from kinetostatics.engines import compiled
 from kinetostatics.studies.methods import kane
+from support.speed import COUPLER, COUPLER_INERTIA, COUPLER_MASS, CRANK, SLIDER_MASS, SPEED, seconds, turn
 
 QUANTITIES = ("O", "A", "B", "guide_force", "balancing_torque")
 LIMITS = {360: {"numpy": 1.5, "compiled": 0.9, "program": 0.3}, 3600: {"numpy": 1.0, "compiled": 0.5, "program": 0.35}}
