@@ -513,7 +513,7 @@ CALLS = {
         f"{kind.__name__} of {name}": (lambda thing=thing, kind=kind: kind(thing, TABLE, ["rms O"]), "must be a Case")
         for kind in (ks.sweep, ks.tolerances)
         for name, thing in OTHERS.items()
-        if name not in ("case", "class")
+        if name not in ("case", "class", "variant")
     },
     **{
         f"quantity {quantity!r} of {kind.__name__}": (
