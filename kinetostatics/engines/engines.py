@@ -1,4 +1,4 @@
-"""Engines: ways to the values of a scene at crank angles. Each takes a `Dynamics` and names, and returns values by name.
+"""Engines: ways to values of a scene at crank angles. Each takes a `Dynamics` and names, and returns values by name.
 
 `KERNELS` runs the kernels as they are, on whatever numbers: JAX, enclosures, single precision, a user's own groups that
 cannot be recorded. `NUMPY` runs what they recorded as one line of array operations, `COMPILED` as a loop made by numba.

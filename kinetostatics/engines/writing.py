@@ -1,4 +1,4 @@
-"""Source of programs from recorded arithmetic: a loop for numba, a line of array operations, a line of plain numbers."""
+"""Source of programs from recorded arithmetic: a loop for numba, a line of arrays, a line of plain numbers."""
 
 from ..numbers.elementary import ROUNDING
 from .trace import BY_ANGLE, Node, needed

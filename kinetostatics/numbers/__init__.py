@@ -1,4 +1,4 @@
-"""What every calculation is made of: elementary functions, planar vectors, leaves of parameter trees, checks, units, files.
+"""What every calculation is made of: elementary functions, planar vectors, parameter trees, checks, units, files.
 
 May import errors.
 """
