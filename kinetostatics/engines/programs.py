@@ -20,6 +20,7 @@ from . import loops, writing
 from .compiled import _loaded
 from .derivatives import gradients
 from .record import record
+from .trace import needed
 
 KEPT = 256
 """Programs kept in memory; the longest unused goes first."""
@@ -66,8 +67,16 @@ class Program:
         return _loaded(writing.loop(self.outputs)).loop
 
     def rows(self, state, leaves):
-        """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand."""
-        return [row for table in self.recording.tables for row in table(state, leaves.tables)]
+        """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand; those needed."""
+        rows = []
+        for table in self.recording.tables:
+            idle = self._rows_needed.isdisjoint(table.rows)
+            rows += [0.0] * len(table.rows) if idle else table.compute(state, leaves.tables)
+        return rows
+
+    @cached_property
+    def _rows_needed(self):
+        return {node.arguments[0] for node in needed(self.outputs) if node.operation == "table"}
 
     def run(self, state, leaves, compiled=False):
         """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""

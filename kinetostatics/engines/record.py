@@ -6,7 +6,7 @@ recorded arithmetic holds for all scenes of that structure, whatever their numbe
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,21 @@ from ..mechanics.quantities import components, of_mechanism
 from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.leaves import put_together
 from .trace import Graph, Node, needed, operations
+
+
+class Table(NamedTuple):
+    """What is computed beforehand at the crank angles.
+
+    Attributes
+    ----------
+    rows : range
+        Rows it fills.
+    compute : function
+        ``compute(motion, arrays) -> rows``, from the scene's motion and the tables among its leaves.
+    """
+
+    rows: range
+    compute: Callable[[Any, Any], Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +49,7 @@ class Recording:
     vectors : tuple of bool
     parameters : tuple of Node
         One for each number of a scene, in the order of its leaves.
-    tables : tuple of functions
-        ``table(motion, arrays) -> rows``: what is computed beforehand at the crank angles, from the scene's motion and
-        the tables among its leaves.
+    tables : tuple of Table
     graph : Graph
     """
 
@@ -45,7 +58,7 @@ class Recording:
     widths: tuple[int, ...]
     vectors: tuple[bool, ...]
     parameters: tuple[Node, ...]
-    tables: tuple[Callable[[Any, Any], Any], ...]
+    tables: tuple[Table, ...]
     graph: Graph
 
     def named(self, rows):
@@ -107,7 +120,7 @@ class _Recorder:
     def __init__(self, structure, way):
         self.graph = Graph()
         self.parameters: list[Node] = []
-        self.tables: list[Callable] = []
+        self.tables: list[Table] = []
         self._rows = self._arrays = 0
         mechanism, speed, acceleration, loads = put_together(structure, self._parameter, self._array, lambda: None)
         self.angle = self._nodes(self.graph.angle())
@@ -126,8 +139,8 @@ class _Recorder:
         return self._tabled(1, lambda motion, arrays: [arrays[place]])[0]
 
     def _tabled(self, rows, compute):
-        self.tables.append(compute)
         first, self._rows = self._rows, self._rows + rows
+        self.tables.append(Table(range(first, self._rows), compute))
         return [self._nodes(self.graph.row(first + place)) for place in range(rows)]
 
     def _nodes(self, *nodes):
@@ -156,7 +169,7 @@ class _Recorder:
         """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""
         try:
             given = compute(self.angle)
-            if not all(isinstance(found, float | np.ndarray) for found in given):
+            if not all(isinstance(found, float | np.ndarray | Node) for found in given):
                 return False
             alone = [np.broadcast_to(found, 1)[0] for found in given]
             if getattr(part, "ELEMENTWISE", False):

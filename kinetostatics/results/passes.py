@@ -185,10 +185,26 @@ def summed(values, power):
 
 
 @njit(**options)
+def kinks(values, step):
+    """What the mean of sizes of every so many values is too large by, where the sign changes (`reductions._kinks`)."""
+    count, total = values.size // step, 0.0
+    before = values[(count - 1) * step]
+    for i in range(count):
+        after = values[i * step]
+        if (before < 0.0) != (after < 0.0):
+            here, there = abs(before), abs(after)
+            total += here * there / (here + there) - (here + there) / 6.0
+        before = after
+    return total / count
+
+
+@njit(**options)
 def averaged(values, power):
     """Mean, of sizes or squares too, and how far that of every other value is from it."""
     even, odd = summed(values, power)
     whole, half = (even + odd) / values.size, even / (values.size // 2)
+    if power == 1:
+        whole, half = whole - kinks(values, 1), half - kinks(values, 2)
     if power == 2:
         whole, half = sqrt(whole), sqrt(half)
     return whole, abs(half - whole) if values.size % 2 == 0 else 0.0 * whole

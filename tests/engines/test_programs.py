@@ -242,7 +242,7 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
     places = tuple(range(len(leaves.numbers)))
     assert len(places) > 4
     angles = np.array([flint.arb(angle) for angle in s.crank_angle.tolist()])
-    structure, _ = programs.apart(state)
+    structure, _ = state.apart
     step = flint.arb(2) ** -60
 
     def beside(place, way):

@@ -13,7 +13,8 @@ from kinetostatics.engines.engines import Kernels
 from kinetostatics.engines.series import harmonic_series
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.studies import needs as ingredients
-from kinetostatics.studies.simplifications import ingredients, two_mass_coupler
+from kinetostatics.studies import simplifications
+from kinetostatics.studies.simplifications import two_mass_coupler
 
 TURN = np.linspace(0.0, 2 * np.pi, 72, endpoint=False)
 SPEED = 30.0
@@ -123,7 +124,7 @@ def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_mode
     mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
     loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0)]
     everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0), "O"))
-    assert set(everything) == {choice.name for choices in ingredients(mechanism).values() for choice in choices}
+    assert set(everything) == {choice.name for choices in simplifications.ingredients(mechanism).values() for choice in choices}
     bare = ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))
     assert set(alone(ks.needs(solved(bare, ()), "O"))) == {"massless slider", "two harmonics", "one harmonic"}
     rocking = alone(ks.needs(solved(MECHANISMS["four-bar"]), "O"))
@@ -161,7 +162,7 @@ def test_no_combination_of_fewer_operations_is_within_the_tolerance(mower, quant
     """All combinations, each made and run here."""
     needs = ks.needs(mower, quantity, 0.05)
     found = []
-    for choices in itertools.product(*((None, *choices) for choices in ingredients(mower.mechanism).values())):
+    for choices in itertools.product(*((None, *choices) for choices in simplifications.ingredients(mower.mechanism).values())):
         made = mower
         for choice in filter(None, choices):
             made = made and choice.simplified(made)
@@ -223,7 +224,7 @@ def test_mechanism_without_coupler_mass_has_no_two_masses():
 @pytest.mark.parametrize(("name", "output"), [("crank-slider", "slider"), ("cam", "slider"), ("four-bar", "rocker")])
 def test_link_without_mass_of_its_own_still_carries_its_share_of_the_coupler(name, output):
     made = solved(MECHANISMS[name])
-    for choices in ingredients(made.mechanism).values():
+    for choices in simplifications.ingredients(made.mechanism).values():
         for choice in choices:
             if choice.name in (f"massless {output}", "two-mass coupler"):
                 made = choice.simplified(made)
