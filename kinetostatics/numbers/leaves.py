@@ -1,8 +1,8 @@
 """Parameter trees: what a scene is apart from its numbers, the numbers, and both put together again.
 
 A scene is a tree of dataclasses and tuples. Its *structure*, a hashable nest of tuples, tells the kinds of parts,
-names, assemblies, and what is absent: a plain zero. Its *leaves* are the numbers, in the order of the structure, each a float
-or an array of designs (..., 1); its *tables* are arrays with a value for each crank angle. Programs are kept by
+names, assemblies, and what is absent: a plain zero. Its *leaves* are the numbers, in the order of the structure, each a
+float or an array of designs (..., 1); its *tables* are arrays with a value for each crank angle. Programs are kept by
 structure, so that new numbers never make a new program.
 """
 

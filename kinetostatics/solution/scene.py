@@ -204,10 +204,10 @@ def _solved(scene, crank_angle, on_gap, engine):
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
     chosen = _engine(engine, angle, solution)
     solution = solution if chosen is NUMPY else replace(solution, engine=chosen)
+    if chosen is COMPILED:
+        programs.of(solution.dynamics)
     if on_gap == "raise":
         solution.check()
-    elif chosen is COMPILED:
-        programs.of(solution.dynamics)
     return solution
 
 

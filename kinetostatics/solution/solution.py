@@ -193,6 +193,11 @@ class Solution(Motion):
         return made
 
     @property
+    def closed(self):
+        """Whether the mechanism closes at each angle."""
+        return self.dynamics.closed
+
+    @property
     def placement(self):
         """Joints and links by name, as kinematic coefficients."""
         return self.dynamics.placement

@@ -475,7 +475,7 @@ def test_a_period_that_is_not_whole_turns_is_refused(period):
             ["spring.stiffness = 1..2 kN/m:2", "spring.stiffness=1..2 kN/m:2"],
             "spring.stiffness is given more than once",
         ),
-        (["spring.stiffness [N/m]=600..900 kN/m:4"], 'unit "N/m] [kN/m" is not known'),
+        (["spring.stiffness [N/m]=600..900 kN/m:4"], "parameter is 'spring.stiffness [N/m] [kN/m]'"),
         (["spring.stiffness=600..900 kN/m*10**10**10:4"], "is not known"),
         (["spring.stiffness=0..1 kN/m:1000000000"], "too many"),
         (["=0..1 kN/m:2"], "parameter is ''"),

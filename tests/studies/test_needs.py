@@ -124,7 +124,8 @@ def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_mode
     mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
     loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0)]
     everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0), "O"))
-    assert set(everything) == {choice.name for choices in simplifications.ingredients(mechanism).values() for choice in choices}
+    offered = simplifications.ingredients(mechanism).values()
+    assert set(everything) == {choice.name for choices in offered for choice in choices}
     bare = ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))
     assert set(alone(ks.needs(solved(bare, ()), "O"))) == {"massless slider", "two harmonics", "one harmonic"}
     rocking = alone(ks.needs(solved(MECHANISMS["four-bar"]), "O"))
@@ -162,7 +163,8 @@ def test_no_combination_of_fewer_operations_is_within_the_tolerance(mower, quant
     """All combinations, each made and run here."""
     needs = ks.needs(mower, quantity, 0.05)
     found = []
-    for choices in itertools.product(*((None, *choices) for choices in simplifications.ingredients(mower.mechanism).values())):
+    offered = simplifications.ingredients(mower.mechanism).values()
+    for choices in itertools.product(*((None, *choices) for choices in offered)):
         made = mower
         for choice in filter(None, choices):
             made = made and choice.simplified(made)

@@ -211,7 +211,7 @@ def test_case_study_writes_tidy_rows_that_tell_the_machine_and_the_versions(few,
 
 
 def test_chart_of_a_case_opens_as_png_and_svg_and_names_every_method_that_gave_a_result(few, case, tmp_path):
-    paths = precision.case_study(case, tmp_path / "new", variants=["plain"], angles=16)
+    paths = precision.case_study(case, tmp_path / "new", variants=["plain"], angles=16, page=charts.precision_page)
     assert [path.name for path in paths] == [f"sawframe_2r63_precision.{kind}" for kind in ("csv", "png", "svg")]
     assert sorted((tmp_path / "new").iterdir()) == sorted(paths)
     assert plt.imread(paths[1]).shape[0] > 500
@@ -291,7 +291,7 @@ def test_command_prints_the_front_and_where_the_files_are(few, tmp_path, capsys)
         (["--variant", "cam"], ["variant", "cam-circle", "cam-cosine", "plain"]),
         (["--variant", "plain", "--variant", "plan"], ["variant", "plain"]),
         (["--quantity", "torqe"], ["quantity", "balancing_torque", "slider_acceleration", "guide_force", "O", "A"]),
-        (["--quantity", "O", "--quantity", "cam_forc"], ["quantity", "cam_force", "guide_force"]),
+        (["--quantity", "O", "--quantity", "guide_forc"], ["quantity", "did you mean 'guide_force'"]),
     ],
 )
 def test_unknown_variant_or_quantity_lists_the_choices_and_leaves_no_files(few, arguments, said, tmp_path, capsys):
