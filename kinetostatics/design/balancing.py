@@ -16,7 +16,7 @@ from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from ..results.extremes import extremes
-from ..solution.scene import solve
+from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
 from .shapes import crank_sliders, four_bar
 
@@ -152,7 +152,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         return result
 
     def solved(unknowns):
-        return solve(balanced(unknowns * scale).mechanism, turn, crank_speed=1.0, on_gap="nan")
+        return Solution(balanced(unknowns * scale).mechanism, turn, 1.0, 0.0)
 
     def sizes(unknowns):
         return _sizes(solved(unknowns), norm)

@@ -5,6 +5,8 @@ Walther, *Evaluating Derivatives*, 2008, chapters 3.1 and 3.2). Forward costs a 
 for each output; the shorter way is taken.
 """
 
+from collections.abc import Callable
+
 from .trace import Node, needed
 
 
@@ -72,7 +74,7 @@ def _division(graph, node, above, below):
     return over, -(node * over)
 
 
-_RULES = {
+_RULES: dict[str, Callable[..., tuple]] = {
     "+": lambda graph, node, left, right: (1.0, 1.0),
     "-": lambda graph, node, *parts: (1.0, -1.0) if len(parts) == 2 else (-1.0,),
     "*": lambda graph, node, left, right: (right, left),

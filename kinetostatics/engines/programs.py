@@ -68,7 +68,7 @@ class Program:
 
     def rows(self, state, leaves):
         """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand; those needed."""
-        rows = []
+        rows: list[Any] = []
         for table in self.recording.tables:
             idle = self._rows_needed.isdisjoint(table.rows)
             rows += [0.0] * len(table.rows) if idle else table.compute(state, leaves.tables)
@@ -122,7 +122,8 @@ class Program:
             angles = np.broadcast_to(angle, shape).reshape(designs, -1).copy()
         results = np.empty((designs, len(self.outputs), angles.shape[1]))
         tables = loops.table_of_rows(rows, shape or (1,))
-        loops.run(self.loop, angles, *loops.turn(angles), parameters, tables, results)
+        sine, cosine = loops.turn(angles)
+        loops.run(self.loop, angles, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
 

@@ -37,6 +37,13 @@ def check(solution):
         _warn_where_digits_are_lost(solution, margins)
 
 
+def warn_of_lost_digits(solution):
+    """Warn where half of the digits are lost, whether or not the mechanism closes at all angles."""
+    margins = [margin for margin in solution.closure if isinstance(margin, np.ndarray) and margin.dtype == float]
+    if len(margins) == len(solution.closure) and not surely_well(solution, margins):
+        _warn_where_digits_are_lost(solution, margins)
+
+
 def surely_well(solution, margins):
     """Whether the margins of closure alone tell that no crank angle loses half of its digits."""
     least = math.prod(min(margin.min(), 1.0) for margin in margins)

@@ -98,14 +98,18 @@ def put_together(structure, number: Callable[[], Any], table: Callable[[], Any],
         return structure.item
     if type(structure) is not tuple:
         return structure
-    kind, *parts = structure
+    kind: Any = structure[0]
+    parts = structure[1:]
     made = [put_together(item, number, table, part) for item in parts]
     if kind is tuple:
         return tuple(made)
-    if not is_dataclass(kind):
-        return kind(*made)
+    return _filled(kind, made) if is_dataclass(kind) else kind(*made)
+
+
+def _filled(kind: Any, values):
+    """Item of a dataclass with values in its fields, nothing checked."""
     whole = object.__new__(kind)
-    for field, value in zip(fields(kind), made, strict=True):
+    for field, value in zip(fields(kind), values, strict=True):
         object.__setattr__(whole, field.name, value)
     return whole
 
@@ -151,7 +155,7 @@ def mapped(item, number, special=None):
 
 def with_fields(item, **changes):
     """Copy of a dataclass with some fields changed and nothing checked."""
-    made = object.__new__(type(item))
+    made: Any = object.__new__(type(item))
     for field in fields(item):
         object.__setattr__(made, field.name, changes.get(field.name, getattr(item, field.name)))
     return made

@@ -123,10 +123,14 @@ class Scene:
         on_gap, engine
             As for `solve`.
         """
-        if isinstance(angles, int | np.integer) and not isinstance(angles, bool):
-            checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
-            angles = np.linspace(0.0, self.period, angles, endpoint=False)
-        return _solved(self, angles, on_gap, engine)
+        return _solved(self, self.turn(angles), on_gap, engine)
+
+    def turn(self, angles):
+        """Crank angles of so many over one period from 0, its end excluded; what is no whole number stays as it is."""
+        if not isinstance(angles, int | np.integer) or isinstance(angles, bool):
+            return angles
+        checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
+        return np.linspace(0.0, self.period, angles, endpoint=False)
 
 
 def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), on_gap="raise", engine=None):
@@ -145,7 +149,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
         arrays, are taken as they are now: what is changed of them later is not seen.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
-        give NaN there and exact values elsewhere (no check, as needed under ``jax.jit``).
+        give NaN there and exact values elsewhere (as needed under ``jax.jit``).
     engine : "numpy" or "compiled"
         "compiled" runs the same kernels as one loop made by numba (extra `fast`), for each quantity when it is asked
         for: the first time takes about a second, then machine code is kept on disk. Unless told, it is taken for a
@@ -183,21 +187,28 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
 
 
 def _solved(scene, crank_angle, on_gap, engine):
+    checks.require("solve", checks.choice("on_gap", on_gap, ("raise", "nan")))
+    solution = unchecked(scene, crank_angle, engine)
+    (solution.check if on_gap == "raise" else solution.warn)()
+    return solution
+
+
+def unchecked(scene, crank_angle, engine=None):
+    """What `solve` returns, before a look at where the mechanism closes and where digits are lost."""
     angle, mechanism = crank_angles(crank_angle), scene.mechanism
     checks.require(
         "solve",
         problems(angle),
-        checks.choice("on_gap", on_gap, ("raise", "nan")),
         None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
     )
     if angle.dtype == "float32":
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
-            stacklevel=3,
+            stacklevel=4,
         )
     for text in (*mechanism.hints, *hints.of_angles(angle)):
-        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=3)
+        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=4)
     solution = Solution(mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
     _, leaves = solution.apart
     if not leaves.are_plain:
@@ -206,8 +217,6 @@ def _solved(scene, crank_angle, on_gap, engine):
     solution = solution if chosen is NUMPY else replace(solution, engine=chosen)
     if chosen is COMPILED:
         programs.of(solution.dynamics)
-    if on_gap == "raise":
-        solution.check()
     return solution
 
 

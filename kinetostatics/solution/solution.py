@@ -35,6 +35,10 @@ class Solution(Motion):
         if not assembly.surely_well(self, self._found("closure")):
             assembly.check(self.dynamics)
 
+    def warn(self):
+        """Warn where half of the digits are lost; where the mechanism does not close there are none."""
+        assembly.warn_of_lost_digits(self.dynamics)
+
     def __repr__(self):
         drive = f"crank_speed={self.crank_speed}, crank_acceleration={self.crank_acceleration}"
         loads = ", ".join(type(item).__name__ for item in self.loads) or "no loads"

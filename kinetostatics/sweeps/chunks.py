@@ -23,7 +23,7 @@ from ..numbers.elementary import ROUNDING
 from ..results.passes import Passes
 from ..results.reductions import Output, lowest
 from ..results.turn import NEAR, repeating_problem
-from ..solution.scene import Scene
+from ..solution.scene import Scene, unchecked
 
 VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
@@ -168,7 +168,7 @@ def _quantities(outputs):
 
 def _solution(scene, angles):
     """Solution at so many crank angles over the period, or at these."""
-    return scene.solve(angles, on_gap="nan", engine="numpy")
+    return unchecked(scene, scene.turn(angles), "numpy")
 
 
 # Designs set apart

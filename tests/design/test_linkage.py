@@ -20,6 +20,8 @@ from support.four_bars import FourBar, moved, turning
 from support.machines import largest, planar
 from support.strategies import four_bars, number, reproducible
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
+
 JOINTS = ("O", "A", "B", "O2")
 TURN = np.linspace(0.0, 2 * np.pi, 721) + 0.001
 EXAMPLES = {

@@ -262,6 +262,7 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
         assert np.all(np.abs(found - expected) <= 1e-12 * np.maximum(size, 1e-3 * size.max(axis=1, keepdims=True)))
 
 
+@pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
 def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
     """The six-bar with a second coupler that is too short over a part of the turn, and one that just reaches."""
     scene = SCENES["six-bar"]

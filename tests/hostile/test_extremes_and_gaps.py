@@ -105,6 +105,7 @@ def test_comparisons_name_change_points(name):
 
 
 @each_change_point
+@pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
 def test_tables_name_rows_without_a_digit(name):
     lengths, limits = CHANGE_POINTS[name]
     exactly = ks.solve(four_bar(*lengths), np.radians(limits), crank_speed=5.0, loads=GRAVITY, on_gap="nan")

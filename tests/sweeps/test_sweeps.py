@@ -343,12 +343,12 @@ def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
 
 @dataclass(frozen=True)
 class OneSided(ks.SliderGroup):
-    """A group that looks at values: it is pushed on one side only."""
+    """A group that looks at values."""
 
     def resolve(self, placement, loads, along):
-        """Nothing on the other side."""
+        """The same on either side."""
         found = super().resolve(placement, loads, along)
-        return found if placement.joints["A"].position[0].sum() > 0 else found._replace(demands={})
+        return found if placement.joints["A"].position[0].sum() > 0 else found._replace(scalars=dict(found.scalars))
 
 
 def test_what_cannot_be_compiled_is_left_to_numpy_unless_told(interpreted, monkeypatch):

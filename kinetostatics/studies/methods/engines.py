@@ -9,20 +9,13 @@ from ...engines import programs
 from ...engines.compiled import require
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import components
-from ...solution.scene import solve
+from ...solution.scene import Scene, unchecked
 from .method import Method, NotGivenError
 
 
 def _solved(solution, angle):
-    return solve(
-        solution.mechanism,
-        angle,
-        crank_speed=solution.crank_speed,
-        crank_acceleration=solution.crank_acceleration,
-        loads=solution.loads,
-        on_gap="nan",
-        engine="numpy",
-    )
+    scene = Scene(solution.mechanism, solution.crank_speed, solution.crank_acceleration, solution.loads)
+    return unchecked(scene, angle, "numpy")
 
 
 def _numpy(solution, quantity, setting):

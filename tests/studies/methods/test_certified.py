@@ -153,6 +153,7 @@ def test_bits_grow_near_a_limit_position(which):
         assert found.radius < 1e-30
 
 
+@pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
 def test_limit_and_beyond_are_refused_by_angle():
     stretched = ks.crank_slider(1.0, 1.0, guide=ks.Guide(None, 0.0, (0.0, 1.0)), slider=link(1.0))
     with pytest.raises(NotGivenError, match=r"crank angle 0\.0 rad \(0 deg\): SliderGroup is at a limit position"):
