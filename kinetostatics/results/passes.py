@@ -24,6 +24,37 @@ KINDS = (
 )
 """Reductions that are there, by their number; harmonics are not."""
 
+
+def _summing(name, term):
+    """Function that sums a term of every other value, and of those between.
+
+    Eight sums go side by side, in vectors, in an order that is written out: a compiler that may choose the order does not
+    choose the same each time.
+    """
+    lanes = range(8)
+    start = "\n    ".join(f"sum{k} = 0.0" for k in lanes)
+    add = "\n        ".join(f"value = rows[i, {k}]\n        sum{k} += {term}" for k in lanes)
+    even, odd = (" + ".join(f"sum{k}" for k in lanes[first::2]) for first in (0, 1))
+    return f"""
+@njit(**options)
+def {name}(values):
+    whole = values.size // 8
+    rows = values[: 8 * whole].reshape((whole, 8))
+    {start}
+    for i in range(whole):
+        {add}
+    even, odd = {even}, {odd}
+    for i in range(8 * whole, values.size):
+        value = values[i]
+        if i % 2 == 0:
+            even += {term}
+        else:
+            odd += {term}
+    return even, odd
+
+"""
+
+
 SOURCE = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import inf, nan, pi, sqrt
@@ -32,13 +63,11 @@ import numpy as np
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
-sums = dict(options, fastmath={{"reassoc", "nsz"}})
-curves = dict(options, fastmath={{"contract"}})
 THROUGH = np.array({THROUGH.T.tolist()!r})
 INNER = np.array({INNER.coef.tolist()!r})
 
 
-@njit(**curves)
+@njit(**options)
 def polyval(place, series):
     value = series[series.size - 1]
     for k in range(series.size - 2, -1, -1):
@@ -46,7 +75,7 @@ def polyval(place, series):
     return value
 
 
-@njit(**curves)
+@njit(**options)
 def between(values, at, side, work):
     """Height of a peak, how far from its highest sample, and about how much the height may be wrong."""
     curve, series, slope, change = work[0], work[1], work[2, : {2 * REACH}], work[3, : {2 * REACH - 1}]
@@ -162,28 +191,9 @@ def peak(values, side, places, work):
     return highest, where, worst
 
 
-@njit(**sums)
-def summed(values, power):
-    """Sums of every other value, and of those between, as they are, without sign, or squared."""
-    even, odd, half = 0.0, 0.0, values.size // 2
-    if power == 0:
-        for i in range(half):
-            even += values[2 * i]
-            odd += values[2 * i + 1]
-    elif power == 1:
-        for i in range(half):
-            even += abs(values[2 * i])
-            odd += abs(values[2 * i + 1])
-    else:
-        for i in range(half):
-            even += values[2 * i] * values[2 * i]
-            odd += values[2 * i + 1] * values[2 * i + 1]
-    if values.size % 2:
-        last = values[values.size - 1]
-        even += last if power == 0 else abs(last) if power == 1 else last * last
-    return even, odd
-
-
+{_summing("plain", "value")}
+{_summing("sizes", "abs(value)")}
+{_summing("squares", "value * value")}
 @njit(**options)
 def kinks(values, step):
     """What the mean of sizes of every so many values is too large by, where the sign changes (`reductions._kinks`)."""
@@ -201,7 +211,7 @@ def kinks(values, step):
 @njit(**options)
 def averaged(values, power):
     """Mean, of sizes or squares too, and how far that of every other value is from it."""
-    even, odd = summed(values, power)
+    even, odd = plain(values) if power == 0 else sizes(values) if power == 1 else squares(values)
     whole, half = (even + odd) / values.size, even / (values.size // 2)
     if power == 1:
         whole, half = whole - kinks(values, 1), half - kinks(values, 2)

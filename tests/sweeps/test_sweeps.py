@@ -850,3 +850,28 @@ def test_the_bar_counts_every_design_also_those_on_disk(tmp_path, monkeypatch):
         assert "100%" in last
         assert "41/41" in last
         assert "designs" in last
+
+
+FROM_SCRATCH = """
+import hashlib
+import pandas as pd
+import kinetostatics as ks
+
+stiffness = pd.DataFrame({"spring.stiffness [kN/m]": [600.0 + k / 7 for k in range(200)]})
+outputs = ["mean_absolute balancing_torque", "mean O", "rms O", "largest O", "ratio mean_absolute balancing_torque"]
+table = ks.sweep(ks.load_case("sawframe_2r63"), stiffness, outputs, variant="cam-circle", progress=False)
+print(hashlib.sha256(table.iloc[:, :-1].to_numpy(float).tobytes()).hexdigest())
+"""
+
+
+def test_machine_code_just_made_and_taken_from_disk_gives_the_same_bits(tmp_path):
+    pytest.importorskip("numba")
+    environment = {**os.environ, "KINETOSTATICS_CACHE": str(tmp_path)}
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", FROM_SCRATCH], env=environment, capture_output=True, text=True, check=True
+        )
+        for _ in range(2)
+    ]
+    assert found[0].stdout == found[1].stdout
+    assert len(found[0].stdout.strip()) == 64
