@@ -80,8 +80,10 @@ class Program:
 
     def run(self, state, leaves, compiled=False):
         """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
-        run = self.by_loop if compiled else self.by_numpy
-        return run(state.crank_angle, leaves.numbers, self.rows(state, leaves), state.shape)
+        run, angle = self.by_loop if compiled else self.by_numpy, state.crank_angle
+        if angle.shape[-1:] != state.shape[-1:]:  # a single angle, and tables over more
+            angle = np.broadcast_to(angle, angle.shape[:-1] + state.shape[-1:])
+        return run(angle, leaves.numbers, self.rows(state, leaves), state.shape)
 
     def on_numbers(self, angle, numbers, rows):
         """Outputs, plain numbers, from a crank angle, numbers and table values that are plain numbers."""

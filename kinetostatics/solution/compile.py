@@ -81,7 +81,7 @@ class Program:
     """
 
     def __init__(self, scene, quantities, kept, compiled):
-        self.scene, self.quantities, self._compiled = scene, quantities, compiled
+        self.scene, self.quantities, self._compiled, self._kept = scene, quantities, compiled, kept
         places = paths.places(scene)
         checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
         for path in kept:
@@ -103,6 +103,9 @@ class Program:
     def __repr__(self):
         names = ", ".join(self.parameters)
         return f"<Program: {', '.join(self.quantities)} of {self.scene.mechanism.name}; parameters {names}>"
+
+    def __reduce__(self):
+        return Program, (self.scene, self.quantities, self._kept, self._compiled)
 
     def __call__(self, angle, values=MappingProxyType({})):
         """Values by quantity.
