@@ -45,9 +45,21 @@ class Program:
         self._slopes: dict[tuple[int, ...], Program] = {}
 
     def by_parameters(self, places):
-        """Program of the derivatives of all outputs, one after the other, by each of the parameters at some places."""
+        """Program of the derivatives of all outputs, one after the other, by each of the parameters at some places.
+
+        Raises
+        ------
+        NotGivenError
+            Code of the user's that could not be recorded is behind the outputs.
+        """
         if places not in self._slopes:
             recording = self.recording
+            moved = [table.moved_by for table in recording.tables if not self._rows_needed.isdisjoint(table.rows)]
+            if any(moved):
+                raise NotGivenError(
+                    f"derivatives cannot be given: {', '.join(filter(None, moved))} does more than arithmetic with "
+                    "sin, cos and sqrt of `elementary`, so how its values hang on the parameters is not recorded"
+                )
             rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
             self._slopes[places] = Program(recording, tuple(part for row in rows for part in row))
         return self._slopes[places]

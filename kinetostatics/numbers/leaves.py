@@ -331,7 +331,7 @@ def _with_its_class(kind, taker):
     """The same for a class of the user's: what its methods and constants are belongs to the structure."""
 
     def whole(item, leaves):
-        key = of_class(kind)
+        key = of_class(kind, (kind,))
         if key is None:
             leaves.lasting = False
             key = (id(kind),)

@@ -146,6 +146,11 @@ class Program:
         -------
         dict of str to dict of path to array
             Shaped as the quantities, in units of the quantity by units of the parameter.
+
+        Raises
+        ------
+        NotGivenError
+            A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
         names = tuple(self.parameters) if by is None else ((by,) if isinstance(by, str) else tuple(by))
         self._require_known(names)
