@@ -45,9 +45,21 @@ class Program:
         self._slopes: dict[tuple[int, ...], Program] = {}
 
     def by_parameters(self, places):
-        """Program of the derivatives of all outputs, one after the other, by each of the parameters at some places."""
+        """Program of the derivatives of all outputs, one after the other, by each of the parameters at some places.
+
+        Raises
+        ------
+        NotGivenError
+            Code of the user's that could not be recorded is behind the outputs.
+        """
         if places not in self._slopes:
             recording = self.recording
+            moved = [table.moved_by for table in recording.tables if not self._rows_needed.isdisjoint(table.rows)]
+            if any(moved):
+                raise NotGivenError(
+                    f"derivatives cannot be given: {', '.join(filter(None, moved))} does more than arithmetic with "
+                    "sin, cos and sqrt of `elementary`, so how its values hang on the parameters is not recorded"
+                )
             rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
             self._slopes[places] = Program(recording, tuple(part for row in rows for part in row))
         return self._slopes[places]
@@ -80,8 +92,10 @@ class Program:
 
     def run(self, state, leaves, compiled=False):
         """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
-        run = self.by_loop if compiled else self.by_numpy
-        return run(state.crank_angle, leaves.numbers, self.rows(state, leaves), state.shape)
+        run, angle = self.by_loop if compiled else self.by_numpy, state.crank_angle
+        if angle.shape[-1:] != state.shape[-1:]:  # a single angle, and tables over more
+            angle = np.broadcast_to(angle, angle.shape[:-1] + state.shape[-1:])
+        return run(angle, leaves.numbers, self.rows(state, leaves), state.shape)
 
     def on_numbers(self, angle, numbers, rows):
         """Outputs, plain numbers, from a crank angle, numbers and table values that are plain numbers."""

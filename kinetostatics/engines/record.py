@@ -29,10 +29,13 @@ class Table(NamedTuple):
         Rows it fills.
     compute : function
         ``compute(motion, arrays) -> rows``, from the scene's motion and the tables among its leaves.
+    moved_by : str
+        Code of the user's whose values may hang on parameters in a way that is not recorded; "" without.
     """
 
     rows: range
     compute: Callable[[Any, Any], Any]
+    moved_by: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +141,9 @@ class _Recorder:
         self._arrays += 1
         return self._tabled(1, lambda motion, arrays: [arrays[place]])[0]
 
-    def _tabled(self, rows, compute):
+    def _tabled(self, rows, compute, moved_by=""):
         first, self._rows = self._rows, self._rows + rows
-        self.tables.append(Table(range(first, self._rows), compute))
+        self.tables.append(Table(range(first, self._rows), compute, moved_by))
         return [self._nodes(self.graph.row(first + place)) for place in range(rows)]
 
     def _nodes(self, *nodes):
@@ -152,7 +155,11 @@ class _Recorder:
             group.cam, lambda angle: group.cam.polar(angle, ray(angle))
         ):
             return group
-        values = self._tabled(3, lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle))
+        values = self._tabled(
+            3,
+            lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle),
+            "" if group.cam is None else type(group.cam).__name__,
+        )
         object.__setattr__(group, "cam", _Tabled(tuple(values)))
         return group
 
@@ -162,7 +169,12 @@ class _Recorder:
             load, lambda angle: [load.push(replace(idle, crank_angle=angle))]
         ):
             return load
-        (values,) = self._tabled(1, lambda motion, arrays: [pushed(motion.loads[place], motion)])
+        tabulated = type(load) is ProcessForce and load.force is None
+        (values,) = self._tabled(
+            1,
+            lambda motion, arrays: [pushed(motion.loads[place], motion)],
+            "" if tabulated else f"{type(load).__name__} on {load.on!r}",
+        )
         return ProcessForce(values, load.on)
 
     def _is_elementwise(self, part, compute):

@@ -9,12 +9,13 @@ structure, so that new numbers never make a new program.
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import cached_property
-from types import BuiltinFunctionType, FunctionType, ModuleType
+from types import FunctionType
 from typing import Any
 
 import numpy as np
 
 from ..errors import ParameterError
+from .content import LIBRARY, key_of, of_class
 
 
 class _Mark:
@@ -98,7 +99,7 @@ def put_together(structure, number: Callable[[], Any], table: Callable[[], Any],
         return structure.item
     if type(structure) is not tuple:
         return structure
-    kind: Any = structure[0]
+    kind: Any = structure[0].item if isinstance(structure[0], Opaque) else structure[0]
     parts = structure[1:]
     made = [put_together(item, number, table, part) for item in parts]
     if kind is tuple:
@@ -260,11 +261,10 @@ def _kept(item, leaves):
     return NUMBER
 
 
-def _function(item, leaves):
-    key = _function_key(item)
-    if key is None:
-        return _passing(item, leaves)
-    return Opaque(item, key)
+def _by_content(item, leaves):
+    """What is compared by what it is made of, or taken apart each time where that may change unseen."""
+    key = key_of(item)
+    return _passing(item, leaves) if key is None else Opaque(item, key)
 
 
 def _passing(item, leaves):
@@ -272,22 +272,8 @@ def _passing(item, leaves):
     return Opaque(item, (id(item),))
 
 
-def _function_key(function):
-    """What a function is made of, its code and the constants it refers to; None where these may change unseen."""
-    code, outer = function.__code__, function.__globals__
-    held = [cell.cell_contents for cell in function.__closure__ or ()]
-    held += [outer[name] for name in code.co_names if name in outer]
-    held += [*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values()]
-    key = tuple(map(_constant_key, held))
-    return None if None in key else (code, *key)
-
-
-def _constant_key(value):
-    if isinstance(value, float | int | str | None | type | ModuleType | BuiltinFunctionType | np.ufunc):
-        return (type(value), value)
-    if isinstance(value, FunctionType):
-        return _function_key(value)
-    return None
+def _structural(item, leaves):
+    return item if type(item) in _AS_THEY_ARE else _by_content(item, leaves)
 
 
 _TAKERS: dict[type, Callable] = {
@@ -299,8 +285,9 @@ _TAKERS: dict[type, Callable] = {
     list: _tuple,
     np.ndarray: _array,
     Kept: _kept,
-    FunctionType: _function,
+    FunctionType: _by_content,
 }
+_AS_THEY_ARE = (bool, int, float, str, type(None))
 
 
 def _taker(kind):
@@ -323,7 +310,9 @@ def _of_dataclass(kind):
     lines = ["def taker(item, leaves):"]
     for place, (name, structural) in enumerate(_kinds(kind)):
         lines.append(f"    v{place} = item.{name}")
-        if not structural:
+        if structural:
+            lines.append(f"    if type(v{place}) is not str: v{place} = structural(v{place}, leaves)")
+        else:
             lines += [
                 f"    if type(v{place}) is float and v{place} != 0.0:",
                 f"        leaves.numbers.append(v{place})",
@@ -333,8 +322,22 @@ def _of_dataclass(kind):
             ]
     lines.append(f"    return (kind, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
     scope = {"kind": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants}
+    scope["structural"] = _structural
     exec("\n".join(lines), scope)
-    return scope["taker"]
+    return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_its_class(kind, scope["taker"])
+
+
+def _with_its_class(kind, taker):
+    """The same for a class of the user's: what its methods and constants are belongs to the structure."""
+
+    def whole(item, leaves):
+        key = of_class(kind, (kind,))
+        if key is None:
+            leaves.lasting = False
+            key = (id(kind),)
+        return (Opaque(kind, key), *taker(item, leaves)[1:])
+
+    return whole
 
 
 def _of_named_tuple(kind):

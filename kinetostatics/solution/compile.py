@@ -81,7 +81,7 @@ class Program:
     """
 
     def __init__(self, scene, quantities, kept, compiled):
-        self.scene, self.quantities, self._compiled = scene, quantities, compiled
+        self.scene, self.quantities, self._compiled, self._kept = scene, quantities, compiled, kept
         places = paths.places(scene)
         checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
         for path in kept:
@@ -103,6 +103,9 @@ class Program:
     def __repr__(self):
         names = ", ".join(self.parameters)
         return f"<Program: {', '.join(self.quantities)} of {self.scene.mechanism.name}; parameters {names}>"
+
+    def __reduce__(self):
+        return Program, (self.scene, self.quantities, self._kept, self._compiled)
 
     def __call__(self, angle, values=MappingProxyType({})):
         """Values by quantity.
@@ -143,6 +146,11 @@ class Program:
         -------
         dict of str to dict of path to array
             Shaped as the quantities, in units of the quantity by units of the parameter.
+
+        Raises
+        ------
+        NotGivenError
+            A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
         names = tuple(self.parameters) if by is None else ((by,) if isinstance(by, str) else tuple(by))
         self._require_known(names)
