@@ -298,6 +298,9 @@ def _variant(name, own, common, folder, problems):
     if not isinstance(kind, str) or kind not in schema.VARIANTS:
         path = reading.key_path(place(("mechanism",)))
         problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS)))
+        meant = checks.nearest(kind, schema.VARIANTS)
+        if meant is not None:
+            problems += reading.validated(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
         return None
     table, found = reading.validated(schema.VARIANTS[kind], merged, place)
     problems += found

@@ -115,8 +115,9 @@ def _sentence(model, item, place):
         allowed = _allowed(model, item["loc"][:-1])
         return f"{path} is not a key here{checks.hint(keys[-1], allowed)} (allowed: {', '.join(allowed)})"
     if item["type"] in ("union_tag_invalid", "union_tag_not_found"):
-        found = f"is {item['ctx']['tag']!r}" if "tag" in item["ctx"] else "is missing"
-        return f"{path}.kind {found}; allowed: {', '.join(map(repr, schema.CAM_KINDS))}"
+        if "tag" in item["ctx"]:
+            return checks.choice(f"{path}.kind", item["ctx"]["tag"], tuple(schema.CAM_KINDS))
+        return f"{path}.kind is missing; allowed: {', '.join(map(repr, schema.CAM_KINDS))}"
     if item["type"] == "value_error":
         return f"{path} {item['ctx']['error']}"
     return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {shown(item['input'])}"

@@ -517,7 +517,12 @@ def choice(name, value, allowed):
 
 def hint(value, allowed):
     """Question that names the nearest allowed word, empty if none is near."""
+    near = nearest(value, allowed)
+    return f"; did you mean {near!r}?" if near else ""
+
+
+def nearest(value, allowed):
+    """The allowed word that is like the one given, or None."""
     import difflib
 
-    near = difflib.get_close_matches(str(value)[:100], list(allowed), n=1)
-    return f"; did you mean {near[0]!r}?" if near else ""
+    return next(iter(difflib.get_close_matches(str(value)[:100], list(allowed), n=1)), None)

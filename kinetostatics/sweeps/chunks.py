@@ -256,7 +256,9 @@ def _settled(make, job, frame, outputs, found, earlier):
         for row in again:
             wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]
             reasons[row] = f"{', '.join(wrong)} is not resolved by {job.angles} crank angles" + (
-                f": it passes so near a limit position at {np.degrees(nearest[row]):.6g} deg" if narrow[row] else ""
+                f": it passes so near a limit position at {np.degrees(nearest[row]):.6g} deg"
+                if narrow[row]
+                else "; if a load jumps, let it rise over a degree"
             )
     return numbers, reasons
 

@@ -93,7 +93,11 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     power = isinstance(count, int) and count > 1 and not count & (count - 1)
     checks.require(
         "tolerances",
-        None if spreads else 'no spreads are given, nor has the case file any for this variant, in "tolerances"',
+        None
+        if spreads
+        else 'no spreads are given, nor has the case file any for this variant, in "tolerances"'
+        if is_case(case)
+        else 'no spreads are given, such as {"slider.mass": "normal 25 kg +- 1 kg"}',
         None
         if spreads is None or isinstance(spreads, Mapping)
         else f"spreads must be a dict of parameter to text, got {spreads!r}",

@@ -264,6 +264,5 @@ def _mark_angles(ax, solution, joint, factor, angles, color):
         first = next((other for other in labels if np.hypot(*(points[:, other] - point)) < near), row)
         labels.setdefault(first, []).append(f"{angles[row]:g}°")
     for row, names in labels.items():
-        ax.annotate(
-            ", ".join(names), points[:, row], xytext=(3, 3), textcoords="offset points", fontsize="x-small", color=INK
-        )
+        text = ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}"
+        ax.annotate(text, points[:, row], xytext=(3, 3), textcoords="offset points", fontsize="x-small", color=INK)

@@ -127,6 +127,7 @@ process_force = {}
 [variants.none]
 [variants.typo]
 mechanism = "crank-slidr"
+crank_length = "300 kg"
 """
     found = problems(tmp_path, text)
     expected = [
@@ -144,6 +145,8 @@ mechanism = "crank-slidr"
         ("variants.cam.process_force", "needs either force"),
         ("variants.none.mechanism", "is missing"),
         ("variants.typo.mechanism", "did you mean 'crank-slider'?"),
+        ("variants.typo.crank_length", '"kg"'),
+        ("variants.typo.coupler_length", "is missing"),
     ]
     for key, words in expected:
         assert [line for line in found if line.startswith(key + " ") or line.startswith(key + ":") if words in line], (
@@ -370,3 +373,10 @@ def test_the_stiffness_of_a_spring_that_balances_is_compared_with_its_number(tmp
             warnings.simplefilter("always")
             ks.load_case(path)
         assert bool(caught) is doubted
+
+
+def test_a_cam_of_a_kind_that_is_not_there_is_told_the_nearest(tmp_path):
+    text = PLAIN + '[variants.cam]\nmechanism = "cam-crank-slider"\ncoupler_length = "2 m"\ncam = { kind = "cirkle" }\n'
+    (found,) = problems(tmp_path, text)
+    assert found.startswith("variants.cam.cam.kind is 'cirkle'")
+    assert "did you mean 'circle'?" in found

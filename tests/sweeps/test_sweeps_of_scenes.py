@@ -141,3 +141,17 @@ def test_a_variant_is_swept_like_its_case():
     kept = sweep(SAW.variant("cam-circle").scene, designs, "rms O").iloc[:, 1]
     followed = sweep(SAW, designs, "rms O", variant="cam-circle").iloc[:, 1]
     assert (abs(kept - followed) > 1e-3 * followed).all()
+
+
+@pytest.mark.parametrize(("rise", "resolved"), [(0.0, False), (1.0, True)])
+def test_what_a_jump_of_a_load_does_to_a_peak_is_told_with_its_remedy(rise, resolved):
+    def press(motion):
+        angle = np.degrees(motion.crank_angle % (2 * np.pi))
+        if rise:
+            return 40e3 * np.clip((angle - 160) / rise, 0, 1) * np.clip((180 + rise - angle) / rise, 0, 1)
+        return np.where((angle > 160) & (angle <= 180), 40e3, 0.0)
+
+    scene = ks.Scene(ks.crank_slider(0.08, 0.4, slider=ks.Link(25)), 4 * np.pi, loads=ks.ProcessForce(press))
+    table = sweep(scene, pd.DataFrame({"coupler_length": [0.3, 0.5]}), ["largest balancing_torque"], angles=360)
+    assert table[FAILED].str.contains("if a load jumps, let it rise over a degree").tolist() == [not resolved] * 2
+    assert table.iloc[:, 1].notna().tolist() == [resolved] * 2

@@ -83,10 +83,18 @@ def test_counts_that_are_no_power_of_two_are_refused(count):
         tolerances(ram, OUTPUT, SPREADS, count=count)
 
 
-def test_without_spreads_there_is_nothing_to_study():
-    for case in (ram, ks.load_case("chain_unit")):
-        with pytest.raises(ks.ParameterError, match='nor has the case file any for this variant, in "tolerances"'):
-            tolerances(case, OUTPUT)
+@pytest.mark.parametrize(
+    ("case", "remedy"),
+    [
+        (ks.load_case("chain_unit"), 'nor has the case file any for this variant, in "tolerances"'),
+        (ram, "are given, such as"),
+        (ks.Scene(ks.crank_slider(0.08, 0.4, slider=ks.Link(25)), 4 * np.pi), "are given, such as"),
+    ],
+)
+def test_without_spreads_there_is_nothing_to_study_and_a_case_file_is_named_only_for_a_case(case, remedy):
+    with pytest.raises(ks.ParameterError, match="no spreads") as error:
+        tolerances(case, OUTPUT)
+    assert remedy in str(error.value)
 
 
 def test_designs_that_fail_end_the_study_with_their_reason():

@@ -136,3 +136,17 @@ def test_a_batch_is_refused_with_its_shape(axes):
     batch = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), [0.0, 1.0], crank_speed=1.0)
     with pytest.raises(ks.ParameterError, match=r"shape \(2, 2\)"):
         ks.plots.torque(batch, ax=axes)
+
+
+def test_hodograph_marks_that_fall_together_share_a_short_label(axes):
+    def press(motion):
+        return np.where(np.abs(np.degrees(motion.crank_angle) - 170) < 10.1, 40e3, 0.0)
+
+    solution = ks.solve(
+        ks.crank_slider(0.08, 0.4, slider=ks.Link(25)),
+        np.radians(np.arange(360)),
+        crank_speed=4 * np.pi,
+        loads=ks.ProcessForce(press),
+    )
+    ks.plots.hodograph(solution, "O", ax=axes)
+    assert {text.get_text() for text in axes.texts} == {"0°, 30° … 330°", "180°"}
