@@ -28,8 +28,8 @@ KINDS = (
 def _summing(name, term):
     """Function that sums a term of every other value, and of those between.
 
-    Eight sums go side by side, in vectors, in an order that is written out: a compiler that may choose the order does not
-    choose the same each time.
+    Eight sums go side by side, in vectors, in an order that is written out: a compiler that may choose the order does
+    not choose the same each time.
     """
     lanes = range(8)
     start = "\n    ".join(f"sum{k} = 0.0" for k in lanes)
