@@ -34,7 +34,7 @@ def key_of(value, names=(), above=()):
         return _all(type(value), key_of(value.fget if isinstance(value, property) else value.func, (), above))
     if isinstance(value, tuple):
         return _all(type(value), *(key_of(part, (), above) for part in value))
-    if isinstance(value, BuiltinFunctionType | np.ufunc) or _is_settled(type(value)) and callable(value):
+    if isinstance(value, BuiltinFunctionType | np.ufunc) or (_is_settled(type(value)) and callable(value)):
         return value
     return None
 
