@@ -65,10 +65,10 @@ class Mechanism(Batched):
     def __post_init__(self):
         self.RULES.admit(self)
         trusted = tuple((type(part), *part.names) for part in self.parts) if self.trusted else None
-        if trusted not in _NAMED_WELL:
+        if trusted is None or trusted not in _NAMED_WELL:
             checks.require(self.name, *_name_problems(self.parts))
-            _NAMED_WELL.add(trusted)
-        _NAMED_WELL.discard(None)
+            if trusted is not None:
+                _NAMED_WELL.add(trusted)
 
     @property
     def parts(self):

@@ -13,6 +13,8 @@ LIBRARY = __name__.partition(".")[0]
 SETTLED = (LIBRARY, "numpy", "math", "builtins", "typing", "abc")
 """Packages whose functions and classes are taken as they are."""
 MISSING = "missing"
+MADE = {f"__{name}__" for name in ["init", "post_init", "repr", "eq", "hash", "replace", "setattr", "delattr"]}
+"""Methods that dataclasses are given, and those that only make an item: they compute nothing afterwards."""
 
 
 def key_of(value, names=(), above=()):
@@ -34,9 +36,11 @@ def key_of(value, names=(), above=()):
         return _all(type(value), key_of(value.fget if isinstance(value, property) else value.func, (), above))
     if isinstance(value, tuple):
         return _all(type(value), *(key_of(part, (), above) for part in value))
-    if isinstance(value, BuiltinFunctionType | np.ufunc) or (_is_settled(type(value)) and callable(value)):
+    if isinstance(value, BuiltinFunctionType):  # a method of a list, say, is one too
+        return value if isinstance(value.__self__, ModuleType | None) else None
+    if isinstance(value, np.ufunc | type(np.where)):
         return value
-    return None
+    return value if type(value).__module__.partition(".")[0] == LIBRARY and callable(value) else None
 
 
 def of_class(kind, above=()):
@@ -48,7 +52,7 @@ def _said(base, above):
     yield base
     for name, value in vars(base).items():
         if name.startswith("__"):
-            if isinstance(value, FunctionType) and value.__code__.co_filename != "<string>":  # made by dataclass
+            if isinstance(value, FunctionType) and name not in MADE:
                 yield key_of(value, (), above)
         elif not (name.startswith("_abc_") or type(value).__name__ in ("member_descriptor", "getset_descriptor")):
             yield name
@@ -94,7 +98,7 @@ def _used(module, names, above):
     for name in names:
         value = vars(module).get(name, MISSING)
         yield name
-        yield value if callable(value) and not isinstance(value, type) else key_of(value, names, above)
+        yield value if isinstance(value, FunctionType) else key_of(value, names, above)
 
 
 def _is_settled(item):

@@ -25,7 +25,7 @@ def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa
     scene : Scene
     quantities : str or sequence of str
         "balancing_torque", a joint (its reaction), "slider_acceleration", "coupler_rate" ...
-    parameters : sequence of str
+    parameters : str or sequence of str
         Paths of numbers that are zero in the scene and shall be given other values. What is zero is otherwise absent,
         and costs nothing.
     engine : "compiled" or "numpy"
@@ -66,7 +66,8 @@ def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa
     )
     if engine == "compiled":
         require()
-    return Program(scene, names, tuple(parameters), engine != "numpy" and available())
+    kept = (parameters,) if isinstance(parameters, str) else tuple(parameters)
+    return Program(scene, names, kept, engine != "numpy" and available())
 
 
 class Program:
@@ -153,6 +154,7 @@ class Program:
             A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
         names = tuple(self.parameters) if by is None else ((by,) if isinstance(by, str) else tuple(by))
+        checks.require("program", None if names else "by names no parameter to derive by")
         self._require_known(names)
         state, leaves = self._at(angle, values)
         places = tuple(self._numbers[name][0] for name in names)
@@ -169,6 +171,8 @@ class Program:
         wrong = problems(angle)
         if wrong:
             checks.require("program", wrong)
+        if values and not isinstance(values, Mapping):
+            checks.require("program", f"values must be a dict of parameter to number, got {checks.shown(values)}")
         leaves = self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
         shape = _shape(angle, leaves)
         if self._program.recording.tables:

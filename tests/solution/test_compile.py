@@ -1,11 +1,15 @@
 """`ks.compile`: a program called with other numbers gives what a new scene gives, and says what it does not take."""
 
+import copy
+import pickle
 import warnings
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.errors import NotGivenError
 
 ANGLES = np.linspace(0.0, 6.0, 25)
 QUANTITIES = ("balancing_torque", "O", "guide_force", "slider_acceleration", "coupler_rate", "shaking_force")
@@ -129,3 +133,66 @@ def test_derivatives_have_the_shape_of_the_quantity():
         "O": dict.fromkeys(("crank_length", "slider.mass"), (2, ANGLES.size)),
         "balancing_torque": dict.fromkeys(("crank_length", "slider.mass"), (ANGLES.size,)),
     }
+
+
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.parametrize("angle", [0.5, [0.5]])
+@pytest.mark.parametrize("count", [5, 5000])
+def test_one_angle_at_a_table_of_crank_speeds_has_a_result_for_each(count, angle, engine):
+    if engine == "compiled":
+        pytest.importorskip("numba")
+    scene = ks.Scene(saw().mechanism, np.linspace(20.0, 30.0, count))
+    expected = scene.solve(np.full(count, 0.5)).balancing_torque
+    assert np.array_equal(scene.solve(angle, engine="numpy").balancing_torque, expected)
+    found = ks.compile(scene, "balancing_torque", engine=engine)(angle)["balancing_torque"]
+    assert np.allclose(found, expected, rtol=1e-13, atol=0.0)
+    assert np.allclose(scene.solve(angle, engine=engine).balancing_torque, expected, rtol=1e-13, atol=0.0)
+
+
+@pytest.mark.parametrize("copied", [lambda program: pickle.loads(pickle.dumps(program)), copy.deepcopy])
+def test_a_program_goes_from_process_to_process(copied):
+    program = ks.compile(saw(), "O", ("guide_offset",), "numpy")
+    values = {"guide_offset": 0.01}
+    assert np.array_equal(copied(program)(ANGLES, values)["O"], program(ANGLES, values)["O"])
+
+
+@dataclass(frozen=True, eq=False)
+class Brake:
+    damping: float = 3.0
+    on: str = "slider"
+
+    def push(self, motion):
+        """Force, N."""
+        return np.where(motion.slider_velocity > 0, -self.damping * motion.slider_velocity, 0.0)
+
+
+def test_no_derivatives_where_a_load_was_not_recorded_and_so_would_count_as_constant():
+    scene = ks.Scene(saw().mechanism, 30.0, loads=Brake())
+    program = ks.compile(scene, "balancing_torque", engine="numpy")
+    varied = scene.varied({"damping": 5.0}).solve(ANGLES).balancing_torque
+    assert np.array_equal(program(ANGLES, {"damping": 5.0})["balancing_torque"], varied)
+    with pytest.raises(NotGivenError, match="Brake on 'slider' does more than arithmetic"):
+        program.derivatives(ANGLES, "damping")
+
+
+def test_derivatives_of_what_a_load_that_was_not_recorded_does_not_reach_are_given():
+    program = ks.compile(ks.Scene(saw().mechanism, 30.0, loads=Brake()), "slider_velocity", engine="numpy")
+    found = program.derivatives(ANGLES, "crank_speed")["slider_velocity"]["crank_speed"]
+    assert np.allclose(found, program(ANGLES)["slider_velocity"] / 30.0)
+
+
+def test_one_kept_parameter_may_be_a_text():
+    assert "guide_offset" in ks.compile(saw(), "O", "guide_offset", "numpy").parameters
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda program: program(0.5, ["slider.mass"]), "values must be a dict"),
+        (lambda program: program(0.5, 3), "values must be a dict"),
+        (lambda program: program.derivatives(0.5, ()), "by names no parameter"),
+    ],
+)
+def test_calls_of_a_program_that_make_no_sense_are_refused(call, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        call(ks.compile(saw(), "O", engine="numpy"))
