@@ -4,6 +4,7 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import kinetostatics as ks
@@ -41,6 +42,15 @@ def test_readme_sweep_runs():
     exec(compile(code.replace('"cam-circle")', '"cam-circle", progress=False)'), "README", "exec"), names)
     assert len(names["table"]) == 6
     assert (names["table"]["failed"] == "").all()
+
+
+def test_readme_program_gives_torque_and_slope_which_is_constant_in_a_mass():
+    turn = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+    names: dict = {"ks": ks, "turn": turn}
+    exec(compile(python_blocks()[3], "README", "exec"), names)
+    before = names["scene"].solve(turn).balancing_torque
+    assert np.abs(names["slope"]).max() > 0.1
+    np.testing.assert_allclose(names["torque"] - before, 0.5 * names["slope"], rtol=1e-9, atol=1e-12)
 
 
 def test_readme_links_lead_to_files():

@@ -110,6 +110,8 @@ def _spelled_for_pint(text):
         found = _FACTOR.match(text, place)
         if not found:
             raise ValueError("no name of a unit")
+        if found[1] in ("ton", "tons"):
+            raise ValueError("short, long or metric; t and tonne are clear")
         power = found[2] or ("3" if found[3] == "³" else "2" if found[3] else "1")
         spelled.append(f"{found[1].replace('°', 'degree').replace('%', 'percent')}**{int(power)}")
         place = found.end()

@@ -170,3 +170,10 @@ def test_mean_magnitudes_of_samples_know_their_kinks():
 @pytest.mark.parametrize(("values", "mean"), [([0.0] * 12, 0.0), ([-2.0] * 12, 2.0), ([-0.0, 0.0] * 6, 0.0)])
 def test_mean_magnitudes_of_constants(values, mean):
     assert FOUND["mean_absolute"](np.array([values]))[0] == mean
+
+
+@pytest.mark.parametrize("mass", ["2 ton", "3 tons", "1 kN s^2/m ton"])
+def test_a_ton_may_be_short_long_or_metric_and_is_refused(mass):
+    with pytest.raises(ValueError, match="is not known"):
+        to_si(mass, "kg")
+    assert to_si("2 t", "kg") == to_si("2 tonne", "kg") == 2000.0
