@@ -43,6 +43,8 @@ def loaded(force, **period):
     ],
 )
 def test_a_function_must_return_plain_numbers(force, words, engine):
+    if engine == "compiled":
+        pytest.importorskip("numba")
     with pytest.raises(ks.ParameterError, match=r"ProcessForce on 'slider': its function must return") as found:
         _ = ks.solve(
             crank_slider(), TURN, crank_speed=5.0, loads=[ks.ProcessForce(force)], engine=engine

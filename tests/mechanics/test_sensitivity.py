@@ -331,7 +331,9 @@ RANDOM = {
 
 def assert_bound(solution, allowed=1e4):
     """True magnification <= condition <= `allowed` times it; errors within a hundred roundings of the condition."""
-    magnification = pytest.importorskip("magnification", reason="python-flint is not installed (extra: precision)")
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    from support import magnification
+
     true, errors = magnification.truly_magnified(solution)
     found = solution.condition
     closed = np.isfinite(true) & ~np.isnan(found)

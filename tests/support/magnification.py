@@ -7,14 +7,16 @@ a link, of the torque the largest load times the fastest point of its group.
 
 from dataclasses import replace
 
-import flint
 import numpy as np
+import pytest
 
 from kinetostatics import Gravity, Link, Spring
 from kinetostatics.machine.guide import Guide
 from kinetostatics.machine.links import arm, first_at
 from kinetostatics.numbers.leaves import mapped, with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
+
+flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
 BITS = 270
 STEP = "1e-30"
