@@ -196,13 +196,6 @@ class _Recorder:
         return True
 
 
-class _Beforehand:
-    """Stands for a part that declares to be computed beforehand: whoever asks it for more fails."""
-
-    def __call__(self, motion):
-        raise TypeError("its values are computed beforehand")
-
-
 @dataclass(frozen=True, eq=False)
 class _Tabled:
     """A cam whose radius and derivatives are handed in."""

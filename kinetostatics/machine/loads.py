@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.leaves import Batched
+from ..numbers.batched import Batched
 from .crank import ray
 
 TURN = 2 * math.pi

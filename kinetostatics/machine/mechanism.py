@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.leaves import Batched, with_fields
+from ..numbers.batched import Batched
+from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .crank import Crank

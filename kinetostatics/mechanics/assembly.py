@@ -13,6 +13,8 @@ TURN = 2 * np.pi
 GRID = np.linspace(0.0, TURN, 721)[:-1]
 HALF = 1e8
 """Condition from which half of the digits are lost."""
+NO_DIGIT = 1e16
+"""Condition from which rates and forces have no correct digit."""
 WORST = 100.0
 """Largest condition of a mechanism times margin^2 / (proportion^2 times crank angle)."""
 

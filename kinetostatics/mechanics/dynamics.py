@@ -13,7 +13,6 @@ import numpy as np
 
 from ..machine.links import load, virtual_work
 from ..machine.loads import Gravity
-from ..numbers.elementary import read_only
 from ..numbers.planar import added, minus, moment, number, plus, product
 from .motion import Motion
 from .principal_points import principal_points
@@ -153,19 +152,6 @@ class Dynamics(Motion):
         links = self.placement.links
         works = [virtual_work(links[name], wrench) for name, wrench in self.link_loads.items()]
         return works + [product(push, self._travel(name).first) for name, push in self.pushes.items()]
-
-    @cached_property
-    def condition(self):
-        """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
-
-        A bound of the true magnification: the sum over all lengths and the crank angle p of |p dq/dp|, over the largest
-        term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
-        at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
-        16 - log10(condition) correct digits of its largest term, or more.
-        """
-        from .sensitivity import condition
-
-        return read_only(condition(self).reshape(self.shape))
 
     @cached_property
     def closed(self):

@@ -27,11 +27,11 @@ from ..machine.guide import Guide
 from ..machine.links import Link, arm, first_at, second_at, virtual_work
 from ..machine.loads import Gravity, ProcessForce, Spring
 from ..numbers.duals import Dual
+from ..numbers.elementary import UNIT
 from ..numbers.leaves import is_structural, mapped, with_fields
 from ..numbers.planar import product, vector
 from .dynamics import Dynamics
 
-UNIT = 2.0**-53
 SAFETY = 3.0
 """Factor that makes a bound of a magnification: other signs of errors, and rounding of the derivatives."""
 CERTAIN = 4.0

@@ -20,8 +20,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..errors import ParameterError
+from .content import LIBRARY
 
-LIBRARY = __name__.partition(".")[0]
 HUGE, LONG = 1e150, 1e75
 """Sizes that double precision cannot square, and lengths (and their reciprocals) that it cannot twice."""
 PLAIN = (int, float, np.integer, np.floating, Fraction, Decimal)
@@ -54,10 +54,6 @@ def known(value):
     return value is None or isinstance(value, numbers.Real | str | list | tuple)
 
 
-def _kind(value) -> Any:
-    return type(value)
-
-
 @cache
 def _unfit(kind: Any):
     """Why no value of this type is a number, and what to hand in; None if it may be one."""
@@ -85,7 +81,7 @@ def _unfit(kind: Any):
 
 def unfit(value):
     """Why a value is no number, and what to hand in; None if it may be one."""
-    return _unfit(_kind(value))
+    return _unfit(type(value))
 
 
 def shown(value):
@@ -98,7 +94,7 @@ def _number(value, table):
     """The value as a float or a locked array of floats; as it came if its values cannot be looked at now."""
     if table and hasattr(value, "to_numpy") and np.ndim(value) == 1:
         value = value.to_numpy()
-    if words := _unfit(_kind(value)):
+    if words := _unfit(type(value)):
         raise _UnfitError(words)
     if isinstance(value, PLAIN):
         try:
@@ -245,7 +241,7 @@ class Pair:
 
     def taken(self, value, field=""):
         name = self.name or field
-        words = _unfit(_kind(value))
+        words = _unfit(type(value))
         if words and not self.lone:
             words = words.format(unit=self.unit or "1")
             return value, f"{name} must be a pair {self._pair}, got {shown(value)}, {words}"
@@ -416,10 +412,6 @@ def problem(name, value, **rule):
 
 def finite(name, value):
     return problem(name, value)
-
-
-def not_negative(name, value):
-    return problem(name, value, low=0.0)
 
 
 def positive(name, value):

@@ -48,6 +48,8 @@ def sqrt(x):
 
 
 _OBJECT = np.dtype(object)
+UNIT = 2.0**-53
+"""Largest relative error of one rounding in double precision."""
 ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
 APART = 2.0**-90

@@ -8,13 +8,11 @@ structure, so that new numbers never make a new program.
 
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
-from functools import cached_property
 from types import FunctionType
 from typing import Any
 
 import numpy as np
 
-from ..errors import ParameterError
 from .content import LIBRARY, key_of, of_class
 
 
@@ -171,39 +169,6 @@ def _kinds(kind):
     """Names of the fields of a dataclass, and whether each belongs to the structure."""
     for field in fields(kind):
         yield field.name, is_structural(field)
-
-
-def batch_shape(numbers):
-    """Shape that arrays of designs among numbers have in common; () for a single design."""
-    shapes = [number.shape for number in numbers if type(number) is not float]
-    return np.broadcast_shapes(*shapes)[:-1] if shapes else ()
-
-
-class Batched:
-    """A dataclass of parameters, which may be arrays of designs."""
-
-    @cached_property
-    def batch(self):
-        """Shape that arrays of designs among the parameters have in common; () for a single design.
-
-        An array of one axis is a table (of a cam, of a load over the crank angles), not a batch.
-        """
-        leaves = Leaves()
-        taken_apart(self, leaves)
-        try:
-            return wider((), *(leaf for leaf in (*leaves.numbers, *leaves.tables) if np.ndim(leaf) > 1))
-        except ValueError:
-            raise _unfitting(self) from None
-
-
-def _unfitting(item):
-    """Error that names the arrays of designs in an item, which do not fit together."""
-    from .checks import fitting
-    from .paths import places
-
-    shapes = {path: np.shape(place.value(item)) for path, place in places(item).items()}
-    problem = fitting(**{path: shape for path, shape in shapes.items() if len(shape) > 1})
-    return ParameterError(f"{getattr(item, 'name', type(item).__name__)}: {problem}")
 
 
 def wider(shape, *parts):

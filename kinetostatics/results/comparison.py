@@ -10,7 +10,8 @@ import numpy as np
 from ..errors import ConditionWarning, ParameterError, QuantityError
 from ..mechanics.quantities import label_of, magnitude, unit_of
 from ..numbers import checks
-from .extremes import UNIT, extrema, extremes, warning
+from ..numbers.elementary import UNIT
+from .extremes import extrema, extremes, warning
 from .turn import SAME, USABLE, require_single
 
 ORDER = 8

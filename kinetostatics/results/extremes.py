@@ -9,11 +9,11 @@ import numpy as np
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics.quantities import scale, unit_of, values
 from ..numbers import checks
+from ..numbers.elementary import UNIT
 from .turn import SAME, require_single, runs
 
-ROUNDING = 1e-13
+FLOOR = 1e-13
 """Rise and fall, relative to the terms a quantity is made of, below which it is rounding and no extremum."""
-UNIT = 2.0**-53
 CALM = 1e6
 """Condition up to which values are of ordinary size, and rounding is small beside them."""
 CONTINUED = 1e-4
@@ -183,7 +183,7 @@ def _sizes(turn, quantity, samples, good, position):
     calm = calm if calm.any() else good
     size = float(np.max(np.abs(samples[calm]), initial=0.0))
     terms = scale(turn.at if calm.all() else turn.at.at(turn.angle[calm]), quantity) if calm.any() else 0.0
-    floor = np.full(samples.shape, ROUNDING * max(terms, size))
+    floor = np.full(samples.shape, FLOOR * max(terms, size))
     if calm.all():
         return size, floor
     condition = np.sqrt(np.minimum(turn.condition, 1 / UNIT)) if position else turn.condition

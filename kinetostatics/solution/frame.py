@@ -5,11 +5,10 @@ import warnings
 import numpy as np
 
 from ..errors import ConditionWarning
+from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import of_mechanism, still
 from ..results.turn import NEAR
 
-NO_DIGIT = 1e16
-"""Condition from which rates and forces have no correct digit."""
 ORDER = ("rate", "reaction", "force", "whole", "slider", "motion")
 """Kinds of quantities as they stand in the table, after the positions of joints."""
 

@@ -14,6 +14,7 @@ from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
 from ..mechanics.quantities import scale, values
+from ..numbers.elementary import read_only
 from ..results.turn import Turn
 from .angles import crank_angles
 
@@ -160,7 +161,7 @@ class Solution(Motion):
         """Pressure angle of the cam pair, atan(r'/r), (..., N), rad."""
         return self.measure("pressure_angle")
 
-    @property
+    @cached_property
     def condition(self):
         """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
 
@@ -169,7 +170,9 @@ class Solution(Motion):
         at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
         16 - log10(condition) correct digits of its largest term, or more.
         """
-        return self.dynamics.condition
+        from ..mechanics.sensitivity import condition
+
+        return read_only(condition(self.dynamics).reshape(self.shape))
 
     def condition_of(self, quantity):
         """How many times relative errors are magnified in one quantity, relative to its largest value, (..., N).

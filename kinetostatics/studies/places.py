@@ -10,10 +10,9 @@ from ..machine.builders import cam_crank_slider, crank_slider, four_bar
 from ..machine.cams import Circle, CosineLaw
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
+from ..numbers.elementary import UNIT
 from ..solution.solution import Solution
 
-UNIT = 2.0**-53
-"""Rounding unit of double precision."""
 SPEED = 320 * math.pi / 30
 DISTANCES = tuple(10.0**k for k in range(-17, 0))
 

@@ -15,9 +15,10 @@ from ..errors import MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
 from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
+from ..numbers.elementary import UNIT
 from .methods import METHODS
 from .methods.certified import enclosure, relative_errors
-from .places import PLACES, UNIT, Place
+from .places import PLACES, Place
 from .timing import circumstances
 
 __all__ = ["PLACES", "Place", "study", "summary", "write"]

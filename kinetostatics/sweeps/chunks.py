@@ -17,6 +17,7 @@ import pandas as pd
 from ..engines import loops, programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
 from ..machine.loads import TURN
+from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import components, quantity, sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
@@ -39,8 +40,6 @@ MOST = 5760
 """Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
 SETTLED = 1e-3
 """Relative change of an output, when the crank angles are doubled, that is none."""
-NO_DIGIT = 1e16
-"""Condition from which rates and forces have no correct digit."""
 FAILED = "failed"
 """Column with the reason why a design has no numbers; empty for the others."""
 

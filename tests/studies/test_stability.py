@@ -11,6 +11,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics import cli
 from kinetostatics.mechanics.quantities import components
+from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies import stability
 from kinetostatics.studies.methods import METHODS, Method
 from kinetostatics.views import charts
@@ -299,9 +300,9 @@ def test_chart_of_a_place_has_units_a_line_a_method_and_the_condition_dashed(tab
 
 def test_ours_are_the_lower_envelope_wherever_a_digit_is_left(table):
     """No other method is nearer than ours by more than thirty roundings of the problem itself."""
-    left = table[(table["condition"] * stability.UNIT < 1) & table["error"].notna()]
+    left = table[(table["condition"] * UNIT < 1) & table["error"].notna()]
     others = left[~left["ours"]].groupby(["place", "number"])["error"].min()
     ours = left[left["ours"]].groupby(["place", "number"])["error"].max()
-    rounding = left.groupby(["place", "number"])["condition"].first() * stability.UNIT
+    rounding = left.groupby(["place", "number"])["condition"].first() * UNIT
     assert (ours <= np.maximum(others, 30 * rounding)).all()
     assert len(ours) > 20
