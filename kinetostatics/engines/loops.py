@@ -10,12 +10,14 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from .compiled import _loaded, cores
+from .recent import kept_for_same_angles
 from .writing import TURN
 
 SHARE = 100_000
 """Values over designs and angles that are worth a thread of their own."""
 
 
+@kept_for_same_angles
 def turn(angle):
     """Sines and cosines of crank angles (1 or designs, N), which designs may share."""
     sine, cosine = np.empty(angle.shape), np.empty(angle.shape)

@@ -19,6 +19,7 @@ from ..numbers.leaves import Leaves, put_together
 from . import loops, writing
 from .compiled import _loaded
 from .derivatives import gradients
+from .recent import kept_for_same_angles
 from .record import record
 from .trace import needed
 
@@ -92,23 +93,20 @@ class Program:
 
     def run(self, state, leaves, compiled=False):
         """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
-        run, angle = self.by_loop if compiled else self.by_numpy, state.crank_angle
+        angle, shape = state.crank_angle, state.shape
+        if len(shape) < 2 and math.prod(shape) <= FEW and not self.recording.tables:
+            return self._by_numbers(angle, leaves.numbers, shape)
+        run = self.by_loop if compiled else self.by_numpy
         if angle.shape[-1:] != state.shape[-1:]:  # a single angle, and tables over more
             angle = np.broadcast_to(angle, angle.shape[:-1] + state.shape[-1:])
-        return run(angle, leaves.numbers, self.rows(state, leaves), state.shape)
-
-    def on_numbers(self, angle, numbers, rows):
-        """Outputs, plain numbers, from a crank angle, numbers and table values that are plain numbers."""
-        return self._plain(angle, float(np.sin(angle)), float(np.cos(angle)), numbers, rows)
+        return run(angle, leaves.numbers, self.rows(state, leaves), shape)
 
     def by_numpy(self, angle, numbers, rows, shape):
         """Outputs (outputs, *shape) from crank angles (..., N), numbers or arrays (..., 1), and rows of tables."""
-        if math.prod(shape) <= FEW and not (len(shape) > 1 or rows):
-            return self._by_numbers(angle, numbers, shape)
         (single, batch), count = self._buffered
         results = np.empty((len(self.outputs), *shape))
         with np.errstate(all="ignore"):
-            sine, cosine = np.sin(angle), np.cos(angle)
+            sine, cosine = _turn(angle)
             if len(shape) == 1:
                 for start in range(0, shape[0], BLOCK):
                     part = slice(start, start + BLOCK)
@@ -121,24 +119,31 @@ class Program:
         return results
 
     def _by_numbers(self, angle, numbers, shape):
+        angle = angle.ravel()
+        given = zip(angle.tolist(), np.sin(angle).tolist(), np.cos(angle).tolist(), strict=True)
         try:
-            found = [self.on_numbers(float(one), numbers, ()) for one in angle.flat]
+            found = [self._plain(*one, numbers, ()) for one in given]
         except (ZeroDivisionError, OverflowError):  # arrays answer with infinity or NaN
-            found = [self.by_numpy(np.full(FEW + 1, one), numbers, (), (FEW + 1,))[:, 0] for one in angle.flat]
-        return np.array(found, dtype=float).T.reshape(-1, *shape)
+            found = self.by_numpy(angle, numbers, (), angle.shape).T
+        return np.array(found).T.reshape(-1, *shape)
 
     def by_loop(self, angle, numbers, rows, shape):
         """The same by the compiled loop."""
         parameters = loops.table_of_parameters(numbers, shape[:-1])
         designs = len(parameters)
-        angles = np.array(angle, dtype=float, ndmin=2)  # a copy: numba would compile anew for a locked one
-        if math.prod(angle.shape[:-1]) > 1:
-            angles = np.broadcast_to(angle, shape).reshape(designs, -1).copy()
+        own = math.prod(angle.shape[:-1]) > 1
+        angles = np.broadcast_to(angle, shape).reshape(designs, -1) if own else angle.reshape(1, -1)
+        angles = np.ascontiguousarray(angles)
         results = np.empty((designs, len(self.outputs), angles.shape[1]))
         tables = loops.table_of_rows(rows, shape or (1,))
         sine, cosine = loops.turn(angles)
         loops.run(self.loop, angles, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
+
+
+@kept_for_same_angles
+def _turn(angle):
+    return np.sin(angle), np.cos(angle)
 
 
 def _made(source, scope):

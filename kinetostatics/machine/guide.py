@@ -44,6 +44,8 @@ class Guide(checks.Checked):
 
     def _unit_vector(self):
         """Say where the exact direction is none."""
+        if self.exact is None and self.angle is not None:
+            return
         if self.angle is None and self.exact is None:
             yield "it needs an angle, or an exact direction; use Guide.at"
         length = 1.0 if self.exact is None or not all(map(checks.known, self.exact)) else np.hypot(*self.exact)

@@ -30,19 +30,16 @@ def of_mechanism(mechanism):
 
 
 def _surely_none(mechanism):
-    """Whether a quick look at plain numbers finds nothing odd, even beside the longest link."""
-    lengths = [bar.length for bar in mechanism.bars]
-    if not lengths or not all(type(length) is float for length in lengths):
+    """Whether a quick look at plain numbers finds nothing odd: no link is longer than all lengths together."""
+    extent = mechanism.extent
+    if type(extent) is not float or not mechanism.proportion < FAR:
         return False
-    longest = max(lengths)
-    far, thin = FAR * longest, longest * longest / (THIN * 12.0)
+    thin = extent * extent / (THIN * 12.0)
     for part in mechanism.parts:
         for link in vars(part).values():
             if type(link) is Link:
-                mass, (along, across), inertia = link.mass, link.centre, link.inertia
-                if not (type(mass) is type(along) is type(across) is type(inertia) is float):
-                    return False
-                if abs(along) > far or abs(across) > far or 0.0 < inertia < thin * mass:
+                mass, inertia = link.mass, link.inertia
+                if not (type(mass) is type(inertia) is float) or 0.0 < inertia < thin * mass:
                     return False
     return True
 

@@ -127,11 +127,19 @@ class Mechanism(Batched):
         return hints.of_mechanism(self)
 
     @cached_property
+    def extent(self):
+        """Sum of all lengths, places of mass centres among them, m."""
+        found = 0.0
+        for part in self.parts:
+            for length in part.lengths:
+                found = found + abs(length)
+        return found
+
+    @cached_property
     def proportion(self):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
-        whole = sum(sum(map(abs, part.lengths)) for part in self.parts)
-        shortest = smaller(*(part.shortest for part in self.parts))
-        return float(np.max(np.asarray(whole / shortest, dtype=float)))
+        found = self.extent / smaller(*(part.shortest for part in self.parts))
+        return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
 
     @cached_property
     def bars(self):

@@ -48,10 +48,12 @@ def warn_of_lost_digits(solution):
 
 def surely_well(solution, margins):
     """Whether the margins of closure alone tell that no crank angle loses half of its digits."""
-    least = math.prod(min(margin.min(), 1.0) for margin in margins)
+    least = 1.0
+    for margin in margins:
+        least *= min(margin.min(), 1.0)
     if not least > 0.0:
         return False
-    angle = np.ravel(solution.crank_angle)
+    angle = solution.crank_angle.ravel()
     return least >= _enough(solution, math.sqrt(angle.dot(angle))) or least >= _enough(solution)
 
 

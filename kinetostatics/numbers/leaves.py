@@ -199,7 +199,7 @@ def _table(item, leaves):
 
 def _constants(item, leaves):
     """Array of one axis that has nothing to do with crank angles: what it holds belongs to the structure."""
-    if type(item) is np.ndarray and item.ndim == 1 and item.size > 1:
+    if item.ndim == 1 and item.size > 1:
         return Opaque(item, (item.shape, item.tobytes()))
     return taken_apart(item, leaves)
 
@@ -210,7 +210,17 @@ def _part(item, leaves):
 
 
 def _tuple(item, leaves):
-    return (tuple, *[taken_apart(part, leaves) for part in item])
+    found: list[Any] = [tuple]
+    for part in item:
+        kind = type(part)
+        if kind is not float:
+            found.append((_TAKERS.get(kind) or _taker(kind))(part, leaves))
+        elif part != 0.0:
+            leaves.numbers.append(part)
+            found.append(NUMBER)
+        else:
+            found.append(0.0)
+    return tuple(found)
 
 
 def _as_it_is(item, leaves):
@@ -272,22 +282,26 @@ def _taker(kind):
 def _of_dataclass(kind):
     """Function written for the type, as a hand would write it: it runs for each part of each scene that is solved."""
     over_angles = getattr(kind, "OVER_ANGLES", ())
-    lines = ["def taker(item, leaves):"]
+    lines = ["def taker(item, leaves):", "    append = leaves.numbers.append"]
     for place, (name, structural) in enumerate(_kinds(kind)):
-        lines.append(f"    v{place} = item.{name}")
+        lines += [f"    v{place} = item.{name}", f"    kind = type(v{place})"]
         if structural:
-            lines.append(f"    if type(v{place}) is not str: v{place} = structural(v{place}, leaves)")
+            lines.append(f"    if kind is not str: v{place} = structural(v{place}, leaves)")
         else:
             lines += [
-                f"    if type(v{place}) is float and v{place} != 0.0:",
-                f"        leaves.numbers.append(v{place})",
-                f"        v{place} = NUMBER",
-                "    else:",
+                "    if kind is float:",
+                f"        if v{place} != 0.0:",
+                f"            append(v{place})",
+                f"            v{place} = NUMBER",
+                f"        else: v{place} = 0.0",
+                "    elif kind is array:",
                 f"        v{place} = {'taken_apart' if name in over_angles else 'constants'}(v{place}, leaves)",
+                f"    elif v{place} is not None:",
+                f"        v{place} = (takers.get(kind) or taker_of(kind))(v{place}, leaves)",
             ]
-    lines.append(f"    return (kind, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
-    scope = {"kind": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants}
-    scope["structural"] = _structural
+    lines.append(f"    return (whole, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
+    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "array": np.ndarray}
+    scope |= {"structural": _structural, "takers": _TAKERS, "taker_of": _taker}
     exec("\n".join(lines), scope)
     return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_its_class(kind, scope["taker"])
 

@@ -15,6 +15,8 @@ def crank_angles(given):
     """Crank angles of any kind: a locked copy of plain ones, those of another array library as they are."""
     if type(given) is np.ndarray and given.dtype in PRECISIONS:
         return read_only(given.copy())
+    if ANGLE.quick(given) is not checks.UNSURE:
+        return read_only(np.array(float(given)))
     if isinstance(given, list | tuple) and not given:
         checks.require("solve", "there are no crank angles")
     angle, problem = ANGLE.taken(given)
@@ -28,5 +30,5 @@ def problems(angle):
         return "there are no crank angles"
     if not isinstance(angle, np.ndarray) or angle.dtype == object:
         return None
-    finite = (angle.ndim == 1 and math.isfinite(angle.dot(angle))) or np.isfinite(angle).all()  # dot costs a quarter
+    finite = (angle.ndim < 2 and math.isfinite(angle.dot(angle))) or np.isfinite(angle).all()  # dot costs a quarter
     return None if finite else "crank angles must be finite; found NaN or infinity"

@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -21,6 +21,7 @@ from .solution import Solution
 
 DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
 LOADS = (Gravity, Spring, ProcessForce)
+GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
 
@@ -187,8 +188,10 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
 
 
 def _solved(scene, crank_angle, on_gap, engine):
-    checks.require("solve", checks.choice("on_gap", on_gap, ("raise", "nan")))
+    checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
+    if engine == "compiled" and not solution.is_given:
+        programs.of(solution.dynamics)  # refuses what cannot be recorded
     (solution.check if on_gap == "raise" else solution.warn)()
     return solution
 
@@ -196,11 +199,7 @@ def _solved(scene, crank_angle, on_gap, engine):
 def unchecked(scene, crank_angle, engine=None):
     """What `solve` returns, before a look at where the mechanism closes and where digits are lost."""
     angle, mechanism = crank_angles(crank_angle), scene.mechanism
-    checks.require(
-        "solve",
-        problems(angle),
-        None if engine is None else checks.choice("engine", engine, ("numpy", "compiled")),
-    )
+    checks.require("solve", problems(angle), None if engine is None else checks.choice("engine", engine, ENGINES))
     if angle.dtype == "float32":
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
@@ -213,10 +212,7 @@ def unchecked(scene, crank_angle, engine=None):
     _, leaves = solution.apart
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
-    chosen = _engine(engine, angle, solution)
-    solution = solution if chosen is NUMPY else replace(solution, engine=chosen)
-    if chosen is COMPILED:
-        programs.of(solution.dynamics)
+    vars(solution)["engine"] = _engine(engine, angle, solution)
     return solution
 
 

@@ -1,7 +1,7 @@
 """What users hold: motion and forces of a scene, each computed by an engine when first asked for."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +20,7 @@ from .angles import crank_angles
 
 SHARE = 100_000
 """Values over designs and angles up to which all forces are computed together."""
+SCENE = tuple(field.name for field in fields(Motion))
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,9 +195,10 @@ class Solution(Motion):
     @cached_property
     def dynamics(self):
         """The scene at its crank angles, as engines take it and kernels compute it."""
-        way = getattr(self.engine, "way", None)
-        made = Dynamics(self.mechanism, self.crank_angle, self.crank_speed, self.crank_acceleration, self.loads, way)
-        vars(made).update(apart=self.apart, shape=self.shape)
+        own = vars(self)
+        made = object.__new__(Dynamics)
+        vars(made).update({name: own[name] for name in SCENE}, apart=self.apart, shape=self.shape)
+        vars(made).update(way=getattr(self.engine, "way", None))
         return made
 
     @property
@@ -214,7 +216,7 @@ class Solution(Motion):
         return {}
 
     @property
-    def _is_given(self):
+    def is_given(self):
         """Whether nothing of it is code of the user's, which may be wrong and is to be told when it is asked."""
         return self.mechanism.trusted and all(map(is_given, self.loads))
 
@@ -229,7 +231,7 @@ class Solution(Motion):
         if name not in self._values:
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
-            of_all = self._is_given if name == "closure" else name in self.mechanism.outputs
+            of_all = self.is_given if name == "closure" else name in self.mechanism.outputs
             together = of_all and math.prod(self.shape) <= SHARE
             self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
         return self._values[name]

@@ -55,7 +55,9 @@ pytestmark = pytest.mark.skipif(not compiled.available(), reason="numba is not i
 
 @pytest.fixture
 def one_core(monkeypatch):
+    """One core, and sines computed in each call, as C does, though the crank angles are those of the last."""
     monkeypatch.setattr(loops, "cores", lambda: 1)
+    monkeypatch.setattr(loops, "turn", loops.turn.__wrapped__)
 
 
 @pytest.fixture(scope="module")
@@ -186,6 +188,19 @@ def swept(variant, designs, **options):
     return table, perf_counter() - start
 
 
+def bare(designs):
+    """Time of the loop alone over designs of the plain variant, in blocks as a sweep takes them, s."""
+    made, numbers = program("plain", ("O", "balancing_torque", "guide_force"))
+    given = ks.compile(SAW.variants["plain"].scene, "balancing_torque").parameters
+    columns = {list(given).index(name.partition(" ")[0]): designs[name].to_numpy()[:, None] for name in designs}
+    assert [numbers[place] for place in columns] == [given["crank_length"], given["slider.mass"]]
+    angles, start = turn(360), perf_counter()
+    for first in range(0, len(designs), 1000):
+        block = [columns[place][first : first + 1000] if place in columns else one for place, one in enumerate(numbers)]
+        made.by_loop(angles, block, [], (len(block[next(iter(columns))]), 360))
+    return perf_counter() - start
+
+
 def report(variant, count, repeats):
     """For a process of its own: prints least time, s, peak memory and size of the tables, MB."""
     import resource
@@ -222,6 +237,15 @@ def test_sweep_of_many_designs_takes_seconds_and_no_more_memory_than_its_table(b
             )
             assert spent_10 < 13 * spent
             assert memory_10 - memory < 2 * (size_10 - size)
+
+
+def test_sweep_takes_at_most_three_times_as_long_as_its_bare_loop(benchmark, tell):
+    designs = ks.designs.random(VARIED["plain"], MANY)
+    benchmark.pedantic(swept, ("plain", designs), rounds=1, warmup_rounds=1)
+    whole, alone = np.min([(swept("plain", designs)[1], bare(designs)) for _ in range(5)], axis=0)
+    benchmark.extra_info["times as long"] = whole / alone
+    tell(f"{MANY} designs x 360 angles: sweep {whole:.3f} s, {whole / alone:.2f} times its bare loop, {alone:.3f} s")
+    assert whole <= 3 * alone
 
 
 def test_designs_that_are_impossible_hardly_slow_a_sweep_down(benchmark, tell):

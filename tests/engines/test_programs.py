@@ -363,8 +363,8 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
         "import kinetostatics as ks;"
         " scene = ks.Scene(ks.crank_slider(0.3, 2.0), crank_speed=1.0);"
         " made = ks.compile(scene, ['slider_position', 'coupler_rate'], engine='compiled');"
-        " locked = scene.solve([0.1, 0.2]).crank_angle;"
-        " print(made(locked)['coupler_rate'].tolist(), made([0.1, 0.2])['slider_position'].shape)"
+        " locked = scene.solve(20).crank_angle;"
+        " print(made(locked)['coupler_rate'].tolist(), made(list(locked))['slider_position'].shape)"
     )
 
     def files():
