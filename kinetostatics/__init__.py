@@ -35,15 +35,20 @@ from .errors import (
     QuantityError,
 )
 from .machine import cams
-from .machine.builders import cam_crank_slider, crank_slider, four_bar
+from .machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
 from .machine.cam_roller import CamRoller
 from .machine.crank import Crank
+from .machine.cylinder_group import CylinderGroup
+from .machine.dyad import Dyad
 from .machine.guide import Guide
+from .machine.lever_group import LeverGroup
 from .machine.links import Link
 from .machine.loads import Gravity, ProcessForce, Spring
 from .machine.mechanism import Mechanism
+from .machine.pin import Pin
 from .machine.rocker_group import RockerGroup
 from .machine.slider_group import SliderGroup
+from .machine.yoke_group import YokeGroup
 from .mechanics.principal_points import principal_points
 from .results.extremes import extremes
 from .solution.compile import compile  # noqa: A004 - the contract's name
@@ -58,13 +63,17 @@ __all__ = [
     "CaseError",
     "ConditionWarning",
     "Crank",
+    "CylinderGroup",
+    "Dyad",
     "Gravity",
     "Guide",
     "HintWarning",
     "KinetostaticsError",
+    "LeverGroup",
     "Link",
     "Mechanism",
     "ParameterError",
+    "Pin",
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
@@ -72,6 +81,7 @@ __all__ = [
     "SliderGroup",
     "Solution",
     "Spring",
+    "YokeGroup",
     "balancing",
     "cam_crank_slider",
     "cams",
@@ -88,6 +98,8 @@ __all__ = [
     "plots",
     "precision",
     "principal_points",
+    "scotch_yoke",
+    "slotted_lever",
     "solve",
     "stability",
     "sweep",

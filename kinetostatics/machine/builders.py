@@ -9,10 +9,12 @@ from .cam_roller import CamRoller
 from .cams import CosineLaw
 from .crank import Crank
 from .guide import Guide
+from .lever_group import LeverGroup
 from .links import Link, present
 from .mechanism import Mechanism
 from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
+from .yoke_group import YokeGroup
 
 
 def crank_slider(
@@ -138,6 +140,84 @@ def four_bar(
     """
     group = RockerGroup(coupler_length, rocker_length, rocker_pivot, assembly, coupler, rocker)
     return Mechanism("four-bar", Crank(crank_length, crank), (group,))
+
+
+def slotted_lever(crank_length, *, pivot, offset=0.0, crank=Link(), lever=Link(), block=Link()):
+    """Slotted lever: crank O-A, block at A sliding in a lever about a fixed pivot (crank shaper, Whitworth).
+
+    Parameters
+    ----------
+    crank_length : float or array
+        m; arrays of shape (designs, 1) make a batch.
+    pivot : (x, y)
+        Fixed pivot O2 of the lever, m: farther from O than A the lever rocks, nearer it makes full turns.
+    offset : float or array
+        Of the slot's axis to the left of the pivot, m.
+    crank, lever, block : Link
+        Mass properties; a link left out has no mass and costs nothing.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> shaper = ks.slotted_lever(0.1, pivot=(0.0, -0.2), lever=ks.Link(8.0, 0.3, 0.4))
+    >>> round(float(ks.solve(shaper, 0.0, crank_speed=6.0).rate("lever")), 12)
+    1.2
+    """
+    group = LeverGroup(pivot, offset=offset, lever=lever, block=block)
+    return Mechanism("slotted lever", Crank(crank_length, crank), (group,))
+
+
+def scotch_yoke(
+    crank_length,
+    *,
+    guide_angle=0.0,
+    guide_offset=0.0,
+    guide=None,
+    slot_angle=np.pi / 2,
+    crank=Link(),
+    slider=Link(),
+    block=Link(),
+):
+    """Scotch yoke: crank O-A, block at A in the slot of a slider on a straight guide.
+
+    Parameters
+    ----------
+    crank_length : float or array
+        m; arrays of shape (designs, 1) make a batch.
+    guide_angle, guide_offset, guide
+        As for `crank_slider`.
+    slot_angle : float or array
+        From the guide's direction, rad; not 0 or pi.
+    crank, slider, block : Link
+        Mass properties; a link left out has no mass and costs nothing.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, a slot parallel to the guide, or both ways of giving the guide.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.scotch_yoke(0.05, slider=ks.Link(mass=2.0))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=10.0).slider_acceleration), 12)
+    -5.0
+    """
+    group = YokeGroup(_guide(guide, guide_angle, guide_offset), slot_angle, slider=slider, block=block)
+    return Mechanism("Scotch yoke", Crank(crank_length, crank), (group,))
 
 
 def _warn_off_law(cam, group):

@@ -36,11 +36,17 @@ class Chain:
         if not isinstance(value, tuple | list):
             return value, f"{field} must be a tuple of groups, got {checks.shown(value)}"
         found = [self.rule.taken(group, "a group") for group in value]
-        found += [NAME.taken(getattr(group, "on", "O"), f"on of {type(group).__name__}") for group in value]
+        found += [NAME.taken(name, f"on of {type(group).__name__}") for group in value for name in _on(group)]
         strange = [group for group in value if not isinstance(group, Group)]
         found += [(group, f"{type(group).__name__} is not derived from {GROUP}") for group in strange]
         problem = next((problem for _, problem in found if problem), None)
         return tuple(group for group, _ in found[: len(value)]), problem
+
+
+def _on(group):
+    """Names that a group gives of what it hangs on."""
+    found = getattr(group, "on", "O")
+    return found if type(found) is tuple else (found,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +59,8 @@ class Mechanism(Batched):
         What messages and figures call it.
     crank : Crank
     groups : tuple
-        `CamRoller`, `SliderGroup` ...; each hangs on a joint that the crank or an earlier group has placed.
+        `CamRoller`, `SliderGroup`, `Pin` ...; each hangs on a joint, or a pin on a link, that the crank or an earlier
+        group has placed.
     """
 
     name: str
@@ -223,6 +230,7 @@ def _spelled(part, table):
 def _name_problems(parts):
     """What is wrong with the names in a chain of parts: unknown ones, and ones that two things would have."""
     points: dict[str, str] = {}
+    links = [FRAME]
     forces = dict.fromkeys(("closure", *RESERVED), "result of every mechanism")
     problems = []
 
@@ -237,6 +245,11 @@ def _name_problems(parts):
         for name in (name for name in part.hangs_on if name not in points):
             remedy = "; give the crank a length, or put a CamRoller before it" if name == "A" else ""
             problems.append(f"{kind} hangs on joint {name!r}, which no part before it places{remedy}")
+        links += part.links
+        for name, point in part.joints.items():
+            if point.link not in links:
+                link = checks.choice(f"{kind} puts joint {name!r} on link", point.link, links)
+                problems.append(f"{link}; the part that adds the link must stand before it")
         add(points, "joint", kind, _spelled(part, "joints"))
         add(points, "link", kind, part.links)
         outputs = _spelled(part, "outputs")

@@ -16,9 +16,10 @@ from functools import reduce
 from typing import Any
 
 from ..errors import ParameterError
+from ..machine.group import FRAME
 from ..machine.links import accelerated, arm, first_at, present, second_at
 from ..numbers import checks
-from ..numbers.planar import added, stretched
+from ..numbers.planar import added, plus, product, stretched
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +110,17 @@ class PrincipalPoints:
         return self.mass
 
 
+def _inward(mechanism, held, joint):
+    """Link that holds a joint, its place on that link, and the link's reference joint; None where none holds it."""
+    if joint in held:
+        bar = held[joint]
+        return bar.link, (bar.length, 0.0), bar.start
+    point = mechanism.joints[joint]
+    if point.link == FRAME or mechanism.references[point.link] == joint:
+        return None
+    return point.link, (point.along, point.across), mechanism.references[point.link]
+
+
 def principal_points(mechanism):
     """Principal points of any mechanism, from its link masses and the way its links hang together.
 
@@ -129,11 +141,12 @@ def principal_points(mechanism):
     held = {bar.end: bar for bar in reversed(mechanism.bars)}
     for name, link in links:
         joint = mechanism.references[name]
-        while joint in held:
-            bar = held[joint]
-            along, across = static_moments[bar.link]
-            static_moments[bar.link] = (along + link.mass * bar.length, across)
-            joint = bar.start
+        while (step := _inward(mechanism, held, joint)) is not None:
+            on, place, joint = step
+            static_moments[on] = tuple(
+                plus(moment, product(link.mass, present(part)))
+                for moment, part in zip(static_moments[on], place, strict=True)
+            )
         if joint != "O" and present(link.mass) is not None:
             carried[joint] = carried.get(joint, 0.0) + link.mass
     mass = sum(link.mass for _, link in links)

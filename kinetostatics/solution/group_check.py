@@ -1,8 +1,8 @@
 """A test of a group of one's own, by what does not use its formulas: differences of positions, and virtual work.
 
-The group hangs on a joint that is moved by hand from many places in which it closes. What it says of velocities and
-accelerations is compared with differences of what it says of positions; the force it asks of the joint must do the work
-that its loads do, whichever way the joint is moved (d'Alembert and Lagrange; holds for any ideal constraint).
+The group hangs on joints that are moved by hand from many places in which it closes. What it says of velocities and
+accelerations is compared with differences of what it says of positions; the forces it asks of the joints must do the
+work that its loads do, whichever way a joint is moved (d'Alembert and Lagrange; holds for any ideal constraint).
 """
 
 from dataclasses import dataclass
@@ -12,10 +12,10 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.crank import ORIGIN, ray
-from ..machine.group import MEMBERS, Placement
+from ..machine.group import FRAME, MEMBERS, Placement
 from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
 from ..numbers import checks
-from ..numbers.planar import length, number, product, subtracted, vector, work
+from ..numbers.planar import length, number, product, subtracted, turned, vector, work
 
 TOLERANCE = 1e-6
 """Largest relative error that passes; right groups reach 1e-10, a wrong term is of the order of 1."""
@@ -107,27 +107,45 @@ class _Stage(NamedTuple):
     angle: Any
 
     @property
-    def on(self):
-        return getattr(self.group, "on", "O")
+    def hung(self):
+        """Joints it hangs on, but for O."""
+        return [name for name in getattr(self.group, "hangs_on", ("O",)) if name != "O"]
 
-    def placed(self, turn=0.0, way=(0.5, 0.3), bend=(0.2, -0.4)):
-        """Placement with the crank turned from there, the joint on a curve that starts along `way`."""
+    @property
+    def carriers(self):
+        """Links of others that it fixes a joint to."""
+        return {point.link for point in self.group.joints.values()} - {FRAME, *self.group.links}
+
+    def placed(self, turn=0.0, way=(0.5, 0.3), alone=""):
+        """Placement with the crank turned from there, each joint on a curve that starts along its way, or one alone."""
         angle = self.angle + turn
-        sine, cosine = np.sin(turn), np.cos(turn)
-        along, across = (self.size * np.array(part)[:, None] for part in (way, bend))
-        first = along * cosine - across * sine + 0.0 * angle
-        position = np.array(self.position) + along * sine + across * (cosine - 1.0)
-        joint = Joint(tuple(position), tuple(first), tuple(-along * sine - across * cosine + 0.0 * angle))
         direction = ray(angle)
-        joints = {"O": ORIGIN} | ({} if self.on == "O" else {self.on: joint})
-        placement = Placement(angle, direction, joints, {"crank": LinkMotion(ORIGIN, direction, 1.0, None)})
+        joints = {"O": ORIGIN}
+        for order, name in enumerate(self.hung):
+            joints[name] = self._joint(order, turn, way if alone in ("", name) else (0.0, 0.0))
+        links = {"crank": LinkMotion(ORIGIN, direction, 1.0, None)}
+        for name in self.carriers:
+            turned_by = angle + 0.3 * turn + 0.4 * turn * turn
+            links[name] = LinkMotion(self._joint(1, turn, way), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
+        placement = Placement(angle, direction, joints, links)
         with np.errstate(all="ignore"):
             try:
                 self.group.place(placement)
             except KeyError as error:
-                name = type(self.group).__name__
-                raise ParameterError(f"check: {name} hangs on {self.on!r}, but its place asks for {error}") from error
+                name, hung = type(self.group).__name__, ", ".join(map(repr, self.hung or ["O"]))
+                raise ParameterError(f"check: {name} hangs on {hung}, but its place asks for {error}") from error
         return placement
+
+    def _joint(self, order, turn, way):
+        """One of the joints it hangs on: the first at the places, others near O."""
+        sine, cosine = np.sin(turn), np.cos(turn)
+        way, bend = (turned(part, ray(float(order))) for part in (way, (0.2, -0.4)))
+        along, across = (self.size * np.array(part)[:, None] for part in (way, bend))
+        still = 0.0 * self.angle
+        place = self.position if order == 0 else (0.4 * order * self.size + still, -0.25 * order * self.size + still)
+        position = np.array(place) + along * sine + across * (cosine - 1.0)
+        first = along * cosine - across * sine + still
+        return Joint(tuple(position), tuple(first), tuple(-along * sine - across * cosine + still))
 
 
 def _stage(group):
@@ -194,7 +212,7 @@ def _rates(placement, stage):
         found[f"first derivative of {name}"] = joint.position, first, stage.size
         found[f"second derivative of {name}"] = first, second, stage.size
 
-    for name in placement.joints.keys() - {"O", stage.on}:
+    for name in placement.joints.keys() - {"O", *stage.hung}:
         add(f"joint {name}", placement.joints[name])
     for name, travel in placement.travels.items():
         add(f"travel of {name}", travel)
@@ -217,6 +235,8 @@ def _parts(value):
 
 def _of_forces(stage):
     """Errors of the forces, by the work they and the loads do on small motions of the joint, whichever way it goes."""
+    if not stage.group.links:
+        return {}
     random = np.random.default_rng(0)
 
     def any_vector():
@@ -225,10 +245,14 @@ def _of_forces(stage):
     still = stage.placed()
     wrenches = {name: Wrench(any_vector(), stage.size * any_vector()[0]) for name in stage.group.links}
     pushes = {name: any_vector()[0] for name in still.travels}
-    ways = {"x": {"way": (1.0, 0.0)}, "y": {"way": (0.0, 1.0)}} if stage.on != "O" else {"the turn": {}}
+    ways: dict[str, Any] = {
+        f"{axis} of {name}" if len(stage.hung) > 1 else axis: {"way": way, "alone": name}
+        for name in stage.hung
+        for axis, way in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
+    }
     errors = {
         f"work of the forces along {name}": _work_missing(stage, stage.placed(**way), wrenches, pushes)
-        for name, way in ways.items()
+        for name, way in (ways or {"the turn": {}}).items()
     }
     inertia = {
         name: load(still.links[name], link.body, 9.81 / stage.size, 2.0 / stage.size, (3.0, -9.3))

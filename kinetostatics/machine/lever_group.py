@@ -1,0 +1,240 @@
+"""Lever group (RPR): block on a pin, sliding in a straight slot of a lever that turns about a fixed pivot.
+
+With d the vector from the pivot to the pin, the slot at offset e left of the pivot carries the pin at s along it,
+s = sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers: no angle is formed,
+and s is a product, so no digit is lost where it vanishes, which divides rates and forces.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ..numbers import checks
+from ..numbers.elementary import apart, divisor, root, sqrt
+from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
+from .group import FRAME, Group, Output, Point, Resolved, Slot
+from .links import Joint, Link, LinkMotion, Wrench, present
+
+SMALLEST = 2.0**-53
+"""Part of the distance from pivot to pin that the reach along the slot is not divided by less than."""
+
+
+class LeverMotion(NamedTuple):
+    """A placed lever: `reach` is the pin's coordinate along the slot, `divisor` the same to divide by, never zero.
+
+    `closure` is the reach squared over the squares of distance and speed of the pin: small where the lever spins fast.
+    """
+
+    lever: LinkMotion
+    block: LinkMotion
+    reach: Any
+    divisor: Any
+    closure: Any
+
+
+class LeverForces(NamedTuple):
+    """`inner`: on the block at its joint; `slot`: lever on block, along the lever's left normal; `pivot`: ground on
+    lever.
+    """
+
+    inner: Any
+    slot: Any
+    pivot: Any
+
+
+def place(joint, pivot, offset):
+    """Lever and block for a given joint (kernel); an offset of None is zero."""
+    d = (apart(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
+    square = dot(d, d)
+    distance = sqrt(square)
+    if offset is None:
+        reach, divided, reach_square = distance, distance, square
+        direction = (d[0] / distance, d[1] / distance)
+    else:
+        reach_square = (distance - offset) * (distance + offset)
+        reach = root(reach_square, square)
+        divided = divisor(reach, SMALLEST * distance)
+        direction = unturned((d[0] / distance, d[1] / distance), (reach / distance, offset / distance))
+    first, second = vector(joint.first), vector(joint.second)
+    along, across = unturned(first, direction)
+    ratio = across / divided
+    sliding = plus(along, product(offset, ratio))
+    swing = minus(2.0 * sliding, product(offset, ratio)) * ratio
+    ratio_slope = (cross(direction, second) - swing) / divided
+    lever = LinkMotion(Joint(pivot, None, None), direction, ratio, ratio_slope)
+    closure = reach_square / (square + dot(first, first))
+    return LeverMotion(lever, lever._replace(joint=joint), reach, divided, closure)
+
+
+def resolve(motion, lever_load, block_load):
+    """Forces on lever and block (kernel).
+
+    Loads are wrenches about the links' reference joints, those of further groups among them. Moments of both links
+    together about the pivot give the force across the slot.
+    """
+    slot = number(plus(lever_load.moment, block_load.moment)) / motion.divisor
+    on_block = stretched(slot, left(motion.lever.direction))
+    return LeverForces(
+        inner=subtracted(subtracted(None, on_block), block_load.force),
+        slot=slot,
+        pivot=subtracted(on_block, lever_load.force),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class LeverGroup(checks.Checked, Group):
+    """Block on joint `on`, sliding in a slotted lever about the fixed joint `pivot_name`: crank shaper, Whitworth.
+
+    With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
+    from pivot to pin must stay above the offset.
+
+    Parameters
+    ----------
+    pivot : (x, y)
+        Fixed pivot of the lever, m.
+    on, pivot_name : str
+        Names of the joint it hangs on and of the joint it adds.
+    offset : float or array
+        Of the slot's axis to the left of the pivot, m; 0: the slot points at the pivot.
+    lever : Link
+        Reference joint `pivot_name`, along the slot toward the block.
+    block : Link
+        Reference joint `on`, along the slot as the lever; it turns with it.
+    label : str
+        Put behind the names of links and forces of a second lever group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have.
+
+    Notes
+    -----
+    Reactions: `on` (N) on the block, from what carries the joint; `pivot_name` (N), ground on lever; "slot_force" (N),
+    lever on block along the lever's left normal, and "slot_moment" (N m) about `on`. "block_position" (m) is the
+    coordinate of the block along the slot, from the foot of the pivot.
+
+    Further groups hang on a `Pin` of the lever: ``ks.Pin(on="lever", at=(0.9, 0.0))``.
+
+    Examples
+    --------
+    The lever of a crank shaper swings by asin(r / d) to each side:
+
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> shaper = ks.slotted_lever(0.1, pivot=(0.0, -0.2))
+    >>> s = ks.solve(shaper, np.radians(30.0), crank_speed=6.0)
+    >>> bool(abs(s.rate("lever")) < 1e-15)
+    False
+    >>> dead = ks.solve(shaper, -np.arcsin(0.5), crank_speed=6.0)
+    >>> bool(abs(dead.rate("lever")) < 1e-14)
+    True
+    """
+
+    pivot: Any
+    on: str = "A"
+    offset: Any = 0.0
+    lever: Link = Link()
+    block: Link = Link()
+    pivot_name: str = "O2"
+    label: str = ""
+
+    TRUSTED = True
+    PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
+    RULES = checks.Rules(
+        "lever group",
+        pivot=checks.Pair("m", "lever pivot"),
+        on=checks.Name(),
+        offset=checks.Number("m", "slot offset"),
+        lever=checks.Made(Link, "a Link"),
+        block=checks.Made(Link, "a Link"),
+        pivot_name=checks.Name(),
+        label=checks.Name(may_be_empty=True),
+    )
+
+    @property
+    def links(self):
+        return {self._lever: self.lever, self._block: self.block}
+
+    @property
+    def references(self):
+        return {self._lever: self.pivot_name, self._block: self.on}
+
+    @property
+    def slots(self):
+        return (Slot(self._lever, self.on),)
+
+    @property
+    def lengths(self):
+        return (*self.pivot, self.offset, *self.lever.centre, *self.block.centre)
+
+    @property
+    def _lever(self):
+        return "lever" + self.label
+
+    @property
+    def _block(self):
+        return "block" + self.label
+
+    @property
+    def joints(self):
+        return {self.pivot_name: Point(FRAME, *self.pivot)}
+
+    @property
+    def outputs(self):
+        label, lever, block = self.label, self._lever, self._block
+        return {
+            self.on + label: Output("N", True, f"on the {block}, from what carries {self.on}", self.on),
+            self.pivot_name: Output("N", True, f"ground on {lever}"),
+            "slot_force" + label: Output("N", False, f"{lever} on {block} along the left normal of the {lever}"),
+            "slot_moment" + label: Output("N m", False, f"{lever} on {block} about {self.on}"),
+        }
+
+    @property
+    def motions(self):
+        text = f"of {self.on} along the slot, from the foot of {self.pivot_name}"
+        return {f"{self._block}_position": Output("m", False, text)}
+
+    def motion(self, name, placement):
+        return placement.details[self._lever].reach
+
+    def place(self, placement):
+        """Add the pivot, lever and block."""
+        motion = place(placement.joints[self.on], self.pivot, present(self.offset))
+        placement.joints[self.pivot_name] = motion.lever.joint
+        placement.links[self._lever] = motion.lever
+        placement.links[self._block] = motion.block
+        placement.details[self._lever] = motion
+
+    def follow(self, placement, joints):
+        """Place lever and block: no joint of theirs moves that could be found in another way."""
+        self.place(placement)
+
+    def closure(self, placement):
+        return placement.details[self._lever].closure
+
+    def requirement(self, placement):
+        """Say what distance must hold for the block to be in the slot, with its numbers."""
+        return spaced(self.on, self.pivot_name, self.pivot, placement, "the slot's offset", self.offset)
+
+    def resolve(self, placement, loads, along) -> Resolved:
+        found = resolve(placement.details[self._lever], loads[self._lever], loads[self._block])
+        return Resolved(
+            {self.on + self.label: found.inner, self.pivot_name: found.pivot},
+            {
+                "slot_force" + self.label: found.slot,
+                "slot_moment" + self.label: number(minus(None, loads[self._block].moment)),
+            },
+            {self.on: Wrench(found.inner, None)},
+        )
+
+
+def spaced(joint, pivot_name, pivot, placement, least, offset=0.0):
+    """What distance from a joint to a pivot must hold, with its numbers."""
+    x, y = (end - start for end, start in zip(placement.joints[joint].position, pivot, strict=True))
+    distance = np.hypot(x, y)
+    return (
+        f"the distance from {joint} to {pivot_name}, {distance.min():.6g} to {distance.max():.6g} m here, must be "
+        f"greater than {least}, {np.max(np.abs(offset)):.6g} m"
+    )
