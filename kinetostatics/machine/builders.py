@@ -39,8 +39,10 @@ def crank_slider(
         Signed distance of the guide from O along the guide's left normal, m.
     guide : Guide
         In place of the two, as from ``Guide.through(W1, W2)``.
-    assembly : +1 or -1
-        +1: slider ahead of A along the guide.
+    assembly : +1, -1, "open" or "crossed"
+        +1: slider ahead of A along the guide. "open" is so, "crossed" the other way round, in the half turn behind the
+        guide's right normal, and goes on through change points, as where the coupler is as long as the crank and the
+        guide runs through O; without change points it keeps that side.
     crank, coupler, slider : Link
         Mass properties; a link left out has no mass and costs nothing.
 

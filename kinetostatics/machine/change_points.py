@@ -22,7 +22,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt
-from ..numbers.planar import added, cross, dot, left, product, stretched, subtracted, turned, unturned
+from ..numbers.planar import added, cross, dot, left, number, product, stretched, subtracted, turned, unturned
 from .links import Joint, LinkMotion, present
 
 SIDES = {"open": 1, "crossed": -1}
@@ -225,6 +225,36 @@ def _placed(joint, pivot, rocker_length, coupler, rocker, closure, factor, dista
         closure,
         factor,
         apart(distance, UNSEEN),
+    )
+
+
+def slid(placement, coupler_length, guide, passage, side):
+    """Reach of a coupler along the guide, rate of the coupler and its slope, what to divide by, and closure (kernel).
+
+    With psi from the right normal of the guide the coupler stands at right angles to it where cos(psi/2) ("far") or
+    sin(psi/2) ("near") vanishes. What to divide by is a factor and the distance from the change points.
+    """
+    kind, facing = parted(passage)
+    a, b, e = placement.crank_length, coupler_length, number(guide.offset)
+    x, y = (1.0, 0.0) if guide.direction is None else guide.direction
+    if kind == BOTH:
+        along = dot((x, y), placement.ray)
+        ratio = -1.0 if side > 0 else 1.0
+        return side * a * along, ratio, None, (float(side), apart(along, UNSEEN)), 1.0
+    half = _half(placement.angle, (y, -x), 1.0, facing)
+    constant = b + e - a if kind == NEAR else b - e - a
+    passed, other = (half.cosine, half.sine) if kind == FAR else (half.sine, half.cosine)
+    square, size = constant + 2.0 * a * other * other, 2.0 * b
+    height = root(square, size)
+    divided = divisor(height, SMALLEST * sqrt(size))
+    reach = side * sqrt(2.0 * a)
+    bend = 0.5 * reach * constant / (divided * divided * divided) * passed
+    return (
+        reach * passed * height,
+        -reach * other / divided,
+        -bend if kind == FAR else bend,
+        (reach / b * divided, apart(passed, UNSEEN)),
+        square / size,
     )
 
 
