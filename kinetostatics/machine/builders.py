@@ -41,8 +41,10 @@ def crank_slider(
         Signed distance of the guide from O along the guide's left normal, m.
     guide : Guide
         In place of the two, as from ``Guide.through(W1, W2)``.
-    assembly : +1 or -1
-        +1: slider ahead of A along the guide.
+    assembly : +1, -1, "open" or "crossed"
+        +1: slider ahead of A along the guide. "open" is so, "crossed" the other way round, in the half turn behind the
+        guide's right normal, and goes on through change points, as where the coupler is as long as the crank and the
+        guide runs through O; without change points it keeps that side.
     crank, coupler, slider : Link
         Mass properties; a link left out has no mass and costs nothing.
 
@@ -124,8 +126,11 @@ def four_bar(
         m; arrays of shape (designs, 1) make a batch.
     rocker_pivot : (x, y)
         Fixed pivot O2 of the rocker, m.
-    assembly : +1 or -1
-        +1: B to the left of the direction from A to O2.
+    assembly : +1, -1, "open" or "crossed"
+        +1: B to the left of the direction from A to O2. "open" and "crossed" are so, and the other way round, in the
+        half turn behind the direction O -> O2, and go on through change points as inertia carries the links, so that a
+        parallelogram stays one; without change points they keep that side. Lengths equal within 8 ulp of the longest
+        make a change point. `Mechanism.turns` tells whether the branch closes after one turn or two.
     crank, coupler, rocker : Link
         Mass properties; a link left out has no mass and costs nothing.
 

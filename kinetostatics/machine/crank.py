@@ -100,7 +100,7 @@ class Crank(checks.Checked):
         direction = ray(angle)
         placement = Placement(angle, direction, {"O": ORIGIN}, {"crank": LinkMotion(ORIGIN, direction, 1.0, None)})
         if self.length is not None:
-            placement.joints["A"] = pin(direction, self.length)
+            placement.joints["A"], placement.crank_length = pin(direction, self.length), self.length
         return placement
 
     def resolve(self, placement, loads, along) -> Resolved:

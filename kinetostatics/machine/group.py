@@ -130,7 +130,7 @@ class Placement:
     """The mechanism at its crank angles: motion flows outward from the crank into these tables.
 
     `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
-    to find again.
+    to find again; `crank_length` is None of a crank whose pin slides in its slot.
     """
 
     angle: Any
@@ -139,6 +139,7 @@ class Placement:
     links: dict = field(default_factory=dict)
     travels: dict = field(default_factory=dict)
     details: dict = field(default_factory=dict)
+    crank_length: Any = None
 
 
 class Group:
@@ -204,6 +205,20 @@ class Group:
     def guides(self):
         """Guide by name of each link that slides along one."""
         return {}
+
+    def on_crank(self, crank):
+        """The group as it is on a crank: what its structure owes to lengths that are not its own."""
+        return self
+
+    @property
+    def turns(self):
+        """Turns of the crank after which its branch closes."""
+        return 1
+
+    @property
+    def change_points(self):
+        """Crank angles in [0, 2 pi) of the change points that it passes, rad: motion is smooth there, forces grow."""
+        return ()
 
     @property
     def motions(self):

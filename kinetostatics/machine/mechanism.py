@@ -1,5 +1,6 @@
 """A mechanism: a crank and the chain of structural groups that hang on it."""
 
+import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -72,6 +73,7 @@ class Mechanism(Batched):
 
     def __post_init__(self):
         self.RULES.admit(self)
+        object.__setattr__(self, "groups", tuple(group.on_crank(self.crank) for group in self.groups))
         trusted = tuple((type(part), *part.names) for part in self.parts) if self.trusted else None
         if trusted is None or trusted not in _NAMED_WELL:
             checks.require(self.name, *_name_problems(self.parts))
@@ -87,6 +89,16 @@ class Mechanism(Batched):
     def trusted(self):
         """Whether all groups are the library's own, whose forces are known to balance."""
         return all(group.trusted for group in self.groups)
+
+    @cached_property
+    def turns(self):
+        """Turns of the crank after which the motion repeats: 1, or 2 where a branch through a change point takes them."""
+        return math.lcm(*(group.turns for group in self.groups))
+
+    @cached_property
+    def change_points(self):
+        """Crank angles in [0, 2 pi) of the change points that it passes, rad: motion is smooth there, forces grow."""
+        return tuple(sorted({angle for group in self.groups for angle in group.change_points}))
 
     @cached_property
     def links(self):

@@ -4,16 +4,20 @@ With d the vector from joint A to the pivot O2, a = |d|, coupler length c and ro
 (a^2 + c^2 - h^2) / (2 a^2) d +- area / (2 a^2) left(d), where area = sqrt((a+c+h)(a+c-h)(a-c+h)(c+h-a)) is four times
 that of the triangle A B O2 (Heron). The sine of the transmission angle, which divides all rates and forces, is
 area / (2 c h): a product of lengths, so no digit is lost near a toggle, where it vanishes.
+
+On a chosen side the motion has a kink at a change point; the words "open" and "crossed" pass it (`change_points`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
+from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
+from . import change_points
 from .group import FRAME, Bar, Group, Output, Point, Resolved, smaller
 from .links import Joint, Link, LinkMotion, Wrench, between
 
@@ -91,7 +95,11 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     q, p = motion.coupler.direction, motion.rocker.direction
     along_coupler = number(quotient(rocker_load.moment, rocker_length)) / motion.divisor
     along_rocker = number(quotient(coupler_load.moment, coupler_length)) / motion.divisor
-    pin = added(stretched(along_coupler, q), stretched(along_rocker, p))
+    return balanced(added(stretched(along_coupler, q), stretched(along_rocker, p)), coupler_load, rocker_load)
+
+
+def balanced(pin, coupler_load, rocker_load):
+    """All forces for a given pin force."""
     pivot = subtracted(subtracted(None, pin), rocker_load.force)
     return RockerForces(subtracted(pin, coupler_load.force), pin, pivot)
 
@@ -106,8 +114,10 @@ class RockerGroup(checks.Checked, Group):
         m.
     pivot : (x, y)
         Fixed pivot O2, m.
-    assembly : +1 or -1
-        +1: the pin to the left of the direction from the inner joint to the pivot.
+    assembly : +1, -1, "open" or "crossed"
+        +1: the pin to the left of the direction from the inner joint to the pivot. "open" is so too in the half turn
+        behind the direction O -> O2, "crossed" is the other way round there; on the pin A of a crank they go on through
+        change points as inertia carries them, and keep their side where there are none.
     coupler, rocker : Link
     on, pin, pivot_name : str
         Names of the joint it hangs on and of the joints it adds.
@@ -125,6 +135,7 @@ class RockerGroup(checks.Checked, Group):
     pin: str = "B"
     pivot_name: str = "O2"
     label: str = ""
+    passage: str = field(default="", init=False, repr=False)
 
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot"}
@@ -133,7 +144,7 @@ class RockerGroup(checks.Checked, Group):
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
         rocker_length=checks.Number("m", "rocker length", low=0.0, strict=True),
         pivot=checks.Pair("m", "rocker pivot"),
-        assembly=checks.Sign(),
+        assembly=checks.Sign(tuple(change_points.SIDES)),
         coupler=checks.Made(Link, "a Link"),
         rocker=checks.Made(Link, "a Link"),
         on=checks.Name(),
@@ -141,6 +152,19 @@ class RockerGroup(checks.Checked, Group):
         pivot_name=checks.Name(),
         label=checks.Name(may_be_empty=True),
     )
+
+    def on_crank(self, crank):
+        if type(self.assembly) is int:
+            return self
+        return with_fields(self, passage=change_points.of_rocker_group(self, crank))
+
+    @property
+    def turns(self):
+        return change_points.turns(self.passage)
+
+    @property
+    def change_points(self):
+        return change_points.angles(self.passage, self.pivot)
 
     @property
     def links(self):
@@ -187,8 +211,13 @@ class RockerGroup(checks.Checked, Group):
 
     def place(self, placement):
         """Add joints B and O2, coupler and rocker."""
-        lengths = self.coupler_length, self.rocker_length
-        self._set(placement, place(placement.joints[self.on], *lengths, self.pivot, self.assembly))
+        given = placement.joints[self.on], self.coupler_length, self.rocker_length, self.pivot
+        side = change_points.SIDES.get(self.assembly, self.assembly)
+        if self.passage:
+            motion = change_points.place(placement, *given, self.passage, side)
+        else:
+            motion = place(*given, side)
+        self._set(placement, motion)
 
     def follow(self, placement, joints):
         """Place coupler and rocker at joints found in another way."""
@@ -220,13 +249,12 @@ class RockerGroup(checks.Checked, Group):
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = resolve(
-            placement.details[self._rocker],
-            self.coupler_length,
-            self.rocker_length,
-            loads[self._coupler],
-            loads[self._rocker],
-        )
+        motion, lengths = placement.details[self._rocker], (self.coupler_length, self.rocker_length)
+        acting = loads[self._coupler], loads[self._rocker]
+        if isinstance(motion, change_points.PassedMotion):
+            found = balanced(change_points.pin_force(motion, *lengths, *acting), *acting)
+        else:
+            found = resolve(motion, *lengths, *acting)
         return Resolved(
             {self.on + self.label: found.inner, self.pin: found.pin, self.pivot_name: found.pivot},
             {},

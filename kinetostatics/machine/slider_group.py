@@ -3,15 +3,19 @@
 With the guide along the unit vector u, left normal n, at offset e, a coupler of length l from joint A reaches
 d = e - A.n across the guide and +-sqrt((l - d)(l + d)) along it; no angle is ever formed, so nothing happens at the
 dead centres, whatever the inclination of the guide.
+
+Where l = r + |e| on a crank r, the coupler comes to stand across the guide: on a chosen side the slider turns back there,
+the words "open" and "crossed" let it run on (`change_points`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import divisor, root
+from ..numbers.leaves import with_fields
 from ..numbers.planar import (
     added,
     cross,
@@ -19,12 +23,14 @@ from ..numbers.planar import (
     minus,
     number,
     plus,
+    product,
     quotient,
     subtracted,
     turned,
     unturned,
     vector,
 )
+from . import change_points
 from .group import Bar, Group, Output, Point, Resolved
 from .guide import Guide
 from .links import Joint, Link, LinkMotion, Wrench, between
@@ -36,7 +42,8 @@ SMALLEST = 2.0**-27
 class SliderMotion(NamedTuple):
     """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
 
-    `divisor` is the cosine to divide by, which never vanishes.
+    `divisor` is the cosine to divide by, which never vanishes; on a branch through change points in two factors, of
+    which the second is smallest there, and `closure` leaves that out.
     """
 
     coupler: LinkMotion
@@ -67,16 +74,30 @@ def place(joint, coupler_length, guide, assembly):
     square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
     reach = root(square, unit)
     along, divided = assembly * reach, assembly * divisor(reach, SMALLEST * coupler_length)
-    sine, cosine = across / coupler_length, along / coupler_length
-
     ratio = -first[1] / divided
-    lag = ratio * ratio
-    ratio_slope = (lag * across - second[1]) / divided
+    ratio_slope = (ratio * ratio * across - second[1]) / divided
+    reached = along, ratio, ratio_slope, divided / coupler_length, square / unit
+    return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
+
+def passed(placement, joint, coupler_length, guide, passage, side):
+    """The same for a joint on a crank, on a branch through its change points (kernel)."""
+    position = unturned(joint.position, guide.direction)
+    first, second = unturned(joint.first, guide.direction), unturned(joint.second, guide.direction)
+    reached = change_points.slid(placement, coupler_length, guide, passage, side)
+    across = minus(guide.offset, position[1])
+    return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
+
+
+def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, ratio_slope, divided, closure):
+    """Coupler and slider, from the coupler's reach along the guide and across it and its rate."""
+    position, first, second = along_guide
+    sine, cosine = across / coupler_length, along / coupler_length
+    lag = ratio * ratio
     travel = Joint(
         position[0] + along,
         first[0] - ratio * across,
-        second[0] - ratio_slope * across - lag * along,
+        minus(second[0], product(ratio_slope, across)) - lag * along,
     )
     pin = Joint(
         _on_guide(joint.position, travel.position, (along, across), guide),
@@ -85,7 +106,7 @@ def place(joint, coupler_length, guide, assembly):
     )
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
-    return SliderMotion(coupler, slider, sine, cosine, divided / coupler_length, square / unit, travel)
+    return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel)
 
 
 def _on_guide(position, travel, reach, guide):
@@ -104,7 +125,9 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     """
     on_slider = unturned(vector(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
-    across = (number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along) / motion.divisor
+    across = number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
+    for factor in motion.divisor if isinstance(motion.divisor, tuple) else (motion.divisor,):
+        across = across / factor
     pin = turned((along, across), guide.direction)
     return SliderForces(
         inner=subtracted(pin, coupler_load.force),
@@ -123,8 +146,10 @@ class SliderGroup(checks.Checked, Group):
     coupler_length : float or array
         m.
     guide : Guide
-    assembly : +1 or -1
-        +1: slider ahead of the inner joint along the guide.
+    assembly : +1, -1, "open" or "crossed"
+        +1: slider ahead of the inner joint along the guide. "open" is so, "crossed" the other way round, in the half
+        turn behind the guide's right normal; on the pin A of a crank they go on through change points, and keep their
+        side where there are none.
     coupler, slider : Link
     on, pin : str
         Names of the joint it hangs on and of the joint it adds.
@@ -140,6 +165,7 @@ class SliderGroup(checks.Checked, Group):
     on: str = "A"
     pin: str = "B"
     label: str = ""
+    passage: str = field(default="", init=False, repr=False)
 
     TRUSTED = True
     PATHS: ClassVar = {"guide": ""}
@@ -147,13 +173,31 @@ class SliderGroup(checks.Checked, Group):
         "slider group",
         coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
         guide=checks.Made(Guide, "made by Guide.at or .through"),
-        assembly=checks.Sign(),
+        assembly=checks.Sign(tuple(change_points.SIDES)),
         coupler=checks.Made(Link, "a Link"),
         slider=checks.Made(Link, "a Link"),
         on=checks.Name(),
         pin=checks.Name(),
         label=checks.Name(may_be_empty=True),
     )
+
+    def on_crank(self, crank):
+        if type(self.assembly) is int:
+            return self
+        return with_fields(self, passage=change_points.of_slider_group(self, crank))
+
+    @property
+    def turns(self):
+        return change_points.turns(self.passage)
+
+    @property
+    def change_points(self):
+        x, y = self.guide.direction
+        return change_points.angles(self.passage, (y, -x))
+
+    @property
+    def _side(self):
+        return change_points.SIDES.get(self.assembly, self.assembly)
 
     @property
     def links(self):
@@ -203,7 +247,12 @@ class SliderGroup(checks.Checked, Group):
         }
 
     def place(self, placement):
-        self._set(placement, place(placement.joints[self.on], self.coupler_length, self.guide.line, self.assembly))
+        given = placement.joints[self.on], self.coupler_length, self.guide.line
+        if self.passage:
+            motion = passed(placement, *given, self.passage, self._side)
+        else:
+            motion = place(*given, self._side)
+        self._set(placement, motion)
 
     def follow(self, placement, joints):
         """Place coupler and slider at joints found in another way."""
@@ -230,9 +279,11 @@ class SliderGroup(checks.Checked, Group):
         The coupler reaches its length along the guide less l (1 - cos) = l sin^2 / (1 + cos), all small beside it.
         """
         motion = placement.details[self._slider]
+        if self.passage:
+            return motion.travel.position - free_position
         along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
         shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
-        return along + (self.assembly * self.coupler_length - free_position) - self.assembly * shortfall
+        return along + (self._side * self.coupler_length - free_position) - self._side * shortfall
 
     def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)

@@ -342,7 +342,9 @@ class Name:
 
 @dataclass(frozen=True)
 class Sign:
-    """+1 or -1."""
+    """+1 or -1, or one of some words."""
+
+    words: tuple[str, ...] = ()
 
     def quick(self, value):
         return value if type(value) is int and (value == 1 or value == -1) else UNSURE
@@ -350,7 +352,10 @@ class Sign:
     def taken(self, value, field=""):
         if isinstance(value, int | float | np.integer | np.floating) and type(value) is not bool and value in (1, -1):
             return int(value), None
-        return value, f"{field} must be +1 or -1, got {shown(value)}"
+        if isinstance(value, str) and value in self.words:
+            return str(value), None
+        others = "".join(f", {word!r}" for word in self.words)
+        return value, f"{field} must be +1 or -1{others}, got {shown(value)}"
 
 
 class Rules:
