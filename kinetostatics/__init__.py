@@ -40,7 +40,7 @@ from .machine.cam_roller import CamRoller
 from .machine.crank import Crank
 from .machine.guide import Guide
 from .machine.links import Link
-from .machine.loads import Gravity, ProcessForce, Spring
+from .machine.loads import Force, Gravity, PointDamper, PointForce, PointSpring, ProcessForce, Spring, Torque
 from .machine.mechanism import Mechanism
 from .machine.rocker_group import RockerGroup
 from .machine.slider_group import SliderGroup
@@ -58,6 +58,7 @@ __all__ = [
     "CaseError",
     "ConditionWarning",
     "Crank",
+    "Force",
     "Gravity",
     "Guide",
     "HintWarning",
@@ -65,6 +66,9 @@ __all__ = [
     "Link",
     "Mechanism",
     "ParameterError",
+    "PointDamper",
+    "PointForce",
+    "PointSpring",
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
@@ -72,6 +76,7 @@ __all__ = [
     "SliderGroup",
     "Solution",
     "Spring",
+    "Torque",
     "balancing",
     "cam_crank_slider",
     "cams",
