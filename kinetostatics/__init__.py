@@ -43,7 +43,7 @@ from .machine.dyad import Dyad
 from .machine.guide import Guide
 from .machine.lever_group import LeverGroup
 from .machine.links import Link
-from .machine.loads import Gravity, ProcessForce, Spring
+from .machine.loads import Force, Gravity, PointDamper, PointForce, PointSpring, ProcessForce, Spring, Torque
 from .machine.mechanism import Mechanism
 from .machine.pin import Pin
 from .machine.rocker_group import RockerGroup
@@ -65,6 +65,7 @@ __all__ = [
     "Crank",
     "CylinderGroup",
     "Dyad",
+    "Force",
     "Gravity",
     "Guide",
     "HintWarning",
@@ -74,6 +75,9 @@ __all__ = [
     "Mechanism",
     "ParameterError",
     "Pin",
+    "PointDamper",
+    "PointForce",
+    "PointSpring",
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
@@ -81,6 +85,7 @@ __all__ = [
     "SliderGroup",
     "Solution",
     "Spring",
+    "Torque",
     "YokeGroup",
     "balancing",
     "cam_crank_slider",

@@ -60,7 +60,7 @@ class Recorded:
             return KERNELS.values(state, names)
         rows = program.run(state, leaves, self.compiled)
         if not (all(map(is_given, state.loads)) or np.isfinite(rows).all()):
-            state.pushes  # noqa: B018  raises an error if a load is no number where the mechanism closes
+            state.pushes, state.wrenches  # noqa: B018  an error if a load is no number where the mechanism closes
         return program.recording.named(read_only(rows))
 
 

@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..machine.crank import ray
-from ..machine.loads import ProcessForce
+from ..machine.loads import Load, ProcessForce
 from ..mechanics.dynamics import Dynamics
-from ..mechanics.pushes import pushed
+from ..mechanics.pushes import amount, moving, pushed, title_of
 from ..mechanics.quantities import components, of_mechanism
 from ..mechanics.quantities import sizes as sizes_of
-from ..numbers.leaves import put_together
+from ..numbers.leaves import put_together, with_fields
 from .trace import Graph, Node, needed, operations
 
 
@@ -164,17 +164,25 @@ class _Recorder:
         return group
 
     def _load(self, load, place, idle):
-        """The load, or a force from a table if it takes plain numbers only."""
-        if not hasattr(load, "push") or self._is_elementwise(
-            load, lambda angle: [load.push(replace(idle, crank_angle=angle))]
-        ):
+        """The load, with values from a table if it takes plain numbers only."""
+
+        def compute(motion, arrays):
+            return [of_item(motion.loads[place], motion)]
+
+        if isinstance(load, Load):
+            of_item, value = amount, load.value_now
+            if not load.VALUE or not (value is None or callable(value)):
+                return load
+            if callable(value) and self._is_elementwise(
+                value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]
+            ):
+                return load
+            (values,) = self._tabled(1, compute, "" if value is None else load.title)
+            return with_fields(load, **{load.VALUE: values})
+        of_item = pushed
+        if self._is_elementwise(load, lambda angle: [load.push(moving(replace(idle, crank_angle=angle)))]):
             return load
-        tabulated = type(load) is ProcessForce and load.force is None
-        (values,) = self._tabled(
-            1,
-            lambda motion, arrays: [pushed(motion.loads[place], motion)],
-            "" if tabulated else f"{type(load).__name__} on {load.on!r}",
-        )
+        (values,) = self._tabled(1, compute, title_of(load))
         return ProcessForce(values, load.on)
 
     def _is_elementwise(self, part, compute):

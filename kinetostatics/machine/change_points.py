@@ -335,9 +335,7 @@ def _single(half, kind, a, b, h, d, side):
 def _meeting(half, a, b, h, d, side):
     """Deltoid of equal crank and ground: A meets O2, but B goes on."""
     n, both = d + a, b + h
-    height, closure, rate, bend, factor, passed = _swung(
-        NEAR, half, a, d, 4.0 * b * h, (both - n) * (both + n), side
-    )
+    height, closure, rate, bend, factor, passed = _swung(NEAR, half, a, d, 4.0 * b * h, (both - n) * (both + n), side)
     x, y = side * height, n * half.sine
     coupler = turned((x / (2.0 * b), -y / (2.0 * b)), half.frame), 0.5 - rate, -bend
     rocker = turned((x / (2.0 * h), y / (2.0 * h)), half.frame), 0.5 + rate, bend

@@ -137,6 +137,26 @@ def _turned(arm, rate):
     return (-rate * arm[1], rate * arm[0])
 
 
+class Spot(NamedTuple):
+    """A point in motion: a joint, or the point of a link at `arm` from its reference joint."""
+
+    joint: Joint
+    arm: Any = None
+    link: Any = None
+
+    @property
+    def position(self):
+        return added(self.joint.position, self.arm)
+
+    @property
+    def first(self):
+        return self.joint.first if self.link is None else first_at(self.link, self.arm)
+
+    @property
+    def second(self):
+        return self.joint.second if self.link is None else second_at(self.link, self.arm)
+
+
 def accelerated(first, second, speed_squared, crank_acceleration):
     """Acceleration of a point from its kinematic coefficients; None when it has none."""
     return added(stretched(speed_squared, second), stretched(crank_acceleration, first))

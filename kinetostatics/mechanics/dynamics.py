@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from ..machine.links import load, virtual_work
+from ..machine.group import FRAME
+from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.planar import added, minus, moment, number, plus, product
 from .motion import Motion
 from .principal_points import principal_points
-from .pushes import pushed
+from .pushes import pushed, settled
 
 UNBALANCED = 1e-6
 """Part of the largest torque that the two ways to it may differ by in a mechanism with groups of the user's own."""
@@ -112,7 +113,8 @@ class Dynamics(Motion):
     @cached_property
     def largest_force_term(self):
         """Largest load on one link, weight, inertia or applied, N: what a reaction is a sum of."""
-        forces = [part for wrench in self.link_loads.values() if wrench.force is not None for part in wrench.force]
+        wrenches = [*self.mass_loads.values(), *(wrench for _, wrench in self.wrenches)]
+        forces = [part for wrench in wrenches if wrench.force is not None for part in wrench.force]
         return reduce(np.maximum, map(self.largest, [*forces, *self.pushes.values()]), 0.0)
 
     @cached_property
@@ -126,9 +128,20 @@ class Dynamics(Motion):
         return self._mass_loads(None)
 
     @cached_property
-    def link_loads(self):
+    def mass_loads(self):
         """Wrench of inertia and weight by link."""
         return self._mass_loads(self.gravity)
+
+    @cached_property
+    def link_loads(self):
+        """Wrench of inertia, weight and loads by link."""
+        if not self.wrenches:
+            return self.mass_loads
+        found = dict(self.mass_loads)
+        for name, wrench in self.wrenches:
+            own = found[name]
+            found[name] = Wrench(added(own.force, wrench.force), plus(own.moment, wrench.moment))
+        return found
 
     def _mass_loads(self, gravity):
         links = self.placement.links
@@ -138,11 +151,17 @@ class Dynamics(Motion):
         }
 
     @cached_property
+    def wrenches(self):
+        """Pairs of a link and a wrench on it, of all loads that act so."""
+        settling = (settled(item, self) for item in self.loads if hasattr(item, "wrenches"))
+        return [pair for item in settling for pair in item.wrenches(self) if pair[0] != FRAME]
+
+    @cached_property
     def pushes(self):
         """Applied force along its guide by slider, N."""
         pushes: dict[str, Any] = {}
         for item in self.loads:
-            if not isinstance(item, Gravity):
+            if hasattr(item, "push"):
                 pushes[item.on] = plus(pushes.get(item.on), pushed(item, self))
         return pushes
 
@@ -150,7 +169,8 @@ class Dynamics(Motion):
     def powers(self):
         """Power of each load divided by the crank speed."""
         links = self.placement.links
-        works = [virtual_work(links[name], wrench) for name, wrench in self.link_loads.items()]
+        wrenches = [*self.mass_loads.items(), *self.wrenches]
+        works = [virtual_work(links[name], wrench) for name, wrench in wrenches]
         return works + [product(push, self._travel(name).first) for name, push in self.pushes.items()]
 
     @cached_property

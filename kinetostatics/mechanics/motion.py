@@ -5,12 +5,14 @@ from functools import cached_property
 from typing import Any
 
 from ..errors import QuantityError
-from ..machine.links import accelerated, angular_acceleration, arm, first_at, present, second_at
+from ..machine.group import FRAME
+from ..machine.links import Joint, Spot, accelerated, angular_acceleration, arm, present
+from ..machine.loads.places import PLACE
 from ..machine.mechanism import Mechanism
 from ..numbers import checks
 from ..numbers.elementary import namespace, read_only, stack
 from ..numbers.leaves import Leaves, taken_apart, wider
-from ..numbers.planar import added, number, plus, product, stretched, vector
+from ..numbers.planar import number, plus, product, stretched, vector
 from .quantities import of_mechanism
 
 
@@ -57,22 +59,21 @@ class Motion:
         return self.mechanism.place(self.crank_angle)
 
     def position(self, point):
-        """Position of a joint ("O", "A", "B" ...) or of a link's mass centre (its name), (2, ..., N), m."""
-        joint, to_point, _ = self._point(point)
-        return self.as_vector(added(joint.position, to_point))
+        """Position of a point, (2, ..., N), m.
+
+        A joint ("O", "A", "B" ...), a link's mass centre (its name), a place on a link, ("coupler", along, across) in m
+        from its reference joint, or a fixed point (x, y).
+        """
+        return self.as_vector(self._asked(point).position)
 
     def velocity(self, point):
-        """Velocity of a joint or of a link's mass centre, (2, ..., N), m/s."""
-        joint, to_point, link = self._point(point)
-        first = joint.first if link is None else first_at(link, to_point)
-        return self.as_vector(stretched(self.crank_speed, first))
+        """Velocity of a point, given as for `position`, (2, ..., N), m/s."""
+        return self.as_vector(stretched(self.crank_speed, self._asked(point).first))
 
     def acceleration(self, point):
-        """Acceleration of a joint or of a link's mass centre, (2, ..., N), m/s2."""
-        joint, to_point, link = self._point(point)
-        first = joint.first if link is None else first_at(link, to_point)
-        second = joint.second if link is None else second_at(link, to_point)
-        return self.as_vector(accelerated(first, second, *self.accelerating))
+        """Acceleration of a point, given as for `position`, (2, ..., N), m/s2."""
+        found = self._asked(point)
+        return self.as_vector(accelerated(found.first, found.second, *self.accelerating))
 
     def rate(self, link):
         """Angular velocity of a link, (..., N), rad/s."""
@@ -145,14 +146,27 @@ class Motion:
     def _travel(self, slider):
         return self._look_up("slider", slider, self.placement.travels)
 
-    def _point(self, name):
-        """Reference joint, arm from it and link of a mass centre; joint, None, None of a joint."""
-        points = {**self.placement.joints, **self.placement.links}
-        found = self._look_up("joint or link", name, points)
-        if name in self.placement.joints:
-            return found, None, None
-        body = self.mechanism.links[name].body
-        return found.joint, arm(found.direction, body.along, body.across), found
+    def _asked(self, point):
+        """A point as the user names it, looked at closely if it is no name."""
+        if isinstance(point, str):
+            return self.spot(point)
+        point, problem = PLACE.taken(point, "point")
+        checks.require(self.mechanism.name, problem)
+        return self.spot(point)
+
+    def spot(self, place) -> Spot:
+        """A point in motion: of a joint or a mass centre by name, at a place on a link, or fixed."""
+        joints, links = self.placement.joints, self.placement.links
+        if isinstance(place, str):
+            found = self._look_up("joint or link", place, {**joints, **links})
+            if place in joints:
+                return Spot(found)
+            body = self.mechanism.links[place].body
+            return Spot(found.joint, arm(found.direction, body.along, body.across), found)
+        if not isinstance(place[0], str) or place[0] == FRAME:
+            return Spot(Joint(tuple(place[-2:]), None, None))
+        link = self._look_up("link", place[0], links)
+        return Spot(link.joint, arm(link.direction, *map(present, place[1:])), link)
 
     def _look_up(self, kind, name, table):
         if name not in table:

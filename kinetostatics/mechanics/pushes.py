@@ -1,29 +1,82 @@
-"""Forces that loads put on sliders; what a function of the user's returns is checked."""
+"""What loads give at the crank angles of a motion; what a function of the user's returns is checked."""
 
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import is_given
+from ..machine.loads import Load
 from ..numbers import checks
 from ..numbers.elementary import is_foreign_array
+from ..numbers.leaves import with_fields
+from .motion import Motion
+
+
+class Moving(Motion):
+    """A motion as functions of it see it, without forces: these come of what the functions give."""
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        known = [name for name in dir(Motion) if not name.startswith("_")]
+        raise UnknownForceError(
+            f"a function of the motion asks for {name!r}, which hangs on the forces that it gives itself; it may ask "
+            f"for {', '.join(known)}"
+        )
+
+
+class UnknownForceError(ParameterError, AttributeError):
+    """A load asks for what is computed from it."""
+
+
+def moving(motion):
+    """The motion without its forces."""
+    drive = motion.crank_angle, motion.crank_speed, motion.crank_acceleration
+    made = Moving(motion.mechanism, *drive)
+    vars(made).update(shape=motion.shape, placement=motion.placement)
+    return made
+
+
+def settled(item, motion):
+    """The load with what its table or function gives at the crank angles of a motion; others as they are."""
+    return item if item.is_given else with_fields(item, **{item.VALUE: amount(item, motion)})
+
+
+def amount(item, motion):
+    """What the table or function of a load gives, checked."""
+    return _checked(item, item.value_now(moving(motion)), motion)
+
+
+def given(item, motion):
+    """What code of the user's gives for a load: its value, or its push."""
+    return amount(item, motion) if getattr(item, "VALUE", "") else pushed(item, motion)
 
 
 def pushed(item, motion):
-    """Force of a load on its slider, N; what a function of the user's returns is checked.
+    """Force of a load on its slider, N; what code of the user's returns is checked.
 
     Raises
     ------
     ParameterError
         It is no array of numbers, one for each crank angle, or not finite where the mechanism closes.
     """
-    found = item.push(motion)
-    if is_given(item) or (isinstance(found, np.ndarray) and found.dtype == object):
+    if isinstance(item, Load):
+        return settled(item, motion).push(motion)
+    return _checked(item, item.push(moving(motion)), motion)
+
+
+def title_of(item):
+    """What messages call a load."""
+    return item.title if isinstance(item, Load) else f"{type(item).__name__} on {item.on!r}"
+
+
+def _checked(item, found, motion):
+    if isinstance(found, np.ndarray) and found.dtype == object:
         return found
-    owner = f"{type(item).__name__} on {item.on!r}: its function"
-    wanted = f"must return its force in N, a number or an array of shape {motion.shape}, one for each crank angle"
+    unit, title = getattr(item, "UNIT", "N"), title_of(item)
+    owner, what = f"{title}: its function", "torque" if unit == "N m" else "force"
+    wanted = f"must return its {what} in {unit}, a number or an array of shape {motion.shape}, one for each crank angle"
     words = None if hasattr(found, "to_numpy") else checks.unfit(found)
     if words:
-        raise ParameterError(f"{owner} {wanted}, got {checks.shown(found)}, {words.format(unit='N')}")
+        raise ParameterError(f"{owner} {wanted}, got {checks.shown(found)}, {words.format(unit=unit)}")
     if is_foreign_array(found):
         return found
     array = np.asarray(found)

@@ -25,12 +25,13 @@ from ..machine.crank import ray
 from ..machine.group import Group
 from ..machine.guide import Guide
 from ..machine.links import Link, arm, first_at, second_at, virtual_work
-from ..machine.loads import Gravity, ProcessForce, Spring
+from ..machine.loads import Load, ProcessForce
 from ..numbers.duals import Dual
 from ..numbers.elementary import UNIT
 from ..numbers.leaves import is_structural, mapped, with_fields
 from ..numbers.planar import product, vector
 from .dynamics import Dynamics
+from .pushes import amount, moving, pushed
 
 SAFETY = 3.0
 """Factor that makes a bound of a magnification: other signs of errors, and rounding of the derivatives."""
@@ -88,6 +89,8 @@ class _Seeded:
         self._places = np.unravel_index(points, self._shape)
         lengths: list[Any] = []
         self._geometry(plain.mechanism, lengths.append)
+        for item in plain.loads:
+            mapped(_lengths(item), lengths.append)
         self._seeds, self._count = 0, len(lengths) + len(plain.loads) + 2
         self._angle = _array(self._seed(plain.crank_angle))
         mechanism = self._geometry(plain.mechanism, self._seed, {Group: self._group})
@@ -163,25 +166,38 @@ class _Seeded:
         return [_array(Dual(value, by_size * value + by_angle * slope)) for value, slope in pairwise(values)]
 
     def _load(self, item, idle):
-        if isinstance(item, Gravity):
-            return mapped(item, self._constant)
-        push, known = item.push(self._plain), self._seeds
+        if not isinstance(item, Load):
+            found = self._given(lambda: item.push(moving(idle)), pushed(item, self._plain))
+            return ProcessForce(found, item.on)
+        lengths = {name: mapped(part, self._seed) for name, part in _lengths(item)}
+        copied = with_fields(mapped(item, self._constant), **lengths)
+        if item.is_given:
+            return copied
+        return with_fields(
+            copied, **{item.VALUE: self._given(lambda: item.value_now(moving(idle)), amount(item, self._plain))}
+        )
+
+    def _given(self, compute, plain):
+        """What a function of the user's computes, or its plain values where it takes plain numbers only."""
+        known = self._seeds
         try:
-            copied = mapped(item, self._constant)
-            if isinstance(item, Spring):
-                copied = with_fields(copied, free_position=mapped(item.free_position, self._seed))
-            found = copied.push(idle)
-            self._require_equal([found], [push])
+            found = compute()
+            self._require_equal([found], [plain])
         except Exception:  # whatever fails on numbers that are not plain
             self._seeds = known
-            found = self._constant(push)
-        return ProcessForce(_array(found) if isinstance(found, Dual) else found, item.on)
+            found = self._constant(plain)
+        return _array(found) if isinstance(found, Dual) else found
 
     def _require_equal(self, parts, plain):
         for part, value in zip(parts, plain, strict=True):
             own = _number(part).value
             if not np.allclose(own, self._value(value), rtol=1e-6, atol=0.0, equal_nan=True):
                 raise ValueError("another value than by plain numbers")
+
+
+def _lengths(item):
+    """Name and value of each field of a load that holds lengths."""
+    return tuple((name, getattr(item, name)) for name in getattr(item, "LENGTHS", ()))
 
 
 @dataclass(frozen=True, eq=False)

@@ -255,6 +255,11 @@ class Pair:
             return value, f"{name} must be {pair}{either}, got {shown(value)}"
         return self._examined((first, second), name)
 
+    def numbers(self, value):
+        """Name, steps and rule of each number, for paths."""
+        for number, part in enumerate(self.parts):
+            yield part, (number,), self.rule
+
     @property
     def _pair(self):
         return f"({', '.join(self.parts)})"

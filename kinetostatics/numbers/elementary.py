@@ -47,6 +47,10 @@ def sqrt(x):
     return namespace(x).sqrt(x)
 
 
+def atan(x):
+    return namespace(x).atan(x)
+
+
 _OBJECT = np.dtype(object)
 UNIT = 2.0**-53
 """Largest relative error of one rounding in double precision."""

@@ -50,8 +50,8 @@ def _of_value(value, rule, path, label):
     rule = rule.rule if isinstance(rule, checks.Optional | checks.OrFunction) else rule
     if isinstance(rule, checks.Number) and _is_number(value):
         return {path: Place((), rule)}
-    if isinstance(rule, checks.Pair) and value is not None:
-        return {f"{path}.{part}": Place((number,), rule.rule) for number, part in enumerate(rule.parts)}
+    if hasattr(rule, "numbers") and value is not None:
+        return {f"{path}.{name}": Place(steps, inner) for name, steps, inner in rule.numbers(value)}
     if isinstance(value, tuple):
         found: dict[str, Place] = {}
         counts: dict[str, int] = {}

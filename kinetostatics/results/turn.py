@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.loads import TURN, is_given
 from ..mechanics import assembly
-from ..mechanics.pushes import pushed
+from ..mechanics.pushes import given, title_of
 
 SAMPLES = 1440
 """Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""
@@ -219,16 +219,17 @@ def repeating_problem(solution):
         angle = np.linspace(0.0, period, round(SAMPLES * period / TURN), endpoint=False) + 1e-3
 
         def push(turns, item=item, angle=angle, period=period):
-            return np.broadcast_to(pushed(item, solution.at(angle + turns * period)), angle.shape)
+            return np.broadcast_to(given(item, solution.at(angle + turns * period)), angle.shape)
 
         first, other = push(0), push(1)
         if _alike(first, other):
             continue
         place = int(np.nanargmax(np.abs(other - first)))
+        unit = getattr(item, "UNIT", "N")
         here, there = (f"{np.degrees(place):.6g} deg" for place in (angle[place], angle[place] + period))
         found = (
-            f"{type(item).__name__} on {item.on!r}: its function gives {first[place]:.6g} N at crank angle {here}, "
-            f"but {other[place]:.6g} N at {there}"
+            f"{title_of(item)}: its function gives {first[place]:.6g} {unit} at crank angle {here}, "
+            f"but {other[place]:.6g} {unit} at {there}"
         )
         turns = next((turns for turns in range(2, LONGEST + 1) if _alike(first, push(turns))), None)
         if turns is None:

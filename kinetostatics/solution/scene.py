@@ -13,14 +13,13 @@ from ..engines.compiled import available, require
 from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
 from ..errors import HintWarning, ParameterError
 from ..machine import hints
-from ..machine.loads import MOST_TURNS, TURN, Gravity, ProcessForce, Spring, period_of
+from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, refusals, value_of
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from .angles import crank_angles, problems
 from .solution import Solution
 
 DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
-LOADS = (Gravity, Spring, ProcessForce)
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
@@ -76,8 +75,9 @@ class Scene:
         if checks.UNSURE in drive.values():
             drive = checks.examined(owner, DRIVE, values)
         loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
-        checks.require(owner, *(_load_problem(self.mechanism, item) for item in loads), _period_problem(loads))
-        values.update(drive, loads=tuple(item if type(item) in LOADS else checks.kept(item) for item in loads))
+        wrong = [text for item in loads for text in _load_problems(self.mechanism, item)]
+        checks.require(owner, *wrong, _period_problem(loads))
+        values.update(drive, loads=tuple(item if type(item) in KINDS else checks.kept(item) for item in loads))
 
     @property
     def period(self):
@@ -193,6 +193,7 @@ def _solved(scene, crank_angle, on_gap, engine):
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded
     (solution.check if on_gap == "raise" else solution.warn)()
+    checks.require("solve", *refusals(solution))
     return solution
 
 
@@ -244,7 +245,7 @@ def _shapes(scene, angle):
     if scene.mechanism.batch:
         shapes["mechanism"] = scene.mechanism.batch
     for item in scene.loads:
-        found = getattr(getattr(item, "force", None), "shape", ()) or getattr(item, "batch", ())
+        found = getattr(value_of(item), "shape", ()) or getattr(item, "batch", ())
         if found:
             shapes[f"{type(item).__name__} {len(shapes)}"] = found
     return shapes
@@ -259,9 +260,11 @@ def _period_problem(loads):
     return f"loads that repeat after {each} turns do so together after {turns:.6g} only, {MOST_TURNS} at most"
 
 
-def _load_problem(mechanism, item):
-    if isinstance(item, Gravity):
-        return None
+def _load_problems(mechanism, item):
+    """What is wrong with a load on a mechanism, as sentences."""
+    if isinstance(item, Load):
+        return item.problems(mechanism)
     if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):
-        return f"loads must be Gravity, Spring or ProcessForce, got {checks.shown(item)}"
-    return checks.choice(f"{type(item).__name__}: on", item.on, tuple(mechanism.guides))
+        names = ", ".join(kind.__name__ for kind in KINDS)
+        return (f"loads must be of {names}, got {checks.shown(item)}",)
+    return (checks.choice(f"{type(item).__name__}: on", item.on, tuple(mechanism.guides)),)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..engines.engines import NUMPY
 from ..errors import ParameterError
-from ..machine.loads import is_given, period_of
+from ..machine.loads import is_given, period_of, value_of
 from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
@@ -53,14 +53,14 @@ class Solution(Motion):
             for name, value in [
                 ("crank_speed", self.crank_speed),
                 ("crank_acceleration", self.crank_acceleration),
-                *((type(item).__name__, getattr(item, "force", None)) for item in self.loads),
+                *((type(item).__name__, value_of(item)) for item in self.loads),
             ]
             if np.ndim(value) and np.shape(value)[-1] > 1 and not callable(value)
         ]
         if varying:
             raise ParameterError(
                 f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
-                "(or, for a process force, a function of the motion) to evaluate at other angles"
+                "(or, for a load, a Table or a function of the motion) to evaluate at other angles"
             )
         return replace(self, crank_angle=crank_angles(crank_angle))
 

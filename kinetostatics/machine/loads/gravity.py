@@ -1,0 +1,35 @@
+"""Weight."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from ...numbers import checks
+from ..crank import ray
+from .load import Load
+
+
+@dataclass(frozen=True, eq=False)
+class Gravity(Load):
+    """Weight of every link.
+
+    Parameters
+    ----------
+    acceleration : float
+        m/s2.
+    direction : float
+        Angle of the direction it pulls in, from +x, rad; straight down (-pi/2) unless told.
+    """
+
+    acceleration: Any = 9.81
+    direction: Any = -math.pi / 2
+
+    PATH = "gravity"
+    RULES = checks.Rules("gravity", acceleration=checks.Number("m/s**2", low=0.0), direction=checks.Number("rad"))
+
+    @cached_property
+    def vector(self):
+        """Components (x, y), m/s2."""
+        x, y = ray(self.direction)
+        return self.acceleration * x, self.acceleration * y

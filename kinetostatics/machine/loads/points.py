@@ -1,0 +1,270 @@
+"""Loads at points of links: forces, springs and dampers, fixed in direction, turning with a link, or between points."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ...numbers import checks
+from ...numbers.elementary import apart, divisor
+from ...numbers.planar import dot, length, stretched, subtracted, turned, vector
+from ..crank import ray
+from ..group import FRAME
+from ..links import present
+from . import places
+from .load import Load, valued
+from .places import Between, Place, acting, carrier
+
+NEAR = 2.0**-50
+"""Distance of two points, relative to their coordinates, that is rounding and has no direction."""
+TINY = 1e-280
+"""Square of a distance, m2, below which there is only zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class Force(Load):
+    """Force at a point, in a fixed direction or in one that turns with a link.
+
+    Parameters
+    ----------
+    value : float, array, Table or function
+        N; an array has one value for each crank angle, a function takes the `Motion` and returns such values.
+    at : point
+        Where it acts: a joint, such as "B" (on the link that owns it, ``mechanism.joints``; a joint fixed to the frame
+        stands for the link that turns about it), a place on a link, ("coupler", along, across) in m as mass centres
+        are given, or a fixed point (x, y), where the frame takes it.
+    direction : float
+        Angle of the force, rad, counter-clockwise from +x, or from the axis of the link `along`.
+    along : str, optional
+        The link that the direction turns with.
+
+    Raises
+    ------
+    ParameterError
+        A value is no number or not finite, or `at` is no point; when a scene is made: there is no such joint or link.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> press = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+    >>> s = ks.solve(press, 0.7, crank_speed=10.0, loads=ks.Force(200.0, at="B", direction=-0.5))
+    >>> bool(s.power_residual < 1e-13)
+    True
+    """
+
+    value: Any
+    at: Any = field(kw_only=True)
+    direction: Any = field(default=0.0, kw_only=True)
+    along: Any = field(default=None, kw_only=True)
+
+    PATH, VALUE, OVER_ANGLES, LENGTHS = "force", "value", ("value",), ("at",)
+    RULES = checks.Rules(
+        "force",
+        value=valued("N"),
+        at=Place(),
+        direction=checks.Number("rad"),
+        along=checks.Optional(checks.Name()),
+    )
+
+    @property
+    def title(self):
+        return f"Force at {places.shown(self.at)}"
+
+    def problems(self, mechanism):
+        """Say if there is no such joint or link."""
+        yield places.problem("Force", "at", self.at, mechanism)
+        if self.along is not None:
+            yield checks.choice("Force: along", self.along, tuple(mechanism.links))
+
+    def wrenches(self, motion):
+        """Wrench on the link of its point."""
+        axis = None if self.along is None else motion.placement.links[self.along].direction
+        if present(self.direction) is not None:
+            axis = turned(ray(self.direction), axis)
+        force = (self.value, 0.0) if axis is None else stretched(self.value, axis)
+        yield acting(motion, self.at, force)
+
+
+class PointLoad(Load):
+    """A load along the line of two points `between`; `pull` is its force on the first one over the vector to it."""
+
+    between: Any
+
+    @property
+    def title(self):
+        return f"{type(self).__name__} between {' and '.join(map(places.shown, self.between))}"
+
+    def problems(self, mechanism):
+        """Say if there are no such points, or if both move as one."""
+        owner = type(self).__name__
+        wrong = [places.problem(owner, f"between {n}", place, mechanism) for n, place in enumerate(self.between, 1)]
+        yield from wrong
+        if not any(wrong):
+            link, other = (carrier(mechanism, place).link for place in self.between)
+            if link == other:
+                of = "fixed to the frame" if link == FRAME else f"of the {link}"
+                yield f"{self.title}: both points are {of}, so it loads nothing; give a point of another link"
+
+    def wrenches(self, motion):
+        """Opposite forces on the links of both points."""
+        force = self.pull(motion)
+        for place, part in zip(self.between, (force, subtracted(None, force)), strict=True):
+            yield acting(motion, place, part)
+
+    def _apart(self, motion):
+        """Vector from the second point to the first."""
+        first, second = (motion.spot(place).position for place in self.between)
+        return vector(subtracted(first, second))
+
+    def refusals(self, motion):
+        """Say at which crank angles the points meet, where the line between them has no direction."""
+        first, second = (motion.position(place) for place in self.between)
+        if not isinstance(first, np.ndarray) or first.dtype != float:
+            return
+        with np.errstate(invalid="ignore"):
+            meet = np.hypot(*(first - second)) <= NEAR * np.maximum(np.hypot(*first), np.hypot(*second))
+        if meet.any():
+            angle = np.broadcast_to(motion.crank_angle, meet.shape)[meet]
+            many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))
+            wrong = checks.Problem(
+                f"{self.title}: the points meet at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} "
+                f"deg, so its force has no direction there; leave them out, or move a point off the line"
+                f"{self._remedy}",
+                None,
+            )
+            wrong.designs = meet.any(axis=-1) if meet.ndim > 1 else None
+            yield wrong
+
+    _remedy = ""
+
+
+@dataclass(frozen=True, eq=False)
+class PointForce(PointLoad):
+    """Force along the line of two points, on both of them: an actuator, a cylinder, a rope.
+
+    Parameters
+    ----------
+    value : float, array, Table or function
+        N, as for `Force`; positive pushes the points apart.
+    between : (point, point)
+        As for `Force`; at most one of them fixed.
+
+    Raises
+    ------
+    ParameterError
+        As for `Force`; both points are of one link; when a scene is solved: the points meet at a crank angle.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> crane = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+    >>> s = ks.solve(crane, 0.7, crank_speed=1.0, loads=ks.PointForce(5e3, between=(("rocker", 0.1), (0.0, -0.2))))
+    >>> bool(s.power_residual < 1e-13)
+    True
+    """
+
+    value: Any
+    between: Any = field(kw_only=True)
+
+    PATH, VALUE, OVER_ANGLES, LENGTHS = "point_force", "value", ("value",), ("between",)
+    RULES = checks.Rules("point force", value=valued("N"), between=Between())
+
+    def pull(self, motion):
+        """Force on the first point, N."""
+        d = self._apart(motion)
+        return stretched(self.value / length(d), d)
+
+
+@dataclass(frozen=True, eq=False)
+class PointSpring(PointLoad):
+    """Linear spring between two points, fixed or moving.
+
+    Parameters
+    ----------
+    stiffness : float or array
+        N/m.
+    free_length : float or array
+        m; 0 makes it exact everywhere, also where the points meet.
+    between : (point, point)
+        As for `PointForce`.
+
+    Raises
+    ------
+    ParameterError
+        As for `PointForce`; points may meet if `free_length` is 0.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bar = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+    >>> s = ks.solve(bar, 0.7, crank_speed=1.0, loads=ks.PointSpring(2e3, 0.1, between=("B", (0.0, 0.5))))
+    >>> bool(s.power_residual < 1e-13)
+    True
+    """
+
+    stiffness: Any
+    free_length: Any = 0.0
+    between: Any = field(kw_only=True)
+
+    PATH, LENGTHS = "point_spring", ("free_length", "between")
+    RULES = checks.Rules(
+        "point spring",
+        stiffness=checks.Number("N/m", low=0.0),
+        free_length=checks.Number("m", low=0.0),
+        between=Between(),
+    )
+    _remedy = ", or give free_length 0"
+
+    def pull(self, motion):
+        """Force on the first point, N."""
+        d = self._apart(motion)
+        if present(self.free_length) is None:
+            return stretched(-self.stiffness, d)
+        distance = length(d)
+        return stretched(-self.stiffness * ((distance - self.free_length) / distance), d)
+
+    def refusals(self, motion):
+        """As for `PointForce`; nothing for a spring without free length."""
+        return () if present(self.free_length) is None else super().refusals(motion)
+
+
+@dataclass(frozen=True, eq=False)
+class PointDamper(PointLoad):
+    """Viscous damper between two points, fixed or moving: against the change of their distance.
+
+    Where the points meet stands the limit: the whole velocity of one against the other.
+
+    Parameters
+    ----------
+    coefficient : float or array
+        N s/m.
+    between : (point, point)
+        As for `PointForce`; they may meet.
+
+    Raises
+    ------
+    ParameterError
+        As for `PointForce`, but for points that meet.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bar = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+    >>> s = ks.solve(bar, 0.7, crank_speed=9.0, loads=ks.PointDamper(50.0, between=("B", (0.0, 0.5))))
+    >>> bool(s.balancing_torque * 9.0 > 0)  # it takes power whatever the motion
+    True
+    """
+
+    coefficient: Any
+    between: Any = field(kw_only=True)
+
+    PATH, LENGTHS = "point_damper", ("between",)
+    RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
+
+    def pull(self, motion):
+        """Force on the first point, N; moved off zero along the velocity, the vector between them keeps a direction."""
+        first, second = (motion.spot(place).first for place in self.between)
+        slope = vector(subtracted(first, second))
+        d = tuple(apart(part, change) for part, change in zip(self._apart(motion), slope, strict=True))
+        shortening = dot(d, slope) / divisor(dot(d, d), TINY)
+        return stretched(-self.coefficient * motion.crank_speed * shortening, d)

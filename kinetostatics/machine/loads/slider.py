@@ -1,0 +1,112 @@
+"""Loads on a slider along its guide: spring and process force."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from ...numbers import checks
+from ..links import present
+from .load import TURN, Load, WholeTurns, valued
+
+
+class OnSlider(Load):
+    """A load on the slider `on` along its guide."""
+
+    on: str
+
+    @property
+    def title(self):
+        return f"{type(self).__name__} on {self.on!r}"
+
+    def problems(self, mechanism):
+        """Say if there is no such slider."""
+        yield checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+
+
+@dataclass(frozen=True, eq=False)
+class Spring(OnSlider):
+    """Spring along the guide, acting at the slider pin.
+
+    Parameters
+    ----------
+    stiffness : float or array
+        N/m, all springs together.
+    free_position : float or array
+        Coordinate of B along the guide (B . guide direction) at which the spring is free, m.
+    on : str
+        The slider it acts on.
+    cubic : float or array
+        N/m3: the force grows by so much times the cube of the elongation; negative for a spring that grows softer.
+    """
+
+    stiffness: Any
+    free_position: Any
+    on: str = "slider"
+    cubic: Any = 0.0
+
+    PATH, LENGTHS = "spring", ("free_position",)
+    RULES = checks.Rules(
+        "spring",
+        stiffness=checks.Number("N/m", low=0.0),
+        free_position=checks.Number("m"),
+        on=checks.Name(),
+        cubic=checks.Number("N/m**3"),
+    )
+
+    @classmethod
+    def balancing(cls, mass, crank_speed, free_position, on="slider"):
+        """Spring that balances a slider of `mass` (kg) moving by a cosine law at `crank_speed` (rad/s).
+
+        Its stiffness, mass times crank speed squared, makes spring and inertia force equal and opposite all the way.
+        """
+        given = {"mass": mass, "crank_speed": crank_speed}
+        rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
+        mass, crank_speed = checks.examined("balancing spring", rules, given).values()
+        return cls(mass * crank_speed * crank_speed, free_position, on)
+
+    def push(self, motion):
+        """Force on the slider along the guide, N."""
+        elongation = motion.elongation(self.free_position, self.on)
+        if present(self.cubic) is None:
+            return -self.stiffness * elongation
+        return -(self.stiffness + self.cubic * elongation * elongation) * elongation
+
+
+@dataclass(frozen=True, eq=False)
+class ProcessForce(OnSlider):
+    """Cutting, gas or other force on the slider along the guide, positive in the guide direction.
+
+    Parameters
+    ----------
+    force : float, array or function
+        N; an array has one value for each crank angle; a function takes the `Motion` and returns such values, so the
+        force may depend on crank angle, position or velocity, at each crank angle by itself. The compiled engine takes
+        its constants into the program, so a function with other constants is compiled anew.
+    on : str
+        The slider it acts on.
+    period : float
+        Crank angle after which the force repeats, rad: 2 pi unless told, 4 pi for a four-stroke engine.
+    """
+
+    force: Any
+    on: str = "slider"
+    period: float = field(default=TURN, kw_only=True, metadata={"structural": True})
+
+    PATH, VALUE, OVER_ANGLES = "process_force", "force", ("force",)
+
+    def _periods(self):
+        """Say where the force has a period of its own."""
+        known = getattr(self.force, "period", self.period)
+        if known != self.period:
+            yield f"the period is {self.period!r}, but that of its force {known!r}"
+
+    RULES = checks.Rules(
+        "process force",
+        _periods,
+        force=valued("N"),
+        on=checks.Name(),
+        period=WholeTurns(),
+    )
+
+    def push(self, motion):
+        """Force on the slider along the guide, N."""
+        return self.force
