@@ -1,0 +1,283 @@
+"""Rules: what a field must be, and the dataclasses whose fields keep to them."""
+
+import math
+from dataclasses import dataclass
+from dataclasses import field as dataclass_field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..content import LIBRARY
+from .problems import Problem, fitting, require, shown
+from .values import UnfitError, kept, known, number, unfit
+
+HUGE, LONG = 1e150, 1e75
+"""Sizes that double precision cannot square, and lengths (and their reciprocals) that it cannot twice."""
+UNSURE: Any = object()
+"""What a quick look at a value answers if it must be examined."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number, or an array (designs, 1) of them; as a `table`, one for each crank angle.
+
+    A rule has ``quick(value)``, which answers what to keep or `UNSURE`, and ``taken(value, field)``, which gives what
+    to keep and what is wrong with it, if anything, as a sentence.
+    """
+
+    unit: str = ""
+    name: str = ""
+    low: float | None = None
+    strict: bool = False
+    table: bool = False
+
+    above: float = dataclass_field(init=False)
+    below: float = dataclass_field(init=False)
+
+    def __post_init__(self):
+        above = -HUGE if self.low is None else 1.0 / LONG if self.strict else math.nextafter(self.low, -1.0)
+        object.__setattr__(self, "above", above)
+        object.__setattr__(self, "below", LONG if self.strict else HUGE)
+
+    def quick(self, value):
+        if type(value) is float and self.above < value < self.below:
+            return value
+        return float(value) if type(value) is int and self.above < value < self.below else UNSURE
+
+    def taken(self, value, field=""):
+        name = self.name or field
+        try:
+            found = number(value, self.table)
+        except UnfitError as fault:
+            words = f", {fault}".format(unit=self.unit or "1") if str(fault) else ""
+            kind = "an array of numbers" if self.table else "an array of shape (designs, 1)"
+            return value, f"{name} must be a number or {kind}, got {shown(value)}{words}"
+        return found, self._out_of_range(name, found) if known(found) else None
+
+    def _out_of_range(self, name, number):
+        array = np.asarray(number, dtype=float)
+        size, extreme = abs(array), array.min()
+        if not (size.max() < np.inf):
+            return Problem(f"{name} must be finite, got {shown(number)}", ~np.isfinite(array))
+        if self.low is not None and not (extreme > self.low if self.strict else extreme >= self.low):
+            found = number if array.ndim == 0 else f"a smallest value of {extreme:g}"
+            words = f"{'greater than' if self.strict else 'at least'} {self.low:g}"
+            return Problem(
+                f"{name} must be {words}, got {found}", array <= self.low if self.strict else array < self.low
+            )
+        beyond = (size >= self.below) | (array <= self.above)
+        if np.any(beyond):
+            words = f"between {self.above:g} and {self.below:g}"
+            return Problem(f"{name} must lie {words} to be computed in double precision, got {shown(number)}", beyond)
+        return None
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A vector by its two components; `lone` numbers mean (number, 0)."""
+
+    unit: str = ""
+    name: str = ""
+    parts: tuple[str, str] = ("x", "y")
+    lone: bool = False
+    rule: Number = dataclass_field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "rule", Number(self.unit))
+
+    def quick(self, value):
+        kind, quick = type(value), self.rule.quick
+        if kind is tuple and len(value) == 2:
+            first, second = quick(value[0]), quick(value[1])
+            return UNSURE if first is UNSURE or second is UNSURE else (first, second)
+        if self.lone:
+            first = quick(value)
+            return UNSURE if first is UNSURE else (first, 0.0)
+        return UNSURE
+
+    def taken(self, value, field=""):
+        name = self.name or field
+        words = unfit(value)
+        if words and not self.lone:
+            words = words.format(unit=self.unit or "1")
+            return value, f"{name} must be a pair {self._pair}, got {shown(value)}, {words}"
+        if self.lone and (words or not (isinstance(value, list | tuple) or np.shape(value) == (2,))):
+            return self._examined((value, 0.0), name)
+        try:
+            first, second = value
+        except (TypeError, ValueError):
+            either = " or a number" if self.lone else ""
+            pair = self._pair if self.lone else f"a pair {self._pair}"
+            return value, f"{name} must be {pair}{either}, got {shown(value)}"
+        return self._examined((first, second), name)
+
+    @property
+    def _pair(self):
+        return f"({', '.join(self.parts)})"
+
+    def _examined(self, pair, name):
+        found = [self.rule.taken(value, f"{name} {part}") for value, part in zip(pair, self.parts, strict=True)]
+        return tuple(value for value, _ in found), found[0][1] or found[1][1]
+
+
+@dataclass(frozen=True)
+class Optional:
+    """What another rule says, or None."""
+
+    rule: Any
+
+    def quick(self, value):
+        return value if value is None else self.rule.quick(value)
+
+    def taken(self, value, field=""):
+        return (value, None) if value is None else self.rule.taken(value, field)
+
+
+@dataclass(frozen=True)
+class OrFunction:
+    """What another rule says, or a function."""
+
+    rule: Any
+
+    def quick(self, value):
+        return value if callable(value) else self.rule.quick(value)
+
+    def taken(self, value, field=""):
+        return (value, None) if callable(value) else self.rule.taken(value, field)
+
+
+@dataclass(frozen=True)
+class Made:
+    """An object of a class, described in words for the message."""
+
+    kind: type
+    words: str
+
+    def quick(self, value):
+        return value if type(value) is self.kind else UNSURE
+
+    def taken(self, value, field=""):
+        return value, None if isinstance(value, self.kind) else f"{field} must be {self.words}, got {shown(value)}"
+
+
+@dataclass(frozen=True)
+class Own:
+    """An object of the library or of the user's own that has some members; the user's own is kept as it is now."""
+
+    members: tuple[str, ...]
+    words: str
+
+    def quick(self, value):
+        own = not type(value).__module__.startswith(f"{LIBRARY}.")
+        return UNSURE if own or not all(hasattr(value, name) for name in self.members) else value
+
+    def taken(self, value, field=""):
+        lacking = [name for name in self.members if not hasattr(value, name)]
+        if isinstance(value, type) or len(lacking) == len(self.members):
+            made = "; it is a class, make one of it" if isinstance(value, type) else ""
+            return value, f"{field} must be {self.words}, got {shown(value)}{made}"
+        if lacking:
+            return value, f"{field} {type(value).__name__} lacks {', '.join(lacking)}"
+        return kept(value), None
+
+
+@dataclass(frozen=True)
+class Name:
+    """A name: text of one line, not empty unless it `may_be_empty`."""
+
+    may_be_empty: bool = False
+
+    def quick(self, value):
+        return value if type(value) is str and value.isprintable() and (value or self.may_be_empty) else UNSURE
+
+    def taken(self, value, field=""):
+        if isinstance(value, str) and value.isprintable() and (value or self.may_be_empty):
+            return str(value), None
+        return value, f"{field} must be a name, a text of one line, got {shown(value)}"
+
+
+@dataclass(frozen=True)
+class Sign:
+    """+1 or -1."""
+
+    def quick(self, value):
+        return value if type(value) is int and (value == 1 or value == -1) else UNSURE
+
+    def taken(self, value, field=""):
+        if isinstance(value, int | float | np.integer | np.floating) and type(value) is not bool and value in (1, -1):
+            return int(value), None
+        return value, f"{field} must be +1 or -1, got {shown(value)}"
+
+
+class Rules:
+    """What the fields of a dataclass must be, field -> rule; `also` finds problems of several fields together."""
+
+    def __init__(self, owner, also=None, **rules):
+        self.owner, self.also, self.rules = owner, also, rules
+        self._looks = [(field, rule.quick) for field, rule in rules.items()]
+
+    def admit(self, item):
+        """Put into the fields what is to be kept of them, or raise `ParameterError`."""
+        values = vars(item)
+        for field, quick in self._looks:
+            found = quick(values[field])
+            if found is UNSURE:
+                values.update(examined(self.owner, self.rules, values))
+                break
+            values[field] = found
+        if self.also is not None:
+            require(self.owner, *self.also(item))
+
+
+class Checked:
+    """A dataclass whose fields keep to its table of rules."""
+
+    RULES: ClassVar[Rules]
+
+    def __post_init__(self):
+        self.RULES.admit(self)
+
+
+def examined(owner, rules, values):
+    """What to keep of values by name, each by its rule; one `ParameterError` for all that is wrong."""
+    found, problems = {}, []
+    for field, rule in rules.items():
+        found[field], problem = rule.taken(values[field], field)
+        problems.append(problem)
+    if not any(problems):
+        problems.append(fitting(**dict(_shapes(found))))
+    require(owner, *problems)
+    return found
+
+
+def _shapes(values):
+    """Name and shape of each array of designs among values and pairs of them."""
+    for name, value in values.items():
+        for part in value if type(value) is tuple else (value,):
+            if len(shape := getattr(part, "shape", ())) > 1:
+                yield name, shape
+
+
+# One number
+
+
+def problem(name, value, **rule):
+    """What is wrong with one number, as a sentence, or None."""
+    return Number(name=name, **rule).taken(value)[1]
+
+
+def finite(name, value):
+    return problem(name, value)
+
+
+def positive(name, value):
+    return problem(name, value, low=0.0, strict=True)
+
+
+def table(name, value):
+    return problem(name, value, table=True)
+
+
+def pair(name, value):
+    """What is wrong with a vector (x, y), or None."""
+    return Pair(name=name).taken(value)[1]
