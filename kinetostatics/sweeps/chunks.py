@@ -1,35 +1,26 @@
 """What a worker of a sweep does: a chunk of designs built as one batch, and reduced to a row of numbers for each.
 
-The loop over designs and crank angles runs block by block, so that values over the turn never leave the cache. Designs
-that cannot be built are set apart, each with its reason, and the others go on together.
+Designs that cannot be built are set apart, each with its reason, and the others go on together.
 """
 
-import math
-import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from ..engines import loops, programs
+from ..engines import programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from ..machine.loads import TURN
 from ..mechanics.assembly import NO_DIGIT
-from ..mechanics.quantities import components, quantity, sizes
+from ..mechanics.quantities import components, quantity
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
-from ..results.passes import Passes
 from ..results.reductions import Output, lowest
-from ..results.turn import NEAR, repeating_problem
-from ..solution.scene import Scene, unchecked
+from ..results.turn import repeating_problem
+from ..solution.scene import Scene
+from . import together
 
-VALUES = 100_000
-"""Values over designs and angles that NumPy computes at a time: about what the cache holds."""
-BLOCK = 120_000
-"""Values of all quantities over designs and angles that a compiled loop leaves at a time: half of a core's cache."""
 PROBED = 64
 """Designs among which one that can be built is looked for, to try a sweep before it begins."""
 NEGLIGIBLE = 1e-12
@@ -86,7 +77,7 @@ class Job:
 def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
-    step = max(1, VALUES // job.angles if job.engine == "numpy" else len(frame))
+    step = max(1, together.VALUES // job.angles if job.engine == "numpy" else len(frame))
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
         numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])
@@ -119,9 +110,9 @@ def tried(job, designs, engines):
         except Exception:
             continue
         try:
-            solutions = [_solution(scene, job.angles) for scene in scenes]
+            solutions = [together.solution_of(scene, job.angles) for scene in scenes]
             for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
-                for name in _quantities(outputs):
+                for name in together.quantities(outputs):
                     components(solution, name)
             problems = [repeating_problem(solution) for solution in solutions]
         except QuantityError:
@@ -153,21 +144,12 @@ def _engine(job, solutions, engines):
         return first
     try:
         for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
-            programs.of(solution.dynamics, (*_quantities(outputs), "closure"), sizes=True)
+            programs.of(solution.dynamics, (*together.quantities(outputs), "closure"), sizes=True)
     except NotGivenError:
         if not others:
             raise
         return _engine(job, solutions, others)
     return first
-
-
-def _quantities(outputs):
-    return list(dict.fromkeys(item.quantity for item in outputs))
-
-
-def _solution(scene, angles):
-    """Solution at so many crank angles over the period, or at these."""
-    return unchecked(scene, scene.turn(angles), "numpy")
 
 
 # Designs set apart
@@ -209,7 +191,7 @@ def _reduced(make, job, frame, outputs, earlier=None):
         parts = [np.delete(np.arange(count), apart), *apart[:, None]]
     else:
         try:
-            return _settled(make, job, frame, outputs, _run(scene, job, count, outputs), earlier)
+            return _settled(make, job, frame, outputs, together.run(scene, job, count, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -228,7 +210,7 @@ def _alone(make, job, frame, outputs, earlier):
     """The same for a single design, as an array of one, so that it does not matter which designs come together."""
     for values in job.values(frame):
         try:
-            return _settled(make, job, frame, outputs, _run(_scene(make, values), job, 1, outputs), earlier)
+            return _settled(make, job, frame, outputs, together.run(_scene(make, values), job, 1, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -272,7 +254,7 @@ def _near_limits(make, job, frame, nearest, outputs):
     step = scene.period / job.angles
     shape = len(frame), 1
     angle = np.broadcast_to(nearest[:, None], shape) + step * np.linspace(-1.5, 1.5, 25)
-    around = np.broadcast_arrays(*_solution(scene, angle).closure)
+    around = np.broadcast_arrays(*together.solution_of(scene, angle).closure)
     margin, place, bend = lowest(np.array(around).min(axis=0), step / 8)
     place = np.round(angle[:, 12] + place, 9) % scene.period
     reasons = np.full(len(frame), "", dtype=object)
@@ -282,7 +264,7 @@ def _near_limits(make, job, frame, nearest, outputs):
     if all(quantity(scene, item.quantity).unit == "m" for item in outputs):
         return reasons, np.zeros(len(frame), dtype=bool)
     with np.errstate(all="ignore"):
-        lost = _solution(scene, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
+        lost = together.solution_of(scene, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
         narrow = step > np.sqrt(2.0 * np.maximum(margin, 0.0) / bend)
     for row in np.flatnonzero(np.ravel(lost) & (reasons == "")):
         reasons[row] = f"has no correct digit at crank angle {np.degrees(place[row]):.6g} deg, a limit position"
@@ -307,102 +289,3 @@ def _unbuildable(make, job, frame):
         return np.ones(1, dtype=bool)
     halves = np.array_split(np.arange(len(frame)), 2)
     return np.concatenate([_unbuildable(make, job, frame.iloc[half]) for half in halves])
-
-
-# Designs together
-
-
-def _run(scene, job, count, outputs):
-    """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
-
-    That is which numbers so many crank angles do not tell (outputs, designs), and the crank angle at which a design is
-    nearest to a limit position (designs,), NaN if it is not near.
-    """
-    solution = _solution(scene, job.angles)
-    made = math.prod(solution.shape[:-1])
-    if made not in (1, count):
-        raise ParameterError(
-            f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
-            "(designs, 1) of the values handed in"
-        )
-    numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
-    rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
-    way = _by_loop if job.engine == "compiled" else _by_numpy
-    fill, step = way(solution, outputs, made, (numbers, rough, gaps, nearest))
-    starts = range(0, made, step)
-    threads = min(job.threads, len(starts))
-    if threads == 1:
-        _each(fill, starts)
-    else:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(_each, [fill] * threads, [starts[first::threads] for first in range(threads)]))
-    reasons = np.full(made, "", dtype=object)
-    for row in np.flatnonzero(gaps):
-        where = f"at {gaps[row]} of {job.angles} crank angles"
-        reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
-    shape = len(outputs), count
-    rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
-    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
-
-
-def _each(fill, starts):
-    for start in starts:
-        fill(start)
-
-
-def _by_loop(solution, outputs, count, found):
-    """Function that fills in what is found of a block of designs, from its first on, and how many are a block.
-
-    Each block is computed and reduced by machine code, in memory that the same thread takes again.
-    """
-    state, names = solution.dynamics, _quantities(outputs)
-    program, leaves = programs.of(state, (*names, "closure"), sizes=True)
-    angle = np.array(solution.crank_angle, ndmin=2)
-    sine, cosine = loops.turn(angle)
-    tables = loops.table_of_rows(program.rows(state, leaves), solution.shape)
-    parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
-    first = np.cumsum([0, *program.recording.widths])
-    rows = [first[names.index(item.quantity)] for item in outputs]
-    held, size = threading.local(), len(program.outputs)
-    passes = Passes(outputs, rows, first[len(names)], angle[0], round(solution.period / TURN))
-    step = max(1, BLOCK // (size * angle.shape[1]))
-
-    def fill(start):
-        block = slice(start, start + step)
-        designs = len(parameters[block])
-        if not hasattr(held, "results"):
-            held.results = np.empty((step, size, angle.shape[1]))
-        shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
-        results = held.results[:designs]
-        loops.run(program.loop, angle, sine, cosine, parameters[block], shared, results)
-        passes(results, start, *found)
-
-    return fill, step
-
-
-def _by_numpy(solution, outputs, count, found):
-    """The same by NumPy, all designs at a time."""
-    numbers, rough, gaps, nearest = found
-    with np.errstate(all="ignore"):
-        values = {
-            name: np.reshape(parts, (len(parts), count, solution.shape[-1]))
-            for name in (*_quantities(outputs), "closure")
-            for parts in [sizes(solution, name)]
-        }
-    turns = round(solution.period / TURN)
-    step = max(1, VALUES // solution.shape[-1])
-
-    def fill(start):
-        block = slice(start, start + step)
-        with np.errstate(all="ignore"):
-            for row, item in enumerate(outputs):
-                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity][0, block], turns)
-            closure = values["closure"][:, block]
-            margin = closure.min(axis=-1)
-            gaping = ~(margin >= -ROUNDING).all(axis=0)
-            gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
-            near = ~gaping & (margin < NEAR).any(axis=0)
-            if near.any():
-                nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
-
-    return fill, step

@@ -24,7 +24,7 @@ from kinetostatics.engines import compiled
 from kinetostatics.mechanics import quantities
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.results.reductions import REDUCTIONS, parsed
-from kinetostatics.sweeps import chunks, dataset, sweeps
+from kinetostatics.sweeps import chunks, dataset, sweeps, together
 from kinetostatics.sweeps import workers as dispatch
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
@@ -303,13 +303,13 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     found = sweep(SAW, rising(30), engine="compiled", **options)
     pd.testing.assert_frame_equal(found, expected, rtol=1e-13)
     monkeypatch.setattr(compiled, "cores", lambda: 2)
-    monkeypatch.setattr(chunks, "VALUES", 50)
+    monkeypatch.setattr(together, "VALUES", 50)
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 
 def test_tables_beforehand_are_cut_into_blocks_like_designs(interpreted, monkeypatch):
     """What NumPy computes beforehand has its rows for each design too."""
-    monkeypatch.setattr(chunks, "VALUES", 50)
+    monkeypatch.setattr(together, "VALUES", 50)
 
     def made(crank, mass):
         push = ks.ProcessForce(lambda motion: np.where(motion.slider_velocity > 0, -50.0, 20.0))
@@ -661,7 +661,7 @@ def test_errors_of_the_library_end_the_sweep(monkeypatch):
     monkeypatch.setattr(chunks, "run_chunk", None)
     with ThreadPoolExecutor(1) as executor:
         for error in (ks.errors.MissingLibraryError("no numba here"), OSError("disk full")):
-            monkeypatch.setattr(chunks, "_run", partial(raising, error))
+            monkeypatch.setattr(together, "run", partial(raising, error))
             with pytest.raises(type(error), match=str(error)):
                 sweep(factories.pump, DESIGNS, OUTPUTS, executor=executor)
 
@@ -822,7 +822,7 @@ def test_files_that_a_case_names_are_part_of_it(tmp_path):
 
 def test_memory_is_that_of_a_chunk(monkeypatch):
     """Four times the designs take no more, but for the table itself."""
-    monkeypatch.setattr(chunks, "VALUES", 2000)
+    monkeypatch.setattr(together, "VALUES", 2000)
 
     def peak(count):
         designs = pd.DataFrame({"crank": np.linspace(0.1, 0.5, count)})

@@ -1,164 +1,20 @@
-"""Checks of the values a user hands in. Kernels trust what has passed here.
+"""Rules: what a field must be, and the dataclasses whose fields keep to them."""
 
-A dataclass that is `Checked` says what its fields must be by a table of rules, field -> rule. Where every value is a
-plain number in range nothing more is looked at; otherwise each is examined, all that is wrong is said at once, and the
-object keeps floats and locked copies of arrays, so nothing it holds changes behind its back. A traced JAX number or an
-`arb` enclosure passes as it is.
-"""
-
-import datetime as dt
 import math
-import numbers
-from copy import copy
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
-from decimal import Decimal
-from fractions import Fraction
-from functools import cache
 from typing import Any, ClassVar
 
 import numpy as np
 
-from ..errors import ParameterError
-from .content import LIBRARY
+from ..content import LIBRARY
+from .problems import Problem, fitting, require, shown
+from .values import UnfitError, kept, known, number, unfit
 
 HUGE, LONG = 1e150, 1e75
 """Sizes that double precision cannot square, and lengths (and their reciprocals) that it cannot twice."""
-PLAIN = (int, float, np.integer, np.floating, Fraction, Decimal)
 UNSURE: Any = object()
 """What a quick look at a value answers if it must be examined."""
-
-
-class Problem(str):
-    """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all."""
-
-    designs: Any
-
-    def __new__(cls, text, wrong=None):
-        made = super().__new__(cls, text)
-        made.designs = wrong[..., 0] if np.ndim(wrong) > 1 else None
-        return made
-
-
-class _UnfitError(Exception):
-    """A value that is no number; the message says what it is and what to hand in."""
-
-
-# What a value is
-
-
-def known(value):
-    """Whether the values can be looked at now."""
-    if isinstance(value, np.ndarray):
-        return value.dtype != object
-    return value is None or isinstance(value, numbers.Real | str | list | tuple)
-
-
-@cache
-def _unfit(kind: Any):
-    """Why no value of this type is a number, and what to hand in; None if it may be one."""
-    for kinds, words in (
-        ((bool, np.bool_), "a truth value; give a number"),
-        ((complex, np.complexfloating), "a complex number; give a real one"),
-        ((str, bytes), "a text; write a plain number in SI units, without quotes"),
-        ((dt.date, dt.time, dt.timedelta, np.timedelta64), "a time; give a number in SI units"),
-    ):
-        if issubclass(kind, kinds):
-            return words
-    if issubclass(kind, PLAIN) or kind in (np.ndarray, list, tuple):
-        return None
-    if hasattr(kind, "units") or hasattr(kind, "unit"):
-        return "a quantity with its unit; give the plain number in SI units, as by .to('{unit}').magnitude"
-    if hasattr(kind, "to_numpy"):
-        return "a labelled table; give its numbers, .to_numpy(), and as .to_numpy()[:, None] for a batch of designs"
-    if issubclass(kind, np.ma.MaskedArray):
-        return "a masked array; give a plain one, .filled(...)"
-    if issubclass(kind, np.ndarray):
-        return None
-    arithmetic = all(hasattr(kind, f"__{name}__") for name in ("add", "sub", "mul", "truediv", "neg"))
-    return None if arithmetic and not issubclass(kind, np.generic) else "no number"
-
-
-def unfit(value):
-    """Why a value is no number, and what to hand in; None if it may be one."""
-    return _unfit(type(value))
-
-
-def shown(value):
-    """How a value looks, short enough for a message."""
-    text = " ".join(repr(value).split())
-    return text if len(text) <= 120 else f"{text[:80]} ... {text[-20:]}"
-
-
-def _number(value, table):
-    """The value as a float or a locked array of floats; as it came if its values cannot be looked at now."""
-    if table and hasattr(value, "to_numpy") and np.ndim(value) == 1:
-        value = value.to_numpy()
-    if words := _unfit(type(value)):
-        raise _UnfitError(words)
-    if isinstance(value, PLAIN):
-        try:
-            return float(value)
-        except OverflowError:
-            raise _UnfitError("too large") from None
-    if isinstance(value, list | tuple):
-        if not table:
-            raise _UnfitError("")
-        value = _array(value)
-    elif isinstance(value, np.ndarray):
-        value = np.asarray(value)
-    shape = tuple(getattr(value, "shape", ()))
-    if 0 in shape:
-        raise _UnfitError(f"of shape {shape}, which holds nothing")
-    if not table and shape not in ((), (1,)) and (len(shape) < 2 or shape[-1] != 1):
-        raise _UnfitError(f"of shape {shape}; its last axis would be the crank angle, add one of length 1: [..., None]")
-    if shape == () or (shape == (1,) and not table):
-        return _number(value.ravel()[0], table) if isinstance(value, np.ndarray) else value
-    return _locked(value) if isinstance(value, np.ndarray) else value
-
-
-def _array(values):
-    """The items of a list as an array."""
-    for kind in set(map(type, values)):
-        if words := _unfit(kind):
-            raise _UnfitError(f"with {words}")
-    try:
-        return np.array(values)
-    except ValueError:
-        raise _UnfitError("of rows of unequal length") from None
-
-
-def _locked(array):
-    """A copy of an array as floats that nobody writes to; of objects if they are numbers of another kind."""
-    if array.dtype == float and array.flags.owndata and not array.flags.writeable:
-        return array
-    kind: type = float
-    if array.dtype == object:
-        kinds = set(map(type, array.flat))
-        for item in kinds:
-            if words := _unfit(item):
-                raise _UnfitError(f"with {words}")
-        kind = float if all(issubclass(item, PLAIN) for item in kinds) else object
-    elif array.dtype.kind not in "iuf":
-        raise _UnfitError(f"of {array.dtype}; give real numbers")
-    array = array.astype(kind)
-    array.flags.writeable = False
-    return array
-
-
-def kept(item):
-    """An object of the user's own as it is now: what is changed of it later is not seen."""
-    values = getattr(item, "__dict__", {})
-    arrays = {name: part.copy() for name, part in values.items() if isinstance(part, np.ndarray)}
-    frozen = getattr(type(item), "__dataclass_params__", None)
-    if not arrays and (not values or (frozen is not None and frozen.frozen)):
-        return item
-    item = copy(item)
-    vars(item).update(arrays)
-    return item
-
-
-# Rules: what a field must be
 
 
 @dataclass(frozen=True)
@@ -191,12 +47,12 @@ class Number:
     def taken(self, value, field=""):
         name = self.name or field
         try:
-            number = _number(value, self.table)
-        except _UnfitError as fault:
+            found = number(value, self.table)
+        except UnfitError as fault:
             words = f", {fault}".format(unit=self.unit or "1") if str(fault) else ""
             kind = "an array of numbers" if self.table else "an array of shape (designs, 1)"
             return value, f"{name} must be a number or {kind}, got {shown(value)}{words}"
-        return number, self._out_of_range(name, number) if known(number) else None
+        return found, self._out_of_range(name, found) if known(found) else None
 
     def _out_of_range(self, name, number):
         array = np.asarray(number, dtype=float)
@@ -241,7 +97,7 @@ class Pair:
 
     def taken(self, value, field=""):
         name = self.name or field
-        words = _unfit(type(value))
+        words = unfit(value)
         if words and not self.lone:
             words = words.format(unit=self.unit or "1")
             return value, f"{name} must be a pair {self._pair}, got {shown(value)}, {words}"
@@ -412,7 +268,7 @@ def _shapes(values):
                 yield name, shape
 
 
-# Problems, one by one
+# One number
 
 
 def problem(name, value, **rule):
@@ -435,96 +291,3 @@ def table(name, value):
 def pair(name, value):
     """What is wrong with a vector (x, y), or None."""
     return Pair(name=name).taken(value)[1]
-
-
-def require(owner, *problems):
-    """Raise one `ParameterError` that lists every problem found."""
-    found = [text for text in problems if text]
-    if found:
-        masks: list[Any] = [getattr(text, "designs", None) for text in found]
-        designs = None if any(mask is None for mask in masks) else np.any(np.broadcast_arrays(*masks), axis=0)
-        raise ParameterError(f"{owner}: " + "; ".join(found), designs)
-
-
-def fitting(**shapes):
-    """What is wrong with shapes, by what has them, that do not broadcast together, or None."""
-    if len(shapes) < 2:
-        return None
-    try:
-        np.broadcast_shapes(*shapes.values())
-    except ValueError:
-        text = ", ".join(f"{name} {tuple(shape)}" for name, shape in shapes.items() if shape)
-        return f"these shapes do not fit together: {text}; the last axis is the crank angle, designs come before it"
-    return None
-
-
-MEMORY = 10_000_000_000
-"""Bytes that no table of angles or designs may take."""
-ANGLE = 1000
-"""Bytes that the results at a crank angle take, all forces in a table."""
-
-
-def count(name, value, *, size=None):
-    """What is wrong with a number of things, or None; with their `size` in bytes, they must have room in memory."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
-        return f"{name} must be a whole number of at least 1, got {value!r}"
-    if size is not None and value * size > MEMORY:
-        found = f"{value} would take {value * size // 10**9} GB" if value < 10**15 else "so many would take all"
-        return f"{name} must be at most {MEMORY // size}, as {found} of memory"
-    return None
-
-
-def solution(name, value):
-    """What is wrong with what must be a `Solution`, or None."""
-    if hasattr(type(value), "power_residual"):
-        return None
-    return (
-        f"{name} must be a Solution, as ks.solve(...), case.solve(name) and variant.solve() return, "
-        f"got {_described(value)}"
-    )
-
-
-def case(name, value):
-    """What is wrong with what must be a `Case`, or None."""
-    return None if hasattr(value, "variants") else f"{name} must be a Case, as ks.load_case, got {_described(value)}"
-
-
-def mechanism(name, value):
-    """What is wrong with what must be a `Mechanism`, or None."""
-    if hasattr(type(value), "references"):
-        return None
-    return f"{name} must be a Mechanism, as ks.crank_slider(...) and solution.mechanism are, got {_described(value)}"
-
-
-def quantity(value, *, function=False):
-    """What is wrong with what must name a quantity, or None."""
-    if isinstance(value, str) or (function and callable(value)):
-        return None
-    other = ", or a function of a solution" if function else ""
-    return f'quantity must be a name, such as "balancing_torque" or "O"{other}, got {_described(value)}'
-
-
-def _described(value):
-    """A value as errors show it: what it is, and short."""
-    text = repr(value) if isinstance(value, str | int | float | None) else ""
-    return text if 0 < len(text) < 80 else f"a {type(value).__name__}"
-
-
-def choice(name, value, allowed):
-    """What is wrong with a name that must be one of `allowed`; names the nearest."""
-    if (type(value) is str and value in allowed) or any(value is word for word in allowed):
-        return None
-    return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed))}{hint(value, allowed)}"
-
-
-def hint(value, allowed):
-    """Question that names the nearest allowed word, empty if none is near."""
-    near = nearest(value, allowed)
-    return f"; did you mean {near!r}?" if near else ""
-
-
-def nearest(value, allowed):
-    """The allowed word that is like the one given, or None."""
-    import difflib
-
-    return next(iter(difflib.get_close_matches(str(value)[:100], list(allowed), n=1)), None)

@@ -1,0 +1,86 @@
+"""The command line: ``kinetostatics run | compare | plot | precision | sweep CASE``, ``kinetostatics stability``.
+
+options
+    What may be written on the line.
+commands
+    What each command does.
+printed
+    Tables on the screen and in files.
+"""
+
+import os
+import signal
+import sys
+import threading
+from contextlib import contextmanager
+
+from ..errors import KinetostaticsError, ParameterError
+from .options import parser
+from .printed import tell
+
+
+class _Terminated(BaseException):
+    """The system asks this process to end."""
+
+
+def main(arguments=None):
+    """Run the command line; returns the exit status.
+
+    0, or 2 for input that cannot be used, 130 if it was interrupted (Ctrl-C), 143 if it was told to end (SIGTERM).
+    """
+    status, message = 0, ""
+    try:
+        with _ending_in_order():
+            _require_output()
+            options = parser().parse_args(arguments)
+            options.command(options)
+            sys.stdout.flush()
+    except BrokenPipeError:
+        pass
+    except (KinetostaticsError, OSError) as error:
+        status, message = 2, str(error)
+    except MemoryError as error:
+        status, message = 2, f"there is not enough memory; take fewer crank angles or designs ({error})"
+    except KeyboardInterrupt:
+        status, message = 130, "interrupted"
+    except _Terminated:
+        status, message = 143, "terminated"
+    if status:
+        tell(f"kinetostatics: {message}")
+    _drop_what_cannot_be_written()
+    return status
+
+
+@contextmanager
+def _ending_in_order():
+    """SIGTERM, like Ctrl-C, ends the block as an error does; only the main thread can see to that."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def terminate(*_):
+        raise _Terminated
+
+    before = signal.signal(signal.SIGTERM, terminate)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _require_output():
+    """What is printed has somewhere to go, in letters that it has."""
+    if sys.stdout is None:
+        raise ParameterError("standard output is closed; open it, or send it to /dev/null")
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+
+
+def _drop_what_cannot_be_written():
+    """So that the interpreter does not try again when it ends: the pipe is closed, or the disk full."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

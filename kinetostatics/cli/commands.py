@@ -1,0 +1,178 @@
+"""What each command does with its options."""
+
+import sys
+from pathlib import Path
+
+from ..errors import CaseError, ParameterError
+from ..numbers import checks, files
+from .printed import print_table, tell, with_published, write_table
+
+SWEEP_OUTPUTS = ("mean_absolute balancing_torque", "largest O")
+"""What a sweep tells unless asked for something else."""
+TABLE_ENDINGS = (".csv", ".parquet")
+FIGURE_ENDINGS = (".png", ".svg", ".pdf")
+
+
+def run(options):
+    import pandas as pd
+
+    from ..casefile.case import load_case
+    from ..results.tables import extremes_frame
+
+    case = load_case(options.case)
+    _require_writable(case, "--csv", options.csv, (".csv",))
+    names = list(case.variants) if options.variant is None else [options.variant]
+    solutions = {name: case.solve(name, options.angles) for name in names}
+    print(case.title)
+    for name, solution in solutions.items():
+        print(f"\n{name}: {solution.mechanism.name}\n")
+        print_table(extremes_frame(solution))
+        print(
+            f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
+            f"largest power that flows ({options.angles} angles)"
+        )
+    if options.csv:
+        frames = [solution.frame().assign(variant=name) for name, solution in solutions.items()]
+        table = pd.concat(frames)
+        table.insert(0, "variant", table.pop("variant"))
+        write_table(table, options.csv)
+
+
+def compare(options):
+    from ..casefile.case import load_case
+
+    case = load_case(options.case)
+    others = [name for name in case.variants if name != case.reference]
+    names = others if options.variant is None else [options.variant]
+    if not names:
+        raise CaseError(case.path, [f"has one variant only, {case.reference}: nothing to compare; use run"])
+    for name in names:
+        case.variant(name)
+    tables = {name: case.comparison_table(name) for name in names}
+    special = [
+        ("counterweights and shaking force", case.balancing_table(), case.published.balancing),
+        ("swing and transmission", case.linkage_table(), case.published.linkage),
+    ]
+    print(case.title)
+    if case.published.note:
+        print(f"\n{case.published.note}")
+    for heading, table, published in special:
+        if table is not None:
+            print(f"\n{heading}; published figures in brackets\n")
+            print_table(with_published(table, published, case.path))
+    for name, table in tables.items():
+        print(f"\n{case.reference} / {name}\n")
+        print_table(table)
+
+
+def plot(options):
+    from ..casefile.case import load_case
+    from ..views.figures import draw_case
+
+    for path in draw_case(load_case(options.case), options.out, options.format, options.only):
+        print(path)
+
+
+def precision(options):
+    import pandas as pd
+
+    from ..casefile.case import load_case
+    from ..studies import precision as study
+    from ..views.charts import precision_page
+
+    case = load_case(options.case)
+    quantities = options.quantity or [study.QUANTITY]
+    paths = study.case_study(
+        case,
+        options.out,
+        variants=options.variant,
+        quantities=quantities,
+        angles=options.angles,
+        progress=tell,
+        page=precision_page,
+    )
+    print(f"{case.title}\n\nno other method is both faster and nearer than these:\n")
+    table = pd.read_csv(paths[0])
+    fronts = [study.front(part) for _, part in table.groupby(["variant", "quantity"], sort=False)]
+    shown = ["variant", "quantity", "method", "setting", "value", "time [ns/angle]", "error"]
+    print_table(pd.concat(fronts)[shown].set_index("variant").astype(object).fillna(""))
+    absent = table[table.groupby(["variant", "quantity", "method"])["error"].transform("count") == 0]
+    for method, why in dict.fromkeys(zip(absent["method"], absent["not given"], strict=True)):
+        print(f"left out: {method}: {why}")
+    print(*paths, sep="\n")
+
+
+def stability(options):
+    import pandas as pd
+
+    from ..studies import stability as study
+    from ..views.charts import stability_page
+
+    paths = study.write(options.out, progress=tell, page=stability_page)
+    print_table(pd.read_csv(paths[1]).drop(columns=["machine", "versions"]).set_index("place"))
+    print(*paths, sep="\n")
+
+
+def sweep(options):
+    from ..casefile.case import load_case
+    from ..results.reductions import parsed
+    from ..sweeps import designs, sweeps
+
+    case = load_case(options.case)
+    folder = options.out if options.out and not Path(options.out).suffix else None
+    _require_writable(case, "--out", None if folder else options.out, TABLE_ENDINGS)
+    _require_writable(case, "--plot", options.plot, FIGURE_ENDINGS)
+    checks.require("--out", files.unwritable_folder(folder) if folder else None)
+    spreads = _spreads(options.vary)
+    table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
+    varied, _ = sweeps.chosen(case, options.variant, options.reference)
+    wanted = [parsed(text).of(varied) for text in options.output or SWEEP_OUTPUTS]
+    outputs = [item.column for item in wanted]
+    found = sweeps.sweep(
+        case,
+        table,
+        wanted,
+        variant=options.variant,
+        reference=options.reference,
+        angles=options.angles,
+        workers=options.workers,
+        folder=folder,
+        progress=sys.stderr is not None and sys.stderr.isatty(),
+    )
+    failed = found[found[sweeps.FAILED] != ""]
+    print(f"{case.title}: {len(found)} designs, {len(failed)} failed\n")
+    print_table(found[outputs].describe().drop("count").rename_axis("over the designs"))
+    first = wanted[0]
+    print(f"\nbest five by {first.label(varied)}, {'largest' if first.ratio else 'smallest'} first\n")
+    best = found.dropna(subset=[first.column]).sort_values(first.column, ascending=not first.ratio).head(5)
+    print_table(best.drop(columns=sweeps.FAILED).rename_axis("design"))
+    for reason, count in failed[sweeps.FAILED].value_counts().head(3).items():
+        print(f"\n{count} failed: {reason}")
+    if options.out and folder is None:
+        write_table(found, options.out)
+    if options.plot:
+        from ..views.charts import sweep_page
+
+        print(sweep_page(found, list(table.columns), outputs, options.plot))
+
+
+def _spreads(texts):
+    pairs = [_spread(text) for text in texts]
+    paths = [path for path, _ in pairs]
+    twice = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
+    if twice:
+        raise ParameterError(f"--vary: {', '.join(twice)} is given more than once; give each parameter one spread")
+    return dict(pairs)
+
+
+def _spread(text):
+    path, equals, spread = text.partition("=")
+    if not equals:
+        raise ParameterError(f'cannot read {text!r}; write path=spread, "spring.stiffness=600..900 kN/m:40"')
+    return path.strip(), spread.strip()
+
+
+def _require_writable(case, option, path, endings):
+    """The file that an option names, if any, can be written, is of these kinds, and no input of the case."""
+    if path is not None:
+        checks.require(option, files.unwritable(path, inputs=case.files, endings=endings))

@@ -1,0 +1,106 @@
+"""What may be written on the command line: commands, their options, and which texts these take."""
+
+import argparse
+
+from .. import __version__
+from ..numbers import checks
+from . import commands
+
+DESIGN = 100
+"""Bytes that a design takes with its outputs."""
+
+
+def parser():
+    """The parser; each command's options name the function that carries it out."""
+    main = argparse.ArgumentParser(
+        prog="kinetostatics", description="Forces and drive torque of planar slider mechanisms, from a case file."
+    )
+    main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")
+    group = main.add_subparsers(required=True, metavar="COMMAND")
+
+    run = _command(group, "run", commands.run, "extremes of every force, with the power check")
+    run.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
+    run.add_argument("--angles", type=_angles, default=720, metavar="N", help="crank angles over the turn (720)")
+    run.add_argument("--csv", type=_text, metavar="FILE", help="write all results, a row for each crank angle")
+
+    compare = _command(group, "compare", commands.compare, "dynamic coefficients against the reference variant")
+    compare.add_argument("--variant", type=_text, metavar="NAME", help="only this variant against the reference")
+
+    plot = _command(group, "plot", commands.plot, "draw the figures of the case")
+    plot.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the figures")
+    plot.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")
+    plot.add_argument("--only", type=_text, metavar="FIGURE", help="draw this figure only")
+
+    precision = _command(
+        group, "precision", commands.precision, "every method's time and error against a certified reference"
+    )
+    precision.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the CSV and the chart")
+    precision.add_argument(
+        "--variant", action="append", type=_text, metavar="NAME", help="only these (one of each kind)"
+    )
+    precision.add_argument(
+        "--quantity", action="append", type=_text, metavar="NAME", help="of these (balancing_torque)"
+    )
+    precision.add_argument("--angles", type=_angles, default=360, metavar="N", help="crank angles over the turn (360)")
+
+    sweep = _command(group, "sweep", commands.sweep, "outputs of many designs, a row for each")
+    sweep.add_argument(
+        "--vary",
+        action="append",
+        required=True,
+        metavar="PATH=SPREAD",
+        help='a parameter and its spread, "spring.stiffness=600..900 kN/m:40"; with --sample also '
+        '"spring.stiffness=normal 712 kN/m +- 5 kN/m"',
+    )
+    sweep.add_argument(
+        "--output", action="append", type=_text, metavar="OUTPUT", help='"largest O", "ratio mean_absolute ..."'
+    )
+    sweep.add_argument("--variant", type=_text, metavar="NAME", help="variant whose parameters vary")
+    sweep.add_argument("--reference", type=_text, metavar="NAME", help="variant that ratios refer to")
+    sweep.add_argument("--sample", type=_designs, metavar="N", help="N designs of a Latin hypercube in place of a grid")
+    sweep.add_argument(
+        "--angles", type=_angles, default=360, metavar="N", help="crank angles over the period, 12 at least (360)"
+    )
+    sweep.add_argument("--workers", type=_count, metavar="N", help="processes (this one, on all its cores)")
+    sweep.add_argument(
+        "--out", type=_text, metavar="PATH", help="table to write, .csv or .parquet; or a folder to resume from"
+    )
+    sweep.add_argument("--plot", type=_text, metavar="FILE", help="figure to write, .png or .svg")
+
+    stability = _command(
+        group, "stability", commands.stability, "every method's error near the places where it hurts", False
+    )
+    stability.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the CSVs and the chart")
+    return main
+
+
+def _command(group, name, function, text, of_case=True):
+    command = group.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+    if of_case:
+        command.add_argument(
+            "case", type=_text, metavar="CASE", help="a TOML file, or the name of a shipped case: sawframe_2r63"
+        )
+    command.set_defaults(command=function)
+    return command
+
+
+def _text(text):
+    if not text.strip():
+        raise argparse.ArgumentTypeError("must not be empty")
+    return text
+
+
+def _count(text, size=None):
+    count = int(text) if text.isdecimal() and len(text) < 20 else text
+    problem = checks.count("it", count, size=size)
+    if problem:
+        raise argparse.ArgumentTypeError(problem.removeprefix("it "))
+    return count
+
+
+def _angles(text):
+    return _count(text, checks.ANGLE)
+
+
+def _designs(text):
+    return _count(text, DESIGN)

@@ -1,0 +1,86 @@
+"""Checks of the values a user hands in. Kernels trust what has passed here.
+
+values
+    What a value is: a number, an array, a truth value, a text ...; copies that nobody writes to.
+problems
+    What is wrong, as sentences, and the one `ParameterError` that lists them: ``require(owner, *problems)``.
+rules
+    What a field must be: `Number`, `Pair`, `Name` ..., and `Checked` dataclasses that keep to a table of `Rules`.
+
+A dataclass that is `Checked` says what its fields must be by a table of rules, field -> rule. Where every value is a
+plain number in range nothing more is looked at; otherwise each is examined, all that is wrong is said at once, and the
+object keeps floats and locked copies of arrays, so nothing it holds changes behind its back. A traced JAX number or an
+`arb` enclosure passes as it is.
+"""
+
+from .problems import (
+    ANGLE,
+    Problem,
+    case,
+    choice,
+    count,
+    fitting,
+    hint,
+    mechanism,
+    nearest,
+    quantity,
+    require,
+    shown,
+    solution,
+)
+from .rules import (
+    UNSURE,
+    Checked,
+    Made,
+    Name,
+    Number,
+    Optional,
+    OrFunction,
+    Own,
+    Pair,
+    Rules,
+    Sign,
+    examined,
+    finite,
+    pair,
+    positive,
+    problem,
+    table,
+)
+from .values import kept, known, unfit
+
+__all__ = [
+    "ANGLE",
+    "UNSURE",
+    "Checked",
+    "Made",
+    "Name",
+    "Number",
+    "Optional",
+    "OrFunction",
+    "Own",
+    "Pair",
+    "Problem",
+    "Rules",
+    "Sign",
+    "case",
+    "choice",
+    "count",
+    "examined",
+    "finite",
+    "fitting",
+    "hint",
+    "kept",
+    "known",
+    "mechanism",
+    "nearest",
+    "pair",
+    "positive",
+    "problem",
+    "quantity",
+    "require",
+    "shown",
+    "solution",
+    "table",
+    "unfit",
+]

@@ -1,0 +1,118 @@
+"""What is wrong with values, as sentences, and the one error that lists all of them."""
+
+import numbers
+from typing import Any
+
+import numpy as np
+
+from ...errors import ParameterError
+
+
+class Problem(str):
+    """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all."""
+
+    designs: Any
+
+    def __new__(cls, text, wrong=None):
+        made = super().__new__(cls, text)
+        made.designs = wrong[..., 0] if np.ndim(wrong) > 1 else None
+        return made
+
+
+def shown(value):
+    """How a value looks, short enough for a message."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 120 else f"{text[:80]} ... {text[-20:]}"
+
+
+def require(owner, *problems):
+    """Raise one `ParameterError` that lists every problem found."""
+    found = [text for text in problems if text]
+    if found:
+        masks: list[Any] = [getattr(text, "designs", None) for text in found]
+        designs = None if any(mask is None for mask in masks) else np.any(np.broadcast_arrays(*masks), axis=0)
+        raise ParameterError(f"{owner}: " + "; ".join(found), designs)
+
+
+def fitting(**shapes):
+    """What is wrong with shapes, by what has them, that do not broadcast together, or None."""
+    if len(shapes) < 2:
+        return None
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        text = ", ".join(f"{name} {tuple(shape)}" for name, shape in shapes.items() if shape)
+        return f"these shapes do not fit together: {text}; the last axis is the crank angle, designs come before it"
+    return None
+
+
+MEMORY = 10_000_000_000
+"""Bytes that no table of angles or designs may take."""
+ANGLE = 1000
+"""Bytes that the results at a crank angle take, all forces in a table."""
+
+
+def count(name, value, *, size=None):
+    """What is wrong with a number of things, or None; with their `size` in bytes, they must have room in memory."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
+        return f"{name} must be a whole number of at least 1, got {value!r}"
+    if size is not None and value * size > MEMORY:
+        found = f"{value} would take {value * size // 10**9} GB" if value < 10**15 else "so many would take all"
+        return f"{name} must be at most {MEMORY // size}, as {found} of memory"
+    return None
+
+
+def solution(name, value):
+    """What is wrong with what must be a `Solution`, or None."""
+    if hasattr(type(value), "power_residual"):
+        return None
+    return (
+        f"{name} must be a Solution, as ks.solve(...), case.solve(name) and variant.solve() return, "
+        f"got {_described(value)}"
+    )
+
+
+def case(name, value):
+    """What is wrong with what must be a `Case`, or None."""
+    return None if hasattr(value, "variants") else f"{name} must be a Case, as ks.load_case, got {_described(value)}"
+
+
+def mechanism(name, value):
+    """What is wrong with what must be a `Mechanism`, or None."""
+    if hasattr(type(value), "references"):
+        return None
+    return f"{name} must be a Mechanism, as ks.crank_slider(...) and solution.mechanism are, got {_described(value)}"
+
+
+def quantity(value, *, function=False):
+    """What is wrong with what must name a quantity, or None."""
+    if isinstance(value, str) or (function and callable(value)):
+        return None
+    other = ", or a function of a solution" if function else ""
+    return f'quantity must be a name, such as "balancing_torque" or "O"{other}, got {_described(value)}'
+
+
+def _described(value):
+    """A value as errors show it: what it is, and short."""
+    text = repr(value) if isinstance(value, str | int | float | None) else ""
+    return text if 0 < len(text) < 80 else f"a {type(value).__name__}"
+
+
+def choice(name, value, allowed):
+    """What is wrong with a name that must be one of `allowed`; names the nearest."""
+    if (type(value) is str and value in allowed) or any(value is word for word in allowed):
+        return None
+    return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed))}{hint(value, allowed)}"
+
+
+def hint(value, allowed):
+    """Question that names the nearest allowed word, empty if none is near."""
+    near = nearest(value, allowed)
+    return f"; did you mean {near!r}?" if near else ""
+
+
+def nearest(value, allowed):
+    """The allowed word that is like the one given, or None."""
+    import difflib
+
+    return next(iter(difflib.get_close_matches(str(value)[:100], list(allowed), n=1)), None)

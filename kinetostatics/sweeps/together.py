@@ -1,0 +1,129 @@
+"""Designs of a chunk computed together, as one batch, and reduced to a row of numbers for each.
+
+The loop over designs and crank angles runs block by block, so that values over the turn never leave the cache.
+"""
+
+import math
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from ..engines import loops, programs
+from ..errors import ParameterError
+from ..machine.loads import TURN
+from ..mechanics.quantities import sizes
+from ..numbers.elementary import ROUNDING
+from ..results.passes import Passes
+from ..results.turn import NEAR
+from ..solution.scene import unchecked
+
+VALUES = 100_000
+"""Values over designs and angles that NumPy computes at a time: about what the cache holds."""
+BLOCK = 120_000
+"""Values of all quantities over designs and angles that a compiled loop leaves at a time: half of a core's cache."""
+
+
+def quantities(outputs):
+    return list(dict.fromkeys(item.quantity for item in outputs))
+
+
+def solution_of(scene, angles):
+    """Solution at so many crank angles over the period, or at these."""
+    return unchecked(scene, scene.turn(angles), "numpy")
+
+
+def run(scene, job, count, outputs):
+    """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
+
+    That is which numbers so many crank angles do not tell (outputs, designs), and the crank angle at which a design is
+    nearest to a limit position (designs,), NaN if it is not near.
+    """
+    solution = solution_of(scene, job.angles)
+    made = math.prod(solution.shape[:-1])
+    if made not in (1, count):
+        raise ParameterError(
+            f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
+            "(designs, 1) of the values handed in"
+        )
+    numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
+    rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
+    way = _by_loop if job.engine == "compiled" else _by_numpy
+    fill, step = way(solution, outputs, made, (numbers, rough, gaps, nearest))
+    starts = range(0, made, step)
+    threads = min(job.threads, len(starts))
+    if threads == 1:
+        _each(fill, starts)
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(_each, [fill] * threads, [starts[first::threads] for first in range(threads)]))
+    reasons = np.full(made, "", dtype=object)
+    for row in np.flatnonzero(gaps):
+        where = f"at {gaps[row]} of {job.angles} crank angles"
+        reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
+    shape = len(outputs), count
+    rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
+    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
+
+
+def _each(fill, starts):
+    for start in starts:
+        fill(start)
+
+
+def _by_loop(solution, outputs, count, found):
+    """Function that fills in what is found of a block of designs, from its first on, and how many are a block.
+
+    Each block is computed and reduced by machine code, in memory that the same thread takes again.
+    """
+    state, names = solution.dynamics, quantities(outputs)
+    program, leaves = programs.of(state, (*names, "closure"), sizes=True)
+    angle = np.array(solution.crank_angle, ndmin=2)
+    sine, cosine = loops.turn(angle)
+    tables = loops.table_of_rows(program.rows(state, leaves), solution.shape)
+    parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
+    first = np.cumsum([0, *program.recording.widths])
+    rows = [first[names.index(item.quantity)] for item in outputs]
+    held, size = threading.local(), len(program.outputs)
+    passes = Passes(outputs, rows, first[len(names)], angle[0], round(solution.period / TURN))
+    step = max(1, BLOCK // (size * angle.shape[1]))
+
+    def fill(start):
+        block = slice(start, start + step)
+        designs = len(parameters[block])
+        if not hasattr(held, "results"):
+            held.results = np.empty((step, size, angle.shape[1]))
+        shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
+        results = held.results[:designs]
+        loops.run(program.loop, angle, sine, cosine, parameters[block], shared, results)
+        passes(results, start, *found)
+
+    return fill, step
+
+
+def _by_numpy(solution, outputs, count, found):
+    """The same by NumPy, all designs at a time."""
+    numbers, rough, gaps, nearest = found
+    with np.errstate(all="ignore"):
+        values = {
+            name: np.reshape(parts, (len(parts), count, solution.shape[-1]))
+            for name in (*quantities(outputs), "closure")
+            for parts in [sizes(solution, name)]
+        }
+    turns = round(solution.period / TURN)
+    step = max(1, VALUES // solution.shape[-1])
+
+    def fill(start):
+        block = slice(start, start + step)
+        with np.errstate(all="ignore"):
+            for row, item in enumerate(outputs):
+                numbers[row, block], rough[row, block] = item.estimated(values[item.quantity][0, block], turns)
+            closure = values["closure"][:, block]
+            margin = closure.min(axis=-1)
+            gaping = ~(margin >= -ROUNDING).all(axis=0)
+            gaps[block][gaping] = (~(closure[:, gaping] >= -ROUNDING)).any(axis=0).sum(axis=-1)
+            near = ~gaping & (margin < NEAR).any(axis=0)
+            if near.any():
+                nearest[block][near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
+
+    return fill, step
