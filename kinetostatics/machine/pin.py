@@ -1,7 +1,7 @@
 """Pin: a further joint fixed to a link, where more may hang: ternary links, second throws, articulated rods."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from ..numbers import checks
 from ..numbers.planar import added
@@ -53,12 +53,18 @@ class Pin(checks.Checked, Group):
     name: str = "C"
 
     TRUSTED = True
+    PATHS: ClassVar = {"at": "pin_"}
     RULES = checks.Rules(
         "pin",
         on=checks.Name(),
         at=checks.Pair("m", parts=("along", "across")),
         name=checks.Name(),
     )
+
+    @property
+    def label(self):
+        """What its numbers are told from those of other pins by: "pin_C.along"."""
+        return self.name
 
     @property
     def hangs_on(self):
