@@ -56,7 +56,7 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
     mp = library("mpmath").mp
     require_one_design(solution)
     with mp.workdps(working_digits(digits)):
-        found = [_Machine(mp, solution, index, digits).components(quantity) for index in indices]
+        found = [Machine(mp, solution, index, digits).components(quantity) for index in indices]
     return tuple(np.array(part, dtype=object) for part in zip(*found, strict=True))
 
 
@@ -65,7 +65,7 @@ def working_digits(digits):
     return 6 * digits + 60
 
 
-class _Machine:
+class Machine:
     """A mechanism at one crank angle in mpmath numbers; a planar vector is a complex number.
 
     `position`, `velocity` and `acceleration` are tables by kind ("joint", "centre" of mass, "direction") and name.
@@ -338,24 +338,24 @@ class _Machine:
 
 
 ADD: Any = {
-    SliderGroup: _Machine.add_slider,
-    RockerGroup: _Machine.add_rocker,
-    Dyad: _Machine.add_dyad,
-    Pin: _Machine.add_pin,
-    LeverGroup: _Machine.add_lever,
-    CylinderGroup: _Machine.add_cylinder,
-    YokeGroup: _Machine.add_yoke,
+    SliderGroup: Machine.add_slider,
+    RockerGroup: Machine.add_rocker,
+    Dyad: Machine.add_dyad,
+    Pin: Machine.add_pin,
+    LeverGroup: Machine.add_lever,
+    CylinderGroup: Machine.add_cylinder,
+    YokeGroup: Machine.add_yoke,
 }
 """How each kind of group is placed."""
 UNKNOWN: Any = {
-    CamRoller: _Machine.of_roller,
-    SliderGroup: _Machine.of_slider,
-    RockerGroup: _Machine.of_rocker,
-    Dyad: _Machine.of_dyad,
+    CamRoller: Machine.of_roller,
+    SliderGroup: Machine.of_slider,
+    RockerGroup: Machine.of_rocker,
+    Dyad: Machine.of_dyad,
     Pin: lambda machine, group, at: [],
-    LeverGroup: _Machine.of_lever,
-    CylinderGroup: _Machine.of_cylinder,
-    YokeGroup: _Machine.of_yoke,
+    LeverGroup: Machine.of_lever,
+    CylinderGroup: Machine.of_cylinder,
+    YokeGroup: Machine.of_yoke,
 }
 """What each kind of group adds to the unknown wrenches."""
 

@@ -137,10 +137,10 @@ class Model:
 
     def _write_yoke(self, group):
         block, slider = group.links
+        self._add_guide(group, slider)
         self._pin(group.on + group.label, block, group.on)
         self._slide("slot_force" + group.label, slider, block, np.exp(1j * group.slot_angle))
         self._turn("slot_moment" + group.label, block, slider, group.slot_angle)
-        self._add_guide(group, slider)
 
     _writers: ClassVar[dict[type, Any]] = {
         CamRoller: _write_roller,
