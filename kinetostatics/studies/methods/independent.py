@@ -141,7 +141,7 @@ class Machine:
         links |= {link: part for link, *part in zip(group.links, group.on, directions, strict=True)}
 
     def add_pin(self, group, joints, links):
-        joint, direction = links[group.on]
+        joint, direction = ("O", 1) if group.on == FRAME else links[group.on]
         joints[group.name] = joints[joint] + self.vector(group.at) * direction
 
     def add_lever(self, group, joints, links):
