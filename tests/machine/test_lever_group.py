@@ -168,7 +168,7 @@ def test_what_no_lever_can_have_is_refused(fields, words):
 
 def test_a_lever_on_the_block_of_a_cam_needs_a_label():
     with pytest.raises(
-        ParameterError, match="adds link 'block' a second time.*adds quantity 'slot_force' a second time"
+        ParameterError, match=r"adds link 'block' a second time.*adds quantity 'slot_force' a second time"
     ):
         ks.Mechanism("chain", ks.Crank(), (ks.CamRoller(ks.cams.Circle(0.3, (0.05, 0.0))), ks.LeverGroup((0.0, -0.6))))
 
