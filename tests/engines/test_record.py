@@ -51,7 +51,7 @@ def counted(monkeypatch):
         return load(*given, **options)
 
     monkeypatch.setattr(programs, "record", record_)
-    monkeypatch.setattr("kinetostatics.engines.compiled.load", load_)
+    monkeypatch.setattr("kinetostatics.engines.machine_code.load", load_)
     return found
 
 
