@@ -857,8 +857,8 @@ import hashlib
 import kinetostatics as ks
 
 around = {"spring.stiffness": "650..850 kN/m", "cam.centre.x": "-30..-10 mm", "coupler_length": "2010..2030 mm"}
-designs = ks.designs.latin_hypercube(around, 5000)
-outputs = ["ratio mean_absolute balancing_torque", "mean O", "rms O", "range cam_force", "largest O"]
+designs = ks.designs.latin_hypercube(around, 1000)
+outputs = ["ratio mean_absolute balancing_torque", "mean O"]
 table = ks.sweep(ks.load_case("sawframe_2r63"), designs, outputs, variant="cam-circle", progress=False)
 print(hashlib.sha256(table.iloc[:, :-1].to_numpy(float).tobytes()).hexdigest())
 """
