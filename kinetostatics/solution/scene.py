@@ -17,7 +17,7 @@ from ..machine.loads import MOST_TURNS, TURN, Gravity, ProcessForce, Spring, per
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from .angles import crank_angles, problems
-from .solution import Solution
+from .solution import Solution, drive_and_loads
 
 DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
 LOADS = (Gravity, Spring, ProcessForce)
@@ -77,6 +77,9 @@ class Scene:
         loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
         checks.require(owner, *(_load_problem(self.mechanism, item) for item in loads), _period_problem(loads))
         values.update(drive, loads=tuple(item if type(item) in LOADS else checks.kept(item) for item in loads))
+
+    def __repr__(self):
+        return f"<Scene: {self.mechanism.name}, {drive_and_loads(self)}>"
 
     @property
     def period(self):

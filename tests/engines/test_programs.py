@@ -256,7 +256,9 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
     ]
     expected = np.array(slopes).swapaxes(0, 1).astype(float)
     for compiled_loop in (False, True):
-        found = made.by_parameters(places).run(state, leaves, compiled_loop).reshape(expected.shape)
+        found = (
+            made.by_parameters(places).run(state, leaves, compiled_loop)[len(made.outputs) :].reshape(expected.shape)
+        )
         size = np.abs(expected).max(axis=-1, keepdims=True)
         assert np.all(np.abs(found - expected) <= 1e-12 * np.maximum(size, 1e-3 * size.max(axis=1, keepdims=True)))
 

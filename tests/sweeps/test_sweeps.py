@@ -683,6 +683,12 @@ def counted(calls):
     return made
 
 
+@pytest.mark.parametrize("folder", [5, 2.5, ["here"], b"here", True])
+def test_a_folder_that_is_no_path_is_refused(folder):
+    with pytest.raises(ks.ParameterError, match="sweep: folder must be a path, got"):
+        sweep(factories.pump, DESIGNS, OUTPUTS, folder=folder)
+
+
 def test_a_folder_holds_a_dataset_that_pandas_reads(tmp_path, expected):
     folder = tmp_path / "new" / "sweep"
     assert_equal(sweep(factories.pump, DESIGNS, OUTPUTS, chunk=7, folder=folder), expected)
