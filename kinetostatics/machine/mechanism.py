@@ -87,8 +87,8 @@ class Mechanism(Batched):
 
     @property
     def trusted(self):
-        """Whether all groups are the library's own, whose forces are known to balance."""
-        return all(group.trusted for group in self.groups)
+        """Whether crank and groups are the library's own, whose forces are known to balance."""
+        return all(part.trusted for part in self.parts)
 
     @cached_property
     def turns(self):
