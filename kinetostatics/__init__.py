@@ -40,7 +40,19 @@ from .machine.cam_roller import CamRoller
 from .machine.crank import Crank
 from .machine.guide import Guide
 from .machine.links import Link
-from .machine.loads import Force, Gravity, PointDamper, PointForce, PointSpring, ProcessForce, Spring, Torque
+from .machine.loads import (
+    Force,
+    Gravity,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    ProcessForce,
+    Spring,
+    Table,
+    Torque,
+    TorsionDamper,
+    TorsionSpring,
+)
 from .machine.mechanism import Mechanism
 from .machine.rocker_group import RockerGroup
 from .machine.slider_group import SliderGroup
@@ -76,7 +88,10 @@ __all__ = [
     "SliderGroup",
     "Solution",
     "Spring",
+    "Table",
     "Torque",
+    "TorsionDamper",
+    "TorsionSpring",
     "balancing",
     "cam_crank_slider",
     "cams",
