@@ -16,7 +16,7 @@ import pandas as pd
 
 from ..engines import loops, programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from ..machine.loads import TURN
+from ..machine.loads import TURN, refusals
 from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import components, quantity, sizes
 from ..numbers import checks
@@ -319,6 +319,7 @@ def _run(scene, job, count, outputs):
     nearest to a limit position (designs,), NaN if it is not near.
     """
     solution = _solution(scene, job.angles)
+    checks.require("solve", *refusals(solution))
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
         raise ParameterError(
