@@ -9,6 +9,18 @@ from ..numbers.elementary import is_foreign_array
 from ..numbers.leaves import with_fields
 from .motion import Motion
 
+KNOWN = (
+    "crank_angle",
+    "crank_speed",
+    "crank_acceleration",
+    *(f"{name}(point)" for name in ("position", "velocity", "acceleration")),
+    *(f"{name}(link)" for name in ("rate", "angular_acceleration")),
+    *(f"{name}(slider)" for name in ("travel", "travel_velocity", "travel_acceleration")),
+    "measure(name)",
+    "mechanism",
+)
+"""What a function of the motion may ask for."""
+
 
 class Moving(Motion):
     """A motion as functions of it see it, without forces: these come of what the functions give."""
@@ -16,10 +28,9 @@ class Moving(Motion):
     def __getattr__(self, name):
         if name.startswith("_"):
             raise AttributeError(name)
-        known = [name for name in dir(Motion) if not name.startswith("_")]
         raise UnknownForceError(
-            f"a function of the motion asks for {name!r}, which hangs on the forces that it gives itself; it may ask "
-            f"for {', '.join(known)}"
+            f"a function of the motion asks for {name!r}, which it has not: forces come of what the function gives; it "
+            f"may ask for {', '.join(KNOWN)}"
         )
 
 

@@ -22,7 +22,7 @@ def place(random, mechanism, size):
     """A joint, a place on a link or a fixed point."""
     kind = random.integers(3)
     if kind == 0:
-        return str(random.choice([name for name in mechanism.joints]))
+        return str(random.choice(list(mechanism.joints)))
     along, across = random.uniform(-size, size, 2).tolist()
     return (along, across) if kind == 1 else (str(random.choice(list(mechanism.links))), along, across)
 

@@ -134,11 +134,8 @@ def on_arb(arb, solution) -> Dynamics:
             _require_exact(what, values, arb)
     drive = _copied((solution.crank_speed, solution.crank_acceleration), arb)
     idle = Dynamics(mechanism, angle, *drive)
-    loads = (
-        _load_on_arb(arb, item, f"load {place}, {title_of(item)},", idle, solution)
-        for place, item in enumerate(solution.loads, 1)
-    )
-    return replace(idle, loads=tuple(loads))
+    named = ((item, f"load {place}, {title_of(item)},") for place, item in enumerate(solution.loads, 1))
+    return replace(idle, loads=tuple(_load_on_arb(arb, item, what, idle, solution) for item, what in named))
 
 
 def _load_on_arb(arb, item, what, motion, solution):
