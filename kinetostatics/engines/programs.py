@@ -105,6 +105,8 @@ class Program:
         """Outputs (outputs, *shape) from crank angles (..., N), numbers or arrays (..., 1), and rows of tables."""
         if math.prod(shape) <= FEW and not (len(shape) > 1 or rows):
             return self._by_numbers(angle, numbers, shape)
+        if not shape:
+            return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
         (single, batch), count = self._buffered
         results = np.empty((len(self.outputs), *shape))
         with np.errstate(all="ignore"):

@@ -98,7 +98,7 @@ def _checked(item, found, motion):
     if not _fits(array.shape, motion.shape):
         raise ParameterError(f"{owner} {wanted}, got shape {array.shape}")
     if not np.isfinite(array).all():
-        _require_finite(owner, array, motion)
+        _require_finite(f"{owner} must return finite {what}s", array, motion)
     return array if array.dtype.kind == "f" else array.astype(float)
 
 
@@ -116,7 +116,7 @@ def _require_finite(owner, push, motion):
         angle = np.broadcast_to(motion.crank_angle, motion.shape)[wrong]
         places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3]))
         raise ParameterError(
-            f"{owner} must return finite forces, got {np.broadcast_to(push, motion.shape)[wrong][0]} at {angle.size} "
+            f"{owner}, got {np.broadcast_to(push, motion.shape)[wrong][0]} at {angle.size} "
             f"crank angles, the first {places} deg",
             wrong.any(axis=-1) if wrong.ndim > 1 else None,
         )

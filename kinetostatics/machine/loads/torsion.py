@@ -136,7 +136,7 @@ class TorsionSpring(Couple):
     against: Any = field(default=None, kw_only=True)
     moment: Any = field(default=0.0, kw_only=True)
 
-    PATH, LENGTHS = "torsion_spring", ("free_angle",)
+    PATH, LENGTHS, REFUSES = "torsion_spring", ("free_angle",), True
     RULES = checks.Rules(
         "torsion spring",
         stiffness=checks.Number("N*m/rad", low=0.0),
