@@ -16,10 +16,12 @@ All vectors are taken in the frame that turns half as fast as the crank, in whic
 """
 
 import math
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt
 from ..numbers.planar import added, cross, dot, left, number, product, stretched, subtracted, turned, unturned
@@ -146,6 +148,28 @@ def _several(found, what, called):
         f"{'; '.join(called[kind] for kind in kinds)} (equal within {ULPS} ulp of the longest length); make a batch of each",
         found != found.flat[0],
     )
+
+
+def kink(group, crank):
+    """What a chosen side makes of the motion at change points, in words; "" where there are none."""
+    if type(group.assembly) is not int or group.on != "A" or crank.length is None:
+        return ""
+    try:
+        passing = replace(group, assembly="open").on_crank(crank)
+        angles = passing.change_points
+    except (ParameterError, TypeError):  # a batch of several kinds, or of several change points
+        return ""
+    if not angles:
+        return ""
+    named = {angle: "a kink" for angle in angles}
+    if parted(passing.passage)[0] in (MEETING, RHOMBUS):
+        named[angles[0] if len(angles) == 1 else _meeting_angle(passing)] = "a jump, as A meets the pivot"
+    texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
+    return f'assembly {group.assembly:+d} keeps to its side at change points: {texts}; "open" or "crossed" passes them'
+
+
+def _meeting_angle(group):
+    return math.atan2(group.pivot[1], group.pivot[0]) % (2 * math.pi)
 
 
 def parted(passage):

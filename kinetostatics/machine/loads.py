@@ -254,9 +254,9 @@ def _degrees(angle):
     return f"{math.degrees(angle):.9g} deg"
 
 
-def period_of(loads):
-    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, one at least."""
-    return TURN * math.lcm(*(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
+def period_of(loads, turns=1):
+    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, or so many."""
+    return TURN * math.lcm(turns, *(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
 
 
 def is_given(item):

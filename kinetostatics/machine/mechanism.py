@@ -88,9 +88,19 @@ class Mechanism(Batched):
         """Turns of the crank after which the motion repeats: 1, or 2 where a branch through a change point takes them."""
         return math.lcm(*(group.turns for group in self.groups))
 
+    @property
+    def passages(self):
+        """How each group passes its change points: a text, "" where it has none, None where it keeps to its side."""
+        return tuple(group.passage if group.through else None for group in self.groups)
+
+    @cached_property
+    def passes(self):
+        """Whether it passes change points: motion is smooth there, but forces grow without bound."""
+        return any(group.passes for group in self.groups)
+
     @cached_property
     def change_points(self):
-        """Crank angles in [0, 2 pi) of the change points that it passes, rad: motion is smooth there, forces grow."""
+        """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
         return tuple(sorted({angle for group in self.groups for angle in group.change_points}))
 
     @cached_property

@@ -154,9 +154,12 @@ class RockerGroup(checks.Checked, Group):
     )
 
     def on_crank(self, crank):
-        if type(self.assembly) is int:
+        if not self.through:
             return self
         return with_fields(self, passage=change_points.of_rocker_group(self, crank))
+
+    def kink(self, crank):
+        return change_points.kink(self, crank)
 
     @property
     def turns(self):

@@ -98,6 +98,8 @@ class Program:
         }
         self._absent = tuple(path for path in places if path not in self._numbers)
         self._doors = {path for path in self._numbers if _is_judged_together(scene, places[path].steps)}
+        self._passages = scene.mechanism.passages
+        self._lengths = _lengths(places, self._numbers) if any(word is not None for word in self._passages) else set()
         values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
         self.parameters: Mapping[str, Any] = MappingProxyType(values)
 
@@ -141,7 +143,7 @@ class Program:
         angle, values
             As for a call.
         by : sequence of str, optional
-            Paths; all parameters unless told.
+            Paths; all parameters unless told, but for lengths where change points are passed.
 
         Returns
         -------
@@ -150,12 +152,18 @@ class Program:
 
         Raises
         ------
+        ParameterError
+            There is no such parameter, or it is a length of a mechanism that passes change points: any other length
+            makes another kind of it.
         NotGivenError
             A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
-        names = tuple(self.parameters) if by is None else ((by,) if isinstance(by, str) else tuple(by))
+        fixed = self._lengths if self.scene.mechanism.passes else ()
+        every = tuple(path for path in self.parameters if path not in fixed)
+        names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
         checks.require("program", None if names else "by names no parameter to derive by")
         self._require_known(names)
+        checks.require("program", *(_FIXED.format(self.scene.mechanism.name, path) for path in names if path in fixed))
         state, leaves = self._at(angle, values)
         places = tuple(self._numbers[name][0] for name in names)
         rows = self._program.by_parameters(places).run(state, leaves, self._compiled)
@@ -197,7 +205,19 @@ class Program:
             checks.require("program", *wrong)
         if not self._doors.isdisjoint(values):
             self.scene.varied(values)
+        if not self._lengths.isdisjoint(values):
+            self._require_same_kind(values)
         return numbers
+
+    def _require_same_kind(self, values):
+        """Refuse lengths that make change points, or take them away: the arithmetic is that of one kind."""
+        name, before = self.scene.mechanism.name, self._passages
+        if self.scene.varied(values).mechanism.passages != before:
+            given = ", ".join(sorted(self._lengths.intersection(values)))
+            raise ParameterError(
+                f"program: {name} with other values of {given} is of another kind (which change points it passes), whose "
+                "arithmetic is another: change lengths together so that the kind stays, or compile a program of its own"
+            )
 
     def _require_known(self, names):
         if all(path in self._numbers for path in names):
@@ -209,6 +229,22 @@ class Program:
                     f'compile(..., parameters=("{path}",))'
                 )
         checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+
+
+_FIXED = (
+    "there is no derivative by {1}: {0} passes change points, and with any other length it would be of another kind"
+)
+
+
+def _lengths(places, numbers):
+    """Paths of what decides whether a mechanism has change points: lengths, and the line of a guide."""
+    return {path for path in numbers if places[path].rule.unit in ("m", "rad") and _is_of_shape(places[path].steps)}
+
+
+def _is_of_shape(steps):
+    """Whether a number stands in the crank or a group itself, or its guide, and not in a link."""
+    first, *rest = steps
+    return first == "mechanism" and (rest[0] == "crank" and rest[1] == "length" or rest[0] == "groups" and "centre" not in rest)
 
 
 def _shape(angle, leaves):

@@ -158,7 +158,8 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
 
 def _frame(ax, solution):
     """What does not move: the support, the guide over the stroke, the pitch curve of the cam or the crank circle."""
-    turn, made = _posed(solution, np.linspace(0, 360, 721)), solution.mechanism
+    made = solution.mechanism
+    turn = _posed(solution, np.linspace(0, 360 * made.turns, 720 * made.turns + 1))
     for joint, text in made.curves.items():
         ax.plot(*turn.position(joint), color=ACCENT, lw=1, ls="--", label=text)
     for bar in made.crank.bars:
