@@ -98,6 +98,11 @@ class Mechanism(Batched):
         """Whether it passes change points: motion is smooth there, but forces grow without bound."""
         return any(group.passes for group in self.groups)
 
+    def grows(self, name):
+        """Whether a force grows without bound at change points that it passes: one of a group that does, or at O."""
+        parts = [group for group in self.groups if group.passes]
+        return bool(parts) and name != "balancing_torque" and any(name in part.outputs for part in (self.crank, *parts))
+
     @cached_property
     def change_points(self):
         """Crank angles in [0, 2 pi) of the change points that it passes, rad."""

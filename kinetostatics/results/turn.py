@@ -115,7 +115,10 @@ class Turn:
             return solution.condition
         from ..mechanics import sensitivity
 
-        return sensitivity.condition(solution.dynamics, reactions=True)
+        found = sensitivity.condition(solution.dynamics, reactions=True)
+        distance = (solution.crank_angle[:, None] - self.passed + self.period / 2) % self.period - self.period / 2
+        with np.errstate(divide="ignore"):  # forces grow as one over it, also at 0, near which angles are exact
+            return np.fmax(found, 1.0 / np.abs(distance).min(axis=-1))
 
     @cached_property
     def usable(self):

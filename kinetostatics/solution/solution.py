@@ -198,7 +198,7 @@ class Solution(Motion):
         terms = np.broadcast_to(scale(self, quantity), largest.shape)
         cancelled = np.divide(terms, largest, out=np.ones(largest.shape), where=largest > 0)
         condition = self.condition
-        if self._grows(quantity):
+        if not callable(quantity) and self.mechanism.grows(quantity):
             from ..mechanics import sensitivity
 
             condition = sensitivity.condition(self.dynamics, reactions=True).reshape(self.shape)
@@ -237,13 +237,9 @@ class Solution(Motion):
         """Whether nothing of it is code of the user's, which may be wrong and is to be told when it is asked."""
         return self.mechanism.trusted and all(map(is_given, self.loads))
 
-    def _grows(self, quantity):
-        """Whether it is a force that grows without bound at change points that are passed."""
-        return self.mechanism.passes and quantity in self.mechanism.outputs and quantity != "balancing_torque"
-
     def _warn_of_growth(self, name, values):
         """Say once that forces grow without bound at a change point that is passed."""
-        if self.silent or not self._grows(name) or not isinstance(values, np.ndarray) or values.dtype != float:
+        if self.silent or not self.mechanism.grows(name) or not isinstance(values, np.ndarray) or values.dtype != float:
             return
         text = assembly.growth(self, name, values)
         if text:
