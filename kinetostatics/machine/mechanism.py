@@ -85,7 +85,7 @@ class Mechanism(Batched):
 
     @cached_property
     def turns(self):
-        """Turns of the crank after which the motion repeats: 1, or 2 where a branch through a change point takes them."""
+        """Turns of the crank after which the motion repeats: 1, or 2 for a branch through one change point a turn."""
         return math.lcm(*(group.turns for group in self.groups))
 
     @property

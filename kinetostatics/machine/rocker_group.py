@@ -216,11 +216,8 @@ class RockerGroup(checks.Checked, Group):
         """Add joints B and O2, coupler and rocker."""
         given = placement.joints[self.on], self.coupler_length, self.rocker_length, self.pivot
         side = change_points.SIDES.get(self.assembly, self.assembly)
-        if self.passage:
-            motion = change_points.place(placement, *given, self.passage, side)
-        else:
-            motion = place(*given, side)
-        self._set(placement, motion)
+        passed = self.passage and change_points.place(placement, *given, self.passage, side)
+        self._set(placement, passed or place(*given, side))
 
     def follow(self, placement, joints):
         """Place coupler and rocker at joints found in another way."""

@@ -132,15 +132,17 @@ def growth(solution, name, values):
     sizes = np.abs(values) if values.shape == solution.shape else np.abs(values).max(axis=0)
     terms = np.maximum(solution.largest_force_term, solution.largest_torque_term)
     with np.errstate(invalid="ignore"):
-        beyond = sizes > HALF * np.broadcast_to(terms, sizes.shape[:-1])[..., None] if sizes.ndim else sizes > HALF * terms
+        beyond = (
+            sizes > HALF * np.broadcast_to(terms, sizes.shape[:-1])[..., None] if sizes.ndim else sizes > HALF * terms
+        )
     if not np.any(beyond):
         return None
     worst = int(np.argmax(np.where(beyond, sizes, 0.0)))
     angle, size = np.broadcast_to(solution.crank_angle, sizes.shape).flat[worst], sizes.flat[worst]
     found = "infinite" if np.isinf(size) else f"{size:.3g} {quantities.unit_of(solution, name)}"
     return (
-        f"{solution.mechanism.name}: {name} is {found} at crank angle {np.degrees(angle):.9g} deg, at a change point that "
-        "the mechanism passes: it has a second freedom there for an instant, and its joints hold no load; motion and "
+        f"{solution.mechanism.name}: {name} is {found} at crank angle {np.degrees(angle):.9g} deg, at a change point "
+        "that the mechanism passes: it has a second freedom there for an instant, and its joints hold no load; motion and "
         f"balancing torque are right ({int(np.sum(beyond))} of {sizes.size} crank angles)"
     )
 

@@ -99,7 +99,9 @@ class Program:
         self._absent = tuple(path for path in places if path not in self._numbers)
         self._doors = {path for path in self._numbers if _is_judged_together(scene, places[path].steps)}
         self._passages = scene.mechanism.passages
-        self._lengths = _lengths(places, self._numbers) if any(word is not None for word in self._passages) else set()
+        groups = scene.mechanism.groups
+        self._lengths = _shaping(places, scene.mechanism, [group for group in groups if group.through])
+        self._fixed = _shaping(places, scene.mechanism, [group for group in groups if group.passes])
         values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
         self.parameters: Mapping[str, Any] = MappingProxyType(values)
 
@@ -158,12 +160,12 @@ class Program:
         NotGivenError
             A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
-        fixed = self._lengths if self.scene.mechanism.passes else ()
-        every = tuple(path for path in self.parameters if path not in fixed)
+        every = tuple(path for path in self.parameters if path not in self._fixed)
         names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
         checks.require("program", None if names else "by names no parameter to derive by")
         self._require_known(names)
-        checks.require("program", *(_FIXED.format(self.scene.mechanism.name, path) for path in names if path in fixed))
+        name = self.scene.mechanism.name
+        checks.require("program", *(_FIXED.format(name, path) for path in names if path in self._fixed))
         state, leaves = self._at(angle, values)
         places = tuple(self._numbers[name][0] for name in names)
         rows = self._program.by_parameters(places).run(state, leaves, self._compiled)
@@ -215,8 +217,8 @@ class Program:
         if self.scene.varied(values).mechanism.passages != before:
             given = ", ".join(sorted(self._lengths.intersection(values)))
             raise ParameterError(
-                f"program: {name} with other values of {given} is of another kind (which change points it passes), whose "
-                "arithmetic is another: change lengths together so that the kind stays, or compile a program of its own"
+                f"program: {name} with other values of {given} is of another kind (which change points it passes), "
+                "whose arithmetic is another: change lengths together so that the kind stays, or compile a program of its own"
             )
 
     def _require_known(self, names):
@@ -236,15 +238,16 @@ _FIXED = (
 )
 
 
-def _lengths(places, numbers):
-    """Paths of what decides whether a mechanism has change points: lengths, and the line of a guide."""
-    return {path for path in numbers if places[path].rule.unit in ("m", "rad") and _is_of_shape(places[path].steps)}
-
-
-def _is_of_shape(steps):
-    """Whether a number stands in the crank or a group itself, or its guide, and not in a link."""
-    first, *rest = steps
-    return first == "mechanism" and (rest[0] == "crank" and rest[1] == "length" or rest[0] == "groups" and "centre" not in rest)
+def _shaping(places, mechanism, groups):
+    """Paths of what decides which change points some groups pass: crank length, and their own lengths and lines."""
+    numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
+    owners = [("mechanism", "groups", number) for number in numbers] + [("mechanism", "crank")] * bool(numbers)
+    return {
+        path
+        for path, place in places.items()
+        if any(place.steps[: len(owner)] == owner for owner in owners)
+        and not {"link", "coupler", "rocker", "slider"} & set(place.steps)
+    }
 
 
 def _shape(angle, leaves):

@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import NotGivenError
 from ...machine.cam_roller import CamRoller
 from ...machine.cams import Circle, CosineLaw
+from ...machine.change_points import FAR, MEETING, NEAR, SIDES, parted
 from ...machine.loads import Gravity, ProcessForce, Spring
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
@@ -97,9 +98,9 @@ class _Machine:
             if isinstance(group, CamRoller):
                 joints["A"], links["block"] = self.roller(group.cam, angle), ("A", ray)
             elif isinstance(group, SliderGroup):
-                self.add_slider(group, joints, links)
+                self.add_slider(group, joints, links, self.side(group, angle))
             elif isinstance(group, RockerGroup):
-                self.add_rocker(group, joints, links)
+                self.add_rocker(group, joints, links, self.side(group, angle))
             else:
                 raise NotGivenError(f"there is no independent formula for a {type(group).__name__}")
         found = {("joint", name): place for name, place in joints.items()}
@@ -108,24 +109,35 @@ class _Machine:
             found["direction", name] = direction
         return found
 
-    def add_slider(self, group, joints, links):
+    def side(self, group, angle):
+        """Side of a group, which changes at each change point that it passes."""
+        side = SIDES.get(group.assembly, group.assembly)
+        if not group.passes:
+            return side
+        (kind, _), slides = parted(group.passage), isinstance(group, SliderGroup)
+        start = -1j * self.vector(group.guide.direction) if slides else self.vector(group.pivot)
+        psi = angle - self.mp.arg(start)
+        passed = {FAR: self.mp.cos(psi / 2), NEAR: self.mp.sin(psi / 2), MEETING: self.mp.sin(psi / 2)}
+        return side * self.mp.sign(passed.get(kind, self.mp.sin(psi)))
+
+    def add_slider(self, group, joints, links, side):
         mp = self.mp
         coupler, slider = group.links
         start, length = joints[group.on], self.number(group.coupler_length)
         along = self.vector(group.guide.direction)
         along /= abs(along)
         lean = mp.asin((self.number(group.guide.guide_offset) - _cross(along, start)) / length)
-        direction = mp.expj(mp.arg(along) + (lean if group.assembly > 0 else mp.pi - lean))
+        direction = mp.expj(mp.arg(along) + (lean if side > 0 else mp.pi - lean))
         joints[group.pin] = start + length * direction
         links[coupler], links[slider] = (group.on, direction), (group.pin, along)
 
-    def add_rocker(self, group, joints, links):
+    def add_rocker(self, group, joints, links, side):
         mp = self.mp
         coupler, rocker = group.links
         start, pivot = joints[group.on], self.vector(group.pivot)
         c, h, a = self.number(group.coupler_length), self.number(group.rocker_length), abs(pivot - start)
         opening = mp.acos((a * a + c * c - h * h) / (2 * a * c))
-        direction = mp.expj(mp.arg(pivot - start) + group.assembly * opening)
+        direction = mp.expj(mp.arg(pivot - start) + side * opening)
         joints[group.pin], joints[group.pivot_name] = start + c * direction, pivot
         links[coupler], links[rocker] = (group.on, direction), (group.pivot_name, (joints[group.pin] - pivot) / h)
 
