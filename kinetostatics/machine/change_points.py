@@ -8,8 +8,8 @@ reduced to one turn. With A -> O2 of length e, four times the area of the triang
 
 so that one factor is a whole square where a + d = b + h ("far": A is farthest from O2), the other where
 |d - a| = |b - h| ("near"). Its root with its sign, cos(psi/2) or sin(psi/2), is smooth through the change point, and is
-divided out of the rates. Where both hold the linkage is a parallelogram or a kite, whose other branch is its mirror image in the line
-A O2; where a = d and b = h A meets O2 ("meeting"), and sin(psi/2) is divided out of e as well.
+divided out of the rates. Where both hold the linkage is a parallelogram or a kite, whose other branch is its mirror
+image in the line A O2; where a = d and b = h A meets O2 ("meeting"), and sin(psi/2) is divided out of e as well.
 
 All vectors are taken in the frame that turns half as fast as the crank, in which A -> O2 is
 ((d-a) cos(psi/2), -(d+a) sin(psi/2)).

@@ -142,8 +142,8 @@ def growth(solution, name, values):
     found = "infinite" if np.isinf(size) else f"{size:.3g} {quantities.unit_of(solution, name)}"
     return (
         f"{solution.mechanism.name}: {name} is {found} at crank angle {np.degrees(angle):.9g} deg, at a change point "
-        "that the mechanism passes: it has a second freedom there for an instant, and its joints hold no load; motion and "
-        f"balancing torque are right ({int(np.sum(beyond))} of {sizes.size} crank angles)"
+        "that the mechanism passes: it has a second freedom there for an instant, and its joints hold no load; motion "
+        f"and balancing torque are right ({int(np.sum(beyond))} of {sizes.size} crank angles)"
     )
 
 

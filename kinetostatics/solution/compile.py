@@ -218,7 +218,7 @@ class Program:
             given = ", ".join(sorted(self._lengths.intersection(values)))
             raise ParameterError(
                 f"program: {name} with other values of {given} is of another kind (which change points it passes), "
-                "whose arithmetic is another: change lengths together so that the kind stays, or compile a program of its own"
+                "whose arithmetic is another: change lengths together so that it stays, or compile a program of it"
             )
 
     def _require_known(self, names):
