@@ -4,12 +4,14 @@ from dataclasses import dataclass, field
 from typing import Any
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from ...numbers import checks
 from ...numbers.elementary import atan
 from ...numbers.planar import minus, number, product, unturned
 from ..crank import ray
 from ..group import FRAME
-from ..links import Wrench
+from ..links import Wrench, present
 from .load import Load, valued
 from .period import TURN
 
