@@ -52,7 +52,7 @@ but the crank can be asked.
 
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
-forces and power; tests/test_a_group_of_ones_own.py has a whole example.
+forces and power; tests/machine/test_a_group_of_ones_own.py has a whole example.
 
 Nothing else in the library knows what a group looks like, nor the names of its links.
 """
