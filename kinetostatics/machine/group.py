@@ -145,7 +145,6 @@ class Placement:
 class Group:
     """What follows from what a group declares; see the module for what that is."""
 
-    label = ""
     TRUSTED = False
     """Whether its forces are known to balance and its names to come from its texts: the library's own, as tested."""
     trusted = False
@@ -154,6 +153,11 @@ class Group:
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)
         cls.trusted = vars(cls).get("TRUSTED", False)
+
+    @property
+    def label(self):
+        """What tells its names, and paths of its numbers, from those of another of its kind."""
+        return ""
 
     @property
     def follows(self):
