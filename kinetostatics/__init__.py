@@ -43,7 +43,19 @@ from .machine.dyad import Dyad
 from .machine.guide import Guide
 from .machine.lever_group import LeverGroup
 from .machine.links import Link
-from .machine.loads import Force, Gravity, PointDamper, PointForce, PointSpring, ProcessForce, Spring, Torque
+from .machine.loads import (
+    Force,
+    Gravity,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    ProcessForce,
+    Spring,
+    Table,
+    Torque,
+    TorsionDamper,
+    TorsionSpring,
+)
 from .machine.mechanism import Mechanism
 from .machine.pin import Pin
 from .machine.rocker_group import RockerGroup
@@ -85,8 +97,14 @@ __all__ = [
     "SliderGroup",
     "Solution",
     "Spring",
+    "Table",
     "Torque",
+<<<<<<< HEAD
     "YokeGroup",
+=======
+    "TorsionDamper",
+    "TorsionSpring",
+>>>>>>> wt-loads
     "balancing",
     "cam_crank_slider",
     "cams",

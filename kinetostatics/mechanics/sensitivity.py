@@ -25,7 +25,7 @@ from ..machine.crank import ray
 from ..machine.group import Group
 from ..machine.guide import Guide
 from ..machine.links import Link, arm, first_at, second_at, virtual_work
-from ..machine.loads import Load, ProcessForce
+from ..machine.loads import Load, ProcessForce, Table
 from ..numbers.duals import Dual
 from ..numbers.elementary import UNIT
 from ..numbers.leaves import is_structural, mapped, with_fields
@@ -173,9 +173,15 @@ class _Seeded:
         copied = with_fields(mapped(item, self._constant), **lengths)
         if item.is_given:
             return copied
-        return with_fields(
-            copied, **{item.VALUE: self._given(lambda: item.value_now(moving(idle)), amount(item, self._plain))}
-        )
+        return with_fields(copied, **{item.VALUE: self._value_of(item, idle)})
+
+    def _value_of(self, item, idle):
+        """What a table or function gives, with derivatives where it lets them through."""
+        value = item.value_now
+        if not isinstance(value, Table):
+            return self._given(lambda: value(moving(idle)), amount(item, self._plain))
+        pieces = [self._value(part) for part in value.pieces(self._plain)]
+        return value.read(idle, [_array(Dual(part)) for part in pieces])
 
     def _given(self, compute, plain):
         """What a function of the user's computes, or its plain values where it takes plain numbers only."""

@@ -8,34 +8,16 @@ A load is a frozen dataclass derived from `Load`. It acts in one of two ways:
 from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` names the field that may hold an array over
 the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what
 such a function gives in its place before (`settled` in mechanics/pushes.py). ``LENGTHS`` names the fields that hold
-lengths and angles of the geometry. ``problems(mechanism)`` says what is wrong with a load on that mechanism,
+lengths and angles of the geometry. ``misplaced(mechanism)`` says what of a mechanism it names wrongly,
 ``refusals(motion)`` where it has no value.
 """
 
-import math
 from typing import Any, ClassVar
 
 from ...numbers import checks
 from ...numbers.batched import Batched
-
-TURN = 2 * math.pi
-MOST_TURNS = 100
-"""Turns after which loads must repeat, all together."""
-
-
-class WholeTurns:
-    """Rule of a period: 2 pi or a whole multiple of it, but for rounding, which is taken away."""
-
-    def quick(self, value):
-        return value if value is TURN else checks.UNSURE
-
-    def taken(self, value, field=""):
-        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-        turns = value / TURN if number else 0.0
-        if round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns:
-            many = f"{field} must be at most {MOST_TURNS} turns, got {round(turns):.6g}"
-            return round(turns) * TURN, many if round(turns) > MOST_TURNS else None
-        return value, f"{field} must be 2 pi or a whole multiple of it, got {checks.shown(value)}"
+from .period import TURN
+from .tables import Table
 
 
 class Load(checks.Checked, Batched):
@@ -67,17 +49,17 @@ class Load(checks.Checked, Batched):
         return type(self).__name__
 
     def problems(self, mechanism):
-        """What is wrong with it on a mechanism, as sentences."""
+        """What is wrong with it, and with its table, on a mechanism, as sentences."""
+        table = self.value_now
+        return [*self.misplaced(mechanism), *(table.problems(mechanism) if isinstance(table, Table) else ())]
+
+    def misplaced(self, mechanism) -> Any:
+        """What is wrong with the joints and links that it names."""
         return ()
 
-    def refusals(self, motion):
+    def refusals(self, motion) -> Any:
         """Where it has no value, as sentences."""
         return ()
-
-
-def period_of(loads):
-    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, one at least."""
-    return TURN * math.lcm(*(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
 
 
 def is_given(item):

@@ -70,7 +70,7 @@ class Force(Load):
     def title(self):
         return f"Force at {places.shown(self.at)}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there is no such joint or link."""
         yield places.problem("Force", "at", self.at, mechanism)
         if self.along is not None:
@@ -86,15 +86,19 @@ class Force(Load):
 
 
 class PointLoad(Load):
-    """A load along the line of two points `between`; `pull` is its force on the first one over the vector to it."""
+    """A load along the line of two points `between`."""
 
     between: Any
+
+    def pull(self, motion) -> Any:
+        """Force on the first point, N."""
+        raise NotImplementedError
 
     @property
     def title(self):
         return f"{type(self).__name__} between {' and '.join(map(places.shown, self.between))}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there are no such points, or if both move as one."""
         owner = type(self).__name__
         wrong = [places.problem(owner, f"between {n}", place, mechanism) for n, place in enumerate(self.between, 1)]
