@@ -99,12 +99,9 @@ __all__ = [
     "Spring",
     "Table",
     "Torque",
-<<<<<<< HEAD
-    "YokeGroup",
-=======
     "TorsionDamper",
     "TorsionSpring",
->>>>>>> wt-loads
+    "YokeGroup",
     "balancing",
     "cam_crank_slider",
     "cams",
