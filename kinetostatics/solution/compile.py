@@ -146,7 +146,7 @@ class Program:
         Returns
         -------
         dict of str to dict of path to array
-            Shaped as the quantities, in units of the quantity by units of the parameter.
+            Shaped as the quantities, in units of the quantity by units of the parameter; NaN where these are.
 
         Raises
         ------
@@ -159,7 +159,11 @@ class Program:
         state, leaves = self._at(angle, values)
         places = tuple(self._numbers[name][0] for name in names)
         rows = self._program.by_parameters(places).run(state, leaves, self._compiled)
-        rows = read_only(rows.reshape(-1, len(names), *state.shape))
+        count = len(self._program.outputs)
+        gaps, slopes = np.isnan(rows[:count]), rows[count:].reshape(count, len(names), *state.shape)
+        if gaps.any():
+            slopes = np.where(gaps[:, None], np.nan, slopes)
+        rows = read_only(slopes)
         return {
             quantity: dict(zip(names, np.moveaxis(found, -1 - len(state.shape), 0), strict=True))
             for quantity, found in self._program.recording.named(rows).items()
@@ -167,7 +171,7 @@ class Program:
 
     def _at(self, angle, values):
         """The scene at crank angles, with its leaves."""
-        angle = np.array(angle) if type(angle) is float else crank_angles(angle)
+        angle = np.array(angle) if type(angle) is float else crank_angles(angle, "program")
         wrong = problems(angle)
         if wrong:
             checks.require("program", wrong)

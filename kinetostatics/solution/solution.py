@@ -14,6 +14,7 @@ from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
 from ..mechanics.quantities import scale, values
+from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..results.turn import Turn
 from .angles import crank_angles
@@ -42,9 +43,7 @@ class Solution(Motion):
         assembly.warn_of_lost_digits(self.dynamics)
 
     def __repr__(self):
-        drive = f"crank_speed={self.crank_speed}, crank_acceleration={self.crank_acceleration}"
-        loads = ", ".join(type(item).__name__ for item in self.loads) or "no loads"
-        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive}, {loads}>"
+        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive_and_loads(self)}>"
 
     def at(self, crank_angle):
         """The same mechanism, speed and loads at other crank angles."""
@@ -235,3 +234,14 @@ class Solution(Motion):
             together = of_all and math.prod(self.shape) <= SHARE
             self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
         return self._values[name]
+
+
+def drive_and_loads(item):
+    """Drive and loads of a scene or solution in a line."""
+    loads = ", ".join(type(load).__name__ for load in item.loads) or "no loads"
+    drive = f"crank_speed={_short(item.crank_speed)}, crank_acceleration={_short(item.crank_acceleration)}"
+    return f"{drive}, {loads}"
+
+
+def _short(value):
+    return checks.shown(value) if np.ndim(value) == 0 else f"<array of shape {np.shape(value)}>"

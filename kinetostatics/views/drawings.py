@@ -198,8 +198,18 @@ def _bar_lines(pose):
     for slot in pose.mechanism.slots:
         start = pose.position(pose.mechanism.references[slot.link])
         yield _ends(start, start + 1.15 * (pose.position(slot.joint) - start))
-    for bar in pose.mechanism.bars:
-        yield _ends(pose.position(bar.start), pose.position(bar.end))
+    for start, end in _strokes(pose.mechanism):
+        yield _ends(pose.position(start), pose.position(end))
+
+
+def _strokes(made):
+    """Pairs of joints of one link: ends of bars, and what makes triangles of them with further joints of the link."""
+    bars = [(bar.start, bar.end) for bar in made.bars]
+    ends = {point.link: [made.references[point.link]] for point in made.joints.values() if point.link != FRAME}
+    for bar in made.bars:
+        ends.setdefault(bar.link, [bar.start]).append(bar.end)
+    further = [(name, point.link) for name, point in made.joints.items() if point.link != FRAME]
+    return bars + [(end, name) for name, link in further if name not in ends[link] for end in ends[link]]
 
 
 def _ends(start, end):

@@ -67,7 +67,8 @@ class Number:
             )
         beyond = (size >= self.below) | (array <= self.above)
         if np.any(beyond):
-            words = f"between {self.above:g} and {self.below:g}"
+            low = self.above if self.low is None or self.strict else self.low
+            words = f"between {low:g} and {self.below:g}"
             return Problem(f"{name} must lie {words} to be computed in double precision, got {shown(number)}", beyond)
         return None
 
