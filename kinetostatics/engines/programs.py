@@ -103,6 +103,8 @@ class Program:
 
     def by_numpy(self, angle, numbers, rows, shape):
         """Outputs (outputs, *shape) from crank angles (..., N), numbers or arrays (..., 1), and rows of tables."""
+        if not shape:
+            return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
         (single, batch), count = self._buffered
         results = np.empty((len(self.outputs), *shape))
         with np.errstate(all="ignore"):

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, is_given
+from ..machine.loads import TURN, Table, is_given, refusals, value_of
 from ..mechanics import assembly
 from ..mechanics.pushes import given, title_of
+from ..numbers import checks
 
 SAMPLES = 1440
 """Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""
@@ -31,6 +32,8 @@ APPROACH = 0.1 * 2.0 ** (-np.arange(120) / 3)
 """Distances from a limit position, rad, by which it is approached; every third is half as far."""
 GROWING = 1.15
 """How much more a quantity must change each time the distance is halved to grow without bound."""
+BESIDE = (-(2.0**-44), 2.0**-44)
+"""Distances from a jump, rad, at which samples stand on both sides of it."""
 SAME = 1e-9
 """Crank angles this near, rad, are the same."""
 LONGEST = 6
@@ -54,12 +57,15 @@ class Turn:
         Crank angles between which the mechanism does not close.
     limits : array
         Crank angles at which a group stands in a limit position, or nearly so, ends of gaps among them.
+    kinks : array
+        Crank angles at which a table has a kink, or may jump.
     """
 
     at: Any
     period: float
     gaps: tuple[tuple[float, float], ...]
     limits: np.ndarray
+    kinks: np.ndarray
 
     @classmethod
     def of(cls, solution):
@@ -73,8 +79,12 @@ class Turn:
         turns = round(solution.period / TURN)
         count = SAMPLES * turns * (1 if all(map(is_given, solution.loads)) else FINER)
         grid = np.linspace(0.0, solution.period, count, endpoint=False)
+        kinks, jumps = _kinks(solution)
+        if jumps.size:
+            grid = np.unique(np.concatenate([grid, *(np.mod(jumps + side, solution.period) for side in BESIDE)]))
         first = solution.at(grid)
         require_repeating(solution)
+        checks.require("extremes", *refusals(first))
         near = assembly.near_limits(solution.mechanism, NEAR)
         gaps = assembly.gaps(solution.mechanism) if near.size else ()
         near = np.concatenate([near, *gaps])
@@ -82,11 +92,11 @@ class Turn:
         near = near[np.diff(near, prepend=-1.0) > 2 * SAME]
         limits = np.ravel(near + TURN * np.arange(turns)[:, None])
         if not limits.size:
-            return cls(first, solution.period, (), limits)
+            return cls(first, solution.period, (), limits, kinks)
         dense = limits[:, None] + np.concatenate([-LADDER, [0.0], LADDER])
         angle = np.unique(np.concatenate([grid, np.mod(dense.ravel(), solution.period)]))
         repeated = tuple((a + TURN * turn, b + TURN * turn) for turn in range(turns) for a, b in gaps)
-        return cls(solution.at(angle), solution.period, repeated, limits)
+        return cls(solution.at(angle), solution.period, repeated, limits, kinks)
 
     @property
     def angle(self):
@@ -184,6 +194,16 @@ class Turn:
         index = np.searchsorted(self.angle, angle)
         inside = ~self.usable[index % self.usable.size] | ~self.usable[index - 1]
         return np.where(inside, np.where(angle - low < high - angle, low, high), angle)
+
+
+def _kinks(solution):
+    """Crank angles of kinks and jumps of all tables among the loads, over the period."""
+    found: list[Any] = [(np.empty(0), np.empty(0))]
+    for table in map(value_of, solution.loads):
+        if isinstance(table, Table):
+            again = np.arange(0.0, solution.period - SAME, table.period)[:, None]
+            found.append(tuple(np.ravel(angles + again) for angles in table.kinks(solution)))
+    return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
 
 
 def runs(marked):

@@ -9,6 +9,7 @@ import numpy as np
 from ..engines import programs
 from ..engines.compiled import available, require
 from ..errors import ParameterError
+from ..machine.loads import may_refuse, refusals
 from ..mechanics.dynamics import Dynamics
 from ..numbers import checks, paths
 from ..numbers.elementary import read_only
@@ -89,7 +90,7 @@ class Program:
             if _is_zero(places[path].value(scene)):
                 scene = _with_kept(scene, places[path].steps)
         state = Dynamics(scene.mechanism, np.zeros(1), scene.crank_speed, scene.crank_acceleration, scene.loads)
-        self._fields = dict(vars(state))
+        self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)
         numbered = programs.numbered(state)
         found = {path: place.value(numbered) for path, place in places.items()}
@@ -179,9 +180,11 @@ class Program:
             checks.require("program", f"values must be a dict of parameter to number, got {checks.shown(values)}")
         leaves = self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
         shape = _shape(angle, leaves)
-        if self._program.recording.tables:
+        if self._refuses or self._program.recording.tables:
             scene = self.scene.varied(values) if values else self.scene
-            return Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads), leaves
+            state = Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
+            checks.require("program", *refusals(state))
+            return state, leaves
         state = object.__new__(Dynamics)
         vars(state).update(self._fields, crank_angle=angle, shape=shape)
         return state, leaves

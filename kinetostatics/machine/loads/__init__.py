@@ -11,7 +11,7 @@ period      turns after which loads repeat
 """
 
 from .gravity import Gravity
-from .load import Load, is_given, refusals, value_of
+from .load import Load, is_given, may_refuse, refusals, value_of
 from .period import MOST_TURNS, TURN, WholeTurns, period_of
 from .points import Force, PointDamper, PointForce, PointSpring
 from .slider import ProcessForce, Spring
@@ -50,6 +50,7 @@ __all__ = [
     "TorsionSpring",
     "WholeTurns",
     "is_given",
+    "may_refuse",
     "period_of",
     "refusals",
     "value_of",

@@ -9,7 +9,7 @@ from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` nam
 the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what
 such a function gives in its place before (`settled` in mechanics/pushes.py). ``LENGTHS`` names the fields that hold
 lengths and angles of the geometry. ``misplaced(mechanism)`` says what of a mechanism it names wrongly,
-``refusals(motion)`` where it has no value.
+``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion.
 """
 
 from typing import Any, ClassVar
@@ -27,6 +27,7 @@ class Load(checks.Checked, Batched):
     VALUE: ClassVar[str] = ""
     UNIT: ClassVar[str] = "N"
     LENGTHS: ClassVar[tuple[str, ...]] = ()
+    REFUSES: ClassVar[bool] = False
 
     @property
     def value_now(self) -> Any:
@@ -74,7 +75,12 @@ def value_of(item):
 
 def refusals(motion):
     """Where loads have no value at the crank angles of a motion, as sentences."""
-    return [text for item in motion.loads if isinstance(item, Load) for text in item.refusals(motion)]
+    return [text for item in motion.loads if may_refuse(item) for text in item.refusals(motion)]
+
+
+def may_refuse(item):
+    """Whether there are motions for which a load has no value."""
+    return isinstance(item, Load) and item.REFUSES
 
 
 def valued(unit):

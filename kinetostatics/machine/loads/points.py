@@ -90,6 +90,8 @@ class PointLoad(Load):
 
     between: Any
 
+    REFUSES = True
+
     def pull(self, motion) -> Any:
         """Force on the first point, N."""
         raise NotImplementedError
@@ -262,7 +264,7 @@ class PointDamper(PointLoad):
     coefficient: Any
     between: Any = field(kw_only=True)
 
-    PATH, LENGTHS = "point_damper", ("between",)
+    PATH, LENGTHS, REFUSES = "point_damper", ("between",), False
     RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
 
     def pull(self, motion):

@@ -13,6 +13,8 @@ from .period import TURN, WholeTurns
 
 OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 """By what a table may be over: the heading of such a column, and its unit."""
+SAMPLES = 720
+"""Crank angles a turn between which the kinks of a table over travel are found."""
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
 
@@ -225,6 +227,22 @@ class Table:
         forward = np.where(np.asarray(motion.crank_speed) < 0, -1.0, 1.0)
         return forward * motion.placement.travels[self._slider(motion)].first < 0
 
+    def kinks(self, motion):
+        """Crank angles (K,) in a turn, or its period, at which it has kinks, and (J,) at which it may jump.
+
+        Those over travel lie where the slider passes a row, and at the ends of its strokes.
+        """
+        if self.over == "angle":
+            return np.mod(self.x, self.period), np.empty(0)
+        name, grid = self._slider(motion), np.linspace(0.0, TURN, SAMPLES + 1)
+
+        def travel(angle):
+            return motion.mechanism.place(angle).travels[name]
+
+        ends = _roots(lambda angle: travel(angle).first, grid)
+        rows = [_roots(lambda angle, row=row: travel(angle).position - row, grid) for row in self.x.tolist()]
+        return np.concatenate([ends, *rows]), ends if self.back is not None else np.empty(0)
+
     @property
     def _content(self):
         own = self.rows
@@ -244,6 +262,19 @@ class Table:
 def _piece(x, place):
     """Number of the piece between rows that each place lies in; the first or last beyond them."""
     return np.clip(np.searchsorted(x, place, side="right") - 1, 0, x.size - 2)
+
+
+def _roots(function, grid):
+    """Crank angles at which a function of it changes its sign, between those of a grid."""
+    from scipy.optimize import elementwise
+
+    with np.errstate(invalid="ignore"):
+        values = np.broadcast_to(function(grid), grid.shape)
+        change = np.flatnonzero(np.diff(np.sign(values)) * np.isfinite(values[:-1] * values[1:]))
+        exact = grid[:-1][values[:-1] == 0]
+        between = change[(values[change] != 0) & (values[change + 1] != 0)]
+    found = elementwise.find_root(function, (grid[between], grid[between + 1])).x if between.size else between
+    return np.mod(np.concatenate([exact, found]), TURN)
 
 
 def _area(value):

@@ -136,7 +136,7 @@ class TorsionSpring(Couple):
     against: Any = field(default=None, kw_only=True)
     moment: Any = field(default=0.0, kw_only=True)
 
-    PATH, LENGTHS = "torsion_spring", ("free_angle",)
+    PATH, LENGTHS, REFUSES = "torsion_spring", ("free_angle",), True
     RULES = checks.Rules(
         "torsion spring",
         stiffness=checks.Number("N*m/rad", low=0.0),
@@ -159,6 +159,8 @@ class TorsionSpring(Couple):
 
     def refusals(self, motion):
         """Say if the link passes half a turn from where the spring is free, and at which crank angles."""
+        if not checks.known(self.free_angle):
+            return ()
         known = _LOOKED_AT.setdefault(motion.mechanism, {})
         key = (self.on, self.against, np.asarray(self.free_angle).tobytes())
         if key not in known:
@@ -168,7 +170,7 @@ class TorsionSpring(Couple):
     def _passing(self, mechanism):
         grid = np.linspace(0.0, TURN, SAMPLES + 1)
         parts = self._leaning(mechanism.place(grid))
-        if not all(isinstance(part, np.ndarray) and part.dtype == float for part in map(np.asarray, parts)):
+        if not all(isinstance(part, float | np.ndarray) and checks.known(part) for part in parts):
             return
         angle = np.atleast_1d(np.arctan2(*np.broadcast_arrays(*parts)[::-1]))
         step = np.diff(angle, axis=-1)
