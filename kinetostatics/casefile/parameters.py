@@ -64,7 +64,7 @@ def _of_value(table, name, value, field, path):
 
 def _is_in_file(table):
     """Whether a table stands for numbers in a file."""
-    return isinstance(table, SampledTable | ValuesTable) or bool(getattr(table, "table", None))
+    return isinstance(table, SampledTable | ValuesTable) or getattr(table, "table", None) is not None
 
 
 def _meant(field):

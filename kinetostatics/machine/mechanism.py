@@ -92,12 +92,27 @@ class Mechanism(Batched):
 
     @cached_property
     def turns(self):
-        """Turns of the crank after which the motion repeats: 1, or 2 where a branch through a change point takes them."""
+        """Turns of the crank after which the motion repeats: 1, or 2 for a branch through one change point a turn."""
         return math.lcm(*(group.turns for group in self.groups))
+
+    @property
+    def passages(self):
+        """How each group passes its change points: a text, "" where it has none, None where it keeps to its side."""
+        return tuple(group.passage if group.through else None for group in self.groups)
+
+    @cached_property
+    def passes(self):
+        """Whether it passes change points: motion is smooth there, but forces grow without bound."""
+        return any(group.passes for group in self.groups)
+
+    def grows(self, name):
+        """Whether a force grows without bound at change points that it passes: one of a group that does, or at O."""
+        parts = [group for group in self.groups if group.passes]
+        return bool(parts) and name != "balancing_torque" and any(name in part.outputs for part in (self.crank, *parts))
 
     @cached_property
     def change_points(self):
-        """Crank angles in [0, 2 pi) of the change points that it passes, rad: motion is smooth there, forces grow."""
+        """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
         return tuple(sorted({angle for group in self.groups for angle in group.change_points}))
 
     @cached_property

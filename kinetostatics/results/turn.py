@@ -4,7 +4,7 @@ Near a limit position rates and forces change within a distance as small as they
 where nothing of them is right they are left out, and what the quantity tends to on both sides stands in their place.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -59,6 +59,8 @@ class Turn:
         Crank angles at which a group stands in a limit position, or nearly so, ends of gaps among them.
     kinks : array
         Crank angles at which a table has a kink, or may jump.
+    passed : array
+        Those of them that are change points passed, where forces grow; empty where no forces are asked for.
     """
 
     at: Any
@@ -66,10 +68,11 @@ class Turn:
     gaps: tuple[tuple[float, float], ...]
     limits: np.ndarray
     kinks: np.ndarray
+    passed: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     @classmethod
-    def of(cls, solution):
-        """Turn of a solution, whatever its own crank angles.
+    def of(cls, solution, forces=False):
+        """Turn of a solution, whatever its own crank angles; of its `forces` where it passes change points.
 
         Raises
         ------
@@ -87,16 +90,21 @@ class Turn:
         checks.require("extremes", *refusals(first))
         near = assembly.near_limits(solution.mechanism, NEAR)
         gaps = assembly.gaps(solution.mechanism) if near.size else ()
+        own = TURN * solution.mechanism.turns
         near = np.concatenate([near, *gaps])
-        near = np.unique(np.mod(near + SAME, TURN) - SAME)
+        near = np.unique(np.mod(near + SAME, own) - SAME)
         near = near[np.diff(near, prepend=-1.0) > 2 * SAME]
-        limits = np.ravel(near + TURN * np.arange(turns)[:, None])
+        limits = np.ravel(near + own * np.arange(round(solution.period / own))[:, None])
+        passed = np.array(solution.mechanism.change_points if forces else ())
+        passed = np.ravel(passed + TURN * np.arange(turns)[:, None])
+        limits = np.sort(np.concatenate([limits[~_beside(limits, passed)], passed]))
         if not limits.size:
             return cls(first, solution.period, (), limits, kinks)
         dense = limits[:, None] + np.concatenate([-LADDER, [0.0], LADDER])
         angle = np.unique(np.concatenate([grid, np.mod(dense.ravel(), solution.period)]))
-        repeated = tuple((a + TURN * turn, b + TURN * turn) for turn in range(turns) for a, b in gaps)
-        return cls(solution.at(angle), solution.period, repeated, limits, kinks)
+        starts = own * np.arange(round(solution.period / own))
+        repeated = tuple((a + start, b + start) for start in starts.tolist() for a, b in gaps)
+        return cls(solution.at(angle), solution.period, repeated, limits, kinks, passed)
 
     @property
     def angle(self):
@@ -110,7 +118,17 @@ class Turn:
     @cached_property
     def condition(self):
         """Condition at each angle, not looked at where no limit position is near."""
-        return self.at.condition if self.limits.size else np.ones(self.angle.size)
+        return self._condition(self.at) if self.limits.size else np.ones(self.angle.size)
+
+    def _condition(self, solution):
+        if not self.passed.size:
+            return solution.condition
+        from ..mechanics import sensitivity
+
+        found = sensitivity.condition(solution.dynamics, reactions=True)
+        distance = (solution.crank_angle[:, None] - self.passed + self.period / 2) % self.period - self.period / 2
+        with np.errstate(divide="ignore"):  # forces grow as one over it, also at 0, near which angles are exact
+            return np.fmax(found, 1.0 / np.abs(distance).min(axis=-1))
 
     @cached_property
     def usable(self):
@@ -126,7 +144,7 @@ class Turn:
         for run in runs(~good):
             low, high = self.angle[run[0]], self.angle[run[-1]]
             middle = [angle for angle in self.limits if (angle - low) % self.period <= (high - low) % self.period]
-            if not any(np.isclose(angle, self.edges, rtol=0, atol=SAME).any() for angle in middle):
+            if not any(_beside(angle, np.append(self.edges, self.passed)) for angle in middle):
                 places.append(middle[0] if middle else self.angle[run[run.size // 2]])
         return np.array(places)
 
@@ -156,7 +174,8 @@ class Turn:
         near = self._approached[angle, side]
         values = np.asarray(function(near), dtype=float)
         with np.errstate(invalid="ignore"):
-            trusted = np.isfinite(values) & (near.condition < TRUSTED)
+            condition = self._condition(near)
+            trusted = np.isfinite(values) & (condition < TRUSTED)
         count = trusted.size if trusted.all() else int(np.argmin(trusted))
         if count < 10:
             return np.nan
@@ -168,7 +187,7 @@ class Turn:
             return np.copysign(np.inf, change[-1])
         edge = np.isclose(angle, self.edges, rtol=0, atol=SAME).any()
         place = np.sqrt(distance) if edge else distance  # by the root of the distance rates change at the end of a gap
-        weight = 1.0 / (1e-10 + 1e-16 * near.condition[:count])
+        weight = 1.0 / (1e-10 + 1e-16 * condition[:count])
         fit = np.polynomial.Polynomial.fit(place, values, min(6, count - 3), domain=[0.0, place[0]], w=weight)(0.0)
         there = self._outermost(angle, side) if edge else angle
         direct = float(self.evaluate(function, np.array([there]))[0])
@@ -204,6 +223,11 @@ def _kinks(solution):
             again = np.arange(0.0, solution.period - SAME, table.period)[:, None]
             found.append(tuple(np.ravel(angles + again) for angles in table.kinks(solution)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
+
+
+def _beside(angle, others):
+    """Whether crank angles are among others, but for rounding."""
+    return np.isclose(np.asarray(angle)[..., None], others, rtol=0, atol=SAME).any(axis=-1)
 
 
 def runs(marked):

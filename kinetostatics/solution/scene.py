@@ -85,7 +85,7 @@ class Scene:
     @property
     def period(self):
         """Crank angle after which motion and loads repeat, rad."""
-        return period_of(self.loads)
+        return period_of(self.loads, self.mechanism.turns)
 
     @cached_property
     def _places(self):

@@ -10,6 +10,9 @@ from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from .canvas import ACCENT, INK, STEEL, axes, closed, display, labelled, single, styled
 
+MOST = 0.9
+"""Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
+
 
 def mass_centres(solutions, angle=60, ax=None):
     """Paths of the common mass centre, to one scale with the mechanism (mower study, figures 5a, 5b).
@@ -123,7 +126,7 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     sliders = [ax.plot([], [], "s", ms=13, mfc=STEEL, mec="none", zorder=3)[0] for _ in blocks]
     pins = [ax.plot([], [], "o", ms=6, mfc="white", mec=INK, zorder=4)[0] for _ in solution.placement.joints]
     positions = [solution.position(joint) for joint in solution.placement.joints]
-    forces = [solution.reaction(joint) for joint in joints]
+    forces = [_cut(solution, joint) for joint in joints]
     largest = max(float(np.nanmax(magnitude(force))) for force in forces)
     length = float(np.nanmax(magnitude(solution.position(_leading(solution.mechanism)))))
     outputs = solution.mechanism.outputs
@@ -158,7 +161,8 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
 
 def _frame(ax, solution):
     """What does not move: the support, the guide over the stroke, the pitch curve of the cam or the crank circle."""
-    turn, made = _posed(solution, np.linspace(0, 360, 721)), solution.mechanism
+    made = solution.mechanism
+    turn = _posed(solution, np.linspace(0, 360 * made.turns, 720 * made.turns + 1))
     for joint, text in made.curves.items():
         ax.plot(*turn.position(joint), color=ACCENT, lw=1, ls="--", label=text)
     for bar in made.crank.bars:
@@ -175,6 +179,17 @@ def _frame(ax, solution):
 def _posed(solution, degrees):
     """The mechanism at other crank angles, whatever its speed and loads."""
     return Motion(solution.mechanism, np.radians(degrees), 0.0, 0.0)
+
+
+def _cut(solution, joint):
+    """Reaction at a joint; near change points that are passed, where it grows without bound, no longer than most."""
+    force = solution.reaction(joint)
+    if not solution.mechanism.grows(joint):
+        return force
+    size = magnitude(force)
+    most = np.nanquantile(np.where(np.isfinite(size), size, np.nan), MOST)
+    with np.errstate(invalid="ignore"):
+        return np.where(size > most, np.nan_to_num(force / size, nan=0.0) * most, force)
 
 
 def _sliding(made):

@@ -24,6 +24,6 @@ class WholeTurns:
         return value, f"{field} must be 2 pi or a whole multiple of it, got {checks.shown(value)}"
 
 
-def period_of(loads):
-    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, one at least."""
-    return TURN * math.lcm(*(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
+def period_of(loads, turns=1):
+    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, or so many."""
+    return TURN * math.lcm(turns, *(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))

@@ -142,7 +142,7 @@ class Table:
         )
         names = [name for name, _ in headings(path)]
         if area is None and "pressure" in names and VALUES[unit] not in names:
-            raise CaseError(path, ["has pressures; give the area that they act on, as area"])
+            raise CaseError(path, ["no column 'force', but pressures; give the area that they act on, as area"])
         over = over or ("travel" if OVER["travel"][0] in names else "angle")
         column, own = OVER[over]
         of = unit.replace(" ", "*") if area is None else "Pa"

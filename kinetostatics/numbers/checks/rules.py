@@ -216,8 +216,8 @@ class Sign:
             return int(value), None
         if isinstance(value, str) and value in self.words:
             return str(value), None
-        others = "".join(f", {word!r}" for word in self.words)
-        return value, f"{field} must be +1 or -1{others}, got {shown(value)}"
+        words = f", nor one of {', '.join(map(repr, self.words))}" if isinstance(value, str) and self.words else ""
+        return value, f"{field} must be +1 or -1, got {shown(value)}{words}"
 
 
 class Rules:

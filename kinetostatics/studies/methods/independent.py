@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import NotGivenError
 from ...machine.cam_roller import CamRoller
 from ...machine.cams import Circle, CosineLaw
+from ...machine.change_points import FAR, MEETING, NEAR, SIDES, parted
 from ...machine.cylinder_group import CylinderGroup
 from ...machine.dyad import Dyad
 from ...machine.group import FRAME, TRAVELS
@@ -96,6 +97,7 @@ class Machine(Acting):
     def table(self, angle):
         """Joints, mass centres and directions of links at a crank angle."""
         ray = self.mp.expj(angle)
+        self._angle = angle
         joints, links = {"O": self.mp.mpc(0)}, {"crank": ("O", ray)}
         if self.mechanism.crank.length is not None:
             joints["A"] = self.number(self.mechanism.crank.length) * ray
@@ -110,24 +112,35 @@ class Machine(Acting):
             found["direction", name] = direction
         return found
 
+    def side(self, group):
+        """Side of a group, which changes at each change point that it passes."""
+        side = SIDES.get(group.assembly, group.assembly)
+        if not group.passes:
+            return side
+        (kind, _), slides = parted(group.passage), isinstance(group, SliderGroup)
+        start = -1j * self.vector(group.guide.direction) if slides else self.vector(group.pivot)
+        psi = self._angle - self.mp.arg(start)
+        passed = {FAR: self.mp.cos(psi / 2), NEAR: self.mp.sin(psi / 2), MEETING: self.mp.sin(psi / 2)}
+        return side * self.mp.sign(passed.get(kind, self.mp.sin(psi)))
+
     def add_slider(self, group, joints, links):
-        mp = self.mp
+        mp, side = self.mp, self.side(group)
         coupler, slider = group.links
         start, length = joints[group.on], self.number(group.coupler_length)
         along = self.vector(group.guide.direction)
         along /= abs(along)
         lean = mp.asin((self.number(group.guide.guide_offset) - _cross(along, start)) / length)
-        direction = mp.expj(mp.arg(along) + (lean if group.assembly > 0 else mp.pi - lean))
+        direction = mp.expj(mp.arg(along) + (lean if side > 0 else mp.pi - lean))
         joints[group.pin] = start + length * direction
         links[coupler], links[slider] = (group.on, direction), (group.pin, along)
 
     def add_rocker(self, group, joints, links):
-        mp = self.mp
+        mp, side = self.mp, self.side(group)
         coupler, rocker = group.links
         start, pivot = joints[group.on], self.vector(group.pivot)
         c, h, a = self.number(group.coupler_length), self.number(group.rocker_length), abs(pivot - start)
         opening = mp.acos((a * a + c * c - h * h) / (2 * a * c))
-        direction = mp.expj(mp.arg(pivot - start) + group.assembly * opening)
+        direction = mp.expj(mp.arg(pivot - start) + side * opening)
         joints[group.pin], joints[group.pivot_name] = start + c * direction, pivot
         links[coupler], links[rocker] = (group.on, direction), (group.pivot_name, (joints[group.pin] - pivot) / h)
 

@@ -20,7 +20,7 @@ from ...machine.loads import Gravity, ProcessForce, Spring
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from .kane_equations import KINDS, LINK
-from .method import Method, NotGivenError, require_one_design
+from .method import Method, NotGivenError, on_a_side, require_one_design
 
 
 @cache
@@ -66,7 +66,7 @@ def in_order(steps, results):
 def described(solution):
     """Kind of the mechanism, and its parameters by name."""
     require_one_design(solution)
-    mechanism = solution.mechanism
+    mechanism = on_a_side(solution.mechanism)
     group: Any = mechanism.groups[-1] if mechanism.groups else None
     values = {
         "crank_angle": solution.crank_angle,

@@ -90,7 +90,9 @@ class Model:
         self._add("O", *self._point("crank"))
         self._add("balancing_torque", self._theta("crank") - self._phi)
         for group in self.mechanism.groups:
-            write = self._writers.get(next((kind for kind in type(group).__mro__ if kind in self._writers), None))
+            write = self._writers.get(
+                next((kind for kind in type(group).__mro__ if kind in self._writers), type(group))
+            )
             if write is None:
                 raise NotGivenError(f"no constraint equations are written for {type(group).__name__}")
             write(self, group)
