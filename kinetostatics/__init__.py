@@ -33,6 +33,7 @@ from .errors import (
     CaseError,
     ConditionWarning,
     HintWarning,
+    JammingError,
     KinetostaticsError,
     ParameterError,
     QuantityError,
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from .machine.crank import Crank
     from .machine.cylinder_group import CylinderGroup
     from .machine.dyad import Dyad
+    from .machine.friction import GuideFriction, PinFriction, RollerFriction, SlotFriction
     from .machine.guide import Guide
     from .machine.lever_group import LeverGroup
     from .machine.links import Link
@@ -95,21 +97,26 @@ __all__ = [
     "Force",
     "Gravity",
     "Guide",
+    "GuideFriction",
     "HintWarning",
+    "JammingError",
     "KinetostaticsError",
     "LeverGroup",
     "Link",
     "Mechanism",
     "ParameterError",
     "Pin",
+    "PinFriction",
     "PointDamper",
     "PointForce",
     "PointSpring",
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
+    "RollerFriction",
     "Scene",
     "SliderGroup",
+    "SlotFriction",
     "Solution",
     "Spring",
     "Table",
@@ -149,6 +156,7 @@ _WHERE = {
     "machine.crank": ["Crank"],
     "machine.cylinder_group": ["CylinderGroup"],
     "machine.dyad": ["Dyad"],
+    "machine.friction": ["GuideFriction", "PinFriction", "RollerFriction", "SlotFriction"],
     "machine.guide": ["Guide"],
     "machine.lever_group": ["LeverGroup"],
     "machine.links": ["Link"],

@@ -47,6 +47,20 @@ class AssemblyError(KinetostaticsError, ValueError):
         self.intervals = tuple(intervals)
 
 
+class JammingError(KinetostaticsError, ValueError):
+    """Friction holds the mechanism at some crank angles, or leaves more than one state of its forces.
+
+    Attributes
+    ----------
+    angles : tuple of float
+        Crank angles among those asked for, rad.
+    """
+
+    def __init__(self, message, angles=()):
+        super().__init__(message)
+        self.angles = tuple(angles)
+
+
 class QuantityError(KinetostaticsError, AttributeError):
     """The mechanism has no such joint, link or quantity; the message lists those it has."""
 

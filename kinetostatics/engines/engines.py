@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import NotGivenError
 from ..machine.loads import is_given
-from ..mechanics.quantities import of_mechanism
+from ..mechanics.quantities import all_found, of_scene
 from ..numbers.elementary import read_only, stack
 from . import programs
 
@@ -25,13 +25,13 @@ class Kernels:
     def values(self, state, names=None):
         """Values by name; None for closure and all that the groups find."""
         state = state if self.way is None else replace(state, way=self.way)
-        names = ("closure", *state.mechanism.outputs) if names is None else names
+        names = all_found(state) if names is None else names
         return {name: self._values(state, name) for name in names}
 
     def _values(self, state, name):
         if name == "closure":
             return read_only(stack(state.closure))
-        return of_mechanism(state.mechanism)[name].read(state)
+        return of_scene(state)[name].read(state)
 
 
 KERNELS = Kernels()

@@ -285,10 +285,12 @@ def numbered(state):
     """The scene of a `Dynamics` with the place of each number among its leaves, a `Numbered`, instead of it."""
     structure, _ = state.apart
     places = itertools.count()
-    mechanism, speed, acceleration, loads = put_together(
+    mechanism, speed, acceleration, loads, *friction = put_together(
         structure, lambda: Numbered(next(places)), lambda: None, lambda: None
     )
-    return SimpleNamespace(mechanism=mechanism, crank_speed=speed, crank_acceleration=acceleration, loads=loads)
+    return SimpleNamespace(
+        mechanism=mechanism, crank_speed=speed, crank_acceleration=acceleration, loads=loads, friction=(*friction, None)[0]
+    )
 
 
 class Numbered(int):

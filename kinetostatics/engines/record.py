@@ -15,7 +15,7 @@ from ..machine.crank import ray
 from ..machine.loads import Load, ProcessForce
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import amount, moving, pushed, title_of
-from ..mechanics.quantities import components, of_mechanism
+from ..mechanics.quantities import all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.leaves import put_together, with_fields
 from .trace import Graph, Node, needed, operations
@@ -102,10 +102,10 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     """
     recorder = _Recorder(structure, way)
     if quantities is None:
-        quantities = ("closure", *recorder.recorded.mechanism.outputs)
+        quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
     outputs = tuple(part.flat[0] for parts in found for part in parts)
-    known = of_mechanism(recorder.recorded.mechanism)
+    known = of_scene(recorder.recorded)
     vectors = tuple(name != "closure" and known[name].vector and not sizes for name in quantities)
     return Recording(
         tuple(quantities),
@@ -126,11 +126,11 @@ class _Recorder:
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
         self._rows = self._arrays = 0
-        mechanism, speed, acceleration, items = put_together(structure, self._parameter, self._array, lambda: None)
+        mechanism, speed, acceleration, items, *friction = put_together(structure, self._parameter, self._array, lambda: None)
         self.angle = self._nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))
-        idle = Dynamics(mechanism, self.angle, speed, acceleration, way=way)
+        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), *friction, way=way)
         self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(items)))
 
     def _parameter(self):

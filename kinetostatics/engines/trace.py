@@ -72,6 +72,9 @@ class Node:
     def arctan(self):
         return self.graph.node("atan", self)
 
+    def sign(self):
+        return self.graph.node("sign", self)
+
     def forgiving_root(self, unit):
         """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
         return self.graph.node("root", self, unit)

@@ -14,6 +14,7 @@ from ..numbers import checks
 from ..numbers.elementary import namespace, sqrt
 from ..numbers.planar import cross, dot, minus, vector
 from .crank import ray
+from .friction import Rolling, Slide, Sliding
 from .group import Group, Output, Point, Resolved, Slot
 from .links import Joint, Link, LinkMotion, Wrench
 
@@ -22,6 +23,10 @@ GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 OUTPUTS = {
     "cam_force": Output("N", False, "cam on roller along the normal, positive toward the inside of the pitch curve"),
     "slot_force": Output("N", False, "slotted crank on block across the ray, positive with growing crank angle"),
+}
+PAIRS = {
+    "slot": Sliding("block", "A", "crank", "slot_force", "slot_moment"),
+    "cam": Rolling("block", "A", "cam_force"),
 }
 MOTIONS = {"pressure_angle": Output("rad", False, "of the cam pair, atan(r'/r), positive where the radius grows")}
 
@@ -126,6 +131,13 @@ class CamRoller(checks.Checked, Group):
     def motions(self):
         return MOTIONS
 
+    @property
+    def pairs(self):
+        return PAIRS
+
+    def sliding(self, name, placement):
+        return Slide(placement.ray, placement.details["cam"][1])
+
     def motion(self, name, placement):
         radius, slope, _ = placement.details["cam"]
         return namespace(slope).atan(slope / radius)
@@ -145,7 +157,8 @@ class CamRoller(checks.Checked, Group):
     def resolve(self, placement, loads, along) -> Resolved:
         radius, slope, _ = placement.details["cam"]
         found = resolve(placement.ray, radius, slope, loads["block"])
-        return Resolved({}, {"cam_force": found.cam, "slot_force": found.slot}, {"crank": found.on_crank})
+        forces = {"cam_force": found.cam, "slot_force": found.slot, "slot_moment": minus(None, loads["block"].moment)}
+        return Resolved({}, forces, {"crank": found.on_crank})
 
     def follow(self, placement, joints):
         """Place the block at joints found in another way."""

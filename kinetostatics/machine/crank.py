@@ -8,6 +8,7 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.planar import minus, number, subtracted, vector
+from .friction import Turning
 from .group import FRAME, Bar, Output, Placement, Point, Resolved
 from .links import Joint, Link, LinkMotion
 
@@ -63,6 +64,7 @@ class Crank(checks.Checked):
     guides: ClassVar[dict] = {}
     motions: ClassVar[dict] = {}
     curves: ClassVar[dict] = {}
+    pairs: ClassVar = {"O": Turning("crank", "O")}
     slots = ()
     hangs_on = ()
     trusted = True

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from ..numbers import checks
 from ..numbers.planar import number, stretched
 from . import lever_group
+from .friction import Slide, Sliding, Turning
 from .group import FRAME, Group, Output, Point, Resolved, Slot
 from .links import Link, Wrench
 
@@ -113,6 +114,20 @@ class CylinderGroup(checks.Checked, Group):
     @property
     def motions(self):
         return {"cylinder_length" + self.label: Output("m", False, f"from {self.pivot_name} to {self.on}")}
+
+    @property
+    def pairs(self):
+        label, pivot = self.label, self.pivot_name
+        force, moment = "cylinder_force" + label, "cylinder_moment" + label
+        return {
+            self.on + label: Turning(self._rod, self.on),
+            pivot: Turning(self._cylinder, pivot),
+            "cylinder" + label: Sliding(self._rod, self.on, self._cylinder, force, moment),
+        }
+
+    def sliding(self, name, placement):
+        motion = placement.details[self._cylinder]
+        return Slide(motion.lever.direction, lever_group.slid(motion))
 
     def motion(self, name, placement):
         return placement.details[self._cylinder].reach

@@ -12,6 +12,7 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.planar import added, cross, dot, subtracted
 from . import rocker_group
+from .friction import Turning
 from .group import Bar, Group, Output, Point, Resolved, smaller
 from .links import Joint, Link, Wrench, between
 from .rocker_group import RockerMotion
@@ -160,6 +161,14 @@ class Dyad(checks.Checked, Group):
             for name, (link, joint) in zip(self._inner, self.references.items(), strict=True)
         }
         return {**inner, self.pin: Output("N", True, f"{self._link1} on {self._link2}")}
+
+    @property
+    def pairs(self):
+        inner = zip(self._inner, self.references.items(), strict=True)
+        return {
+            **{name: Turning(link, joint) for name, (link, joint) in inner},
+            self.pin: Turning(self._link2, self.pin, self._link1),
+        }
 
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)

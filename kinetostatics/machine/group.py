@@ -13,6 +13,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     curves      the joints that run on a curve, with what drawings call it
     outputs     the reactions and other forces it finds, each an `Output` with its unit
     motions     quantities of its motion besides those of joints and links, each an `Output`
+    pairs       which of its links rub against what, by reaction, each a pair of `friction`
 
 (those that it has none of are left out: `Group` says so), and computes, by kernels without branches on values,
 
@@ -23,8 +24,9 @@ frozen dataclass derived from `Group`. It declares, by name,
     follow(placement, joints)         its links where the joints it adds are known: for methods under study
     motion(name, placement)           a quantity of `motions`
     elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
+    sliding(name, placement)          direction and rate of a sliding pair: a `friction.Slide`
 
-The last three may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
+The last four may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
 not be arithmetic: engines then tabulate it.
 
 How to write one
@@ -49,6 +51,8 @@ force along its guide, kept apart since it may nearly cancel with inertia. Write
 the unknown forces *on* them; what the group needs from others goes into ``demands`` with the sign that it has on the
 group: the mechanism sees to the reaction on the link that carries the joint. No joint outside `hangs_on` and no link
 but the crank can be asked.
+
+Where links rub, `resolve` is asked several times: what it finds must be linear in the loads.
 
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
@@ -173,6 +177,11 @@ class Group:
     @property
     def hangs_on(self: Any):
         return (self.on,)
+
+    @property
+    def pairs(self):
+        """Which links turn or slide against what, by the name of the reaction or force."""
+        return {}
 
     @property
     def lengths(self):

@@ -13,6 +13,7 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
+from .friction import Slide, Sliding, Turning
 from .group import FRAME, Group, Output, Point, Resolved, Slot
 from .links import Joint, Link, LinkMotion, Wrench, present
 
@@ -196,6 +197,20 @@ class LeverGroup(checks.Checked, Group):
         text = f"of {self.on} along the slot, from the foot of {self.pivot_name}"
         return {f"{self._block}_position": Output("m", False, text)}
 
+    @property
+    def pairs(self):
+        label = self.label
+        return {
+            self.on + label: Turning(self._block, self.on),
+            self.pivot_name: Turning(self._lever, self.pivot_name),
+            "slot" + label: Sliding(self._block, self.on, self._lever, "slot_force" + label, "slot_moment" + label),
+        }
+
+    def sliding(self, name, placement):
+        motion, offset = placement.details[self._lever], present(self.offset)
+        rate = plus(slid(motion), product(offset, motion.lever.ratio))
+        return Slide(motion.lever.direction, rate, minus(None, offset))
+
     def motion(self, name, placement):
         return placement.details[self._lever].reach
 
@@ -228,6 +243,11 @@ class LeverGroup(checks.Checked, Group):
             },
             {self.on: Wrench(found.inner, None)},
         )
+
+
+def slid(motion):
+    """Rate of the pin along the lever."""
+    return dot(vector(motion.block.joint.first), motion.lever.direction)
 
 
 def spaced(joint, pivot_name, pivot, placement, least, offset=0.0):

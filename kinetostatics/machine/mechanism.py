@@ -136,6 +136,15 @@ class Mechanism(Batched):
         return {name: output for part in (*reversed(self.groups), self.crank) for name, output in part.outputs.items()}
 
     @cached_property
+    def pairs(self):
+        """Which links turn or slide against what, by reaction; of a pin the link that carries it, unless told."""
+        found = self._collected("pairs")
+        return {
+            name: pair._replace(against=self.joints[pair.joint].link) if getattr(pair, "against", None) == "" else pair
+            for name, pair in found.items()
+        }
+
+    @cached_property
     def guides(self):
         """Guide by slider."""
         return {name: guide for group in self.groups for name, guide in group.guides.items()}
@@ -203,11 +212,14 @@ class Mechanism(Batched):
                 group.place(placement)
         return placement
 
-    def resolve(self, placement, loads, along):
-        """All forces, from the last group inwards, for given loads on links and forces along guides; a `Resolved`."""
+    def resolve(self, placement, loads, along, of_part=None):
+        """All forces, from the last group inwards, for given loads on links and forces along guides; a `Resolved`.
+
+        ``of_part(part, placement, loads, along)`` may resolve each part in another way, as with friction.
+        """
         loads, found = dict(loads), Resolved({}, {}, {})
         for part in (*reversed(self.groups), self.crank):
-            resolved = part.resolve(placement, loads, along)
+            resolved = of_part(part, placement, loads, along) if of_part else part.resolve(placement, loads, along)
             if not part.trusted:
                 checks.require(self.name, *_output_problems(part, resolved))
             found.reactions.update(resolved.reactions)

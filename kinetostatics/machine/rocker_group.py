@@ -18,6 +18,7 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
 from . import change_points
+from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, smaller
 from .links import Joint, Link, LinkMotion, Wrench, between
 
@@ -210,6 +211,14 @@ class RockerGroup(checks.Checked, Group):
             self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
             self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
+        }
+
+    @property
+    def pairs(self):
+        return {
+            self.on + self.label: Turning(self._coupler, self.on),
+            self.pin: Turning(self._rocker, self.pin, self._coupler),
+            self.pivot_name: Turning(self._rocker, self.pivot_name),
         }
 
     def place(self, placement):

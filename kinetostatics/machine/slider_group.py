@@ -31,7 +31,8 @@ from ..numbers.planar import (
     vector,
 )
 from . import change_points
-from .group import Bar, Group, Output, Point, Resolved
+from .friction import Slide, Sliding, Turning
+from .group import FRAME, Bar, Group, Output, Point, Resolved
 from .guide import Guide
 from .links import Joint, Link, LinkMotion, Wrench, between
 
@@ -248,6 +249,18 @@ class SliderGroup(checks.Checked, Group):
             "guide_force" + label: Output("N", False, f"ground on {self._slider} along the guide's left normal"),
             "guide_moment" + label: Output("N m", False, f"ground on {self._slider} about {self.pin}"),
         }
+
+    @property
+    def pairs(self):
+        label = self.label
+        return {
+            self.on + label: Turning(self._coupler, self.on),
+            self.pin: Turning(self._slider, self.pin, self._coupler),
+            "guide" + label: Sliding(self._slider, self.pin, FRAME, "guide_force" + label, "guide_moment" + label),
+        }
+
+    def sliding(self, name, placement):
+        return Slide(self.guide.line.direction, placement.travels[self._slider].first)
 
     def place(self, placement):
         given = placement.joints[self.on], self.coupler_length, self.guide.line

@@ -12,7 +12,8 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.planar import added, minus, number, plus, stretched, subtracted, turned, unturned, vector
-from .group import Group, Output, Point, Resolved, Slot
+from .friction import Slide, Sliding, Turning
+from .group import FRAME, Group, Output, Point, Resolved, Slot
 from .guide import Guide
 from .links import Joint, Link, LinkMotion, Wrench
 
@@ -198,6 +199,22 @@ class YokeGroup(checks.Checked, Group):
             "guide_force" + label: Output("N", False, f"ground on {slider} along the guide's left normal"),
             "guide_moment" + label: Output("N m", False, f"ground on {slider} about {self.pin}"),
         }
+
+    @property
+    def pairs(self):
+        label, block, slider = self.label, self._block, self._slider
+        return {
+            self.on + label: Turning(block, self.on),
+            "guide" + label: Sliding(slider, self.pin, FRAME, "guide_force" + label, "guide_moment" + label),
+            "slot" + label: Sliding(block, self.on, slider, "slot_force" + label, "slot_moment" + label),
+        }
+
+    def sliding(self, name, placement):
+        motion = placement.details[self._slider]
+        if name == "guide" + self.label:
+            return Slide(self.guide.line.direction, motion.travel.first)
+        climbing = unturned(vector(motion.block.joint.first), self.guide.line.direction)[1]
+        return Slide(motion.block.direction, climbing / motion.slot[1])
 
     def place(self, placement):
         self._set(placement, place(placement.joints[self.on], self.guide.line, self.slot_angle))

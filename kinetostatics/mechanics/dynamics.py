@@ -15,6 +15,7 @@ from ..machine.group import FRAME
 from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.planar import added, minus, moment, number, plus, product
+from .friction import Rubbing, driving, larger, smaller
 from .motion import Motion
 from .principal_points import principal_points
 from .pushes import pushed, settled
@@ -44,12 +45,53 @@ class Dynamics(Motion):
     def resolved(self):
         """All reactions and other forces, as the groups find them."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = self.mechanism.resolve(self.placement, self.link_loads, self.pushes)
+            found = self.mechanism.resolve(self.placement, self.link_loads, self.pushes, self.rubbing)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
         if self.mechanism.passes:  # the crank's equilibrium has reactions that grow without bound
             found.scalars["balancing_torque"] = self._torque_by_power
         return found
+
+    @cached_property
+    def rubbing(self):
+        """What resolves parts with friction, and keeps what rubs; None without friction."""
+        if not self.friction.rubs:
+            return None
+        return Rubbing(self.mechanism, self.friction, driving(self.crank_speed, self.crank_acceleration))
+
+    @cached_property
+    def rubbed(self):
+        """Friction by joint, each a `friction.Rubbed`; nothing of joints that do not rub."""
+        return self.rubbing.found if self.rubbing is not None and self.resolved else {}
+
+    def friction_at(self, joint):
+        """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
+        return self._scalar(minus(None, self.rubbed[joint].amount) if joint in self.rubbed else None)
+
+    def friction_loss_at(self, joint):
+        """Power lost by friction at a joint, (..., N), W."""
+        return self._scalar(product(self.crank_speed, self.rubbed[joint].work) if joint in self.rubbed else None)
+
+    @property
+    def friction_loss(self):
+        """Power lost by friction at all joints, (..., N), W."""
+        return self._scalar(product(self.crank_speed, self._work_of_friction))
+
+    @property
+    def _work_of_friction(self):
+        return reduce(plus, (rubbed.work for rubbed in self.rubbed.values()), None)
+
+    @property
+    def friction_margin(self):
+        """How far friction is from jamming, 1 without friction; where it is not positive all friction is NaN."""
+        self.rubbed  # noqa: B018  found with the forces
+        return self._scalar(reduce(smaller, self.rubbing.margins, 1.0) if self.rubbing else 1.0)
+
+    @property
+    def friction_residual(self):
+        """How much friction would change by one more pass of its solution, relative."""
+        self.rubbed  # noqa: B018  found with the forces
+        return self._scalar(reduce(larger, self.rubbing.residuals, 0.0) if self.rubbing else 0.0)
 
     def _warn_of_lost_power(self, torque):
         """Warn if a group of the user's own finds forces that do not do the work of the loads."""
@@ -93,7 +135,7 @@ class Dynamics(Motion):
 
     @property
     def _torque_by_power(self):
-        total = reduce(plus, self.powers)
+        total = minus(reduce(plus, self.powers), self._work_of_friction)
         return minus(None, total) if total is not None else 0.0
 
     @property

@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Any
 
 from ..errors import QuantityError
+from ..machine.friction import NONE, Frictions
 from ..machine.group import FRAME
 from ..machine.links import Joint, Spot, accelerated, angular_acceleration, arm, present
 from ..machine.loads.places import PLACE
@@ -30,6 +31,7 @@ class Motion:
     crank_speed, crank_acceleration : float or array
         rad/s, rad/s2.
     loads : tuple
+    friction : mapping of joint to friction
     """
 
     mechanism: Mechanism
@@ -37,13 +39,14 @@ class Motion:
     crank_speed: Any
     crank_acceleration: Any
     loads: tuple = ()
+    friction: Frictions = NONE
 
     @cached_property
     def apart(self):
         """Structure of the scene, what is apart from its numbers, and its leaves."""
         leaves = Leaves()
         scene = self.mechanism, self.crank_speed, self.crank_acceleration, self.loads
-        return taken_apart(scene, leaves), leaves
+        return taken_apart((*scene, self.friction) if self.friction.rubs else scene, leaves), leaves
 
     @cached_property
     def shape(self):
@@ -51,7 +54,7 @@ class Motion:
         _, leaves = self.apart
         if leaves.lasting:
             return leaves.shape(self.crank_angle.shape)
-        return wider(self.crank_angle.shape, self.mechanism, self.crank_speed, self.crank_acceleration, *self.loads)
+        return wider(self.crank_angle.shape, self.mechanism, self.crank_speed, self.crank_acceleration, *self.loads, self.friction)
 
     @cached_property
     def placement(self):

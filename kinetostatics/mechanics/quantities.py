@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from ..errors import QuantityError
+from ..machine.friction import Turning
 from ..numbers import checks
 from ..numbers.elementary import sqrt
 
@@ -27,7 +28,7 @@ class Quantity(NamedTuple):
     vector : bool
     kind : str
         "reaction", "force" (a force, moment or torque by name), "slider", "motion", "whole" (of the whole mechanism),
-        or "rate".
+        "rate", "friction", or "check" of its solution.
     owner : str
         Link that a rate is of.
     """
@@ -40,6 +41,8 @@ class Quantity(NamedTuple):
     owner: str = ""
 
 
+CHECKS = ("friction_margin", "friction_residual")
+"""Quantities that tell how well friction was found."""
 _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
 
 
@@ -85,6 +88,30 @@ def _declared(mechanism):
     return found
 
 
+def of_scene(scene) -> dict[str, Quantity]:
+    """Every quantity of a scene, by name: those of its mechanism, and those of its friction."""
+    known, friction = of_mechanism(scene.mechanism), getattr(scene, "friction", None)
+    if not friction:
+        return known
+    found = dict(known)
+    for joint in friction:
+        pin = isinstance(scene.mechanism.pairs[joint], Turning)
+        read = methodcaller("friction_at", joint)
+        found[f"{joint}_friction"] = Quantity("N m" if pin else "N", f"friction {joint}", read, kind="friction")
+        read = methodcaller("friction_loss_at", joint)
+        found[f"{joint}_friction_loss"] = Quantity("W", f"friction loss {joint}", read, kind="friction")
+    found["friction_loss"] = Quantity("W", "friction loss", attrgetter("friction_loss"), kind="friction")
+    for name in CHECKS:
+        found[name] = Quantity("1", name.replace("_", " "), attrgetter(name), kind="check")
+    return found
+
+
+def all_found(scene):
+    """Names of what is found together: closure, all that parts resolve, and friction."""
+    own = of_mechanism(scene.mechanism)
+    return ("closure", *scene.mechanism.outputs, *(name for name in of_scene(scene) if name not in own))
+
+
 def still(ratio):
     """Whether a kinematic coefficient stands for what does not turn."""
     return ratio is None
@@ -98,7 +125,7 @@ def quantity(solution, name) -> Quantity:
     QuantityError
         The mechanism has no such quantity; the message lists those it has.
     """
-    known = of_mechanism(solution.mechanism)
+    known = of_scene(solution)
     if name not in known:
         raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", name, tuple(known)))
     return known[name]
@@ -120,7 +147,7 @@ def unit_of(solution, name):
 
 def label_of(solution, name):
     """What a table or an axis calls a quantity of a solution; a name that it has not stays as it is."""
-    known = of_mechanism(solution.mechanism)
+    known = of_scene(solution)
     return known[name].label if name in known else name
 
 

@@ -79,6 +79,10 @@ class Dual:
     def arctan(self):
         return self._chained(np.arctan(self.value), 1.0 / (1.0 + self.value * self.value))
 
+    def sign(self):
+        """Called by `elementary.sign`."""
+        return Dual(np.copysign(1.0, self.value))
+
     def forgiving_root(self, unit):
         """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
         closed = self.value >= -ROUNDING * dual(unit).value

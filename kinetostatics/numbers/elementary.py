@@ -77,6 +77,21 @@ def divisor(root, unit):
     return namespace(root).maximum(root, unit)
 
 
+def sign(x):
+    """1.0 or -1.0, also of zero, which counts as approached from the side of its own sign."""
+    if _holds_objects(x):
+        return np.frompyfunc(_sign_of_one, 1, 1)(x)
+    xp = namespace(x)
+    if xp is not np:
+        return xp.where(x < 0, -1.0, 1.0)
+    return np.copysign(1.0, x) if isinstance(x, np.ndarray | float | int) else _sign_of_one(x)
+
+
+def _sign_of_one(x):
+    """Of a recorded number, one with derivatives, or an enclosure; of a plain one among them too."""
+    return np.copysign(1.0, x) if isinstance(x, float | int) else x.sign() if hasattr(x, "sign") else x.sgn()
+
+
 def apart(distance, unit):
     """A distance moved off zero by nothing that counts, so that it has a direction."""
     if _holds_objects(distance):

@@ -56,7 +56,7 @@ def _of_value(value, rule, path, label):
         found: dict[str, Place] = {}
         counts: dict[str, int] = {}
         for number, part in enumerate(value):
-            named = getattr(type(part), "PATH", "")
+            named = getattr(part, "PATH", "")
             counts[named] = counts.get(named, 0) + 1
             again = str(counts[named]) if named and counts[named] > 1 else ""
             inner = places(part, f"{named}{again}." if named else "", getattr(part, "label", ""))

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from ..errors import ConditionWarning
-from ..mechanics.quantities import of_mechanism, still
+from ..mechanics.quantities import of_scene, still
 from .extremes import extrema, warning
 
 
@@ -20,7 +20,9 @@ def extremes_frame(solution):
     import pandas as pd
 
     rows, several = [], []
-    for name, quantity in of_mechanism(solution.mechanism).items():
+    for name, quantity in of_scene(solution).items():
+        if quantity.kind == "check":
+            continue
         if quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio_slope):
             continue
         found = extrema(solution, name)

@@ -89,7 +89,7 @@ class Program:
         for path in kept:
             if _is_zero(places[path].value(scene)):
                 scene = _with_kept(scene, places[path].steps)
-        state = Dynamics(scene.mechanism, np.zeros(1), scene.crank_speed, scene.crank_acceleration, scene.loads)
+        state = Dynamics(scene.mechanism, np.zeros(1), *_drive(scene))
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)
         numbered = programs.numbered(state)
@@ -192,7 +192,7 @@ class Program:
         shape = _shape(angle, leaves)
         if self._refuses or self._program.recording.tables:
             scene = self.scene.varied(values) if values else self.scene
-            state = Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
+            state = Dynamics(scene.mechanism, angle, *_drive(scene))
             checks.require("program", *refusals(state))
             return state, leaves
         state = object.__new__(Dynamics)
@@ -238,6 +238,10 @@ class Program:
                     f'compile(..., parameters=("{path}",))'
                 )
         checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+
+
+def _drive(scene):
+    return scene.crank_speed, scene.crank_acceleration, scene.loads, scene.friction
 
 
 _FIXED = (

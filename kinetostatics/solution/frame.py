@@ -6,10 +6,10 @@ import numpy as np
 
 from ..errors import ConditionWarning
 from ..mechanics.assembly import NO_DIGIT
-from ..mechanics.quantities import of_mechanism, still
+from ..mechanics.quantities import of_scene, still
 from ..results.turn import NEAR
 
-ORDER = ("rate", "reaction", "force", "whole", "slider", "motion")
+ORDER = ("rate", "reaction", "force", "friction", "whole", "slider", "motion", "check")
 """Kinds of quantities as they stand in the table, after the positions of joints."""
 
 
@@ -27,8 +27,10 @@ def solution_frame(solution):
     columns = {"crank_angle [deg]": np.degrees(solution.crank_angle)}
     for joint in solution.placement.joints:
         columns |= _components(joint, "m", solution.position(joint))
-    quantities = of_mechanism(solution.mechanism).items()
+    quantities = of_scene(solution).items()
     for name, quantity in sorted(quantities, key=lambda pair: ORDER.index(pair[1].kind)):
+        if quantity.kind == "check":
+            continue
         if quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio):
             continue
         values = quantity.read(solution)

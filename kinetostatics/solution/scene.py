@@ -12,9 +12,11 @@ from ..engines import programs
 from ..engines.compiled import available, require
 from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
 from ..errors import HintWarning, ParameterError
+from ..machine import friction as rubbing
 from ..machine import hints
 from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, refusals, value_of
 from ..machine.mechanism import Mechanism
+from ..mechanics import jamming
 from ..numbers import checks, paths
 from .angles import crank_angles, problems
 from .solution import Solution, drive_and_loads
@@ -37,6 +39,8 @@ class Scene:
         rad/s and rad/s2, counter-clockwise positive; an array has a value for each crank angle, or is (designs, 1).
     loads : sequence
         `Gravity`, `Spring`, `ProcessForce`, or one of them.
+    friction : dict of str to friction, optional
+        By joint, as for `solve`.
 
     Raises
     ------
@@ -58,10 +62,15 @@ class Scene:
     crank_speed: Any
     crank_acceleration: Any = 0.0
     loads: Any = ()
+    friction: Any = None
 
-    PATHS: ClassVar = {"mechanism": "", "loads": ""}
+    PATHS: ClassVar = {"mechanism": "", "loads": "", "friction": ""}
     RULES = checks.Rules(
-        "scene", mechanism=checks.Made(Mechanism, "a Mechanism"), **DRIVE, loads=checks.Own((), "loads")
+        "scene",
+        mechanism=checks.Made(Mechanism, "a Mechanism"),
+        **DRIVE,
+        loads=checks.Own((), "loads"),
+        friction=checks.Own((), "friction"),
     )
 
     def __post_init__(self):
@@ -76,8 +85,11 @@ class Scene:
             drive = checks.examined(owner, DRIVE, values)
         loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
         wrong = [text for item in loads for text in _load_problems(self.mechanism, item)]
+        if self.friction is not None and self.friction is not rubbing.NONE:
+            wrong += rubbing.problems(self.mechanism, self.friction)
         checks.require(owner, *wrong, _period_problem(loads))
-        values.update(drive, loads=tuple(item if type(item) in KINDS else checks.kept(item) for item in loads))
+        loads = tuple(item if type(item) in KINDS else checks.kept(item) for item in loads)
+        values.update(drive, loads=loads, friction=rubbing.taken(self.friction))
 
     def __repr__(self):
         return f"<Scene: {self.mechanism.name}, {drive_and_loads(self)}>"
@@ -137,7 +149,7 @@ class Scene:
         return np.linspace(0.0, self.period, angles, endpoint=False)
 
 
-def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), on_gap="raise", engine=None):
+def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), friction=None, on_gap="raise", engine=None):
     """Motion and forces of a mechanism at prescribed crank motion.
 
     Parameters
@@ -151,6 +163,10 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     loads : sequence
         `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing. Loads of your own, as all
         arrays, are taken as they are now: what is changed of them later is not seen.
+    friction : dict of str to friction, optional
+        By joint, named as its reaction ("O", "A", "guide"), "slot" or "cam", each with the label of its group: a
+        `PinFriction`, `GuideFriction`, `SlotFriction` or `RollerFriction`. At crank speed 0 it acts against the motion
+        that the crank acceleration begins.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
         give NaN there and exact values elsewhere (as needed under ``jax.jit``).
@@ -186,6 +202,7 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     """
     scene = object.__new__(Scene)
     vars(scene).update(mechanism=mechanism, crank_speed=crank_speed, crank_acceleration=crank_acceleration, loads=loads)
+    vars(scene).update(friction=friction)
     scene._admit("solve")
     return _solved(scene, crank_angle, on_gap, engine)
 
@@ -196,6 +213,9 @@ def _solved(scene, crank_angle, on_gap, engine):
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded
     (solution.check if on_gap == "raise" else solution.warn)()
+    if solution.friction:
+        checks.require("solve", jamming.standing(solution))
+        jamming.check(solution, on_gap)
     checks.require("solve", *refusals(solution))
     return solution
 
@@ -212,7 +232,7 @@ def unchecked(scene, crank_angle, engine=None):
         )
     for text in (*mechanism.hints, *hints.of_angles(angle)):
         warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=4)
-    solution = Solution(mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
+    solution = Solution(mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads, scene.friction)
     _, leaves = solution.apart
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))

@@ -11,10 +11,11 @@ import numpy as np
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import is_given, period_of, value_of
-from ..mechanics import assembly
+from ..machine.friction import Turning
+from ..mechanics import assembly, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
-from ..mechanics.quantities import scale, values
+from ..mechanics.quantities import of_scene, scale, values
 from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..results.turn import Turn
@@ -115,6 +116,55 @@ class Solution(Motion):
     def guide_moment(self):
         """Moment of the guide on the slider about the slider pin, N m."""
         return self.scalar("guide_moment")
+
+    @property
+    def guide_friction(self):
+        """Friction of the guide on the slider along the guide, N; 0 without friction."""
+        return self._of_friction("guide_friction")
+
+    @property
+    def friction_loss(self):
+        """Power lost by friction at all joints, (..., N), W, not negative."""
+        return self._of_friction("friction_loss")
+
+    def friction_loss_at(self, joint):
+        """Power lost by friction at a joint, named as in `friction`, (..., N), W; 0 where nothing rubs."""
+        self._look_up("joint that rubs", joint, self.mechanism.pairs)
+        return self._of_friction(f"{joint}_friction_loss")
+
+    def friction_at(self, joint):
+        """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
+        self._look_up("joint that rubs", joint, self.mechanism.pairs)
+        return self._of_friction(f"{joint}_friction")
+
+    @property
+    def friction_margin(self):
+        """How far friction is from jamming: 1 without friction, 0 where it may jam; 1 - |kappa| of a guide alone."""
+        return self._of_friction("friction_margin") if self.friction else self._scalar(1.0)
+
+    @property
+    def friction_residual(self):
+        """How much friction would change by one more pass of its solution, relative."""
+        return self._of_friction("friction_residual")
+
+    def _of_friction(self, name):
+        return self._found(name) if name in of_scene(self) else self._scalar(None)
+
+    @property
+    def converged(self):
+        """Whether friction and reactions were found together to rounding, (..., N) of bool; so they are without."""
+        if not self.friction.acting:
+            return np.broadcast_to(self.closed, self.shape)
+        return jamming.converged(self._found("friction_margin"), self._found("friction_residual"))
+
+    def pin_load(self, joint):
+        """Force on a pin by all rods on it together, (2, ..., N), N; on the link that owns the joint."""
+        owner = self._look_up("joint", joint, self.mechanism.joints).link
+        total = np.zeros((2, *self.shape))
+        for name, pair in self.mechanism.pairs.items():
+            if isinstance(pair, Turning) and pair.joint == joint:
+                total = total + (1.0 if pair.link == owner else -1.0) * self.reaction(name)
+        return total
 
     @property
     def cam_force(self):
@@ -258,7 +308,8 @@ class Solution(Motion):
         if name not in self._values:
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
-            of_all = self.is_given if name == "closure" else name in self.mechanism.outputs
+            own = name in self.mechanism.outputs or (self.friction and "friction" in name)
+            of_all = self.is_given if name == "closure" else own
             together = of_all and math.prod(self.shape) <= SHARE
             self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
         return self._values[name]

@@ -1,0 +1,225 @@
+"""Friction by joint: coefficients and sizes of the surfaces that rub, and which parts of a mechanism do.
+
+A group declares in `pairs`, by the name of the reaction, which of its links turn or slide against what: a `Turning`, a
+`Sliding` or a `Rolling`. A pin is fixed to the link that owns its joint; each rod on it rubs against it alone.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ..numbers import checks
+from ..numbers.batched import Batched
+from .links import present
+
+COEFFICIENT = checks.Number("1", low=0.0)
+SIZE = checks.Number("m", low=0.0, strict=True)
+PASSES = 4
+"""Times that the directions of all reactions are found anew, each time with twice as many digits."""
+
+
+class Turning(NamedTuple):
+    """A pin: `link` turns against another, the one that carries `joint` unless told; the reaction acts on `link`."""
+
+    link: str
+    joint: str
+    against: str = ""
+
+
+class Sliding(NamedTuple):
+    """A straight pair: `link` slides along another, at `joint`.
+
+    `force` is the name of the force across the pair, `couple` that of the moment it carries. The group answers
+    ``sliding(name, placement)`` with a `Slide`.
+    """
+
+    link: str
+    joint: str
+    against: str
+    force: str
+    couple: str
+
+
+class Rolling(NamedTuple):
+    """A roller on a pin of `link` at `joint`, pressed by `force` against a fixed curve, positive from its outside."""
+
+    link: str
+    joint: str
+    force: str
+
+
+class Slide(NamedTuple):
+    """Direction of a straight pair (None: +x), d s / d phi of the sliding link along it, and the moment of a unit force
+    along it about the reference joint of what it slides on (None: none).
+    """
+
+    direction: Any
+    rate: Any
+    moment: Any = None
+
+
+@dataclass(frozen=True, eq=False)
+class PinFriction(checks.Checked, Batched):
+    """Friction in a pin: a moment of `mu` times `radius` times the reaction, against the relative rotation.
+
+    Parameters
+    ----------
+    mu : float or array
+    radius : float or array
+        Of the pin, m.
+    """
+
+    mu: Any
+    radius: Any
+
+    PAIR: ClassVar = Turning
+    RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=SIZE)
+
+
+@dataclass(frozen=True, eq=False)
+class GuideFriction(checks.Checked, Batched):
+    """Friction of a slider on its guide, against its velocity.
+
+    Parameters
+    ----------
+    mu : float or array
+    half_length : float or array, optional
+        Half the length of the shoe, m: it carries the couple too by forces at its edges, which rub once the load
+        leaves the middle half. Without, the force alone rubs.
+    """
+
+    mu: Any
+    half_length: Any = None
+
+    PAIR: ClassVar = Sliding
+    RULES = checks.Rules("guide friction", mu=COEFFICIENT, half_length=checks.Optional(SIZE))
+
+
+@dataclass(frozen=True, eq=False)
+class SlotFriction(checks.Checked, Batched):
+    """Friction of a block or rod in the slot or cylinder of another link, as `GuideFriction` on a guide."""
+
+    mu: Any
+    half_length: Any = None
+
+    PAIR: ClassVar = Sliding
+    RULES = checks.Rules("slot friction", mu=COEFFICIENT, half_length=checks.Optional(SIZE))
+
+
+@dataclass(frozen=True, eq=False)
+class RollerFriction(checks.Checked, Batched):
+    """Friction in the pin of a cam roller, felt as a force along the profile.
+
+    Parameters
+    ----------
+    mu : float or array
+        In the pin, or of its bearing.
+    pin_radius, roller_radius : float or array
+        m.
+    """
+
+    mu: Any
+    pin_radius: Any
+    roller_radius: Any
+
+    def _rolls(self):
+        """Say where the roller would slide."""
+        values = self.mu, self.pin_radius, self.roller_radius
+        if all(map(checks.known, values)) and np.any(stuck := np.asarray(self.mu) * self.pin_radius >= self.roller_radius):
+            yield checks.Problem(
+                f"mu times pin_radius, {np.max(np.asarray(self.mu) * self.pin_radius):.6g} m, must be less than "
+                f"roller_radius, {np.min(self.roller_radius):.6g} m: the roller would not turn",
+                stuck,
+            )
+
+    PAIR: ClassVar = Rolling
+    RULES = checks.Rules("roller friction", _rolls, mu=COEFFICIENT, pin_radius=SIZE, roller_radius=SIZE)
+
+
+KINDS = (PinFriction, GuideFriction, SlotFriction, RollerFriction)
+
+
+def kind_for(pair):
+    """Kind of friction that a pair of a mechanism may have."""
+    if isinstance(pair, Sliding):
+        return GuideFriction if pair.against == "frame" else SlotFriction
+    return PinFriction if isinstance(pair, Turning) else RollerFriction
+
+
+@dataclass(frozen=True, eq=False)
+class Rub(Batched):
+    """Friction at one joint."""
+
+    joint: str
+    friction: Any
+
+    PATHS: ClassVar = {"friction": ""}
+    RULES = checks.Rules("friction", joint=checks.Name(), friction=checks.Own((), "friction"))
+
+    @property
+    def PATH(self):  # noqa: N802 - as loads call it
+        return f"friction.{self.joint}"
+
+
+@dataclass(frozen=True, eq=False)
+class Frictions(Mapping, Batched):
+    """Friction of a mechanism, by joint: a mapping of names to friction.
+
+    `passes` is how many times directions of reactions are found anew.
+    """
+
+    rubs: tuple[Rub, ...] = ()
+    passes: int = PASSES
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
+    PATHS: ClassVar = {"rubs": ""}
+    RULES = checks.Rules("friction", rubs=checks.Own((), "friction by joint"))
+
+    def __getitem__(self, name):
+        return next((rub.friction for rub in self.rubs if rub.joint == name), None) or _missing(name)
+
+    def __iter__(self):
+        return (rub.joint for rub in self.rubs)
+
+    def __len__(self):
+        return len(self.rubs)
+
+    def __repr__(self):
+        return repr(dict(self))
+
+    @property
+    def acting(self):
+        """Friction by joint, without what is zero."""
+        return {rub.joint: rub.friction for rub in self.rubs if present(rub.friction.mu) is not None}
+
+
+NONE = Frictions()
+
+
+def _missing(name):
+    raise KeyError(name)
+
+
+def taken(given):
+    """Friction as it is kept, from a dict by joint."""
+    if isinstance(given, Frictions):
+        return given
+    return Frictions(tuple(Rub(name, friction) for name, friction in given.items())) if given else NONE
+
+
+def problems(mechanism, given):
+    """What is wrong with friction given for a mechanism, as sentences."""
+    if not isinstance(given, Mapping):
+        text = 'must be a dict of joint to friction, as {"O": ks.PinFriction(mu, radius)}'
+        yield f"friction {text}, got {checks.shown(given)}"
+        return
+    pairs = mechanism.pairs
+    for name, friction in given.items():
+        if not isinstance(name, str) or name not in pairs:
+            yield checks.choice("friction: joint", name, tuple(pairs))
+        elif not isinstance(friction, kind_for(pairs[name])):
+            wanted = kind_for(pairs[name]).__name__
+            what = {Turning: "turns on a pin", Sliding: "slides", Rolling: "rolls on a pin of its own"}[type(pairs[name])]
+            yield f"friction: {name!r} {what} and takes a {wanted}, got {checks.shown(friction)}"

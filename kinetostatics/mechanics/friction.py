@@ -1,0 +1,387 @@
+"""Forces of a part whose joints rub: reactions and friction found together, to rounding.
+
+All reactions of a part are linear in the moments and forces that friction puts on its links, and friction is the
+magnitude of a reaction times a constant. A magnitude is the reaction times its own direction, so with directions known
+the equations are linear; they are solved with the directions of the reactions found before, beginning without friction,
+and directions are found anew. That is Newton's method: each pass doubles the digits. Of a guide alone the direction is
+a sign, and the first pass exact: N = N0 / (1 + kappa sgn N0).
+
+The number of passes is fixed, so that all this is arithmetic like all else of a group.
+"""
+
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import Any, NamedTuple
+
+from ..machine.friction import Sliding, Turning
+from ..machine.group import FRAME, Resolved
+from ..machine.links import Wrench, present
+from ..numbers.elementary import root, sign, sqrt
+from ..numbers.planar import added, length, minus, number, plus, product, stretched, vector
+
+TINY = 1e-290
+"""Square of a force that counts as nothing but can be divided by."""
+FASTER = 2.0**600
+"""Factor by which a crank speed counts before the crank acceleration."""
+
+
+def driving(speed, acceleration):
+    """Sign of the motion: of the crank speed, of the crank acceleration where there is no speed."""
+    speed, acceleration = present(speed), present(acceleration)
+    if speed is None or acceleration is None:
+        return sign(number(acceleration if speed is None else speed))
+    return sign(speed * FASTER + acceleration)
+
+
+class Rubbed(NamedTuple):
+    """Friction of a pair: its moment or force, positive where the pair moves positively, and the rate of that motion.
+
+    On the link it acts the other way round. `couple` is that of a roller's pin on the link, with its own rate.
+    """
+
+    amount: Any
+    rate: Any
+    couple: Any = None
+    couple_rate: Any = None
+
+    @property
+    def work(self):
+        """Loss per unit of crank angle, with the sign of the crank speed."""
+        return plus(product(self.amount, self.rate), product(self.couple, self.couple_rate))
+
+
+class Law(NamedTuple):
+    """A friction moment or force: `factor` times the size of what is watched.
+
+    Attributes
+    ----------
+    name : str
+        Of the pair.
+    factor : number
+        With the sign of the motion.
+    watched : function
+        From a `Resolved` to what is watched, a tuple of components.
+    kind : str
+        "length" of a vector, "size" of a number, "larger" of the sizes of two, or the number "itself".
+    effects : tuple of (Channel, int)
+        What it puts on links.
+    """
+
+    name: str
+    factor: Any
+    watched: Any
+    kind: str
+    effects: tuple
+
+
+class Channel(NamedTuple):
+    """Loads on links, and pushes on sliders, of a unit of friction: of all moments on a link, or of a force."""
+
+    name: str
+    wrenches: tuple = ()
+    pushes: tuple = ()
+
+
+@dataclass(eq=False)
+class Rubbing:
+    """Resolves parts with friction, and keeps what rubs.
+
+    Attributes
+    ----------
+    found : dict of str to Rubbed
+    margins, residuals : list
+        Of each part: how far it is from jamming (`_margin`), and what the last pass still changed, relative.
+    """
+
+    mechanism: Any
+    friction: Any
+    direction: Any
+    found: dict = field(default_factory=dict)
+    margins: list = field(default_factory=list)
+    residuals: list = field(default_factory=list)
+
+    def __post_init__(self):
+        self.acting = self.friction.acting
+
+    def __call__(self, part, placement, loads, along):
+        rates, laws = {}, []
+        for name in part.pairs:
+            if name in self.acting:
+                laws += self._laws(part, name, placement, rates)
+        free = part.resolve(placement, loads, along)
+        if not laws:
+            return free
+        own = part.links
+        channels = {channel.name: channel for law in laws for channel, _ in law.effects}
+        inner = [channel for channel in channels.values() if _acts_on(channel, own)]
+        unloaded = dict.fromkeys(own, Wrench(None, None))
+        columns = [part.resolve(placement, *_with(unloaded, {}, [(channel, 1.0)], own)) for channel in inner]
+        system = _System(laws, [channel.name for channel in inner], free, columns)
+        amounts = system.solved(self.friction.passes, placement.angle)
+        self._keep(system, laws, amounts, rates)
+        acting = [
+            (channel, amount if way > 0 else -amount)
+            for law, amount in zip(laws, amounts, strict=True)
+            for channel, way in law.effects
+        ]
+        resolved = part.resolve(placement, *_with(loads, along, acting, own))
+        return self._completed(resolved, part, placement, acting, own)
+
+    def _laws(self, part, name, placement, rates):
+        """Laws of a pair; what it moves at goes into `rates`."""
+        pair, friction = self.mechanism.pairs[name], self.acting[name]
+        link = placement.links[pair.link]
+        if isinstance(pair, Turning):
+            against = None if pair.against == FRAME else placement.links[pair.against].ratio
+            rate = minus(link.ratio, against)
+            if rate is None:
+                return
+            rates[name] = rate
+            effects = [(_moment(pair.link), -1)]
+            if pair.against != FRAME:
+                effects.append((_moment(pair.against), 1))
+            factor = friction.mu * friction.radius * (self.direction * sign(rate))
+            yield Law(name, factor, lambda found: vector(found.reactions[name]), "length", tuple(effects))
+        elif isinstance(pair, Sliding):
+            slide = part.sliding(name, placement)
+            if slide.rate is None:
+                return
+            rates[name] = slide.rate
+            factor = friction.mu * (self.direction * sign(slide.rate))
+            half = friction.half_length
+
+            def watched(found):
+                force = (found.scalars[pair.force],)
+                couple = found.scalars[pair.couple] if half is not None else None
+                return force if couple is None else (*force, couple / half)
+
+            yield Law(name, factor, watched, "size" if half is None else "larger", ((_force(name, pair, slide), -1),))
+        else:
+            yield from self._of_roller(name, pair, friction, placement, rates)
+
+    def _of_roller(self, name, pair, friction, placement, rates):
+        """A roller rubs on its pin with the whole of its load: cam force and the force along the profile by which the
+        cam turns it. The couple stays with the link that carries the pin.
+        """
+        first = vector(placement.joints[pair.joint].first)
+        speed = length(first)
+        lever = friction.mu * friction.pin_radius / friction.roller_radius
+        slope = lever / sqrt(1.0 - lever * lever) * self.direction
+        rates[name] = speed
+        tangent = (first[0] / speed, first[1] / speed)
+        force = Channel(f"force of {name}", ((pair.link, Wrench(tangent, None)),))
+
+        def watched(found):
+            return (found.scalars[pair.force],)
+
+        yield Law(name, slope, watched, "size", ((force, -1),))
+        yield Law(name, slope * friction.roller_radius, watched, "itself", ((_moment(pair.link), -1),))
+
+    def _keep(self, system, laws, amounts, rates):
+        for law, amount in zip(laws, amounts, strict=True):
+            if law.kind == "itself":  # the roller turns the other way round on the other side of the cam
+                self.found[law.name] = self.found[law.name]._replace(couple=amount, couple_rate=1.0)
+            else:
+                self.found[law.name] = Rubbed(amount, rates[law.name])
+        if system.margin is not None:
+            self.margins.append(system.margin)
+            self.residuals.append(system.residual)
+
+    def _completed(self, resolved, part, placement, acting, own):
+        """What a part finds, with friction along guides, and with what it demands of other links."""
+        reactions, demands = dict(resolved.reactions), dict(resolved.demands)
+        for channel, amount in acting:
+            name = channel.name
+            if name in reactions and name in part.pairs:
+                along = part.sliding(name, placement).direction
+                reactions[name] = added(reactions[name], stretched(amount, (1.0, 0.0) if along is None else along))
+            for link, wrench in channel.wrenches:
+                if link not in own:
+                    old = demands.get(link, Wrench(None, None))
+                    given = stretched(-amount, wrench.force), product(-amount, wrench.moment)
+                    demands[link] = Wrench(added(old.force, given[0]), plus(old.moment, given[1]))
+        return Resolved(reactions, resolved.scalars, demands)
+
+
+def _moment(link):
+    return Channel(f"moment on {link}", ((link, Wrench(None, 1.0)),))
+
+
+def _force(name, pair, slide):
+    """Force along a straight pair; along a guide it stays in the guide's axes."""
+    if pair.against == FRAME:
+        return Channel(name, (), ((pair.link, 1.0),))
+    back = Wrench(stretched(-1.0, slide.direction), minus(None, slide.moment))
+    return Channel(name, ((pair.link, Wrench(slide.direction, None)), (pair.against, back)))
+
+
+def _acts_on(channel, own):
+    return any(link in own for link, _ in (*channel.wrenches, *channel.pushes))
+
+
+def _with(loads, along, acting, own):
+    """Loads and pushes of a part, and what friction adds to them."""
+    loads, along = dict(loads), dict(along)
+    for channel, amount in acting:
+        for link, wrench in channel.wrenches:
+            if link in own:
+                old = loads[link]
+                force, moment = stretched(amount, wrench.force), product(amount, wrench.moment)
+                loads[link] = Wrench(added(old.force, force), plus(old.moment, moment))
+        for link, push in channel.pushes:
+            along[link] = plus(along.get(link), amount * push)
+    return loads, along
+
+
+class _System:
+    """Friction laws of a part, and how what they watch hangs on the channels that friction acts by."""
+
+    def __init__(self, laws, names, free, columns):
+        self.laws = laws
+        self.free = [tuple(map(present, law.watched(free))) for law in laws]
+        slopes = [[tuple(map(present, law.watched(column))) for column in columns] for law in laws]
+        felt = [
+            place for place in range(len(names)) if any(part is not None for law in slopes for part in law[place])
+        ]
+        self.slopes = [[law[place] for place in felt] for law in slopes]
+        places = {names[place]: number for number, place in enumerate(felt)}
+        self.effects = [
+            [(places[channel.name], way) for channel, way in law.effects if channel.name in places] for law in laws
+        ]
+        self.count = len(felt)
+        self.residual = None
+        self.margin = self._margin() if felt else None
+
+    def solved(self, passes, angle):
+        """Friction of each law, NaN where it jams or is not the only one."""
+        watched = self.free
+        unknowns: list[Any] = []
+        for _ in range(passes if self.count else 0):
+            unknowns = self._linear([_directed(law, parts) for law, parts in zip(self.laws, watched, strict=True)])
+            watched = [self._at(number, unknowns) for number in range(len(self.laws))]
+        amounts = [product(law.factor, _size(law.kind, parts)) for law, parts in zip(self.laws, watched, strict=True)]
+        amounts = [number(amount) for amount in amounts]
+        if self.margin is None:
+            return amounts
+        self.residual = self._residual(unknowns, amounts)
+        closed = 0.0 * root(self.margin + 0.0 * angle, 1.0)
+        return [amount + closed for amount in amounts]
+
+    def _at(self, law, unknowns):
+        """What a law watches, for given friction."""
+        found = list(self.free[law])
+        for slope, unknown in zip(self.slopes[law], unknowns, strict=True):
+            found = [plus(part, product(unknown, one)) for part, one in zip(found, slope, strict=True)]
+        return tuple(found)
+
+    def _linear(self, directed):
+        """Friction by channel with all directions known."""
+        matrix: list[list] = [[None] * self.count for _ in range(self.count)]
+        right: list[Any] = [None] * self.count
+        for law, weights in enumerate(directed):
+            constant = _weighted(weights, self.free[law])
+            row = [_weighted(weights, slope) for slope in self.slopes[law]]
+            for place, way in self.effects[law]:
+                add = plus if way > 0 else minus
+                right[place] = add(right[place], constant)
+                matrix[place] = [add(one, other) for one, other in zip(matrix[place], row, strict=True)]
+        return _eliminated(matrix, right)
+
+    def _margin(self):
+        """How far friction is from jamming: 1 without friction, 0 where it may jam or have several solutions.
+
+        Smallest pivot of one less the largest feedback from friction to friction: all are positive if and only if its
+        spectral radius is less than 1. Of a guide alone it is 1 - |kappa|.
+        """
+        matrix: list[list] = [[None] * self.count for _ in range(self.count)]
+        for law, slopes, effects in zip(self.laws, self.slopes, self.effects, strict=True):
+            sizes = [product(abs(law.factor), _size("size" if law.kind == "itself" else law.kind, slope)) for slope in slopes]
+            for place, _ in effects:
+                matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
+        return reduce(smaller, _pivots(matrix))
+
+    def _residual(self, unknowns, amounts):
+        """Change of friction by one more pass, relative, largest of all channels."""
+        found = []
+        for place, unknown in enumerate(unknowns):
+            total, size = None, None
+            for amount, effects in zip(amounts, self.effects, strict=True):
+                for _, way in (effect for effect in effects if effect[0] == place):
+                    total, size = (plus if way > 0 else minus)(total, amount), plus(size, abs(amount))
+            found.append(abs(minus(total, unknown)) / (size + TINY))
+        return reduce(larger, found)
+
+
+def _directed(law, parts):
+    """Factor times direction of what a law watches: by components."""
+    if law.kind == "itself":
+        return (law.factor,)
+    if law.kind == "size" or len(parts) == 1:
+        return (None if parts[0] is None else law.factor * sign(parts[0]),)
+    first, second = parts
+    if first is None and second is None:
+        return (None, None)
+    if law.kind == "length":
+        over = law.factor / _size("length", parts)
+        return product(over, first), product(over, second)
+    if first is None or second is None:
+        return tuple(None if part is None else law.factor * sign(part) for part in parts)
+    ahead = 0.5 * sign(abs(first) - abs(second))
+    return law.factor * (0.5 + ahead) * sign(first), law.factor * (0.5 - ahead) * sign(second)
+
+
+def _size(kind, parts):
+    """Size of what is watched, None if it is absent."""
+    if kind == "itself":
+        return parts[0]
+    given = [part for part in parts if part is not None]
+    if not given:
+        return None
+    if len(given) == 1:
+        return abs(given[0])
+    if kind == "length":
+        return sqrt(given[0] * given[0] + given[1] * given[1] + TINY)
+    return larger(abs(given[0]), abs(given[1]))
+
+
+def larger(a, b):
+    return 0.5 * (a + b + abs(a - b))
+
+
+def smaller(a, b):
+    return 0.5 * (a + b - abs(a - b))
+
+
+def _weighted(weights, parts):
+    return reduce(plus, (product(weight, part) for weight, part in zip(weights, parts, strict=True)))
+
+
+def _eliminated(matrix, right):
+    """Solution x of x - matrix x = right, by elimination: near one no pivot is small."""
+    count = len(right)
+    left = [[minus(1.0 if i == k else None, matrix[i][k]) for k in range(count)] for i in range(count)]
+    right = list(right)
+    for i in range(count):
+        for k in range(i + 1, count):
+            if left[k][i] is None:
+                continue
+            factor = left[k][i] / left[i][i]
+            left[k] = [minus(one, product(factor, other)) for one, other in zip(left[k], left[i], strict=True)]
+            right[k] = minus(right[k], product(factor, right[i]))
+    found: list[Any] = [None] * count
+    for i in reversed(range(count)):
+        rest = reduce(plus, (product(left[i][k], found[k]) for k in range(i + 1, count)), None)
+        above = minus(right[i], rest)
+        found[i] = None if above is None else above / left[i][i]
+    return [number(one) for one in found]
+
+
+def _pivots(matrix):
+    """Pivots of one less a matrix."""
+    count = len(matrix)
+    left = [[minus(1.0 if i == k else None, matrix[i][k]) for k in range(count)] for i in range(count)]
+    for i in range(count):
+        for k in range(i + 1, count):
+            factor = None if left[k][i] is None else left[k][i] / left[i][i]
+            left[k] = [minus(one, product(factor, other)) for one, other in zip(left[k], left[i], strict=True)]
+    return [left[i][i] for i in range(count)]

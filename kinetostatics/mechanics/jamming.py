@@ -1,0 +1,65 @@
+"""Where friction jams, or leaves more than one state of forces: the check behind `solve`."""
+
+import warnings
+
+import numpy as np
+
+from ..errors import ConditionWarning, JammingError
+
+CONVERGED = 1e-13
+"""Relative change of friction by one more pass, times the margin from jamming, from which on it is not found."""
+
+
+def standing(solution):
+    """What is wrong with a crank that neither moves nor begins to, as a sentence, or None."""
+    still = [np.asarray(part) == 0.0 for part in (solution.crank_speed, solution.crank_acceleration)]
+    if not np.any(np.logical_and(*still)):
+        return None
+    return (
+        "friction acts against motion, but crank_speed and crank_acceleration are both 0; give a crank_acceleration, "
+        "positive or negative, for the torque that begins a motion that way"
+    )
+
+
+def converged(margin, residual):
+    """Whether friction was found to rounding."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray((margin > 0) & (residual * margin <= CONVERGED))
+
+
+def check(solution, on_gap):
+    """Raise `JammingError` where friction has no state, or several; warn where it was not found to rounding."""
+    margin, residual = solution._found("friction_margin"), solution._found("friction_residual")
+    if not (isinstance(margin, np.ndarray) and margin.dtype == float):
+        return
+    with np.errstate(invalid="ignore"):
+        jams, found = margin <= 0, converged(margin, residual)
+        lost = (margin > 0) & ~found
+    if jams.any() and on_gap == "raise":
+        raise _error(solution, margin, jams)
+    if lost.any():
+        angle = np.broadcast_to(solution.crank_angle, margin.shape)[lost]
+        warnings.warn(
+            f"{solution.mechanism.name}: friction and reactions are not found to rounding at {lost.sum()} of "
+            f"{lost.size} crank angles, {_degrees(angle)} deg; one more pass would change friction by up to "
+            f"{np.max(residual[lost]):.1g} of itself (solution.converged)",
+            ConditionWarning,
+            stacklevel=5,
+        )
+
+
+def _error(solution, margin, jams):
+    angle = np.broadcast_to(solution.crank_angle, margin.shape)[jams]
+    return JammingError(
+        f"{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, {_degrees(angle)} deg: "
+        f"it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (1 or more: there no forces, or more "
+        "than one state of them, are in equilibrium); lower the coefficients, lengthen the shoes or steepen the links, "
+        'or pass on_gap="nan" to get NaN there and the rest exact',
+        np.unique(angle).tolist(),
+    )
+
+
+def _degrees(angles):
+    angles = np.unique(np.degrees(angles))
+    shown = ", ".join(f"{angle:.6g}" for angle in angles[:3])
+    return shown if angles.size <= 3 else f"{shown} ... {angles[-1]:.6g}"
