@@ -17,7 +17,7 @@ from ..machine.friction import Sliding, Turning
 from ..machine.group import FRAME, Resolved
 from ..machine.links import Wrench, present
 from ..numbers.elementary import root, sign, sqrt
-from ..numbers.planar import added, length, minus, number, plus, product, stretched, vector
+from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
 
 TINY = 1e-290
 """Square of a force that counts as nothing but can be divided by."""
@@ -151,9 +151,8 @@ class Rubbing:
             half = friction.half_length
 
             def watched(found):
-                force = (found.scalars[pair.force],)
-                couple = found.scalars[pair.couple] if half is not None else None
-                return force if couple is None else (*force, couple / half)
+                force = found.scalars[pair.force]
+                return (force,) if half is None else (force, quotient(found.scalars[pair.couple], half))
 
             yield Law(name, factor, watched, "size" if half is None else "larger", ((_force(name, pair, slide), -1),))
         else:
@@ -358,30 +357,30 @@ def _weighted(weights, parts):
 
 def _eliminated(matrix, right):
     """Solution x of x - matrix x = right, by elimination: near one no pivot is small."""
-    count = len(right)
-    left = [[minus(1.0 if i == k else None, matrix[i][k]) for k in range(count)] for i in range(count)]
-    right = list(right)
-    for i in range(count):
-        for k in range(i + 1, count):
-            if left[k][i] is None:
-                continue
-            factor = left[k][i] / left[i][i]
-            left[k] = [minus(one, product(factor, other)) for one, other in zip(left[k], left[i], strict=True)]
-            right[k] = minus(right[k], product(factor, right[i]))
-    found: list[Any] = [None] * count
+    above, right, inverse = _triangle(matrix, right)
+    count, found = len(right), [None] * len(right)
     for i in reversed(range(count)):
-        rest = reduce(plus, (product(left[i][k], found[k]) for k in range(i + 1, count)), None)
-        above = minus(right[i], rest)
-        found[i] = None if above is None else above / left[i][i]
+        rest = reduce(plus, (product(above[i][k], found[k]) for k in range(i + 1, count)), None)
+        found[i] = product(minus(right[i], rest), inverse[i])
     return [number(one) for one in found]
 
 
 def _pivots(matrix):
     """Pivots of one less a matrix."""
-    count = len(matrix)
-    left = [[minus(1.0 if i == k else None, matrix[i][k]) for k in range(count)] for i in range(count)]
+    above, _, _ = _triangle(matrix, [None] * len(matrix))
+    return [row[i] for i, row in enumerate(above)]
+
+
+def _triangle(matrix, right):
+    """One less a matrix, and a right-hand side, with nothing left below the pivots; and the pivots' inverses."""
+    count = len(right)
+    rows = [[minus(1.0 if i == k else None, matrix[i][k]) for k in range(count)] for i in range(count)]
+    right, inverse = list(right), []
     for i in range(count):
+        inverse.append(1.0 / rows[i][i])
         for k in range(i + 1, count):
-            factor = None if left[k][i] is None else left[k][i] / left[i][i]
-            left[k] = [minus(one, product(factor, other)) for one, other in zip(left[k], left[i], strict=True)]
-    return [left[i][i] for i in range(count)]
+            factor = product(rows[k][i], inverse[i])
+            rest = zip(rows[k][i + 1 :], rows[i][i + 1 :], strict=True)
+            rows[k][i + 1 :] = [minus(one, product(factor, other)) for one, other in rest]
+            right[k] = minus(right[k], product(factor, right[i]))
+    return rows, right, inverse

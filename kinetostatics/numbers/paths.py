@@ -31,7 +31,7 @@ def places(item, prefix="", label="") -> dict[str, Place]:
     found = {}
     for field, rule in _rules(item).items():
         name = names.get(field, field)
-        path = f"{prefix}{name}{label if name else ''}"
+        path = f"{prefix}{name}{label}" if name else prefix.removesuffix(".")
         for inner, place in _of_value(getattr(item, field), rule, path, label if not name else "").items():
             found[inner] = place._replace(steps=(field, *place.steps))
     return found

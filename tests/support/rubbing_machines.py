@@ -1,0 +1,254 @@
+"""Random mechanisms whose joints rub, each as the library has it and as `rubbing.System` of its own geometry."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+
+import kinetostatics as ks
+
+from .rubbing import Body, Pin, Roller, Slide, System, circle
+
+KINDS = ("slider", "cam", "four-bar", "six-bar", "coupler point", "lever", "cylinder", "yoke", "dyad")
+
+
+class Drawn:
+    """Numbers of one random machine; `scale` of the coefficients."""
+
+    def __init__(self, kind, seed, scale=1.0):
+        self.rng, self.scale = np.random.default_rng([KINDS.index(kind), seed]), scale
+        self.bodies, self.joints, self.friction, self.applied = {}, {}, {}, []
+        self.r = self.real(0.08, 0.15)
+        getattr(self, "_" + kind.replace("-", "_").replace(" ", "_"))()
+        self.speed = float(self.rng.choice([-1, 1]) * self.real(3.0, 40.0))
+        self.acceleration = self.real(-60.0, 60.0)
+        self.gravity = self.real(-10, 10), self.real(-10, 10)
+        self.scene = ks.Scene(
+            self.mechanism,
+            self.speed,
+            self.acceleration,
+            (ks.Gravity(math.hypot(*self.gravity), math.atan2(*self.gravity[::-1])), *self.loads),
+            self.friction,
+        )
+        x, y = (item.vector for item in self.scene.loads if isinstance(item, ks.Gravity)).__next__()
+        self.system = System(
+            self.bodies, self.joints, mp.mpf(self.speed), mp.mpf(self.acceleration), mp.mpc(float(x), float(y)), self.applied
+        )
+
+    def real(self, low, high):
+        return float(self.rng.uniform(low, high))
+
+    def link(self, name, point, direction):
+        """Mass properties, also for the system."""
+        mass, inertia = self.real(0.1, 9), self.real(0.001, 0.1)
+        centre = self.real(-0.1, 0.2), self.real(-0.05, 0.05)
+        self.bodies[name] = Body(point, direction, mass, mp.mpc(*centre), inertia)
+        return ks.Link(mass, centre, inertia)
+
+    def pin(self, name, on, against, at):
+        mu, radius = self.scale * self.real(0.0, 0.2), self.real(0.005, 0.02)
+        self.friction[name] = ks.PinFriction(mu, radius)
+        self.joints[name] = Pin(on, against, at, mp.mpf(mu) * radius)
+
+    def slide(self, name, on, against, at, direction):
+        mu = self.scale * self.real(0.0, 0.25)
+        half = self.real(0.05, 0.2) if self.rng.random() < 0.6 else None
+        self.friction[name] = (ks.GuideFriction if against is None else ks.SlotFriction)(mu, half)
+        self.joints[name] = Slide(on, against, at, direction, mp.mpf(mu), half)
+
+    def _crank(self):
+        self.ray, self.A = mp.expj, lambda phi: self.r * mp.expj(phi)
+        link = self.link("crank", lambda phi: mp.mpc(0), mp.expj)
+        self.pin("O", "crank", None, lambda phi: mp.mpc(0))
+        return ks.Crank(self.r, link)
+
+    def _sliding(self, inner, carrier, on="A", pin="B", label=""):
+        """Slider group on a point."""
+        length, angle = self.real(4, 6) * self.r, self.real(-3, 3)
+        offset, side = self.real(-0.4, 0.4) * self.r, int(self.rng.choice([-1, 1]))
+        guide = ks.Guide.at(angle, offset)
+        u = mp.mpc(*map(float, guide.direction))
+        force = self.real(-300, 300)
+
+        def slider(phi):
+            a = inner(phi) / u
+            across = offset - mp.im(a)
+            return u * (mp.re(a) + side * mp.sqrt(length**2 - across**2) + 1j * offset)
+
+        def direction(phi):
+            return (slider(phi) - inner(phi)) / length
+
+        coupler, block = "coupler" + label, "slider" + label
+        group = ks.SliderGroup(
+            length,
+            guide,
+            side,
+            coupler=self.link(coupler, inner, direction),
+            slider=self.link(block, slider, lambda phi: u),
+            on=on,
+            pin=pin,
+            label=label,
+        )
+        self.pin(on + label, coupler, carrier, inner)
+        self.pin(pin, block, coupler, slider)
+        self.slide("guide" + label, block, None, slider, lambda phi: u)
+        self.applied.append((block, lambda phi: force * u, slider))
+        self.loads = (*getattr(self, "loads", ()), ks.ProcessForce(force, on=block))
+        return group
+
+    def _slider(self):
+        crank = self._crank()
+        self.mechanism = ks.Mechanism("slider", crank, (self._sliding(self.A, "crank"),))
+
+    def _cam(self):
+        r, centre = self.r, (self.real(-0.2, 0.2) * self.r, self.real(-0.2, 0.2) * self.r)
+        c = mp.mpc(*centre)
+
+        def roller(phi):
+            along, across = mp.re(c * mp.conj(mp.expj(phi))), mp.im(c * mp.conj(mp.expj(phi)))
+            return mp.expj(phi) * (along + mp.sqrt(r**2 - across**2))
+
+        crank = self.link("crank", lambda phi: mp.mpc(0), mp.expj)
+        self.pin("O", "crank", None, lambda phi: mp.mpc(0))
+        block = self.link("block", roller, mp.expj)
+        self.slide("slot", "block", "crank", roller, mp.expj)
+        mu, pin_radius, radius = self.scale * self.real(0, 0.1), self.real(0.01, 0.02), self.real(0.02, 0.05)
+        self.friction["cam"] = ks.RollerFriction(mu, pin_radius, radius)
+        self.joints["cam"] = Roller("block", roller, mp.mpf(mu) * pin_radius, mp.mpf(radius))
+        cam = ks.CamRoller(ks.cams.Circle(r, centre), block)
+        self.mechanism = ks.Mechanism("cam", ks.Crank(None, crank), (cam, self._sliding(roller, "block")))
+
+    def _bars(self):
+        a = self.r
+        b, h, pivot = self.real(2, 3) * a, self.real(2.2, 3) * a, (self.real(2, 2.5) * a, self.real(-0.5, 0.5) * a)
+        side, O2 = int(self.rng.choice([-1, 1])), mp.mpc(*pivot)
+        B = lambda phi: circle(self.A(phi), b, O2, h, side)  # noqa: E731
+        q = lambda phi: (B(phi) - self.A(phi)) / b  # noqa: E731
+        p = lambda phi: (B(phi) - O2) / h  # noqa: E731
+        group = ks.RockerGroup(
+            b,
+            h,
+            pivot,
+            side,
+            coupler=self.link("coupler", self.A, q),
+            rocker=self.link("rocker", lambda phi: O2, p),
+        )
+        self.pin("A", "coupler", "crank", self.A)
+        self.pin("B", "rocker", "coupler", B)
+        self.pin("O2", "rocker", None, lambda phi: O2)
+        self.B, self.q, self.p, self.O2, self.h = B, q, p, O2, h
+        self.loads = getattr(self, "loads", ())
+        return group
+
+    def _four_bar(self):
+        self.mechanism = ks.Mechanism("four-bar", self._crank(), (self._bars(),))
+
+    def _six_bar(self):
+        groups = self._crank(), self._bars(), self._sliding(self.B, "rocker", "B", "C", "2")
+        self.mechanism = ks.Mechanism("six-bar", groups[0], groups[1:])
+
+    def _coupler_point(self):
+        along, across = self.real(0.5, 1.5) * self.r, self.real(-0.5, 0.5) * self.r
+        crank, bars = self._crank(), self._bars()
+        point = lambda phi: self.A(phi) + mp.mpc(along, across) * self.q(phi)  # noqa: E731
+        further = self._sliding(point, "coupler", "C", "D", "2")
+        pin = ks.Pin(on="coupler", at=(along, across), name="C")
+        self.mechanism = ks.Mechanism("coupler point", crank, (bars, pin, further))
+
+    def _dyad(self):
+        """Dyad between the rocker's end and a further pin of the crank."""
+        crank, bars = self._crank(), self._bars()
+        along = self.real(-0.6, -0.3) * self.r
+        point = lambda phi: along * mp.expj(phi)  # noqa: E731
+        one, two = self.real(4, 5) * self.r, self.real(4, 5) * self.r
+        side = int(self.rng.choice([-1, 1]))
+        D = lambda phi: circle(self.B(phi), one, point(phi), two, side)  # noqa: E731
+        dyad = ks.Dyad(
+            one,
+            two,
+            ("B", "C"),
+            assembly=side,
+            dyad1=self.link("dyad1", self.B, lambda phi: (D(phi) - self.B(phi)) / one),
+            dyad2=self.link("dyad2", point, lambda phi: (D(phi) - point(phi)) / two),
+        )
+        self.pin("dyad1_B", "dyad1", "rocker", self.B)
+        self.pin("dyad2_C", "dyad2", "crank", point)
+        self.pin("D", "dyad2", "dyad1", D)
+        pin = ks.Pin(on="crank", at=(along, 0.0), name="C")
+        self.mechanism = ks.Mechanism("dyad", crank, (bars, pin, dyad))
+
+    def _lever(self):
+        crank = self._crank()
+        pivot = self.real(-0.5, 0.5) * self.r, self.real(-2.5, -1.5) * self.r
+        offset, O2 = self.real(-0.3, 0.3) * self.r, mp.mpc(*pivot)
+
+        def direction(phi):
+            d = self.A(phi) - O2
+            return d / mp.mpc(mp.sqrt(abs(d) ** 2 - mp.mpf(offset) ** 2), offset)
+
+        lever = ks.LeverGroup(
+            pivot,
+            offset=offset,
+            lever=self.link("lever", lambda phi: O2, direction),
+            block=self.link("block", self.A, direction),
+        )
+        self.pin("A", "block", "crank", self.A)
+        self.pin("O2", "lever", None, lambda phi: O2)
+        self.slide("slot", "block", "lever", self.A, direction)
+        self.loads = ()
+        self.mechanism = ks.Mechanism("lever", crank, (lever,))
+
+    def _cylinder(self):
+        crank = self._crank()
+        pivot = self.real(-0.5, 0.5) * self.r, self.real(-4, -2) * self.r
+        O2 = mp.mpc(*pivot)
+        towards = lambda phi: (self.A(phi) - O2) / abs(self.A(phi) - O2)  # noqa: E731
+        group = ks.CylinderGroup(
+            pivot,
+            rod=self.link("rod", self.A, lambda phi: -towards(phi)),
+            cylinder=self.link("cylinder", lambda phi: O2, towards),
+        )
+        self.pin("A", "rod", "crank", self.A)
+        self.pin("O2", "cylinder", None, lambda phi: O2)
+        self.slide("cylinder", "rod", "cylinder", lambda phi: O2, towards)
+        self.joints["cylinder"].moving = self.A
+        self.loads = ()
+        self.mechanism = ks.Mechanism("cylinder", crank, (group,))
+
+    def _yoke(self):
+        crank = self._crank()
+        angle, offset, beta = self.real(-3, 3), self.real(-0.3, 0.3) * self.r, self.real(1.1, 2.0)
+        guide = ks.Guide.at(angle, offset)
+        u = mp.mpc(*map(float, guide.direction))
+        along = u * mp.expj(beta)
+        force = self.real(-300, 300)
+
+        def slider(phi):
+            a = self.A(phi) / u
+            return u * (mp.re(a) - (mp.im(a) - offset) * mp.cot(beta) + 1j * offset)
+
+        group = ks.YokeGroup(
+            guide,
+            beta,
+            slider=self.link("slider", slider, lambda phi: u),
+            block=self.link("block", self.A, lambda phi: along),
+        )
+        self.pin("A", "block", "crank", self.A)
+        self.slide("guide", "slider", None, slider, lambda phi: u)
+        self.slide("slot", "block", "slider", self.A, lambda phi: along)
+        self.joints["guide"].half_length = half = self.real(2, 4) * self.r
+        self.friction["guide"] = ks.GuideFriction(self.friction["guide"].mu, half)
+        self.applied.append(("slider", lambda phi: force * u, slider))
+        self.loads = (ks.ProcessForce(force),)
+        self.mechanism = ks.Mechanism("yoke", crank, (group,))
+
+
+def forces_of(solution, name, joint):
+    """What the library has for a joint, as `System.solved` gives it."""
+    if isinstance(joint, Pin):
+        return np.array([complex(*solution.reaction(name))]), 1.0
+    if isinstance(joint, Roller):
+        return np.array([float(solution.cam_force)]), 1.0
+    label = next(part for part in ("guide", "slot", "cylinder") if name.startswith(part))
+    suffix = name.removeprefix(label)
+    return np.array([float(solution.scalar(f"{label}_force{suffix}"))]), 1.0
