@@ -7,9 +7,12 @@ arithmetic, `derivatives` adds to it, `writing` makes source of it.
 import numpy as np
 
 from ..numbers.elementary import APART
+from ..numbers.nothing import Nothing
 
 BY_DESIGN, BY_ANGLE = range(2)
 """What the value of a node varies with: the design, or the crank angle as well."""
+OTHERS = (np.ndarray, Nothing)
+"""What arithmetic is left to."""
 INPUTS = ("angle", "parameter", "table")
 """Operations without arguments that are nodes."""
 
@@ -93,7 +96,7 @@ class Node:
 
 
 def _combined(node, operation, left, right):
-    if isinstance(left, np.ndarray) or isinstance(right, np.ndarray):
+    if isinstance(left, OTHERS) or isinstance(right, OTHERS):
         return NotImplemented
     return node.graph.node(operation, left, right)
 

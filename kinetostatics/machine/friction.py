@@ -16,8 +16,8 @@ from .links import present
 
 COEFFICIENT = checks.Number("1", low=0.0)
 SIZE = checks.Number("m", low=0.0, strict=True)
-PASSES = 4
-"""Times that the directions of all reactions are found anew, each time with twice as many digits."""
+PASSES = (3, 6, 12)
+"""Times that the directions of all reactions are found anew, each with twice as many digits; more where not enough."""
 
 
 class Turning(NamedTuple):
@@ -171,7 +171,7 @@ class Frictions(Mapping, Batched):
     """
 
     rubs: tuple[Rub, ...] = ()
-    passes: int = PASSES
+    passes: int = PASSES[0]
 
     __eq__, __hash__ = object.__eq__, object.__hash__
     PATHS: ClassVar = {"rubs": ""}

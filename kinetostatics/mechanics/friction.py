@@ -17,10 +17,13 @@ from ..machine.friction import Sliding, Turning
 from ..machine.group import FRAME, Resolved
 from ..machine.links import Wrench, present
 from ..numbers.elementary import root, sign, sqrt
+from ..numbers.nothing import NOTHING, absent
 from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
 
 TINY = 1e-290
 """Square of a force that counts as nothing but can be divided by."""
+SIGNS = 2
+"""Passes for directions that are signs: the first is exact unless friction turns one."""
 FASTER = 2.0**600
 """Factor by which a crank speed counts before the crank acceleration."""
 
@@ -114,7 +117,7 @@ class Rubbing:
         own = part.links
         channels = {channel.name: channel for law in laws for channel, _ in law.effects}
         inner = [channel for channel in channels.values() if _acts_on(channel, own)]
-        unloaded = dict.fromkeys(own, Wrench(None, None))
+        unloaded = dict.fromkeys(own, Wrench((NOTHING, NOTHING), NOTHING))
         columns = [part.resolve(placement, *_with(unloaded, {}, [(channel, 1.0)], own)) for channel in inner]
         system = _System(laws, [channel.name for channel in inner], free, columns)
         amounts = system.solved(self.friction.passes, placement.angle)
@@ -237,11 +240,10 @@ class _System:
 
     def __init__(self, laws, names, free, columns):
         self.laws = laws
-        self.free = [tuple(map(present, law.watched(free))) for law in laws]
-        slopes = [[tuple(map(present, law.watched(column))) for column in columns] for law in laws]
-        felt = [
-            place for place in range(len(names)) if any(part is not None for law in slopes for part in law[place])
-        ]
+        self.free = [tuple(map(absent, law.watched(free))) for law in laws]
+        slopes = [[tuple(map(absent, law.watched(column))) for column in columns] for law in laws]
+        feeling = [sum(any(part is not None for part in law[place]) for law in slopes) for place in range(len(names))]
+        felt = [place for place in sorted(range(len(names)), key=feeling.__getitem__) if feeling[place]]
         self.slopes = [[law[place] for place in felt] for law in slopes]
         places = {names[place]: number for number, place in enumerate(felt)}
         self.effects = [
@@ -255,7 +257,8 @@ class _System:
         """Friction of each law, NaN where it jams or is not the only one."""
         watched = self.free
         unknowns: list[Any] = []
-        for _ in range(passes if self.count else 0):
+        signs = all(law.kind != "length" for law in self.laws)
+        for _ in range(min(passes, SIGNS if signs else passes) if self.count else 0):
             unknowns = self._linear([_directed(law, parts) for law, parts in zip(self.laws, watched, strict=True)])
             watched = [self._at(number, unknowns) for number in range(len(self.laws))]
         amounts = [product(law.factor, _size(law.kind, parts)) for law, parts in zip(self.laws, watched, strict=True)]

@@ -1,10 +1,13 @@
 """Where friction jams, or leaves more than one state of forces: the check behind `solve`."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 
 from ..errors import ConditionWarning, JammingError
+from ..machine.friction import PASSES
+from ..numbers.leaves import with_fields
 
 CONVERGED = 1e-13
 """Relative change of friction by one more pass, times the margin from jamming, from which on it is not found."""
@@ -27,10 +30,25 @@ def converged(margin, residual):
         return np.asarray((margin > 0) & (residual * margin <= CONVERGED))
 
 
+def settled(solution):
+    """The solution with as many passes over its friction as it takes, or the most there are."""
+    for passes in PASSES:
+        if passes > solution.friction.passes:
+            solution = replace(solution, friction=with_fields(solution.friction, passes=passes))
+        margin, residual = solution._found("friction_margin"), solution._found("friction_residual")
+        if not _is_plain(margin) or np.all(converged(margin, residual) | ~(margin > 0)):
+            break
+    return solution
+
+
+def _is_plain(values):
+    return getattr(values, "dtype", None) == float and isinstance(values, np.ndarray | np.floating)
+
+
 def check(solution, on_gap):
     """Raise `JammingError` where friction has no state, or several; warn where it was not found to rounding."""
     margin, residual = solution._found("friction_margin"), solution._found("friction_residual")
-    if not (isinstance(margin, np.ndarray) and margin.dtype == float):
+    if not _is_plain(margin):
         return
     with np.errstate(invalid="ignore"):
         jams, found = margin <= 0, converged(margin, residual)

@@ -3,6 +3,10 @@
 import numpy as np
 
 from .elementary import APART, ROUNDING
+from .nothing import Nothing
+
+OTHERS = (np.ndarray, Nothing)
+"""What arithmetic is left to."""
 
 
 class Dual:
@@ -20,7 +24,7 @@ class Dual:
         return Dual(value, None if self.slopes is None else self.slopes * factor)
 
     def __add__(self, other):
-        if isinstance(other, np.ndarray):
+        if isinstance(other, OTHERS):
             return NotImplemented
         other = dual(other)
         return Dual(self.value + other.value, _sum(self.slopes, other.slopes))
@@ -31,13 +35,13 @@ class Dual:
         return self._chained(-self.value, -1.0)
 
     def __sub__(self, other):
-        return NotImplemented if isinstance(other, np.ndarray) else self + -dual(other)
+        return NotImplemented if isinstance(other, OTHERS) else self + -dual(other)
 
     def __rsub__(self, other):
-        return NotImplemented if isinstance(other, np.ndarray) else -self + other
+        return NotImplemented if isinstance(other, OTHERS) else -self + other
 
     def __mul__(self, other):
-        if isinstance(other, np.ndarray):
+        if isinstance(other, OTHERS):
             return NotImplemented
         other = dual(other)
         value = self.value * other.value
@@ -46,7 +50,7 @@ class Dual:
     __rmul__ = __mul__
 
     def __truediv__(self, other):
-        if isinstance(other, np.ndarray):
+        if isinstance(other, OTHERS):
             return NotImplemented
         other = dual(other)
         value = np.divide(self.value, other.value)
@@ -55,7 +59,7 @@ class Dual:
         )
 
     def __rtruediv__(self, other):
-        return NotImplemented if isinstance(other, np.ndarray) else dual(other) / self
+        return NotImplemented if isinstance(other, OTHERS) else dual(other) / self
 
     def __pow__(self, exponent):
         if exponent != 2:

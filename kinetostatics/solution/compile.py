@@ -9,13 +9,19 @@ import numpy as np
 from ..engines import programs
 from ..engines.compiled import available, require
 from ..errors import ParameterError
+from ..machine.friction import PASSES
 from ..machine.loads import may_refuse, refusals
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.jamming import settled
 from ..numbers import checks, paths
 from ..numbers.elementary import read_only
 from ..numbers.leaves import Kept, with_fields
 from .angles import crank_angles, problems
-from .scene import Scene
+from .scene import Scene, unchecked
+
+
+FEW = 180
+"""Crank angles around the turn at which friction is looked at."""
 
 
 def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa: A001 - the contract's name
@@ -86,6 +92,8 @@ class Program:
         self.scene, self.quantities, self._compiled, self._kept = scene, quantities, compiled, kept
         places = paths.places(scene)
         checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
+        if scene.friction.acting:
+            scene = _with_enough_passes(scene)
         for path in kept:
             if _is_zero(places[path].value(scene)):
                 scene = _with_kept(scene, places[path].steps)
@@ -238,6 +246,15 @@ class Program:
                     f'compile(..., parameters=("{path}",))'
                 )
         checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+
+
+def _with_enough_passes(scene):
+    """The scene with as many passes over its friction as it takes around the turn."""
+    if any(np.ndim(leaf) and np.shape(leaf)[-1] > 1 for leaf in (scene.crank_speed, scene.crank_acceleration)):
+        return with_fields(scene, friction=with_fields(scene.friction, passes=PASSES[1]))
+    with np.errstate(all="ignore"):
+        found = settled(unchecked(scene, np.linspace(0.0, scene.period, FEW, endpoint=False), "numpy"))
+    return with_fields(scene, friction=found.friction)
 
 
 def _drive(scene):

@@ -213,8 +213,9 @@ def _solved(scene, crank_angle, on_gap, engine):
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded
     (solution.check if on_gap == "raise" else solution.warn)()
-    if solution.friction:
+    if solution.friction.acting:
         checks.require("solve", jamming.standing(solution))
+        solution = jamming.settled(solution)
         jamming.check(solution, on_gap)
     checks.require("solve", *refusals(solution))
     return solution
