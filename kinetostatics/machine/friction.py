@@ -156,7 +156,10 @@ class Rub(Batched):
     friction: Any
 
     PATHS: ClassVar = {"friction": ""}
-    RULES = checks.Rules("friction", joint=checks.Name(), friction=checks.Own((), "friction"))
+    RULES = checks.Rules("friction", friction=checks.Own(("mu",), "friction"))
+
+    def __post_init__(self):
+        """Checked where it is given, with the mechanism."""
 
     @property
     def PATH(self):  # noqa: N802 - as loads call it
@@ -176,6 +179,9 @@ class Frictions(Mapping, Batched):
     __eq__, __hash__ = object.__eq__, object.__hash__
     PATHS: ClassVar = {"rubs": ""}
     RULES = checks.Rules("friction", rubs=checks.Own((), "friction by joint"))
+
+    def __post_init__(self):
+        """Checked where it is given, with the mechanism."""
 
     def __getitem__(self, name):
         return next((rub.friction for rub in self.rubs if rub.joint == name), None) or _missing(name)

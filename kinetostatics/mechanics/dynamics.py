@@ -64,6 +64,12 @@ class Dynamics(Motion):
         """Friction by joint, each a `friction.Rubbed`; nothing of joints that do not rub."""
         return self.rubbing.found if self.rubbing is not None and self.resolved else {}
 
+    @property
+    def friction_signs(self):
+        """Rates and forces at whose zeros friction jumps or has a kink, each (..., N)."""
+        self.rubbed  # noqa: B018  found with the forces
+        return [self._scalar(part) for part in (*self.rubbing.turning, *self.rubbing.bending)] if self.rubbing else []
+
     def friction_at(self, joint):
         """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
         return self._scalar(minus(None, self.rubbed[joint].amount) if joint in self.rubbed else None)

@@ -94,6 +94,8 @@ class Rubbing:
     found : dict of str to Rubbed
     margins, residuals : list
         Of each part: how far it is from jamming (`_margin`), and what the last pass still changed, relative.
+    turning, bending : list
+        Rates, and forces, at whose zeros friction jumps or has a kink.
     """
 
     mechanism: Any
@@ -102,6 +104,8 @@ class Rubbing:
     found: dict = field(default_factory=dict)
     margins: list = field(default_factory=list)
     residuals: list = field(default_factory=list)
+    turning: list = field(default_factory=list)
+    bending: list = field(default_factory=list)
 
     def __post_init__(self):
         self.acting = self.friction.acting
@@ -128,6 +132,9 @@ class Rubbing:
             for channel, way in law.effects
         ]
         resolved = part.resolve(placement, *_with(loads, along, acting, own))
+        self.turning += rates.values()
+        for law in laws:
+            self.bending += _bends(law.kind, law.watched(resolved))
         return self._completed(resolved, part, placement, acting, own)
 
     def _laws(self, part, name, placement, rates):
@@ -330,6 +337,14 @@ def _directed(law, parts):
         return tuple(None if part is None else law.factor * sign(part) for part in parts)
     ahead = 0.5 * sign(abs(first) - abs(second))
     return law.factor * (0.5 + ahead) * sign(first), law.factor * (0.5 - ahead) * sign(second)
+
+
+def _bends(kind, parts):
+    """What is zero where the size of what is watched has a kink; that of a vector has none but where it vanishes."""
+    given = [part for part in parts if part is not None]
+    if kind == "larger" and len(given) == 2:
+        return [given[0], given[1], abs(given[0]) - abs(given[1])]
+    return given if kind == "size" else []
 
 
 def _size(kind, parts):

@@ -34,6 +34,8 @@ GROWING = 1.15
 """How much more a quantity must change each time the distance is halved to grow without bound."""
 BESIDE = (-(2.0**-44), 2.0**-44)
 """Distances from a jump, rad, at which samples stand on both sides of it."""
+ASIDE = 1e-3
+"""Crank angle from 0, rad, so that no sample meets a dead centre."""
 SAME = 1e-9
 """Crank angles this near, rad, are the same."""
 LONGEST = 6
@@ -216,13 +218,41 @@ class Turn:
 
 
 def _kinks(solution):
-    """Crank angles of kinks and jumps of all tables among the loads, over the period."""
-    found: list[Any] = [(np.empty(0), np.empty(0))]
+    """Crank angles of kinks and jumps of friction, and of all tables among the loads, over the period."""
+    rubbing = _friction_changes(solution)
+    found: list[Any] = [(rubbing, rubbing)]
     for table in map(value_of, solution.loads):
         if isinstance(table, Table):
             again = np.arange(0.0, solution.period - SAME, table.period)[:, None]
             found.append(tuple(np.ravel(angles + again) for angles in table.kinks(solution)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
+
+
+def _friction_changes(solution):
+    """Crank angles at which friction jumps, as a rate changes its sign, or has a kink, as a force does."""
+    if not solution.friction.acting:
+        return np.empty(0)
+    from scipy.optimize import elementwise
+
+    def signs(angle):
+        with np.errstate(all="ignore"):
+            return np.array([np.broadcast_to(row, angle.shape) for row in solution.at(angle).dynamics.friction_signs])
+
+    grid = ASIDE + np.linspace(0.0, solution.period, SAMPLES + 1)
+    found = signs(grid)
+    if not found.size:
+        return np.empty(0)
+    row, place = np.nonzero(np.signbit(found[:, :-1]) != np.signbit(found[:, 1:]))
+    if not row.size:
+        return np.empty(0)
+
+    def own(angle, row):
+        return signs(angle)[row, np.arange(row.size)] if angle.ndim == 1 else own(angle.ravel(), row.ravel())
+
+    root = elementwise.find_root(own, (grid[place], grid[place + 1]), args=(row,))
+    ends = np.where(found[row, place] == 0.0, grid[place], grid[place + 1])
+    angles = np.where(np.isfinite(root.x), root.x, ends)
+    return np.unique(np.mod(angles, solution.period))
 
 
 def _beside(angle, others):
