@@ -78,6 +78,9 @@ class Node:
     def sign(self):
         return self.graph.node("sign", self)
 
+    def held(self):
+        return self.graph.node("held", self)
+
     def forgiving_root(self, unit):
         """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
         return self.graph.node("root", self, unit)

@@ -41,6 +41,11 @@ def divisor(root, unit):
 
 
 @njit(**options)
+def held(value):
+    return value
+
+
+@njit(**options)
 def sign(value):
     return copysign(1.0, value)
 
@@ -138,6 +143,7 @@ _OPERATIONS = {
     ("atan", 1): "arctan",
     ("abs", 1): "absolute",
     ("sign", 1): "sign_of",
+    ("held", 1): "positive",
     ("root", 2): "root_of",
     ("divisor", 2): "maximum",
 }

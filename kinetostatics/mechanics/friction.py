@@ -6,7 +6,8 @@ the equations are linear; they are solved with the directions of the reactions f
 and directions are found anew. That is Newton's method: each pass doubles the digits. Of a guide alone the direction is
 a sign, and the first pass exact: N = N0 / (1 + kappa sgn N0).
 
-The number of passes is fixed, so that all this is arithmetic like all else of a group.
+A magnitude does not change with its direction to first order, so derivatives take directions as given, and need the
+last pass alone. The number of passes is fixed, so that all this is arithmetic like all else of a group.
 """
 
 from dataclasses import dataclass, field
@@ -16,7 +17,7 @@ from typing import Any, NamedTuple
 from ..machine.friction import Sliding, Turning
 from ..machine.group import FRAME, Resolved
 from ..machine.links import Wrench, present
-from ..numbers.elementary import root, sign, sqrt
+from ..numbers.elementary import held, root, sign, sqrt
 from ..numbers.nothing import NOTHING, absent
 from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
 
@@ -273,7 +274,7 @@ class _System:
         if self.margin is None:
             return amounts
         self.residual = self._residual(unknowns, amounts)
-        closed = 0.0 * root(self.margin + 0.0 * angle, 1.0)
+        closed = held(0.0 * root(self.margin + 0.0 * angle, 1.0))
         return [amount + closed for amount in amounts]
 
     def _at(self, law, unknowns):
@@ -331,8 +332,8 @@ def _directed(law, parts):
     if first is None and second is None:
         return (None, None)
     if law.kind == "length":
-        over = law.factor / _size("length", parts)
-        return product(over, first), product(over, second)
+        over = 1.0 / _size("length", parts)  # of a direction friction depends but in second order: see the module
+        return tuple(product(law.factor, None if part is None else held(over * part)) for part in parts)
     if first is None or second is None:
         return tuple(None if part is None else law.factor * sign(part) for part in parts)
     ahead = 0.5 * sign(abs(first) - abs(second))

@@ -87,6 +87,10 @@ class Dual:
         """Called by `elementary.sign`."""
         return Dual(np.copysign(1.0, self.value))
 
+    def held(self):
+        """Called by `elementary.held`."""
+        return Dual(self.value)
+
     def forgiving_root(self, unit):
         """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
         closed = self.value >= -ROUNDING * dual(unit).value

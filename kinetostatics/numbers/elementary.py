@@ -92,6 +92,13 @@ def _sign_of_one(x):
     return np.copysign(1.0, x) if isinstance(x, float | int) else x.sign() if hasattr(x, "sign") else x.sgn()
 
 
+def held(x):
+    """The same number, whose derivatives count as zero: for what a solution does not change with to first order."""
+    if _holds_objects(x):
+        return np.frompyfunc(lambda part: part.held() if hasattr(part, "held") else part, 1, 1)(x)
+    return x.held() if hasattr(x, "held") else x
+
+
 def apart(distance, unit):
     """A distance moved off zero by nothing that counts, so that it has a direction."""
     if _holds_objects(distance):
