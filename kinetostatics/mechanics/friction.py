@@ -2,9 +2,9 @@
 
 All reactions of a part are linear in the moments and forces that friction puts on its links, and friction is the
 magnitude of a reaction times a constant. A magnitude is the reaction times its own direction, so with directions known
-the equations are linear; they are solved with the directions of the reactions found before, beginning without friction,
-and directions are found anew. That is Newton's method: each pass doubles the digits. Of a guide alone the direction is
-a sign, and the first pass exact: N = N0 / (1 + kappa sgn N0).
+the equations are linear; they are solved with the directions of the reactions found before, and directions are found
+anew. That is Newton's method: each pass doubles the digits; the first takes friction from the reactions without it. Of
+a guide alone the direction is a sign, and the second pass exact: N = N0 / (1 + kappa sgn N0).
 
 A magnitude does not change with its direction to first order, so derivatives take directions as given, and need the
 last pass alone. The number of passes is fixed, so that all this is arithmetic like all else of a group.
@@ -23,8 +23,6 @@ from ..numbers.planar import added, length, minus, number, plus, product, quotie
 
 TINY = 1e-290
 """Square of a force that counts as nothing but can be divided by."""
-SIGNS = 2
-"""Passes for directions that are signs: the first is exact unless friction turns one."""
 FASTER = 2.0**600
 """Factor by which a crank speed counts before the crank acceleration."""
 
@@ -263,19 +261,30 @@ class _System:
 
     def solved(self, passes, angle):
         """Friction of each law, NaN where it jams or is not the only one."""
-        watched = self.free
-        unknowns: list[Any] = []
-        signs = all(law.kind != "length" for law in self.laws)
-        for _ in range(min(passes, SIGNS if signs else passes) if self.count else 0):
-            unknowns = self._linear([_directed(law, parts) for law, parts in zip(self.laws, watched, strict=True)])
-            watched = [self._at(number, unknowns) for number in range(len(self.laws))]
-        amounts = [product(law.factor, _size(law.kind, parts)) for law, parts in zip(self.laws, watched, strict=True)]
-        amounts = [number(amount) for amount in amounts]
+        amounts, unknowns = self._amounts(self.free), []
         if self.margin is None:
             return amounts
+        signs = all(law.kind != "length" for law in self.laws)  # found at once unless friction turns one
+        for step in range(passes - signs):
+            unknowns = self._linear(watched) if step else self._totals(amounts)
+            watched = [self._at(number, unknowns) for number in range(len(self.laws))]
+        amounts = self._amounts(watched)
         self.residual = self._residual(unknowns, amounts)
         closed = held(0.0 * root(self.margin + 0.0 * angle, 1.0))
         return [amount + closed for amount in amounts]
+
+    def _amounts(self, watched):
+        """Friction of each law, from what it watches."""
+        sizes = (_size(law.kind, parts) for law, parts in zip(self.laws, watched, strict=True))
+        return [number(product(law.factor, size)) for law, size in zip(self.laws, sizes, strict=True)]
+
+    def _totals(self, amounts):
+        """Friction by channel, from that of each law."""
+        found: list[Any] = [None] * self.count
+        for amount, effects in zip(amounts, self.effects, strict=True):
+            for place, way in effects:
+                found[place] = (plus if way > 0 else minus)(found[place], amount)
+        return found
 
     def _at(self, law, unknowns):
         """What a law watches, for given friction."""
@@ -284,8 +293,9 @@ class _System:
             found = [plus(part, product(unknown, one)) for part, one in zip(found, slope, strict=True)]
         return tuple(found)
 
-    def _linear(self, directed):
-        """Friction by channel with all directions known."""
+    def _linear(self, watched):
+        """Friction by channel with the directions of what laws watch."""
+        directed = [_directed(law, parts) for law, parts in zip(self.laws, watched, strict=True)]
         matrix: list[list] = [[None] * self.count for _ in range(self.count)]
         right: list[Any] = [None] * self.count
         for law, weights in enumerate(directed):
@@ -312,14 +322,12 @@ class _System:
 
     def _residual(self, unknowns, amounts):
         """Change of friction by one more pass, relative, largest of all channels."""
-        found = []
-        for place, unknown in enumerate(unknowns):
-            total, size = None, None
-            for amount, effects in zip(amounts, self.effects, strict=True):
-                for _, way in (effect for effect in effects if effect[0] == place):
-                    total, size = (plus if way > 0 else minus)(total, amount), plus(size, abs(amount))
-            found.append(abs(minus(total, unknown)) / (size + TINY))
-        return reduce(larger, found)
+        sizes: list[Any] = [None] * self.count
+        for amount, effects in zip(amounts, self.effects, strict=True):
+            for place, _ in effects:
+                sizes[place] = plus(sizes[place], abs(amount))
+        rest = zip(self._totals(amounts), unknowns, sizes, strict=True)
+        return reduce(larger, [abs(total - unknown) / (size + TINY) for total, unknown, size in rest])
 
 
 def _directed(law, parts):

@@ -14,7 +14,8 @@ from .method import Method, NotGivenError
 
 
 def _solved(solution, angle):
-    scene = Scene(solution.mechanism, solution.crank_speed, solution.crank_acceleration, solution.loads)
+    drive = solution.crank_speed, solution.crank_acceleration
+    scene = Scene(solution.mechanism, *drive, solution.loads, solution.friction)
     return unchecked(scene, angle, "numpy")
 
 
