@@ -10,7 +10,7 @@ from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table
 from ..numbers.files import read_columns
 from ..solution.scene import Scene
 from . import chain, parameters, schema
-from .pieces import all_of, cam_of, guide_of, link_of
+from .pieces import all_of, cam_of, friction_of, guide_of, link_of
 
 
 def tabulated(table, folder):
@@ -24,7 +24,9 @@ def tabulated(table, folder):
 
 def without(table, wrong):
     """A validated variant without what could not be read at some keys, or None, as without its cam."""
-    values: dict[Any, Any] = {keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)}
+    values: dict[Any, Any] = {
+        keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)
+    }
     values |= {keys: None for keys in wrong if isinstance(parameters.value(table, keys), schema.ProcessForceTable)}
     return None if len(values) < len(set(wrong)) else parameters.with_values(table, values)
 
@@ -50,7 +52,8 @@ def built(table, tabulated):
     balanced = _balanced(mechanism, table.balancing) if table.balancing else None
     mechanism = mechanism if balanced is None else balanced.mechanism
     loads = (*_loads(table, tabulated), *chain.loads(table, tabulated, mechanism))
-    return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads), balanced
+    friction = friction_of(table.friction, mechanism)
+    return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads, friction), balanced
 
 
 def _mechanism(table, tabulated):

@@ -28,6 +28,13 @@ def paths(table, prefix="", label="") -> dict[str, Place]:
         value = getattr(table, name)
         if isinstance(value, tuple) and value and isinstance(value[0], Table):
             inner = _of_parts(table, value)
+        elif isinstance(value, dict):
+            inner = {
+                path: place._replace(steps=(key, *place.steps))
+                for key, part in value.items()
+                for path, place in paths(part, f"{prefix}{name}.{key}.").items()
+                if getattr(part, place.steps[0]) is not None
+            }
         else:
             inner = _of_value(table, name, value, field, f"{prefix}{names.get(name, name)}{label}")
         found |= {path: place._replace(steps=(name, *place.steps)) for path, place in inner.items()}
@@ -82,7 +89,7 @@ def unit(table, keys):
 def value(table, steps):
     """Value at a place of a validated table: a number in SI, or the word that stands there."""
     for step in steps:
-        table = table[step] if isinstance(step, int) else getattr(table, step)
+        table = table[step] if isinstance(step, int) or isinstance(table, dict) else getattr(table, step)
     return table
 
 
@@ -95,6 +102,8 @@ def with_values(table, values: dict):
         inner.setdefault(first, {})[tuple(rest)] = value
     if isinstance(table, tuple):
         return tuple(with_values(part, inner[place]) if place in inner else part for place, part in enumerate(table))
+    if isinstance(table, dict):
+        return table | {name: with_values(table[name], own) for name, own in inner.items()}
     return table.model_copy(update={name: with_values(getattr(table, name), own) for name, own in inner.items()})
 
 

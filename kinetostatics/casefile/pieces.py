@@ -1,9 +1,13 @@
 """Pieces of mechanisms, made of their tables: links, guides, cams; and many of them at once, with all that is wrong."""
 
+from dataclasses import MISSING, fields
+
 from ..errors import CaseError, KinetostaticsError
 from ..machine import cams
+from ..machine.friction import kind_for
 from ..machine.guide import Guide
 from ..machine.links import Link
+from ..numbers.checks import choice
 from . import schema
 
 
@@ -60,3 +64,24 @@ def cam_of(table, read, guide_angle):
     if isinstance(table, schema.CosineLawTable):
         return cams.CosineLaw(table.amplitude, table.mean, guide_angle)
     return cams.Circle(table.radius, table.centre)
+
+
+def friction_of(tables, mechanism):
+    """Friction by joint of its tables."""
+    found = all_of((("friction", joint), lambda joint=joint: _rub(tables[joint], joint, mechanism)) for joint in tables)
+    return {joint: friction for (_, joint), friction in found.items()}
+
+
+def _rub(table, joint, mechanism):
+    problem = choice("joint", joint, tuple(mechanism.pairs))
+    if problem:
+        raise KinetostaticsError(problem)
+    kind = kind_for(mechanism.pairs[joint])
+    given = {name: value for name in type(table).model_fields if (value := getattr(table, name)) is not None}
+    allowed = [field.name for field in fields(kind)]
+    lacking = [field.name for field in fields(kind) if field.default is MISSING and field.name not in given]
+    strange = [name for name in given if name not in allowed]
+    if lacking or strange:
+        words = [f"lacks {', '.join(lacking)}"] * bool(lacking) + [f"has {', '.join(strange)}"] * bool(strange)
+        raise KinetostaticsError(f"{' and '.join(words)}, but friction at {joint!r} takes {', '.join(allowed)}")
+    return kind(**given)

@@ -150,7 +150,7 @@ def _at(model, keys):
     for key in keys:
         if key in schema.TAGS:
             candidates = [schema.TAGS[key]]
-        elif not isinstance(key, int):
+        elif any(key in table.model_fields for table in candidates):  # others are numbers in a list, and names
             fields = [table.model_fields[key].annotation for table in candidates if key in table.model_fields]
             candidates = [inner for annotation in fields for inner in _tables(annotation)]
     return candidates

@@ -292,7 +292,11 @@ def numbered(state):
         structure, lambda: Numbered(next(places)), lambda: None, lambda: None
     )
     return SimpleNamespace(
-        mechanism=mechanism, crank_speed=speed, crank_acceleration=acceleration, loads=loads, friction=(*friction, None)[0]
+        mechanism=mechanism,
+        crank_speed=speed,
+        crank_acceleration=acceleration,
+        loads=loads,
+        friction=(*friction, None)[0],
     )
 
 

@@ -126,7 +126,9 @@ class _Recorder:
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
         self._rows = self._arrays = 0
-        mechanism, speed, acceleration, items, *friction = put_together(structure, self._parameter, self._array, lambda: None)
+        mechanism, speed, acceleration, items, *friction = put_together(
+            structure, self._parameter, self._array, lambda: None
+        )
         self.angle = self._nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))

@@ -127,7 +127,9 @@ class RollerFriction(checks.Checked, Batched):
     def _rolls(self):
         """Say where the roller would slide."""
         values = self.mu, self.pin_radius, self.roller_radius
-        if all(map(checks.known, values)) and np.any(stuck := np.asarray(self.mu) * self.pin_radius >= self.roller_radius):
+        if all(map(checks.known, values)) and np.any(
+            stuck := np.asarray(self.mu) * self.pin_radius >= self.roller_radius
+        ):
             yield checks.Problem(
                 f"mu times pin_radius, {np.max(np.asarray(self.mu) * self.pin_radius):.6g} m, must be less than "
                 f"roller_radius, {np.min(self.roller_radius):.6g} m: the roller would not turn",
@@ -227,5 +229,7 @@ def problems(mechanism, given):
             yield checks.choice("friction: joint", name, tuple(pairs))
         elif not isinstance(friction, kind_for(pairs[name])):
             wanted = kind_for(pairs[name]).__name__
-            what = {Turning: "turns on a pin", Sliding: "slides", Rolling: "rolls on a pin of its own"}[type(pairs[name])]
+            what = {Turning: "turns on a pin", Sliding: "slides", Rolling: "rolls on a pin of its own"}[
+                type(pairs[name])
+            ]
             yield f"friction: {name!r} {what} and takes a {wanted}, got {checks.shown(friction)}"

@@ -23,6 +23,8 @@ from ..numbers.planar import added, length, minus, number, plus, product, quotie
 
 TINY = 1e-290
 """Square of a force that counts as nothing but can be divided by."""
+SMALL = 1e-100
+"""Friction that need not be found to rounding."""
 FASTER = 2.0**600
 """Factor by which a crank speed counts before the crank acceleration."""
 
@@ -315,7 +317,9 @@ class _System:
         """
         matrix: list[list] = [[None] * self.count for _ in range(self.count)]
         for law, slopes, effects in zip(self.laws, self.slopes, self.effects, strict=True):
-            sizes = [product(abs(law.factor), _size("size" if law.kind == "itself" else law.kind, slope)) for slope in slopes]
+            sizes = [
+                product(abs(law.factor), _size("size" if law.kind == "itself" else law.kind, slope)) for slope in slopes
+            ]
             for place, _ in effects:
                 matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
         return reduce(smaller, _pivots(matrix))
@@ -327,7 +331,7 @@ class _System:
             for place, _ in effects:
                 sizes[place] = plus(sizes[place], abs(amount))
         rest = zip(self._totals(amounts), unknowns, sizes, strict=True)
-        return reduce(larger, [abs(total - unknown) / (size + TINY) for total, unknown, size in rest])
+        return reduce(larger, [abs(total - unknown) / (size + SMALL) for total, unknown, size in rest])
 
 
 def _directed(law, parts):

@@ -26,7 +26,7 @@ def standing(solution):
 
 def converged(margin, residual):
     """Whether friction was found to rounding."""
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
         return np.asarray((margin > 0) & (residual * margin <= CONVERGED))
 
 

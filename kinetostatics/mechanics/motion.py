@@ -54,7 +54,14 @@ class Motion:
         _, leaves = self.apart
         if leaves.lasting:
             return leaves.shape(self.crank_angle.shape)
-        return wider(self.crank_angle.shape, self.mechanism, self.crank_speed, self.crank_acceleration, *self.loads, self.friction)
+        return wider(
+            self.crank_angle.shape,
+            self.mechanism,
+            self.crank_speed,
+            self.crank_acceleration,
+            *self.loads,
+            self.friction,
+        )
 
     @cached_property
     def placement(self):

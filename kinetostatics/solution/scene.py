@@ -149,7 +149,9 @@ class Scene:
         return np.linspace(0.0, self.period, angles, endpoint=False)
 
 
-def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), friction=None, on_gap="raise", engine=None):
+def solve(
+    mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), friction=None, on_gap="raise", engine=None
+):
     """Motion and forces of a mechanism at prescribed crank motion.
 
     Parameters

@@ -32,7 +32,12 @@ class Drawn:
         )
         x, y = (item.vector for item in self.scene.loads if isinstance(item, ks.Gravity)).__next__()
         self.system = System(
-            self.bodies, self.joints, mp.mpf(self.speed), mp.mpf(self.acceleration), mp.mpc(float(x), float(y)), self.applied
+            self.bodies,
+            self.joints,
+            mp.mpf(self.speed),
+            mp.mpf(self.acceleration),
+            mp.mpc(float(x), float(y)),
+            self.applied,
         )
 
     def real(self, low, high):

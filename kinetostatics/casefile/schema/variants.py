@@ -2,13 +2,15 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from ...machine.friction import COEFFICIENT
 from ...machine.lever_group import LeverGroup
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
 from ...numbers import checks
+from ...numbers.units import shown
 from .parts import Groups, Loads, field_of
 from .tables import BalancingTable, Cam, GravityTable, LinkTable, Table, value_in
 from .texts import (
@@ -50,6 +52,24 @@ class ProcessForceTable(Table):
         return self
 
 
+def _coefficient(value):
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    found, problem = COEFFICIENT.taken(float(value) if number else value, "")
+    if problem or not number:
+        raise ValueError(f"must be a number of at least 0, such as 0.1, found {shown(value)}")
+    return found
+
+
+class FrictionTable(Table):
+    """Friction at a joint; its keys tell its kind, which must be that of the joint."""
+
+    mu: Annotated[float, BeforeValidator(_coefficient), "1"]
+    radius: Length | None = None
+    half_length: Length | None = None
+    pin_radius: Length | None = None
+    roller_radius: Length | None = None
+
+
 class MechanismVariant(Table):
     """Keys common to every mechanism."""
 
@@ -59,6 +79,7 @@ class MechanismVariant(Table):
     gravity: GravityTable | None = None
     balancing: BalancingTable | None = None
     loads: Loads = ()  # type: ignore[valid-type]
+    friction: dict[str, FrictionTable] = Field(default_factory=dict)
 
 
 class ChainVariant(MechanismVariant):

@@ -1,0 +1,311 @@
+"""Friction: against Newton's equations of all bodies, closed forms, losses, jamming, engines, derivatives."""
+
+import warnings
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from tests.support.rubbing import Pin, Roller
+from tests.support.rubbing_machines import KINDS, Drawn
+
+TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
+CENTRIC = ks.crank_slider(0.1, 0.3)
+STEEP = ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0), coupler=ks.Link(1.0, (0.05, 0.02), 0.01))
+HEAVY = ks.crank_slider(
+    0.1,
+    0.3,
+    guide_offset=0.02,
+    crank=ks.Link(2.0, (0.03, 0.01), 0.01),
+    coupler=ks.Link(3.0, (0.1, 0.01), 0.02),
+    slider=ks.Link(4.0, (0.01, 0.02)),
+)
+ALL = {
+    "O": ks.PinFriction(0.1, 0.02),
+    "A": ks.PinFriction(0.1, 0.02),
+    "B": ks.PinFriction(0.1, 0.015),
+    "guide": ks.GuideFriction(0.15, 0.04),
+}
+DRIVE = {"crank_speed": 30.0, "crank_acceleration": 5.0, "loads": (ks.Gravity(), ks.ProcessForce(200.0))}
+
+
+def differences(kind, seed, scale=1.0, changed=None):
+    """Largest difference of all forces, friction, losses and torque from the full system, relative; and the solution."""
+    drawn = Drawn(kind, seed, scale)
+    if changed is not None:
+        changed(drawn)
+    angle = float(np.random.default_rng(seed).uniform(0.0, 2 * np.pi))
+    solution = drawn.scene.solve(angle)
+    with mp.workdps(40):
+        forces, torque, friction, loss = drawn.system.solved(angle)
+        pins = {name: complex(forces[name]) for name, joint in drawn.joints.items() if isinstance(joint, Pin)}
+        size = max(map(abs, pins.values()))
+        found = [abs(complex(*solution.reaction(name)) - force) for name, force in pins.items()]
+        for name, joint in drawn.joints.items():
+            if isinstance(joint, Roller):
+                found.append(abs(float(solution.cam_force - forces[name])))
+            elif not isinstance(joint, Pin):
+                head, label = next((head, name[len(head) :]) for head in ("guide", "slot", "cylinder") if head in name)
+                found.append(abs(float(solution.scalar(f"{head}_force{label}") - mp.re(forces[name]))))
+                if f"{head}_moment{label}" in solution.scalars:
+                    found.append(abs(float(solution.scalar(f"{head}_moment{label}") - mp.im(forces[name]))) / drawn.r)
+            found.append(abs(float(solution.friction_at(name) - friction[name])))
+            found.append(
+                abs(float(solution.friction_loss_at(name) - loss[name])) / max(1.0, abs(drawn.speed) * drawn.r)
+            )
+        found.append(abs(float(solution.balancing_torque - torque)) / drawn.r)
+    return max(found) / size, solution
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_all_forces_are_those_of_newtons_equations_of_all_bodies(kind, seed):
+    difference, solution = differences(kind, seed)
+    assert difference < 1e-13
+    assert solution.converged
+    assert solution.power_residual < 1e-13
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_so_they_are_with_four_times_the_friction(kind):
+    assert differences(kind, 100, 4.0)[0] < 1e-13
+
+
+def _from_rest(drawn):
+    object.__setattr__(drawn.scene, "crank_speed", 0.0)
+    drawn.system.speed = mp.mpf(0)
+
+
+@pytest.mark.parametrize("kind", ["slider", "cam", "lever"])
+def test_from_rest_friction_acts_against_the_motion_that_begins(kind):
+    difference, solution = differences(kind, 3, changed=_from_rest)
+    assert difference < 1e-13
+    assert solution.friction_loss == 0.0
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("angle", "side"), [(0.0, 1.0), (np.pi, -1.0)])
+def test_static_torque_at_dead_centres_is_the_closed_form(angle, side, way):
+    a, b, o, load, ratio = 0.02, 0.015, 0.01, 1000.0, 1.0 / 3.0
+    friction = {name: ks.PinFriction(1.0, rho) for name, rho in {"O": o, "A": a, "B": b}.items()}
+    s = ks.solve(
+        CENTRIC, angle, crank_speed=0.0, crank_acceleration=way, loads=ks.ProcessForce(load), friction=friction
+    )
+    sine = (a + side * b) / 0.3
+    torque = load / np.sqrt(1.0 - sine**2) * (o + a * (1.0 + side * ratio) + ratio * b)
+    assert s.balancing_torque == pytest.approx(way * torque, rel=1e-13)
+
+
+@pytest.mark.parametrize("speed", [12.0, -12.0])
+def test_a_guide_alone_has_its_closed_form(speed):
+    drive = {"crank_speed": speed, "loads": ks.Gravity()}
+    free = ks.solve(STEEP, TURN, **drive)
+    s = ks.solve(STEEP, TURN, **drive, friction={"guide": ks.GuideFriction(0.3)})
+    coupler = s.placement.links["coupler"].direction
+    feedback = 0.3 * np.sign(s.slider_velocity) * coupler[1] / coupler[0]
+    expected = free.guide_force / (1.0 + feedback * np.sign(free.guide_force))
+    assert np.abs(s.guide_force - expected).max() < 1e-13 * np.abs(expected).max()
+    assert np.allclose(s.friction_margin, 1.0 - np.abs(feedback), rtol=0, atol=1e-14)
+    assert np.allclose(s.guide_friction, -0.3 * np.sign(s.slider_velocity) * np.abs(s.guide_force), rtol=1e-14)
+
+
+def test_the_shoe_rubs_more_once_its_couple_leaves_the_middle():
+    yoke = ks.scotch_yoke(0.1, slider=ks.Link(3.0))
+    drive = {"crank_speed": 3.0, "loads": (ks.ProcessForce(100.0), ks.Gravity())}
+    s = ks.solve(yoke, TURN, **drive, friction={"guide": ks.GuideFriction(0.2, 0.03)})
+    pressed = np.maximum(np.abs(s.guide_force), np.abs(s.guide_moment) / 0.03)
+    assert np.allclose(np.abs(s.guide_friction), 0.2 * pressed, rtol=1e-14)
+    assert (np.abs(s.guide_force) * 0.03 > np.abs(s.guide_moment)).any()
+
+
+def test_losses_are_what_the_drive_gives_more_and_never_negative():
+    s = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    assert s.power_residual < 1e-14
+    assert (s.friction_loss >= 0.0).all()
+    parts = sum(s.friction_loss_at(name) for name in ALL)
+    assert np.allclose(parts, s.friction_loss, rtol=1e-14)
+    free = ks.solve(HEAVY, TURN, **DRIVE)
+    gained = (s.balancing_torque - free.balancing_torque) * 30.0
+    assert np.allclose(gained, s.friction_loss, rtol=0, atol=1e-13 * np.abs(free.balancing_torque).max() * 30.0)
+
+
+def test_the_cam_drives_its_roller_by_a_force_that_grows_with_itself():
+    cam = ks.cam_crank_slider(ks.cams.Circle(0.1, (0.02, 0.0)), 0.4, slider=ks.Link(10.0))
+    s = ks.solve(cam, TURN, crank_speed=20.0, friction={"cam": ks.RollerFriction(0.2, 0.03, 0.05)})
+    share = 0.2 * 0.03 / 0.05
+    along = np.abs(s.friction_at("cam"))
+    assert np.allclose(along, share * np.hypot(s.cam_force, along), rtol=1e-14)
+    assert s.power_residual < 1e-14
+
+
+def test_the_guide_reaction_has_the_friction_that_the_guide_force_has_not():
+    s = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    assert np.array_equal(s.reaction("guide"), [s.guide_friction, s.guide_force])
+    outer = ks.solve(HEAVY, TURN, **DRIVE)
+    assert (outer.guide_friction == 0.0).all() and (outer.friction_loss == 0.0).all() and outer.converged.all()
+
+
+def test_a_pin_carries_all_its_rods():
+    drawn = Drawn("six-bar", 1)
+    s = drawn.scene.solve(8)
+    assert np.allclose(s.pin_load("B"), s.reaction("B") - s.reaction("B2"), rtol=1e-15)
+    assert np.allclose(s.pin_load("A"), -s.reaction("A"), rtol=0)
+
+
+def test_without_friction_no_bit_changes():
+    none = {"O": ks.PinFriction(0.0, 0.02), "guide": ks.GuideFriction(0.0, 0.1)}
+    free, s = (ks.solve(HEAVY, TURN, friction=friction, **DRIVE) for friction in ({}, none))
+    for name in free.reactions:
+        assert np.array_equal(free.reaction(name), s.reaction(name))
+    assert np.array_equal(free.balancing_torque, s.balancing_torque)
+    assert free.apart[0] == ks.solve(HEAVY, TURN, **DRIVE).apart[0]
+
+
+# Jamming
+
+
+def test_a_guide_that_jams_is_refused_with_its_crank_angles():
+    with pytest.raises(ks.JammingError, match="friction jams at .* crank angles, 5") as caught:
+        ks.solve(STEEP, TURN, crank_speed=12.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(1.2)})
+    s = ks.solve(
+        STEEP, TURN, crank_speed=12.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(1.2)}, on_gap="nan"
+    )
+    jams = s.friction_margin <= 0.0
+    assert np.array_equal(TURN[jams], caught.value.angles)
+    assert np.array_equal(np.isnan(s.balancing_torque), jams)
+    assert np.array_equal(s.converged, ~jams)
+
+
+@pytest.mark.parametrize(("half_length", "jams"), [(0.0201, False), (0.0199, True)])
+def test_a_yoke_jams_where_its_shoe_is_shorter_than_twice_mu_times_the_height(half_length, jams):
+    yoke, angle = ks.scotch_yoke(0.1, slider=ks.Link(3.0)), np.array([np.pi / 2])
+    friction = {"guide": ks.GuideFriction(0.2, half_length)}
+    s = ks.solve(yoke, angle, crank_speed=3.0, loads=ks.ProcessForce(100.0), friction=friction, on_gap="nan")
+    assert (s.friction_margin[0] <= 0.0) == jams
+
+
+def test_no_guide_of_a_centric_machine_jams_below_the_known_coefficient():
+    limit = np.sqrt((0.13 / 0.1) ** 2 - 1.0)
+    angle = np.array([np.pi / 2])
+    margins = [
+        ks.solve(
+            STEEP, angle, crank_speed=1.0, friction={"guide": ks.GuideFriction(factor * limit)}, on_gap="nan"
+        ).friction_margin[0]
+        for factor in (0.999, 1.001)
+    ]
+    assert margins[0] > 0.0 > margins[1]
+
+
+def test_what_is_not_found_to_rounding_is_said():
+    from kinetostatics.mechanics import jamming
+
+    s = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    s._values["friction_residual"] = np.full(TURN.shape, 1e-6)
+    assert not s.converged.any()
+    with pytest.warns(ks.ConditionWarning, match="not found to rounding at 90 of 90 crank angles"):
+        jamming.check(s, "raise")
+
+
+# Engines and derivatives
+
+
+def test_compiled_and_plain_programs_agree():
+    scene = ks.Scene(HEAVY, friction={name: ALL[name] for name in ("B", "guide")}, **DRIVE)
+    compiled, plain = (ks.compile(scene, ("guide", "balancing_torque"), engine=name) for name in ("compiled", "numpy"))
+    for name, values in plain(TURN).items():
+        assert np.abs(compiled(TURN)[name] - values).max() < 1e-15 * np.abs(values).max()
+    plain = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    single = ks.solve(HEAVY, float(TURN[7]), friction=ALL, **DRIVE)
+    assert single.balancing_torque == pytest.approx(plain.balancing_torque[7], rel=1e-14)
+
+
+def test_enclosures_hold_what_is_computed():
+    from kinetostatics.mechanics.quantities import components
+    from kinetostatics.studies.methods.enclosures import enclosure
+
+    s = ks.solve(HEAVY, TURN[::30], friction=ALL, **DRIVE)
+    for name in ("balancing_torque", "friction_loss", "guide_friction", "B"):
+        found = enclosure(s, name)
+        for exact, own in zip(found.middle, components(s, name), strict=True):
+            assert np.abs(exact - own).max() < 1e-14 * found.largest
+
+
+def test_derivatives_are_those_of_differences():
+    scene = ks.Scene(HEAVY, friction=ALL, **DRIVE)
+    program = ks.compile(scene, ("balancing_torque", "friction_loss"), engine="numpy")
+    found = program.derivatives(TURN)
+    for path in ("friction.guide.mu", "friction.A.radius", "coupler_length", "slider.mass", "crank_speed"):
+        value = program.parameters[path]
+        step = 1e-6 * abs(value)
+        for name in ("balancing_torque", "friction_loss"):
+            up, down = (program(TURN, {path: value + way * step})[name] for way in (1, -1))
+            size = np.abs(found[name][path]).max()
+            assert np.abs((up - down) / (2 * step) - found[name][path]).max() < 1e-6 * size
+
+
+def test_a_program_takes_other_coefficients_and_other_designs():
+    scene = ks.Scene(HEAVY, friction=ALL, **DRIVE)
+    program = ks.compile(scene, "friction_loss", engine="numpy")
+    two = np.array([[0.05], [0.2]])
+    both = program(TURN, {"friction.guide.mu": two})["friction_loss"]
+    for row, mu in zip(both, two.ravel(), strict=True):
+        alone = scene.varied({"friction.guide.mu": float(mu)}).solve(TURN)
+        assert np.allclose(row, alone.friction_loss, rtol=1e-13)
+    assert ks.Scene(HEAVY, friction={**ALL, "guide": ks.GuideFriction(two)}, **DRIVE).solve(TURN).shape == (2, 90)
+
+
+# Where friction jumps
+
+
+def test_extremes_stand_on_both_sides_of_a_jump():
+    machine = ks.crank_slider(0.1, 0.3, coupler=ks.Link(2.0, (0.1, 0.0), 0.01), slider=ks.Link(4.0))
+    friction = {"guide": ks.GuideFriction(0.1)}
+    s = ks.solve(machine, TURN, crank_speed=5.0, friction=friction, loads=ks.Gravity())
+    found = ks.extremes(s, "guide_friction")
+    before, after = s.at(np.array([-1e-12, 1e-12])).guide_friction
+    assert before * after < 0.0
+    at_start = found.value[np.isclose(np.cos(found.angle), 1.0, atol=1e-15)]
+    for limit in (before, after):
+        assert np.isclose(found.value, limit, rtol=1e-10).any() or np.abs(found.value).max() > abs(limit)
+    assert at_start.size
+    fine = s.at(np.linspace(0.0, 2 * np.pi, 40001)).guide_friction
+    assert found.range[0] <= fine.min() + 1e-9 and found.range[1] >= fine.max() - 1e-9
+    there = s.at(s.sampled.kinks)
+    zero = np.minimum(np.abs(there.slider_velocity), np.abs(there.guide_force) / 40.0)
+    assert (zero < 1e-12).all() and np.isclose(s.sampled.kinks, np.pi, atol=1e-12).any()
+
+
+def test_the_mean_torque_is_right_across_the_jumps():
+    from kinetostatics.results.comparison import mean_absolute_torque
+
+    s = ks.solve(HEAVY, TURN, friction=ALL, crank_speed=30.0, loads=ks.Gravity())
+    ends = np.unique(np.concatenate([[0.0, 2 * np.pi], s.sampled.kinks]))
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    loss = 0.0
+    for start, stop in zip(ends[:-1], ends[1:], strict=True):
+        for low in np.linspace(start, stop, 9)[:-1]:
+            width = (stop - start) / 8
+            at = s.at(low + width * (nodes + 1) / 2)
+            loss += np.dot(weights, at.balancing_torque) * width / 2
+    work = loss / (2 * np.pi) * 30.0
+    lost = 0.0
+    for start, stop in zip(ends[:-1], ends[1:], strict=True):
+        for low in np.linspace(start, stop, 9)[:-1]:
+            width = (stop - start) / 8
+            lost += np.dot(weights, s.at(low + width * (nodes + 1) / 2).friction_loss) * width / 2
+    assert work == pytest.approx(lost / (2 * np.pi), rel=1e-13)
+    assert mean_absolute_torque(s) > 0.0
+
+
+def test_tables_have_friction_and_its_losses_with_units():
+    s = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    columns = set(s.frame().columns)
+    assert {"O_friction [N m]", "guide_friction [N]", "B_friction_loss [W]", "friction_loss [W]"} <= columns
+    assert not [name for name in ks.solve(HEAVY, TURN, **DRIVE).frame().columns if "friction" in name]
+
+
+def test_ordinary_machines_say_nothing():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
