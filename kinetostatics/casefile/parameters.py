@@ -33,7 +33,7 @@ def paths(table, prefix="", label="") -> dict[str, Place]:
                 path: place._replace(steps=(key, *place.steps))
                 for key, part in value.items()
                 for path, place in paths(part, f"{prefix}{name}.{key}.").items()
-                if getattr(part, place.steps[0]) is not None
+                if getattr(part, str(place.steps[0])) is not None
             }
         else:
             inner = _of_value(table, name, value, field, f"{prefix}{names.get(name, name)}{label}")

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..machine import loads
 from ..machine.crank import ray
+from ..machine.friction import NONE
 from ..machine.loads import Load, ProcessForce
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import amount, moving, pushed, title_of
@@ -132,7 +133,7 @@ class _Recorder:
         self.angle = self._nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))
-        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), *friction, way=way)
+        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), next(iter(friction), NONE), way)
         self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(items)))
 
     def _parameter(self):

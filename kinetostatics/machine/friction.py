@@ -5,7 +5,7 @@ A group declares in `pairs`, by the name of the reaction, which of its links tur
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np

@@ -112,7 +112,8 @@ class Rubbing:
         self.acting = self.friction.acting
 
     def __call__(self, part, placement, loads, along):
-        rates, laws = {}, []
+        rates: dict[str, Any] = {}
+        laws: list[Law] = []
         for name in part.pairs:
             if name in self.acting:
                 laws += self._laws(part, name, placement, rates)
@@ -263,7 +264,8 @@ class _System:
 
     def solved(self, passes, angle):
         """Friction of each law, NaN where it jams or is not the only one."""
-        amounts, unknowns = self._amounts(self.free), []
+        watched: list[Any] = self.free
+        amounts, unknowns = self._amounts(watched), []
         if self.margin is None:
             return amounts
         signs = all(law.kind != "length" for law in self.laws)  # found at once unless friction turns one

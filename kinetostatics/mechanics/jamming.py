@@ -42,7 +42,7 @@ def settled(solution):
 
 
 def _is_plain(values):
-    return getattr(values, "dtype", None) == float and isinstance(values, np.ndarray | np.floating)
+    return isinstance(values, np.ndarray | np.floating) and np.issubdtype(values.dtype, np.float64)
 
 
 def check(solution, on_gap):
@@ -69,10 +69,10 @@ def check(solution, on_gap):
 def _error(solution, margin, jams):
     angle = np.broadcast_to(solution.crank_angle, margin.shape)[jams]
     return JammingError(
-        f"{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, {_degrees(angle)} deg: "
-        f"it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (1 or more: there no forces, or more "
-        "than one state of them, are in equilibrium); lower the coefficients, lengthen the shoes or steepen the links, "
-        'or pass on_gap="nan" to get NaN there and the rest exact',
+        f"{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, {_degrees(angle)} "
+        f"deg: it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (1 or more: there no forces, or "
+        "more than one state of them, are in equilibrium); lower the coefficients, lengthen the shoes or steepen the "
+        'links, or pass on_gap="nan" to get NaN there and the rest exact',
         np.unique(angle).tolist(),
     )
 

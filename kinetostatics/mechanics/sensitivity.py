@@ -100,8 +100,8 @@ class _Seeded:
         self._seeds, self._count = 0, len(lengths) + len(plain.loads) + 2
         self._angle = _array(self._seed(plain.crank_angle))
         mechanism = self._geometry(plain.mechanism, self._seed, {Group: self._group})
-        drive = mapped((plain.crank_speed, plain.crank_acceleration), self._constant)
-        idle = Dynamics(mechanism, self._angle, *drive, friction=mapped(plain.friction, self._constant))
+        speed, acceleration = mapped((plain.crank_speed, plain.crank_acceleration), self._constant)
+        idle = Dynamics(mechanism, self._angle, speed, acceleration, (), mapped(plain.friction, self._constant))
         self.solution = replace(idle, loads=tuple(self._load(item, idle) for item in plain.loads))
         self.largest_pushes = {
             name: self._value(np.asarray(plain.largest(push))[..., None]) for name, push in plain.pushes.items()

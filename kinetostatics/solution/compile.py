@@ -19,7 +19,6 @@ from ..numbers.leaves import Kept, with_fields
 from .angles import crank_angles, problems
 from .scene import Scene, unchecked
 
-
 FEW = 180
 """Crank angles around the turn at which friction is looked at."""
 

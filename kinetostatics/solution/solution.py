@@ -10,8 +10,8 @@ import numpy as np
 
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
-from ..machine.loads import is_given, period_of, value_of
 from ..machine.friction import Turning
+from ..machine.loads import is_given, period_of, value_of
 from ..mechanics import assembly, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion

@@ -16,9 +16,9 @@ from ..machine.loads import TURN, refusals
 from ..mechanics.quantities import sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
+from ..numbers.leaves import with_fields
 from ..results.passes import Passes
 from ..results.turn import NEAR
-from ..numbers.leaves import with_fields
 from ..solution.scene import unchecked
 
 VALUES = 100_000

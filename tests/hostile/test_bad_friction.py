@@ -46,11 +46,10 @@ NUMBERS = [
 @pytest.mark.parametrize(("friction", "words"), WRONG)
 @pytest.mark.parametrize("door", ["solve", "scene"])
 def test_friction_that_no_joint_has_is_refused(friction, words, door):
+    through = {"solve": lambda: ks.solve(PUMP, ANGLES, crank_speed=1.0, friction=friction)}
+    through["scene"] = lambda: ks.Scene(PUMP, 1.0, friction=friction)
     with pytest.raises(ks.ParameterError) as caught:
-        if door == "solve":
-            ks.solve(PUMP, ANGLES, crank_speed=1.0, friction=friction)
-        else:
-            ks.Scene(PUMP, 1.0, friction=friction)
+        through[door]()
     assert words in str(caught.value)
 
 
@@ -112,4 +111,6 @@ def test_an_idle_machine_without_masses_rubs_nowhere():
     s = ks.solve(
         ks.crank_slider(0.1, 0.3), ANGLES, crank_speed=3.0, friction={"A": PIN, "guide": ks.GuideFriction(0.1)}
     )
-    assert (s.friction_loss < 1e-100).all() and (s.balancing_torque < 1e-100).all() and s.converged.all()
+    assert (s.friction_loss < 1e-100).all()
+    assert (np.abs(s.balancing_torque) < 1e-100).all()
+    assert s.converged.all()

@@ -41,6 +41,7 @@ class Drawn:
         )
 
     def real(self, low, high):
+        """A number."""
         return float(self.rng.uniform(low, high))
 
     def link(self, name, point, direction):
@@ -51,11 +52,13 @@ class Drawn:
         return ks.Link(mass, centre, inertia)
 
     def pin(self, name, on, against, at):
+        """A pin that rubs."""
         mu, radius = self.scale * self.real(0.0, 0.2), self.real(0.005, 0.02)
         self.friction[name] = ks.PinFriction(mu, radius)
         self.joints[name] = Pin(on, against, at, mp.mpf(mu) * radius)
 
     def slide(self, name, on, against, at, direction):
+        """A guide or slot that rubs, with a shoe or without."""
         mu = self.scale * self.real(0.0, 0.25)
         half = self.real(0.05, 0.2) if self.rng.random() < 0.6 else None
         self.friction[name] = (ks.GuideFriction if against is None else ks.SlotFriction)(mu, half)
@@ -246,14 +249,3 @@ class Drawn:
         self.applied.append(("slider", lambda phi: force * u, slider))
         self.loads = (ks.ProcessForce(force),)
         self.mechanism = ks.Mechanism("yoke", crank, (group,))
-
-
-def forces_of(solution, name, joint):
-    """What the library has for a joint, as `System.solved` gives it."""
-    if isinstance(joint, Pin):
-        return np.array([complex(*solution.reaction(name))]), 1.0
-    if isinstance(joint, Roller):
-        return np.array([float(solution.cam_force)]), 1.0
-    label = next(part for part in ("guide", "slot", "cylinder") if name.startswith(part))
-    suffix = name.removeprefix(label)
-    return np.array([float(solution.scalar(f"{label}_force{suffix}"))]), 1.0

@@ -132,8 +132,8 @@ def on_arb(arb, solution) -> Dynamics:
         what = f"cam {type(cam).__name__}"
         for values in _attempted(what, partial(cam.polar, angle, ray(angle))):
             _require_exact(what, values, arb)
-    drive = _copied((solution.crank_speed, solution.crank_acceleration), arb)
-    idle = Dynamics(mechanism, angle, *drive, friction=_copied(solution.friction, arb))
+    speed, acceleration = _copied((solution.crank_speed, solution.crank_acceleration), arb)
+    idle = Dynamics(mechanism, angle, speed, acceleration, (), _copied(solution.friction, arb))
     named = ((item, f"load {place}, {title_of(item)},") for place, item in enumerate(solution.loads, 1))
     return replace(idle, loads=tuple(_load_on_arb(arb, item, what, idle, solution) for item, what in named))
 
