@@ -342,6 +342,7 @@ def _of_forces(solution, links, largest_pushes, reactions):
     if not reactions:
         return [of_torque]
     outputs, grow = solution.mechanism.outputs, solution.mechanism.passes
-    supports = [*found.reactions.values(), *(part for name, part in found.scalars.items() if outputs[name].unit == "N")]
+    scalars = (found.scalars[name] for name, output in outputs.items() if output.unit == "N" and not output.vector)
+    supports = [*found.reactions.values(), *scalars]
     sized = [_Sized(vector(part) if part is None else part) for part in supports]
     return [*(_quotient(one.change, np.fmax(force, one.size) if grow else force) for one in sized), of_torque]
