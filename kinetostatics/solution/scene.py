@@ -270,6 +270,6 @@ def _load_problems(mechanism, item):
     if isinstance(item, Load):
         return item.problems(mechanism)
     if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):
-        names = ", ".join(kind.__name__ for kind in KINDS)
-        return (f"loads must be of {names}, got {checks.shown(item)}",)
+        *names, last = (kind.__name__ for kind in KINDS)
+        return (f"loads must be {', '.join(names)} or {last}, got {checks.shown(item)}",)
     return (checks.choice(f"{type(item).__name__}: on", item.on, tuple(mechanism.guides)),)
