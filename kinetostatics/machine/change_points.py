@@ -152,7 +152,7 @@ def kink(group, crank):
     try:
         passing = replace(group, assembly="open").on_crank(crank)
         angles = passing.change_points
-    except (ParameterError, TypeError):  # a batch of several kinds, or of several change points
+    except ParameterError:  # a batch of several kinds, or of several change points
         return ""
     if not angles:
         return ""
@@ -182,6 +182,8 @@ def angles(passage, start):
     """Crank angles in [0, 2 pi) at which change points are passed, rad, from the direction that the kinds refer to."""
     if not passage:
         return ()
+    several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
+    checks.require("change points", several if any(map(np.ndim, start)) else None)
     kind, first = parted(passage)[0], math.atan2(start[1], start[0])
     at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,)}.get(kind, (0.0, math.pi))
     return tuple(sorted((first + angle) % (2 * math.pi) for angle in at))
