@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from ..design.balancing import RATIOS
+from ..machine.change_points import SIDES
 from ..machine.loads import WholeTurns
 from ..numbers.checks import choice
 from ..numbers.units import shown, to_si
@@ -70,9 +71,9 @@ def _sampling(text):
     return value
 
 
-def _sign(value):
-    if isinstance(value, bool):
-        raise ValueError(f'must be 1, -1, "open" or "crossed", found {value!r}')
+def _assembly(value):
+    if isinstance(value, bool | list | dict) or value not in (1, -1, *SIDES):
+        raise ValueError(f'must be 1 or -1, or one of the words "open" and "crossed", found {shown(value)}')
     return value
 
 
@@ -181,7 +182,7 @@ class MechanismVariant(Table):
 
     crank_speed: Speed
     crank_acceleration: AngularAcceleration = 0.0
-    assembly: Annotated[Literal[1, -1, "open", "crossed"], BeforeValidator(_sign)] = 1
+    assembly: Annotated[Literal[1, -1, "open", "crossed"], BeforeValidator(_assembly)] = 1
     crank: LinkTable = LinkTable()
     coupler: LinkTable = LinkTable()
     gravity: GravityTable | None = None

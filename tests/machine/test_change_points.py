@@ -455,3 +455,15 @@ def test_reductions_of_forces_that_grow_are_refused_in_sweeps():
     with_mass = scene.varied({"coupler.mass": 2.0})
     largest = ks.extremes(with_mass.solve(12), "balancing_torque").range[1]
     assert table.iloc[1, 1] == pytest.approx(largest, rel=1e-6)
+
+
+def test_case_files_know_the_words(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(
+        'title = "4/1/3/2"\nsource = "assumed"\nreference = "a"\n[common]\nmechanism = "four-bar"\n'
+        'crank_speed = "2 rad/s"\ncoupler_length = "3 m"\nrocker_length = "2 m"\nrocker_pivot = ["4 m", "0 m"]\n'
+        'assembly = "crossed"\n[variants.a]\ncrank_length = "1 m"\n'
+    )
+    solution = ks.load_case(path).solve("a")
+    assert solution.mechanism.turns == 2
+    assert solution.crank_angle[-1] > 3.9 * np.pi
