@@ -1,5 +1,6 @@
 """Case files of chains and loads: what they give, beside the same scene built in Python."""
 
+import pickle
 import shutil
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file
+from support.case_files import case_file, problems
 
 EXAMPLES = Path(__file__).parent / "examples"
 
@@ -212,6 +213,41 @@ def test_a_varied_variant_keeps_what_it_read_from_files():
     (before,) = (item for item in variant.loads if isinstance(item, ks.ProcessForce))
     (after,) = (item for item in variant.varied({"slider.mass": 1.0}).loads if isinstance(item, ks.ProcessForce))
     assert after.force is before.force
+
+
+@pytest.mark.parametrize("name", IN_PYTHON)
+def test_a_case_goes_to_other_processes_and_varies_there(name):
+    case = ks.load_case(EXAMPLES / f"{name}.toml")
+    sent, variant = pickle.loads(pickle.dumps(case)).variant(case.reference), case.variant(case.reference)
+    values = {"crank_speed": 2.0, "gravity.acceleration": 9.0} if variant.table.gravity else {"crank_speed": 2.0}
+    assert sent.varied(values).scene.parameters == variant.varied(values).scene.parameters
+    assert sent.content == variant.content
+
+
+def test_a_sampled_cam_stands_in_a_chain(tmp_path):
+    degrees = np.arange(0, 360, 5)
+    radius = ks.cams.Circle(0.3, (-0.02, 0.0)).radius(np.radians(degrees))[0]
+    rows = "\n".join(f"{a},{1000 * r!r}" for a, r in zip(degrees.tolist(), radius.tolist(), strict=True))
+    (tmp_path / "cam.csv").write_text(f"angle [deg], radius [mm]\n{rows}\n", encoding="utf-8")
+    text = (EXAMPLES / "cam_roller.toml").read_text(encoding="utf-8")
+    text = text.replace(
+        '{ kind = "cosine-law", amplitude = "0.3 m", mean = "2 m" }', '{ kind = "sampled", table = "CAM" }'
+    )
+    variant = ks.load_case(case_file(tmp_path, text.replace("CAM", "cam.csv"))).variant("cam")
+    assert variant.files == [tmp_path / "cam.csv"]
+    cam = ks.cams.Sampled(np.radians(degrees), radius)
+    np.testing.assert_allclose(variant.mechanism.groups[0].cam.polar(1.0, (1.0, 0.0)), cam.polar(1.0, (1.0, 0.0)))
+    (found,) = problems(tmp_path, text.replace("CAM", "none.csv"))
+    assert found.startswith(f"variants.cam.groups[1].cam: {tmp_path / 'none.csv'}: cannot be read")
+
+
+def test_a_chain_is_balanced_by_a_counterweight(tmp_path):
+    shutil.copy(EXAMPLES / "indicator.csv", tmp_path)
+    text = (EXAMPLES / "slider.toml").read_text(encoding="utf-8")
+    text += '[variants.balanced.balancing]\nmethod = "optimal"\ncrank = { arm = "-50 mm" }\n'
+    case = ks.load_case(case_file(tmp_path, text))
+    wanted = ks.balancing.optimal(case.variant("plain").mechanism, crank=ks.balancing.Counterweight(arm=-0.05))
+    assert case.variant("balanced").mechanism.links["crank"].mass == wanted.mechanism.links["crank"].mass
 
 
 def test_content_tells_files_of_other_values_and_is_the_same_in_every_session(tmp_path):

@@ -118,8 +118,9 @@ def _table(word, kind, **other) -> Any:
         else:
             default = ... if defaults[name] is MISSING else defaults[name]
             found[name] = (other.get(name) or field_of(rule), default)
-    made = pydantic.create_model(f"{kind.__name__}Table", __base__=Table, **found)
+    made = pydantic.create_model(f"{kind.__name__}Table", __base__=Table, __module__=__name__, **found)
     MADE_OF[made] = kind
+    globals()[made.__name__] = made  # where pickle, on its way to workers, looks for it
     return made
 
 
