@@ -9,11 +9,11 @@ from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` nam
 the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what
 such a function gives in its place before (`settled` in mechanics/pushes.py). ``LENGTHS`` names the fields that hold
 lengths and angles of the geometry. ``problems(mechanism)`` says what is wrong with a load on that mechanism,
-``refusals(motion)`` where it has no value.
+``refusals(motion)`` where it has no value, ``signs(motion)`` how it is drawn.
 """
 
 import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from ...numbers import checks
 from ...numbers.batched import Batched
@@ -21,6 +21,29 @@ from ...numbers.batched import Batched
 TURN = 2 * math.pi
 MOST_TURNS = 100
 """Turns after which loads must repeat, all together."""
+
+
+class Sign(NamedTuple):
+    """How a load is drawn, in the poses of a motion.
+
+    Attributes
+    ----------
+    kind : "spring", "damper", "line", "force", "couple", "spiral" or "ring"
+        A spring, damper or line is drawn between two places, all else at the first.
+    start : array (2, N)
+    end : array (2, N), optional
+        Of a spring on a slider None: beside its guide, from the end of its way.
+    direction : array (2, N), optional
+        Of a force: unit vector of a positive one.
+    slider : str
+        That a spring is on.
+    """
+
+    kind: str
+    start: Any
+    end: Any = None
+    direction: Any = None
+    slider: str = ""
 
 
 class WholeTurns:
@@ -72,6 +95,10 @@ class Load(checks.Checked, Batched):
 
     def refusals(self, motion):
         """Where it has no value, as sentences."""
+        return ()
+
+    def signs(self, motion) -> Any:
+        """How it is drawn, each as a `Sign`."""
         return ()
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from ...numbers import checks
 from ..links import present
-from .load import TURN, Load, WholeTurns, valued
+from .load import TURN, Load, Sign, WholeTurns, valued
 
 
 class OnSlider(Load):
@@ -70,6 +70,10 @@ class Spring(OnSlider):
             return -self.stiffness * elongation
         return -(self.stiffness + self.cubic * elongation * elongation) * elongation
 
+    def signs(self, motion):
+        """A spring along the guide."""
+        yield Sign("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
+
 
 @dataclass(frozen=True, eq=False)
 class ProcessForce(OnSlider):
@@ -110,3 +114,9 @@ class ProcessForce(OnSlider):
     def push(self, motion):
         """Force on the slider along the guide, N."""
         return self.force
+
+    def signs(self, motion):
+        """An arrow in the guide's direction."""
+        mechanism = motion.mechanism
+        along = motion.as_vector(mechanism.guides[self.on].direction)
+        yield Sign("force", motion.position(mechanism.references[self.on]), direction=along)

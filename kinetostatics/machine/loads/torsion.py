@@ -7,7 +7,7 @@ from ...numbers import checks
 from ...numbers.planar import minus
 from ..group import FRAME
 from ..links import Wrench
-from .load import Load, valued
+from .load import Load, Sign, valued
 
 
 class Couple(Load):
@@ -16,7 +16,7 @@ class Couple(Load):
     on: str
     against: Any
 
-    UNIT = "N m"
+    UNIT, SIGN = "N m", "couple"
 
     @property
     def title(self):
@@ -37,6 +37,10 @@ class Couple(Load):
         yield self.on, Wrench(None, couple)
         if self._other is not None:
             yield self._other, Wrench(None, minus(None, couple))
+
+    def signs(self, motion):
+        """A sign at the link's reference joint."""
+        yield Sign(self.SIGN, motion.position(motion.mechanism.references[self.on]))
 
     @property
     def _other(self):
