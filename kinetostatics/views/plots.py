@@ -81,19 +81,20 @@ def pressure_angle(solutions, ax=None):
     return over_turn(solutions, "pressure_angle", ax)
 
 
-def acceleration_error(solutions, ax=None, slider="slider"):
+def acceleration_error(solutions, ax=None, slider=None):
     """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
 
     With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
-    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2.
+    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. The only slider, or that without a
+    label, is meant unless told.
     """
     ax = axes(ax)
-    named = labelled(solutions, f"{slider}_acceleration")
+    named = labelled(solutions, "slider acceleration")
     _require_turning(named)
     for name, solution, style in styled(named):
-        half_stroke = np.ptp(extremes(solution, f"{slider}_position").value) / 2
+        half_stroke = np.ptp(extremes(solution, lambda motion: motion.travel(slider)).value) / 2
         square, alpha = solution.crank_speed**2, solution.crank_acceleration
-        psi = solution.crank_angle - solution.mechanism.guides[slider].guide_angle
+        psi = solution.crank_angle - solution.mechanism.guides[slider or solution.mechanism.slider].guide_angle
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
         ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
