@@ -162,8 +162,8 @@ class Dyad(checks.Checked, Group):
         return {**inner, self.pin: Output("N", True, f"{self._link1} on {self._link2}")}
 
     def place(self, placement):
-        ends = (placement.joints[name] for name in self.on)
-        self._set(placement, place(*ends, self.length1, self.length2, self.assembly))
+        first, second = (placement.joints[name] for name in self.on)
+        self._set(placement, place(first, second, self.length1, self.length2, self.assembly))
 
     def follow(self, placement, joints):
         """Place both links at joints found in another way."""

@@ -5,7 +5,7 @@ frozen dataclass derived from `Group`. It declares, by name,
 
     links       the links it adds, each a `Link`
     references  the joint by which each link is placed
-    joints      the joints it adds, each a `Point` of a link, or of the frame
+    joints      the joints it adds, each a `Point` of a link, its own or one placed before it, or of the frame
     hangs_on    the joints it hangs on
     bars        the links that keep two joints at a distance
     guides      the guide of each link that slides along one, without turning

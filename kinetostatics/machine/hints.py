@@ -1,4 +1,4 @@
-"""What looks like a slip, of units or of assembly, though a machine could have it: a warning, and computed all the same."""
+"""What looks like a slip, though a machine could have it: a warning, and computed all the same."""
 
 import math
 
@@ -61,8 +61,8 @@ def _still(mechanism):
             part = np.max(np.mean(rate <= 1e-9 * _most(bar.length), axis=-1))
             if part > STILL:
                 yield (
-                    f"the {slider} stands still over {360.0 * part:.0f} of 360 deg: the {bar.link} is as long as the arm "
-                    f"of {bar.start} about the point where the {slider} rests; another assembly lets it move"
+                    f"the {slider} stands still over {360.0 * part:.0f} of 360 deg: the {bar.link} is as long as the "
+                    f"arm of {bar.start} about the point where the {slider} rests; another assembly lets it move"
                 )
 
 

@@ -267,8 +267,8 @@ def _name_problems(parts):
         links += part.links
         for name, point in part.joints.items():
             if point.link not in links:
-                link = checks.choice(f"{kind} puts joint {name!r} on link", point.link, links)
-                problems.append(f"{link}; the part that adds the link must stand before it")
+                found = checks.choice(f"{kind}: link that carries joint {name!r}", point.link, links)
+                problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
         add(points, "joint", kind, _spelled(part, "joints"))
         add(points, "link", kind, part.links)
         outputs = _spelled(part, "outputs")

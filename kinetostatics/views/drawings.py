@@ -33,6 +33,8 @@ PLATES: dict[str, dict[str, Any]] = {
     "block": {"fc": STEEL, "ec": "none", "zorder": 3},
 }
 """How each kind of stroke is drawn as a filled shape."""
+MOST = 0.9
+"""Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
 
 
 def mass_centres(solutions, angle=60, ax=None):
@@ -150,7 +152,7 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     spots += [(name, style) for name in shape.heavy for style in MASS_CENTRE]
     marks = [ax.plot([], [], **style)[0] for _, style in spots]
     positions = [solution.position(name) for name, _ in spots]
-    forces = [solution.reaction(joint) for joint in joints]
+    forces = [_cut(solution, joint) for joint in joints]
     largest = max(_largest(magnitude(force)) for force in forces)
     length = _largest(magnitude(solution.position(_leading(made))))
     starts = [solution.position(made.outputs[joint].at or joint) for joint in joints]
@@ -232,6 +234,17 @@ def _frame(ax, solution):
 def _posed(solution, degrees):
     """The mechanism at other crank angles, whatever its speed and loads."""
     return Motion(solution.mechanism, np.radians(degrees), 0.0, 0.0)
+
+
+def _cut(solution, joint):
+    """Reaction at a joint; near change points that are passed, where it grows without bound, no longer than most."""
+    force = solution.reaction(joint)
+    if not solution.mechanism.grows(joint):
+        return force
+    size = magnitude(force)
+    most = np.nanquantile(np.where(np.isfinite(size), size, np.nan), MOST)
+    with np.errstate(invalid="ignore"):
+        return np.where(size > most, np.nan_to_num(force / size, nan=0.0) * most, force)
 
 
 def _leading(made):
