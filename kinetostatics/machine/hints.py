@@ -14,10 +14,6 @@ THIN = 1000.0
 """How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
 
 
-STILL = 0.25
-"""Part of the turn over which no ram is meant to stand still to the last digit."""
-
-
 def of_mechanism(mechanism):
     """Sentences on sliders that stand still, and on mass centres and inertias that look like those of another unit."""
     lengths = [bar.length for bar in mechanism.bars]
@@ -49,20 +45,19 @@ def _rounded(length):
 
 
 def _still(mechanism):
-    """Say which sliders stand still over much of the turn.
+    """Say which sliders stand still all over the turn.
 
     That takes a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
     """
     for bar in mechanism.bars:
         slider = mechanism.joints[bar.end].link
         if slider in mechanism.guides and _as_long_as_its_arm(mechanism, bar):
-            angle = np.linspace(0.0, 2.0 * np.pi * mechanism.turns, 360 * mechanism.turns, endpoint=False) + 1e-3
+            angle = np.linspace(0.0, 2.0 * np.pi * mechanism.turns, 60 * mechanism.turns, endpoint=False) + 1e-3
             rate = np.abs(mechanism.place(angle).travels[slider].first)
-            part = np.max(np.mean(rate <= 1e-9 * _most(bar.length), axis=-1))
-            if part > STILL:
+            if np.any(np.max(rate, axis=-1) <= 1e-9 * _most(bar.length)):
                 yield (
-                    f"the {slider} stands still over {360.0 * part:.0f} of 360 deg: the {bar.link} is as long as the "
-                    f"arm of {bar.start} about the point where the {slider} rests; another assembly lets it move"
+                    f"the {slider} stands still all over the turn: the {bar.link} is as long as the arm of {bar.start} "
+                    f"about the point where {bar.end} rests; another assembly lets it move"
                 )
 
 
