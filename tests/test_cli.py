@@ -4,11 +4,13 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
+from kinetostatics.cli.printed import print_table
 
 
 @pytest.fixture
@@ -33,6 +35,11 @@ def test_run_prints_extremes_and_the_power_check(capsys):
     assert "40578.9" in printed
     assert "power balance: the torques by equilibrium and by powers differ by" in printed
     assert "cam" not in printed.split("plain: crank-slider")[1]
+
+
+def test_a_zero_is_printed_without_a_sign(capsys):
+    print_table(pd.DataFrame({"smallest": [-0.0, -1e-20, -2.5, np.nan], "unit": "N"}, index=list("abcd")))
+    assert [line.split()[1] for line in capsys.readouterr().out.splitlines()[2:]] == ["0", "-1e-20", "-2.5", "N"]
 
 
 def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):

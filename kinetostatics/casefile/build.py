@@ -8,7 +8,7 @@ from ..machine import cams
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar
 from ..machine.guide import Guide
 from ..machine.links import Link
-from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Tabulated
+from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table
 from ..numbers.files import read_columns
 from ..solution.scene import Scene
 from . import schema
@@ -21,11 +21,7 @@ def tabulated(table, folder):
     if isinstance(cam, schema.SampledTable):
         found["cam"] = _from_csv(folder / cam.table, {"angle": "rad", "radius": "m"}, cams.Sampled)
     if force is not None and force.table is not None:
-        found["process_force"] = _from_csv(
-            folder / force.table,
-            {"crank_angle": "rad", "force": "N"},
-            lambda angle, values: Tabulated(angle, values, force.period or TURN),
-        )
+        found["process_force"] = Table.from_csv(folder / force.table, period=force.period or TURN)
     return found
 
 

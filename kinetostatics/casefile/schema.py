@@ -72,7 +72,7 @@ def _sampling(text):
 
 def _sign(value):
     if isinstance(value, bool):
-        raise ValueError(f"must be 1 or -1, found {value!r}")
+        raise ValueError(f'must be 1, -1, "open" or "crossed", found {value!r}')
     return value
 
 
@@ -181,7 +181,7 @@ class MechanismVariant(Table):
 
     crank_speed: Speed
     crank_acceleration: AngularAcceleration = 0.0
-    assembly: Annotated[Literal[1, -1], BeforeValidator(_sign)] = 1
+    assembly: Annotated[Literal[1, -1, "open", "crossed"], BeforeValidator(_sign)] = 1
     crank: LinkTable = LinkTable()
     coupler: LinkTable = LinkTable()
     gravity: GravityTable | None = None

@@ -43,6 +43,8 @@ def closed_paths(mechanism, angle):
     if not found.size:
         what = "moves no joint but the crank pin" if mechanism.groups else "is a crank alone"
         raise NotGivenError(f"{mechanism.name} {what}: it has no joint whose path is to be found as a series")
+    if mechanism.turns > 1:
+        raise NotGivenError(f"{mechanism.name} takes {mechanism.turns} turns to repeat, a Fourier series one")
     if not np.all(np.isfinite(found)):
         raise NotGivenError(f"{mechanism.name} does not close all around the turn, which a Fourier series needs")
     return found

@@ -214,6 +214,23 @@ class Group:
         """The group as it is on a crank: what its structure owes to lengths that are not its own."""
         return self
 
+    passage = ""
+    """How it passes change points, which belongs to its structure; "" where there are none."""
+
+    @property
+    def passes(self):
+        """Whether it passes change points: motion is smooth there, but forces grow without bound."""
+        return self.passage != ""
+
+    @property
+    def through(self):
+        """Whether it is to pass change points, had it any."""
+        return type(getattr(self, "assembly", 1)) is str
+
+    def kink(self, crank):
+        """What becomes of its motion at change points that it does not pass, in words; "" without any."""
+        return ""
+
     @property
     def turns(self):
         """Turns of the crank after which its branch closes."""
@@ -221,7 +238,7 @@ class Group:
 
     @property
     def change_points(self):
-        """Crank angles in [0, 2 pi) of the change points that it passes, rad: motion is smooth there, forces grow."""
+        """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
         return ()
 
     @property

@@ -17,7 +17,7 @@ from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, refusals, 
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from .angles import crank_angles, problems
-from .solution import Solution
+from .solution import Solution, drive_and_loads
 
 DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
@@ -79,10 +79,13 @@ class Scene:
         checks.require(owner, *wrong, _period_problem(loads))
         values.update(drive, loads=tuple(item if type(item) in KINDS else checks.kept(item) for item in loads))
 
+    def __repr__(self):
+        return f"<Scene: {self.mechanism.name}, {drive_and_loads(self)}>"
+
     @property
     def period(self):
         """Crank angle after which motion and loads repeat, rad."""
-        return period_of(self.loads)
+        return period_of(self.loads, self.mechanism.turns)
 
     @cached_property
     def _places(self):

@@ -132,3 +132,12 @@ def test_cosine_law_cam_warns_of_a_mechanism_that_breaks_the_law():
         ks.cam_crank_slider(law, 2.0)
     with pytest.warns(UserWarning, match="guide_offset 0.1 m is not 0"):
         ks.cam_crank_slider(law, law.coupler_length, guide_offset=0.1)
+
+
+def test_scene_and_solution_show_themselves_in_a_line_however_long_their_tables():
+    speed = np.linspace(30.0, 40.0, TURN.size)
+    scene = ks.Scene(SAW, speed, loads=[ks.Gravity(), ks.ProcessForce(speed)])
+    drive = "crank_speed=<array of shape (24,)>, crank_acceleration=0.0, Gravity, ProcessForce>"
+    assert repr(scene) == f"<Scene: crank-slider, {drive}"
+    assert repr(scene.solve(TURN)) == f"<Solution: crank-slider, shape (24,), {drive}"
+    assert repr(ks.Scene(SAW, 33.5)) == "<Scene: crank-slider, crank_speed=33.5, crank_acceleration=0.0, no loads>"

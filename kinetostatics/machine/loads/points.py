@@ -70,7 +70,7 @@ class Force(Load):
     def title(self):
         return f"Force at {places.shown(self.at)}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there is no such joint or link."""
         yield places.problem("Force", "at", self.at, mechanism)
         if self.along is not None:
@@ -94,17 +94,21 @@ class Force(Load):
 
 
 class PointLoad(Load):
-    """A load along the line of two points `between`; `pull` is its force on the first one over the vector to it."""
+    """A load along the line of two points `between`."""
 
     between: Any
 
-    SIGN = "line"
+    REFUSES, SIGN = True, "line"
+
+    def pull(self, motion) -> Any:
+        """Force on the first point, N."""
+        raise NotImplementedError
 
     @property
     def title(self):
         return f"{type(self).__name__} between {' and '.join(map(places.shown, self.between))}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there are no such points, or if both move as one."""
         owner = type(self).__name__
         wrong = [places.problem(owner, f"between {n}", place, mechanism) for n, place in enumerate(self.between, 1)]
@@ -282,7 +286,7 @@ class PointDamper(PointLoad):
     coefficient: Any
     between: Any = field(kw_only=True)
 
-    PATH, LENGTHS, SIGN = "point_damper", ("between",), "damper"
+    PATH, LENGTHS, REFUSES, SIGN = "point_damper", ("between",), False, "damper"
     RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
 
     def pull(self, motion):

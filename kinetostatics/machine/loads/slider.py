@@ -5,7 +5,9 @@ from typing import Any
 
 from ...numbers import checks
 from ..links import present
-from .load import TURN, Load, Sign, WholeTurns, valued
+from .load import Load, Sign, valued
+from .period import TURN, WholeTurns
+from .tables import Table
 
 
 class OnSlider(Load):
@@ -17,7 +19,7 @@ class OnSlider(Load):
     def title(self):
         return f"{type(self).__name__} on {self.on!r}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there is no such slider."""
         yield checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
 
@@ -81,10 +83,11 @@ class ProcessForce(OnSlider):
 
     Parameters
     ----------
-    force : float, array or function
-        N; an array has one value for each crank angle; a function takes the `Motion` and returns such values, so the
-        force may depend on crank angle, position or velocity, at each crank angle by itself. The compiled engine takes
-        its constants into the program, so a function with other constants is compiled anew.
+    force : float, array, Table or function
+        N; an array has one value for each crank angle; a `Table` is read by crank angle or travel; a function
+        takes the `Motion` and returns such values, so the force may depend on crank angle, position or velocity, at
+        each crank angle by itself. The compiled engine takes its constants into the program, so a function with other
+        constants is compiled anew.
     on : str
         The slider it acts on.
     period : float
@@ -110,6 +113,11 @@ class ProcessForce(OnSlider):
         on=checks.Name(),
         period=WholeTurns(),
     )
+
+    @property
+    def value_now(self):
+        """The force, a table over travel by the slider itself."""
+        return self.force.of(self.on) if isinstance(self.force, Table) else self.force
 
     def push(self, motion):
         """Force on the slider along the guide, N."""

@@ -12,17 +12,19 @@ import numpy as np
 from ...errors import NotGivenError
 from ...machine.cam_roller import CamRoller
 from ...machine.cams import Circle, CosineLaw
+from ...machine.change_points import FAR, MEETING, NEAR, SIDES, parted
 from ...machine.cylinder_group import CylinderGroup
 from ...machine.dyad import Dyad
 from ...machine.group import FRAME, TRAVELS
 from ...machine.lever_group import LeverGroup
-from ...machine.loads import Gravity, ProcessForce, Spring
+from ...machine.loads import Gravity, Load, ProcessForce, Spring
 from ...machine.pin import Pin
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
 from ...mechanics.quantities import RATES
 from ...numbers import checks
+from .acting import Acting
 from .enclosures import library, on_arb, require_one_design
 
 
@@ -65,7 +67,7 @@ def working_digits(digits):
     return 6 * digits + 60
 
 
-class Machine:
+class Machine(Acting):
     """A mechanism at one crank angle in mpmath numbers; a planar vector is a complex number.
 
     `position`, `velocity` and `acceleration` are tables by kind ("joint", "centre" of mass, "direction") and name.
@@ -95,6 +97,7 @@ class Machine:
     def table(self, angle):
         """Joints, mass centres and directions of links at a crank angle."""
         ray = self.mp.expj(angle)
+        self._angle = angle
         joints, links = {"O": self.mp.mpc(0)}, {"crank": ("O", ray)}
         if self.mechanism.crank.length is not None:
             joints["A"] = self.number(self.mechanism.crank.length) * ray
@@ -109,24 +112,35 @@ class Machine:
             found["direction", name] = direction
         return found
 
+    def side(self, group):
+        """Side of a group, which changes at each change point that it passes."""
+        side = SIDES.get(group.assembly, group.assembly)
+        if not group.passes:
+            return side
+        (kind, _), slides = parted(group.passage), isinstance(group, SliderGroup)
+        start = -1j * self.vector(group.guide.direction) if slides else self.vector(group.pivot)
+        psi = self._angle - self.mp.arg(start)
+        passed = {FAR: self.mp.cos(psi / 2), NEAR: self.mp.sin(psi / 2), MEETING: self.mp.sin(psi / 2)}
+        return side * self.mp.sign(passed.get(kind, self.mp.sin(psi)))
+
     def add_slider(self, group, joints, links):
-        mp = self.mp
+        mp, side = self.mp, self.side(group)
         coupler, slider = group.links
         start, length = joints[group.on], self.number(group.coupler_length)
         along = self.vector(group.guide.direction)
         along /= abs(along)
         lean = mp.asin((self.number(group.guide.guide_offset) - _cross(along, start)) / length)
-        direction = mp.expj(mp.arg(along) + (lean if group.assembly > 0 else mp.pi - lean))
+        direction = mp.expj(mp.arg(along) + (lean if side > 0 else mp.pi - lean))
         joints[group.pin] = start + length * direction
         links[coupler], links[slider] = (group.on, direction), (group.pin, along)
 
     def add_rocker(self, group, joints, links):
-        mp = self.mp
+        mp, side = self.mp, self.side(group)
         coupler, rocker = group.links
         start, pivot = joints[group.on], self.vector(group.pivot)
         c, h, a = self.number(group.coupler_length), self.number(group.rocker_length), abs(pivot - start)
         opening = mp.acos((a * a + c * c - h * h) / (2 * a * c))
-        direction = mp.expj(mp.arg(pivot - start) + group.assembly * opening)
+        direction = mp.expj(mp.arg(pivot - start) + side * opening)
         joints[group.pin], joints[group.pivot_name] = start + c * direction, pivot
         links[coupler], links[rocker] = (group.on, direction), (group.pivot_name, (joints[group.pin] - pivot) / h)
 
@@ -223,6 +237,11 @@ class Machine:
         for name in self.mechanism.guides:
             pin, along = self.position["joint", self.mechanism.references[name]], self.position["direction", name]
             self.enter(right, 0, name, pin, -self.push(name, _dot(along, pin)) * along, 0)
+        for item in self.solution.loads:
+            if not isinstance(item, Gravity | Spring | ProcessForce) and isinstance(item, Load):
+                for name, force, at, couple in self.of(item):
+                    if name in links:
+                        self.enter(right, 0, name, self.position["centre", name] if force == 0 else at, -force, -couple)
 
         found: dict[str, Any] = {}
         for (name, force, *_), size in zip(unknowns, mp.lu_solve(matrix, right), strict=True):
@@ -319,21 +338,41 @@ class Machine:
         """Force on a slider along its guide."""
         total = self.mp.mpf(0)
         for place, item in enumerate(self.solution.loads):
-            if isinstance(item, Gravity) or item.on != slider:
+            if not hasattr(item, "push") or item.on != slider:
                 continue
             if isinstance(item, Spring):
-                total += self.number(item.stiffness) * (self.number(item.free_position) - coordinate)
+                elongation = coordinate - self.number(item.free_position)
+                total -= self.number(item.stiffness) * elongation + self.number(item.cubic) * elongation**3
             elif isinstance(item, ProcessForce) and not callable(item.force):
                 total += self.number(item.force)
             else:
                 total += self.given(place)
         return total
 
+    def value(self, item):
+        """Force or moment of a load that may be a table or a function."""
+        return self.given(self.solution.loads.index(item)) if callable(item.value_now) else self.number(item.value_now)
+
+    def expj(self, angle):
+        return self.mp.expj(angle)
+
+    def arg(self, number):
+        return self.mp.arg(number)
+
+    def where(self, condition, one, other):
+        return one if condition else other
+
+    def at(self, link):
+        """Reference joint, axis, velocity of the joint and angular velocity of a link."""
+        joint, axis = self.mechanism.references[link], self.position["direction", link]
+        shift = self.velocity["joint", joint]
+        return self.position["joint", joint], axis, shift, _cross(axis, self.velocity["direction", link])
+
     def given(self, place):
         """Value of a load that is a function of the motion, which no formula but the user's own can give."""
         flint = library("flint")
         with flint.ctx.workprec(int(3.33 * self.mp.dps)):
-            values = np.ravel(on_arb(flint.arb, self.solution).loads[place].force)
+            values = np.ravel(on_arb(flint.arb, self.solution).loads[place].value_now)
             return self.mp.mpf(values[self.index if values.size > 1 else 0])
 
 

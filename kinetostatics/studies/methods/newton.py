@@ -24,7 +24,9 @@ from ...machine.pin import Pin
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
+from ...mechanics.pushes import pushed, settled
 from ...numbers.planar import left
+from .acting import Acting
 from .method import Method, NotGivenError, require_one_design
 
 STEP = np.radians(15.0)
@@ -88,7 +90,9 @@ class Model:
         self._add("O", *self._point("crank"))
         self._add("balancing_torque", self._theta("crank") - self._phi)
         for group in self.mechanism.groups:
-            write = self._writers.get(next((kind for kind in type(group).__mro__ if kind in self._writers), None))
+            write = self._writers.get(
+                next((kind for kind in type(group).__mro__ if kind in self._writers), type(group))
+            )
             if write is None:
                 raise NotGivenError(f"no constraint equations are written for {type(group).__name__}")
             write(self, group)
@@ -303,14 +307,22 @@ class Configuration:
         force = model.mass * (self._plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
         moment = model.inertia * turning_up + (arm.conj() * force).imag
         for item in solution.loads:
-            if not isinstance(item, Gravity):
+            if hasattr(item, "push"):
                 link, along = model.names.index(item.on), model.guides[item.on]
                 if isinstance(item, Spring):
-                    travel = (self._plane(self.q)[..., link] * along.conjugate()).real
-                    push = -item.stiffness * (travel - item.free_position)
+                    elongation = (self._plane(self.q)[..., link] * along.conjugate()).real - item.free_position
+                    push = -item.stiffness * elongation - item.cubic * elongation**3
                 else:
-                    push = item.push(solution)
+                    push = pushed(item, solution)
                 force[..., link] -= push * along
+            elif not isinstance(item, Gravity):
+                for name, applied, at, couple in _Acting(self, rates).of(settled(item, solution)):
+                    if name in model.names:
+                        link = model.names.index(name)
+                        force[..., link] -= applied
+                        moment[..., link] -= couple
+                        lever = at - self._plane(self.q)[..., link]
+                        moment[..., link] -= (np.conj(lever) * applied).imag
         return np.concatenate([force.real, force.imag, moment], axis=-1)
 
     def _plane(self, part):
@@ -342,6 +354,28 @@ class Configuration:
 def _nearest(angle, wanted):
     """The angle less or plus whole turns, next to another."""
     return angle + 2 * np.pi * np.rint((wanted - angle) / (2 * np.pi))
+
+
+class _Acting(Acting):
+    """What loads do in a configuration that moves at `rates`."""
+
+    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
+
+    def __init__(self, configuration, rates):
+        self.mechanism, self._at, self._rates = configuration.model.mechanism, configuration, rates
+
+    def number(self, value):
+        return value
+
+    def value(self, item):
+        return item.value_now
+
+    def at(self, link):
+        """Reference joint, axis, velocity of the joint and angular velocity of a link."""
+        at, index = self._at, self._at.model.names.index(link)
+        axis = at.cosine[..., index] + 1j * at.sine[..., index]
+        spin = self._rates[..., 2 * at.model.size + index]
+        return at._plane(at.q)[..., index], axis, at._plane(self._rates)[..., index], spin
 
 
 def modelled(solution, quantity):
