@@ -52,7 +52,7 @@ but the crank can be asked.
 
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
-forces and power; tests/test_a_group_of_ones_own.py has a whole example.
+forces and power; tests/machine/test_a_group_of_ones_own.py has a whole example.
 
 Nothing else in the library knows what a group looks like, nor the names of its links.
 """
@@ -149,7 +149,6 @@ class Placement:
 class Group:
     """What follows from what a group declares; see the module for what that is."""
 
-    label = ""
     TRUSTED = False
     """Whether its forces are known to balance and its names to come from its texts: the library's own, as tested."""
     trusted = False
@@ -158,6 +157,11 @@ class Group:
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)
         cls.trusted = vars(cls).get("TRUSTED", False)
+
+    @property
+    def label(self):
+        """What tells its names, and paths of its numbers, from those of another of its kind."""
+        return ""
 
     @property
     def follows(self):

@@ -64,7 +64,7 @@ class Pin(checks.Checked, Group):
 
     @property
     def label(self):
-        """What its numbers are told from those of other pins by: "pin_C.along"."""
+        """Its name, so that paths of its numbers are its own: "pin_C.along"."""
         return self.name
 
     @property

@@ -109,7 +109,7 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     return ax
 
 
-def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None):
+def animation(solution, joints=None, frames=72, interval=50, ax=None):
     """Animation of the mechanism over the period of its motion and loads, with arrows for the joint reactions.
 
     Show it in a notebook by ``HTML(animation.to_jshtml())``, or save it by ``animation.save("saw.gif")``.
@@ -117,9 +117,10 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     Parameters
     ----------
     solution : Solution
-    joints : sequence of str
-        Reactions drawn as arrows from the joints that they act at ("guide" at B); the largest of all is as long as
-        the crank. NaN where the mechanism does not close draws nothing.
+    joints : sequence of str, optional
+        Reactions drawn as arrows from the joints that they act at ("guide" at B), of those at O, A and B the ones that
+        it has unless told; the largest of all is as long as the crank. NaN where the mechanism does not close draws
+        nothing.
     frames : int
         Poses shown, of the solution's crank angles; where these are less than a period, over the whole of it, unless
         the solution holds tables over its crank angles.
@@ -134,6 +135,8 @@ def animation(solution, joints=("O", "A", "B"), frames=72, interval=50, ax=None)
     from matplotlib.animation import FuncAnimation
 
     solution, ax = single(solution), axes(ax)
+    if joints is None:
+        joints = [name for name in ("O", "A", "B") if name in solution.mechanism.outputs]
     joints = (joints,) if isinstance(joints, str) else tuple(joints)
     checks.require(
         "animation",

@@ -11,15 +11,23 @@ BEYOND = 1e-9
 """Share of a table over travel by which a slider may go beyond it: rounding."""
 
 
+def order_problem(x, over):
+    """What is wrong with the order of rows as they are given, rising or falling, or None."""
+    falls = x.size > 1 and x[-1] < x[0]
+    wrong = np.diff(x) >= 0 if falls else np.diff(x) <= 0
+    if not np.any(wrong):
+        return None
+    row = int(np.argmax(wrong)) + 1
+    here, before = (f"{part:.9g} m" if over == "travel" else _degrees(part) for part in (x[row], x[row - 1]))
+    what, remedy = ("angles", "for a jump give two angles close together")
+    if over == "travel":
+        what, remedy = "travel", "give the stroke back as back=..., in a file as a third column"
+    return f"{what} must {'fall' if falls else 'rise'}, but {here} follows {before} in row {row + 1}; {remedy}"
+
+
 def travel_problem(x):
-    """What is wrong with coordinates of a table over travel, or None."""
-    if x.size < 2:
-        return f"at least 2 rows are needed, got {x.size}; a value that does not change is no table"
-    step = np.diff(x)
-    if np.any(step <= 0):
-        row = int(np.argmax(step <= 0)) + 1
-        return f"travel must rise, but {x[row]:.9g} m follows {x[row - 1]:.9g} m; give the stroke back as back=..."
-    return None
+    """What is wrong with coordinates of a table over travel in order, or None."""
+    return None if x.size > 1 else "at least 2 rows are needed, got 1; a value that does not change is no table"
 
 
 def require_inside(x, place, motion):
@@ -46,12 +54,6 @@ def problem(angle, value, period):
     if angle.size < 3:
         return f"at least 3 rows are needed, got {angle.size}; one that does not change is no table"
     step, span = np.diff(angle), angle[-1] - angle[0]
-    if np.any(step <= 0):
-        row = int(np.argmax(step <= 0)) + 1
-        return (
-            f"angles must rise, but {_degrees(angle[row])} follows {_degrees(angle[row - 1])}; for a jump give two "
-            "angles close together"
-        )
     if closes(angle, period):
         unequal = abs(value[-1] - value[0]) > 1e-9 * np.max(np.abs(value))
         return (

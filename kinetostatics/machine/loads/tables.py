@@ -91,7 +91,8 @@ class Table:
         shapes = {values.shape for values in arrays.values()}
         fits = len(shapes) == 1 and arrays["x"].ndim == 1
         checks.require("table", None if fits else f"{' and '.join(arrays)} must be 1-D, of one length")
-        if arrays["x"].size > 1 and arrays["x"][0] > arrays["x"][-1]:
+        checks.require("table", rows.order_problem(arrays["x"], over))
+        if arrays["x"][0] > arrays["x"][-1]:
             arrays = {name: values[::-1] for name, values in arrays.items()}
         period = WholeTurns().taken(period)[0]
         if over == "angle":
@@ -107,7 +108,7 @@ class Table:
             object.__setattr__(self, name, part)
 
     @classmethod
-    def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None):
+    def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None, over=None):
         """Read a table with two or three columns, each headed by its name and a unit that converts.
 
         Parameters
@@ -122,6 +123,8 @@ class Table:
             m2, by which pressures become forces along the guide; negative where they push against its direction.
         period, slider
             As of the table.
+        over : "angle" or "travel", optional
+            Which column to take where the file has both; unless told, the travel.
 
         Raises
         ------
@@ -130,9 +133,17 @@ class Table:
         """
         from ...numbers.files import headings, read_columns
 
-        checks.require("table", checks.choice("unit", unit, tuple(VALUES)), None if area is None else _area(area))
+        checks.require(
+            "table",
+            checks.choice("unit", unit, ("N", "N*m", "N m")),
+            None if area is None else _area(area),
+            None if over is None else checks.choice("over", over, tuple(OVER)),
+            "area makes forces of pressures, but this load is a torque" if area is not None and unit != "N" else None,
+        )
         names = [name for name, _ in headings(path)]
-        over = "travel" if OVER["travel"][0] in names else "angle"
+        if area is None and "pressure" in names and VALUES[unit] not in names:
+            raise CaseError(path, ["no column 'force', but pressures; give the area that they act on, as area"])
+        over = over or ("travel" if OVER["travel"][0] in names else "angle")
         column, own = OVER[over]
         of = unit.replace(" ", "*") if area is None else "Pa"
         value = VALUES[of]

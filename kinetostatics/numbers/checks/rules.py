@@ -114,8 +114,8 @@ class Pair:
 
     def numbers(self, value):
         """Name, steps and rule of each number, for paths."""
-        for number, part in enumerate(self.parts):
-            yield part, (number,), self.rule
+        for place, part in enumerate(self.parts):
+            yield part, (place,), self.rule
 
     @property
     def _pair(self):

@@ -90,12 +90,10 @@ class Model:
         self._add("O", *self._point("crank"))
         self._add("balancing_torque", self._theta("crank") - self._phi)
         for group in self.mechanism.groups:
-            write = self._writers.get(
-                next((kind for kind in type(group).__mro__ if kind in self._writers), type(group))
-            )
-            if write is None:
+            kinds = [kind for kind in type(group).__mro__ if kind in self._writers]
+            if not kinds:
                 raise NotGivenError(f"no constraint equations are written for {type(group).__name__}")
-            write(self, group)
+            self._writers[kinds[0]](self, group)
         for name in self.names:
             turning = self._theta(name)[None, : 3 * self.size]
             self.readings |= {f"{name}_rate": (RATE, turning), f"{name}_angular_acceleration": (ACCELERATION, turning)}
