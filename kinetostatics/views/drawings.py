@@ -198,12 +198,12 @@ MASS_CENTRE: tuple[dict[str, Any], ...] = (
 
 def _whole(solution, frames):
     """The solution over its whole period, at its own crank angles if they are enough of it."""
-    angle = np.sort(solution.crank_angle)
+    angle, period = np.sort(solution.crank_angle), solution.period
     step = np.median(np.diff(angle)) if angle.size > 1 else 0.0
-    if angle[-1] - angle[0] + 1.5 * step >= solution.period:
+    if angle[-1] - angle[0] + 1.5 * step >= period:
         return solution
     try:
-        return solution.at(np.linspace(0.0, solution.period, max(frames, 2), endpoint=False))
+        return solution.at(angle[0] + np.linspace(0.0, period, max(frames, 2), endpoint=False))
     except ParameterError:
         return solution
 

@@ -21,7 +21,10 @@ class OnSlider(Load):
 
     def misplaced(self, mechanism):
         """Say if there is no such slider."""
-        yield checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+        problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+        if problem and not mechanism.guides:
+            problem += f"; {mechanism.name} has no slider, a Force or PointSpring acts at any point"
+        yield problem
 
 
 @dataclass(frozen=True, eq=False)

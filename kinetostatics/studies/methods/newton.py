@@ -282,7 +282,13 @@ class Configuration:
     def solve(self, right, transposed=False):
         """Solution of J or of its transpose."""
         matrix = np.swapaxes(self.jacobian, -1, -2) if transposed else self.jacobian
-        return np.linalg.solve(matrix, right[..., None])[..., 0]
+        try:
+            return np.linalg.solve(matrix, right[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            if not self.model.mechanism.change_points:
+                raise
+            name = self.model.mechanism.name
+            raise NotGivenError(f"{name} passes change points, where constraint equations are singular") from None
 
     def corrected(self):
         """Coordinates after one Newton iteration."""
