@@ -379,3 +379,18 @@ def test_harmonics_of_what_does_not_close_are_told_as_left_out():
     gapping = ks.crank_slider(1.0, 0.8, slider=ks.Link(1.0))
     found = ks.needs(solved(gapping, angle=np.linspace(-0.5, 0.5, 12)), "O")
     assert "does not close all around the turn" in found.left_out["one harmonic"]
+
+
+def test_needs_of_new_groups_and_loads_names_what_fails_alone_only():
+    """The guide through O would be out of reach of the ram: no reason to leave out harmonics."""
+    groups = (
+        ks.LeverGroup((0.0, -0.2), lever=ks.Link(8.0, 0.3, 0.4)),
+        ks.Pin(on="lever", at=(0.55, 0.0), name="C"),
+        ks.SliderGroup(0.3, ks.Guide.at(0.0, 0.33), on="C", slider=ks.Link(10.0)),
+    )
+    spring = ks.PointSpring(1e-6, 0.1, between=("C", (0.3, 0.0)))
+    s = ks.solve(ks.Mechanism("shaper", ks.Crank(0.1), groups), TURN, crank_speed=6.0, loads=spring)
+    found = ks.needs(s, "balancing_torque", within=1e-6)
+    assert found.smallest.name == "no point spring"
+    assert found.left_out == {}
+    assert "two harmonics" in {made.name for made in found.alone}
