@@ -122,7 +122,9 @@ def test_ingredient_of_no_effect_is_dropped_but_the_full_scene_stays_the_measure
 
 def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_models):
     mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
-    loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0)]
+    loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0), ks.Force(5.0, at="B")]
+    loads += [kind(5.0, on="coupler") for kind in (ks.Torque, ks.TorsionSpring, ks.TorsionDamper)]
+    loads += [kind(5.0, between=("A", (3.0, 3.0))) for kind in (ks.PointForce, ks.PointSpring, ks.PointDamper)]
     everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0), "O"))
     offered = simplifications.ingredients(mechanism).values()
     assert set(everything) == {choice.name for choices in offered for choice in choices}
