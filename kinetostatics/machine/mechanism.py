@@ -142,7 +142,7 @@ class Mechanism(Batched):
 
     @cached_property
     def slider(self):
-        """The slider that is meant where none is named: the only one, or that without a label; None if there is none."""
+        """The slider that is meant where none is named: the only one, or that without a label; None: there is none."""
         bare = [name for name in self.guides if name == self.own_names[name]]
         found = bare if len(bare) == 1 else list(self.guides)
         return found[0] if len(found) == 1 else None

@@ -13,7 +13,7 @@ from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from . import symbols
-from .canvas import ACCENT, INK, STEEL, axes, closed, display, labelled, single, styled
+from .canvas import ACCENT, INK, LOAD, STEEL, axes, closed, display, labelled, single, styled
 from .labels import label
 from .shape import Shape
 
@@ -24,7 +24,7 @@ LINES: dict[str, dict[str, Any]] = {
     "spring": {"color": INK, "lw": 1, "zorder": 2.5},
     "damper": {"color": INK, "lw": 1, "zorder": 2.5},
     "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
-    "force": {"color": ACCENT, "lw": 1.5, "zorder": 5},
+    "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
 }
 """How each kind of stroke is drawn as a line."""
 PLATES: dict[str, dict[str, Any]] = {
@@ -172,9 +172,8 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     factor, shown = display("N", [largest])
     ax.set_title(f"reactions at {', '.join(joints)}; longest arrow {factor * largest:.4g} {shown}", fontsize="small")
     caption = ax.text(0.02, 0.94, "", transform=ax.transAxes, fontsize="small")
-    low, high = (find([find(path, axis=-1) for path in positions], axis=0) for find in (np.nanmin, np.nanmax))
-    ax.update_datalim([low, high])
-    _equal(ax)
+    paths = np.concatenate([*positions, *(stroke.points.reshape(2, -1) for stroke in strokes)], axis=1)
+    _equal(ax, paths[:, np.isfinite(paths).all(axis=0)].T)
 
     def draw(step):
         for part, stroke in zip(parts, strokes, strict=True):
@@ -283,8 +282,11 @@ def _set(artist, points):
     )
 
 
-def _equal(ax):
+def _equal(ax, moving=()):
+    """Equal scales, for what is drawn and for what moves, places (N, 2)."""
     ax.relim()
+    if len(moving):
+        ax.update_datalim(moving)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
     ax.set_xlabel("x [m]")

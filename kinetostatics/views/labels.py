@@ -1,5 +1,7 @@
 """Labels that keep clear of each other and of what is drawn, placed anew whenever a figure is drawn."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.path import Path
@@ -24,13 +26,12 @@ class Labels(Artist):
 
     def draw(self, renderer):
         """Move each label to the best place left."""
-        lines, scale = self.axes.lines, renderer.points_to_pixels(1.0)
-        paths = [(_in_pixels(line), False) for line in lines] + [
-            (_in_pixels(patch), True) for patch in self.axes.patches
-        ]
+        ax: Any = self.axes
+        lines, scale = ax.lines, renderer.points_to_pixels(1.0)
+        paths = [(_in_pixels(line), False) for line in lines] + [(_in_pixels(patch), True) for patch in ax.patches]
         marks = [box for line in lines if isinstance(line.get_marker(), Path) for box in _boxes(line, scale)]
         shown = [text for text in self.texts if np.isfinite(text.xy).all()]
-        points = self.axes.transData.transform([text.xy for text in shown]) if shown else ()
+        points = ax.transData.transform([text.xy for text in shown]) if shown else ()
         taken: list[Bbox] = []
         for text, point in zip(shown, points, strict=True):
             size = text.get_window_extent(renderer)
@@ -44,7 +45,8 @@ class Labels(Artist):
             taken.append(box)
 
     def _cost(self, box, taken, points, marks, paths):
-        outside = not (self.axes.bbox.contains(box.x0, box.y0) and self.axes.bbox.contains(box.x1, box.y1))
+        frame: Any = self.axes
+        outside = not (frame.bbox.contains(box.x0, box.y0) and frame.bbox.contains(box.x1, box.y1))
         return (
             ON_LABEL * sum(bool(Bbox.intersection(box, other)) for other in taken)
             + ON_POINT * sum(box.contains(*point) for point in points)
@@ -74,7 +76,7 @@ def _places(point, width, height, scale):
         for way in DIRECTIONS:
             x = distance * scale * way.real + 0.5 * width * (np.sign(round(way.real, 9)) - 1.0)
             y = distance * scale * way.imag + 0.5 * height * (np.sign(round(way.imag, 9)) - 1.0)
-            yield np.array([x, y]), Bbox.from_bounds(*(point + (x, y)), width, height)
+            yield np.array([x, y]), Bbox.from_bounds(point[0] + x, point[1] + y, width, height)
 
 
 def label(ax, text, point, **style):

@@ -152,7 +152,7 @@ class Shape:
     def signs(self, loads, pose):
         """Lines of all loads in the poses of a motion."""
         for item in loads:
-            for sign in item.signs(pose) if hasattr(item, "signs") else ():
+            for sign in _signs(item, pose):
                 yield from self._sign(sign)
 
     def _sign(self, sign):
@@ -181,9 +181,14 @@ class Shape:
             if point.link == FRAME:
                 yield self.turn.position(name)[:, 0]
         for item in loads:
-            for sign in item.signs(self.turn) if hasattr(item, "signs") else ():
+            for sign in _signs(item, self.turn):
                 if sign.kind in ("spring", "damper", "line") and sign.end is not None:
                     yield from (end[:, 0] for end in (sign.start, sign.end) if not np.ptp(end, axis=-1).any())
+
+
+def _signs(item, pose):
+    """How a load is drawn; one of the user's own need not say."""
+    return item.signs(pose) if hasattr(item, "signs") else ()
 
 
 def _on(pose, link, points):
@@ -197,7 +202,7 @@ def _ends(points):
     middle = points.mean(axis=1, keepdims=True)
     far = points[:, np.argmax(np.hypot(*(points - middle)))]
     other = points[:, np.argmax(np.hypot(*(points - far[:, None])))]
-    return np.column_stack(sorted((far, other), key=lambda end: np.hypot(*end)))
+    return np.column_stack(sorted((far, other), key=np.linalg.norm))
 
 
 def _longer(ends, more):

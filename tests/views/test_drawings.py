@@ -10,6 +10,7 @@ from matplotlib.patches import Polygon
 
 import kinetostatics as ks
 from kinetostatics.views import symbols
+from kinetostatics.views.canvas import LOAD
 from support.chains import chain
 
 BARS = {"coupler": ks.Link(2.0, (0.2, 0.05), 0.1), "rocker": ks.Link(1.0, 0.1, 0.02)}
@@ -77,9 +78,7 @@ def test_arrows_of_forces_start_at_their_points_and_point_as_positive_forces(axe
     load = ks.Force(-3.0, at=("coupler", 0.1), direction=0.5, along="coupler")
     pose = drawn(FOUR_BAR, axes, load)
     start = pose.position(("coupler", 0.1))[:, 0]
-    arrow = next(
-        line.get_xydata() for line in axes.lines if line.get_color() == "tab:red" and len(line.get_xdata()) > 2
-    )
+    arrow = next(line.get_xydata() for line in axes.lines if line.get_color() == LOAD and len(line.get_xdata()) > 2)
     x, y = arrow[1] - arrow[0]
     axis = np.arctan2(*(pose.position("B") - pose.position("A"))[::-1, 0])
     assert np.allclose(arrow[0], start)
@@ -139,6 +138,15 @@ def test_labels_of_two_hodographs_lie_clear_of_each_other(axes):
     boxes = [text.get_window_extent() for text in axes.texts]
     assert len(boxes) > 10
     assert not [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
+
+
+def test_an_animation_shows_all_that_moves_within_its_axes(axes):
+    solution = ks.solve(FOUR_BAR, np.linspace(0, 2 * np.pi, 24, endpoint=False), crank_speed=10.0)
+    ks.plots.animation(solution, frames=2, ax=axes)._draw_was_started = True
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    for x, y in (solution.position(name) for name in FOUR_BAR.joints):
+        assert left < x.min() <= x.max() < right
+        assert bottom < y.min() <= y.max() < top
 
 
 def test_an_animation_covers_both_turns_of_a_branch_that_closes_after_two(axes):
