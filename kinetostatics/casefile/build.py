@@ -24,9 +24,7 @@ def tabulated(table, folder):
 
 def without(table, wrong):
     """A validated variant without what could not be read at some keys, or None, as without its cam."""
-    values: dict[Any, Any] = {
-        keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)
-    }
+    values: dict[Any, Any] = {keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)}
     values |= {keys: None for keys in wrong if isinstance(parameters.value(table, keys), schema.ProcessForceTable)}
     return None if len(values) < len(set(wrong)) else parameters.with_values(table, values)
 

@@ -313,7 +313,6 @@ def _variant(name, own, common, folder, problems):
     problems += found
     if table is None:
         return None
-
     def tell(error):
         problems.extend(f"{reading.key_path(place(keys))}: {text}" for keys, text in error.problems)
 

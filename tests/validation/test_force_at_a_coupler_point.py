@@ -1,9 +1,9 @@
 """A force at a coupler point of a four-bar at rest, by hand: instant centre, two- and three-force members.
 
-Crank O-A upright, O = (0, 0), A = (0, 3) m; B = (4, 3), rocker pivot O2 = (6, -1), force (100, -200) N at P = (2, 5) of the
-coupler. The lines O-A and O2-B meet at the instant centre I = (0, 11). For a crank rate of 1 the coupler turns with
--3/8, so P moves with -3/8 (6, 2) = (-2.25, -0.75), the force works with -225 + 150 = -75 W, and the crank needs 75 N m.
-The rocker is a two-force member along (-1, 2): moments of the coupler about A, -600 + 8 k = 0, give k = 75.
+Crank O-A upright, O = (0, 0), A = (0, 3) m; B = (4, 3), rocker pivot O2 = (6, -1), force (100, -200) N at P = (2, 5) of
+the coupler. The lines O-A and O2-B meet at the instant centre I = (0, 11). For a crank rate of 1 the coupler turns
+with -3/8, so P moves with -3/8 (6, 2) = (-2.25, -0.75), the force works with -225 + 150 = -75 W, and the crank needs
+75 N m. The rocker is a two-force member along (-1, 2): moments of the coupler about A, -600 + 8 k = 0, give k = 75.
 """
 
 import numpy as np

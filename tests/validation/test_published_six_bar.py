@@ -1,9 +1,9 @@
 """A Stephenson III six-bar of a public reference set: masses, gravity and a force on a link, two of its stored rows.
 
-The teaching six-bar of a public package for planar mechanisms. Joints as first drawn, m: A (7, 4), B (5, 16), C (25, 25),
-D (23, 10), E (18, 35), F (43, 32), G (45, 17); links AB, BCE (ternary), CD, EF, FG; A, D and G on the ground. Mass
-centres lie at the mean of each link's joints; (50, 0) N acts on FG in the middle. AB is the crank here and A its pivot O,
-BCE the coupler, CD the rocker, E a pin on the coupler, EF and FG the second coupler and rocker.
+The teaching six-bar of a public package for planar mechanisms. Joints as first drawn, m: A (7, 4), B (5, 16),
+C (25, 25), D (23, 10), E (18, 35), F (43, 32), G (45, 17); links AB, BCE (ternary), CD, EF, FG; A, D and G on the
+ground. Mass centres lie at the mean of each link's joints; (50, 0) N acts on FG in the middle. AB is the crank here and
+A its pivot O, BCE the coupler, CD the rocker, E a pin on the coupler, EF and FG the second coupler and rocker.
 """
 
 import numpy as np

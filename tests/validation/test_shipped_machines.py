@@ -1,13 +1,13 @@
 """Shipped cases of whole machines against hand calculation: numbers of their drawings stand here once more."""
 
 from functools import cache
-from math import asin, comb, cos, hypot, pi, radians, sin, sqrt
+from math import asin, cos, hypot, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
-from scipy.special import binom
 
 import kinetostatics as ks
+from support.engines import second_harmonic
 
 MACHINES = ("compressor", "pumpjack", "shaper", "v_twin", "in_line_twin", "toggle_press", "yoke_pump")
 case = cache(ks.load_case)
@@ -37,7 +37,7 @@ AREA = 78.54e-4
 
 
 def test_the_mean_torque_of_the_compressor_is_the_work_of_its_indicator_diagram():
-    """n / (n - 1) p1 V ((p2 / p1)^((n - 1) / n) - 1) with V drawn in; chords of the diagram lie above its lines."""
+    """Work n / (n - 1) p1 V ((p2 / p1)^((n - 1) / n) - 1) with V drawn in; chords lie above the lines."""
     n, ratio = 1.4, 6.0
     drawn_in = AREA * (0.105 - 0.005 * ratio ** (1 / n))
     work = n / (n - 1) * 1e5 * drawn_in * (ratio ** ((n - 1) / n) - 1)
@@ -118,21 +118,11 @@ R, ROD, SPEED = 0.033, 0.120, 200 * pi
 TO_AND_FRO, TURNING = 0.52, 0.24
 
 
-def second_harmonic(ratio):
-    """lambda + lambda^3 / 4 + 15 lambda^5 / 128 + ..."""
-    return sum(-8 * (-1) ** k * binom(0.5, k) * comb(2 * k, k - 1) / 4**k * ratio ** (2 * k - 1) for k in range(1, 40))
-
-
 def harmonics(name, variant, order):
     """Cosine and sine coefficients of the shaking force, complex, in units of r omega^2: kg."""
     s = case(name).solve(variant, angles=64)
     force = (s.shaking_force[0] + 1j * s.shaking_force[1]) / (R * SPEED**2)
     return 2 * np.mean(force * np.cos(order * s.crank_angle)), 2 * np.mean(force * np.sin(order * s.crank_angle))
-
-
-def test_the_second_harmonic_begins_as_in_the_books():
-    ratio = R / ROD
-    assert second_harmonic(ratio) == pytest.approx(ratio + ratio**3 / 4 + 15 * ratio**5 / 128, rel=1e-4)
 
 
 def test_the_v_twin_shakes_by_one_kilogramme_on_its_pin_and_by_the_second_harmonic_across():
@@ -145,7 +135,8 @@ def test_the_v_twin_shakes_by_one_kilogramme_on_its_pin_and_by_the_second_harmon
 
 
 def test_the_counterweight_of_the_v_twin_takes_the_first_harmonic_away():
-    assert 2.2 * 15 == pytest.approx((2 * TURNING + TO_AND_FRO) * 33, rel=1e-15)
+    link = case("v_twin").variants["counterweight"].mechanism.links["crank"]
+    assert link.mass * link.centre[0] == pytest.approx(-(2 * TURNING + TO_AND_FRO) * R, rel=1e-14)
     assert max(map(abs, harmonics("v_twin", "counterweight", 1))) < 1e-12
     assert harmonics("v_twin", "counterweight", 2) == pytest.approx(harmonics("v_twin", "plain", 2), rel=1e-12)
 
@@ -182,7 +173,7 @@ def test_throws_together_add_up_and_throws_opposed_leave_the_second_harmonic():
 
 @pytest.mark.parametrize("degrees", [300.0, 335.0, 350.0])
 def test_the_ratio_of_forces_of_the_press_is_that_of_its_knuckle(degrees):
-    """Tilt t of both links: the rod's push across, F (tan t + tan t) and the tilt of the rod, hold the ram's force F."""
+    """Tilt t of both links: the rod pushes across by F (tan t + tan t) less what its own tilt does."""
     mechanism = case("toggle_press").variants["idle"].mechanism
     s = ks.solve(mechanism, radians(degrees), crank_speed=0.0, loads=ks.ProcessForce(-1.0, on="slider2"))
     pin = 0.085 * np.exp(1j * radians(degrees))
@@ -201,7 +192,7 @@ def test_the_press_works_within_three_millimetres_of_its_dead_centre():
     s = fine("toggle_press", "coining")
     work = 2 * pi * np.mean(s.balancing_torque)
     lowest = ks.extremes(s, "slider2_position").range[1]
-    assert lowest == pytest.approx(0.35 + 0.25 - 0.35, abs=1e-3)
+    assert lowest == pytest.approx(0.3 + 0.3 - 0.35, abs=1e-3)
     assert work == pytest.approx(400e3 * 0.003 / 2 + 400e3 * (lowest - 0.2499), rel=2e-3)
     assert np.abs(fine("toggle_press", "idle").balancing_torque).max() < 0.2 * s.balancing_torque.max()
 
