@@ -2,6 +2,8 @@
 
 Call first
     crank_slider, cam_crank_slider, four_bar    a mechanism; Link its masses, Gravity, Spring, ProcessForce its loads
+    slotted_lever, scotch_yoke                  more of them; Pin, Dyad, LeverGroup ... for chains of one's own
+    Force, Torque, PointForce, PointSpring ...  loads on any link; Table of their values by angle or travel
     solve(mechanism, angles, crank_speed=...)   its Solution: motion, every reaction, the torque of the drive
     Scene(mechanism, crank_speed, ...)          all that together; .solve(angles), .varied({"slider.mass": 620.0})
     load_case("sawframe_2r63")                  the same from a file; shipped cases by name

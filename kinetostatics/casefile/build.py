@@ -6,7 +6,7 @@ from ..design import balancing, linkage
 from ..errors import CaseError, KinetostaticsError, ParameterError
 from ..machine import cams
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
-from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table
+from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, value_of
 from ..numbers.files import read_columns
 from ..solution.scene import Scene
 from . import chain, parameters, schema
@@ -24,7 +24,9 @@ def tabulated(table, folder):
 
 def without(table, wrong):
     """A validated variant without what could not be read at some keys, or None, as without its cam."""
-    values: dict[Any, Any] = {keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)}
+    values: dict[Any, Any] = {
+        keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)
+    }
     values |= {keys: None for keys in wrong if isinstance(parameters.value(table, keys), schema.ProcessForceTable)}
     return None if len(values) < len(set(wrong)) else parameters.with_values(table, values)
 
@@ -51,6 +53,17 @@ def built(table, tabulated):
     mechanism = mechanism if balanced is None else balanced.mechanism
     loads = (*_loads(table, tabulated), *chain.loads(table, tabulated, mechanism))
     return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads), balanced
+
+
+def require_values(table, solution):
+    """Raise an error where a table over travel does not reach as far as its slider."""
+    own = len(solution.loads) - len(table.loads)
+    read = [(number - own, value_of(item)) for number, item in enumerate(solution.loads)]
+    all_of(
+        (("loads", number) if number >= 0 else ("process_force",), lambda value=value: value(solution))
+        for number, value in read
+        if isinstance(value, Table)
+    )
 
 
 def _mechanism(table, tabulated):

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..design import balancing, linkage, shapes
 from ..design.balancing_table import balancing_table
-from ..errors import AssemblyError, CaseError, HintWarning, KinetostaticsError
+from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
@@ -313,6 +313,7 @@ def _variant(name, own, common, folder, problems):
     problems += found
     if table is None:
         return None
+
     def tell(error):
         problems.extend(f"{reading.key_path(place(keys))}: {text}" for keys, text in error.problems)
 
@@ -328,7 +329,8 @@ def _variant(name, own, common, folder, problems):
         variant = _made(table, folder, read)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", HintWarning)  # `load_case` gives them, with the file and the variant
-            variant.solve(angles=720)
+            warnings.simplefilter("ignore", ConditionWarning)  # whoever solves it gets them
+            build.require_values(table, variant.solve(angles=720))
         assembly.require_turn(variant.mechanism)
     except PartsError as error:
         tell(error)

@@ -19,12 +19,13 @@ STARTERS = ("crank-slider", "four-bar", "chain")
 
 
 def list_cases(options):
-    from ..casefile.case import load_case, shipped_cases
+    from ..casefile.reading import read, shipped_cases
 
-    cases = {name: load_case(name) for name in shipped_cases()}
+    cases = shipped_cases()
     width = max(map(len, cases))
-    for name, case in cases.items():
-        print(f"{name:{width}}  {case.title} ({', '.join(case.variants)})")
+    for name, path in cases.items():
+        _, raw = read(path)
+        print(f"{name:{width}}  {raw['title']} ({', '.join(raw['variants'])})")
 
 
 def new(options):
@@ -35,7 +36,8 @@ def new(options):
     checks.require("new", files.unwritable(path))
     with files.written_whole(path) as temporary:
         Path(temporary).write_text(starter(options.kind, path.stem), encoding="utf-8")
-    print(f"wrote {path}; kinetostatics run {path}")
+    name = f'"{path}"' if " " in str(path) else path
+    print(f"wrote {path}; kinetostatics run {name}")
 
 
 def run(options):

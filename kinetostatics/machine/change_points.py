@@ -57,7 +57,7 @@ FACING = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 
 
 class PassedMotion(NamedTuple):
-    """A rocker group placed on a branch through its change points.
+    """A rocker group placed on a branch through its change points; `closure` leaves these out.
 
     The sine of the transmission angle is `factor` times `distance`, which vanishes at the change points alone.
     """
@@ -134,14 +134,14 @@ def _joined(owner, kind, called, facing):
 
 def _several(found, what, called):
     """What is wrong with designs that are not of one kind, or None."""
-    kinds = np.unique(found).tolist()
-    if len(kinds) == 1:
+    kinds, counts = np.unique(found, return_counts=True)
+    if kinds.size == 1:
         return None
+    texts = "; ".join(called[kind] for kind in kinds.tolist())
     return checks.Problem(
-        f"designs that pass change points must be of one kind, but these have {what} "
-        f"{'; '.join(called[kind] for kind in kinds)} (equal within {ULPS} ulp of the longest length); make a batch of "
-        "each",
-        found != found.flat[0],
+        f"designs that pass change points must be of one kind, but these have {what} {texts} (equal within {ULPS} ulp "
+        "of the longest length); make a batch of each",
+        found != kinds[counts.argmax()],
     )
 
 
@@ -152,7 +152,7 @@ def kink(group, crank):
     try:
         passing = replace(group, assembly="open").on_crank(crank)
         angles = passing.change_points
-    except (ParameterError, TypeError):  # a batch of several kinds, or of several change points
+    except ParameterError:  # a batch of several kinds, or of several change points
         return ""
     if not angles:
         return ""
@@ -182,6 +182,8 @@ def angles(passage, start):
     """Crank angles in [0, 2 pi) at which change points are passed, rad, from the direction that the kinds refer to."""
     if not passage:
         return ()
+    several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
+    checks.require("change points", several if any(map(np.ndim, start)) else None)
     kind, first = parted(passage)[0], math.atan2(start[1], start[0])
     at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,)}.get(kind, (0.0, math.pi))
     return tuple(sorted((first + angle) % (2 * math.pi) for angle in at))
@@ -305,7 +307,7 @@ def _mirrored(half, kind, a, d, side):
         coupler, rocker = (ground, *as_ground), (crank, *as_crank)
     else:
         coupler, rocker = (subtracted(None, crank), *as_crank), (subtracted(None, ground), *as_ground)
-    return coupler, rocker, 1.0, 2.0 * side, sine * cosine
+    return coupler, rocker, square / (n * n), 2.0 * side, sine * cosine
 
 
 def _swung(kind, half, a, d, size, constant, side):
@@ -333,6 +335,8 @@ def _single(half, kind, a, b, h, d, side):
     height, closure, rate, bend, factor, passed = _swung(kind, half, a, d, 4.0 * b * h, constant, side)
     x, y = m * cosine, n * sine
     square = x * x + y * y
+    if kind == NEAR:  # with A almost on O2 links turn fast
+        closure = closure * square / (n * n)
     share = gap * both / square
     aside = 2.0 * side * sqrt(a * d) * passed * height / square
     reach = ((1.0 + share) * x + aside * y, aside * x - (1.0 + share) * y)

@@ -4,7 +4,7 @@ Seen from the second joint it is a rocker group whose pivot stands still: the in
 both links and all forces are those of `rocker_group`, of the motion of the first joint relative to the second.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -86,7 +86,7 @@ class Dyad(checks.Checked, Group):
 
     length1: Any
     length2: Any
-    on: Any = field(default=("B", "C"), metadata={"structural": True})
+    on: Any = ("B", "C")
     pin: str = "D"
     assembly: int = 1
     dyad1: Link = Link()

@@ -36,12 +36,12 @@ class Scene:
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive; an array has a value for each crank angle, or is (designs, 1).
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`, or one of them.
+        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them.
 
     Raises
     ------
     ParameterError
-        A value is not finite, or a load acts on a link that is not there.
+        A value is not finite, or a load acts on a link or joint that is not there.
 
     Examples
     --------
@@ -149,8 +149,8 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing. Loads of your own, as all
-        arrays, are taken as they are now: what is changed of them later is not seen.
+        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them; what is left out costs
+        nothing. Loads of your own, as all arrays, are taken as they are now: what is changed of them later is not seen.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
         give NaN there and exact values elsewhere (as needed under ``jax.jit``).
@@ -169,7 +169,8 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     AssemblyError
         The mechanism does not close at some of the angles and ``on_gap="raise"``.
     ParameterError
-        A value is not finite, or a load acts on a link that is not there.
+        A value is not finite, a load acts on a link or joint that is not there, or has no value at a crank angle, as a
+        force between points that meet.
     MissingLibraryError
         ``engine="compiled"`` without numba.
     NotGivenError
@@ -268,6 +269,6 @@ def _load_problems(mechanism, item):
     if isinstance(item, Load):
         return item.problems(mechanism)
     if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):
-        names = ", ".join(kind.__name__ for kind in KINDS)
-        return (f"loads must be of {names}, got {checks.shown(item)}",)
+        *names, last = (kind.__name__ for kind in KINDS)
+        return (f"loads must be {', '.join(names)} or {last}, got {checks.shown(item)}",)
     return (checks.choice(f"{type(item).__name__}: on", item.on, tuple(mechanism.guides)),)

@@ -240,7 +240,9 @@ class Solution(Motion):
 
     def _warn_of_growth(self, name, values):
         """Say once that forces grow without bound at a change point that is passed."""
-        if self.silent or not self.mechanism.grows(name) or not isinstance(values, np.ndarray) or values.dtype != float:
+        if not self.mechanism.passes or self.silent or not self.mechanism.grows(name):
+            return
+        if not isinstance(values, np.ndarray) or values.dtype != float:
             return
         text = assembly.growth(self, name, values)
         if text:

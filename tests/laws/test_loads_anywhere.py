@@ -1,5 +1,6 @@
 """Loads on any link of any chain: against the full Newton-Euler system, and by laws that every load keeps."""
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -176,6 +177,24 @@ def test_derivatives_by_every_number_of_loads_are_those_of_differences():
             found, slope = exact[quantity][path], (above[quantity] - below[quantity]) / (2 * step)
             size = largest(above[quantity]) / max(abs(value), 1e-2)
             assert largest(found - slope) < 1e-6 * max(largest(found), 1e-3 * size), (path, quantity)
+
+
+def test_the_independent_path_in_mpmath_agrees_under_all_loads_together():
+    pytest.importorskip("mpmath")
+    pytest.importorskip("flint")
+    from kinetostatics.studies.methods.enclosures import enclosure
+    from kinetostatics.studies.methods.independent import independent
+
+    table = ks.Table([0.2, 0.5, 0.9], [3.0, -2.0, 8.0], over="travel", back=[1.0, 2.0, 3.0])
+    s = ks.solve(
+        six_bar(), [0.7, 4.0], crank_speed=9.0, crank_acceleration=-4.0, loads=(*loaded(), ks.Force(table, at="B"))
+    )
+    for quantity in ("balancing_torque", "B2"):
+        exact = enclosure(s, quantity).exact
+        for found, expected in zip(independent(s, quantity, range(2)), exact, strict=True):
+            for one, other in zip(found, expected, strict=True):
+                with mp.workdps(40):
+                    assert abs(one - mp.mpf(other.str(40, radius=False))) < 1e-25 * abs(one)
 
 
 def test_a_second_load_of_a_kind_has_a_path_of_its_own():

@@ -234,14 +234,14 @@ class Table:
         """
         if self.over == "angle":
             return np.mod(self.x, self.period), np.empty(0)
-        name, grid = self._slider(motion), np.linspace(0.0, TURN, SAMPLES + 1)
+        name = self._slider(motion)
 
         def travel(angle):
             return motion.mechanism.place(angle).travels[name]
 
-        ends = _roots(lambda angle: travel(angle).first, grid)
-        rows = [_roots(lambda angle, row=row: travel(angle).position - row, grid) for row in self.x.tolist()]
-        return np.concatenate([ends, *rows]), ends if self.back is not None else np.empty(0)
+        ends = _passed(lambda angle: travel(angle).first, np.zeros(1))
+        passed = _passed(lambda angle: travel(angle).position, self.x)
+        return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
     @property
     def _content(self):
@@ -264,17 +264,20 @@ def _piece(x, place):
     return np.clip(np.searchsorted(x, place, side="right") - 1, 0, x.size - 2)
 
 
-def _roots(function, grid):
-    """Crank angles at which a function of it changes its sign, between those of a grid."""
+def _passed(function, levels):
+    """Crank angles at which a function of it passes some levels."""
     from scipy.optimize import elementwise
 
+    grid = np.linspace(0.0, TURN, SAMPLES + 1)
+    above = np.broadcast_to(function(grid), grid.shape) - levels[:, None]
+    _, exact = np.nonzero(above[:, :-1] == 0)
     with np.errstate(invalid="ignore"):
-        values = np.broadcast_to(function(grid), grid.shape)
-        change = np.flatnonzero(np.diff(np.sign(values)) * np.isfinite(values[:-1] * values[1:]))
-        exact = grid[:-1][values[:-1] == 0]
-        between = change[(values[change] != 0) & (values[change + 1] != 0)]
-    found = elementwise.find_root(function, (grid[between], grid[between + 1])).x if between.size else between
-    return np.mod(np.concatenate([exact, found]), TURN)
+        level, before = np.nonzero(above[:, :-1] * above[:, 1:] < 0)
+    if not before.size:
+        return grid[exact]
+    bracket, given = (grid[before], grid[before + 1]), (levels[level],)
+    found = elementwise.find_root(lambda angle, level: function(angle) - level, bracket, args=given).x
+    return np.mod(np.concatenate([grid[exact], found]), TURN)
 
 
 def _area(value):

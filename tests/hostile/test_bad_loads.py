@@ -99,7 +99,7 @@ MISPLACED = {
     "one link": (lambda: ks.PointForce(1.0, between=("B", ("rocker", 0.1))), "both points are of the rocker"),
     "frame": (lambda: ks.PointDamper(1.0, between=((0.0, 0.1), (1.0, 1.0))), "both points are fixed to the frame"),
     "slider": (lambda: ks.Spring(1.0, 0.0, cubic=3.0), "Spring: on is 'slider', allowed: 'slider2'"),
-    "a class": (lambda: ks.Torque, "loads must be of Gravity, Spring"),
+    "a class": (lambda: ks.Torque, "loads must be Gravity, Spring"),
 }
 
 
