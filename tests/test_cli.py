@@ -254,3 +254,18 @@ def test_run_goes_over_the_turns_after_which_a_mechanism_or_its_loads_repeat(tmp
         assert main(["run", str(path), "--angles", "30", "--csv", str(table)]) == 0
     angles = pd.read_csv(table)["crank_angle [deg]"]
     assert angles.iloc[-1] == pytest.approx(29 / 30 * turns * 360)
+
+
+def test_double_cranks_are_compared_without_the_table_of_swings(tmp_path, capsys):
+    text = 'title = "double crank"\nreference = "a"\n[common]\nmechanism = "four-bar"\ncrank_speed = "60 rpm"\n'
+    text += 'crank_length = "0.35 m"\ncoupler_length = "0.4 m"\nrocker_length = "0.3 m"\n'
+    text += 'rocker_pivot = ["0.1 m", "0 m"]\ncoupler = { mass = "2 kg" }\n'
+    text += (
+        '[[common.loads]]\nkind = "torque"\nvalue = "9 N m"\non = "rocker"\n[variants.a]\n[variants.b]\nassembly = -1\n'
+    )
+    path = tmp_path / "drag.toml"
+    path.write_text(text, encoding="utf-8")
+    assert main(["compare", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert "a / b" in printed
+    assert "swing" not in printed

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..design import balancing, linkage, shapes
+from ..design import balancing, linkage
 from ..design.balancing_table import balancing_table
 from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
@@ -201,8 +201,8 @@ class Case:
         return balancing_table(self.solve(self.reference), found, self.published.sampling) if found else None
 
     def linkage_table(self):
-        """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are four-bars."""
-        if not all(shapes.four_bar(variant.mechanism) for variant in self.variants.values()):
+        """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are crank-rockers."""
+        if not all(linkage.swings(variant.mechanism) for variant in self.variants.values()):
             return None
         return linkage.characteristics({name: self.solve(name) for name in self.variants}, self.reference)
 

@@ -95,10 +95,14 @@ class Bar(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A link with a straight slot, from its reference joint through `joint` and beyond."""
+    """A link along which `joint` slides in a straight line, in a slot; `rod` is the link that slides in it as a piston.
+
+    Without a rod what slides is a block at the joint.
+    """
 
     link: str
     joint: str
+    rod: str = ""
 
 
 class Output(NamedTuple):

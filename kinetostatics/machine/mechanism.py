@@ -141,6 +141,13 @@ class Mechanism(Batched):
         return {name: guide for group in self.groups for name, guide in group.guides.items()}
 
     @cached_property
+    def slider(self):
+        """The slider that is meant where none is named: the only one, or that without a label; None: there is none."""
+        bare = [name for name in self.guides if name == self.own_names[name]]
+        found = bare if len(bare) == 1 else list(self.guides)
+        return found[0] if len(found) == 1 else None
+
+    @cached_property
     def own_names(self):
         """What each link is called without the label of its group."""
         return self._collected("own_names")

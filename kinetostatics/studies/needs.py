@@ -168,7 +168,8 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
             try:
                 made = choice.simplified(simplified)
             except NotGivenError as why:
-                left_out[choice.name] = str(why)
+                if len(choices) == 1:
+                    left_out[choice.name] = str(why)
                 return None
             if made is None:
                 return None

@@ -303,6 +303,7 @@ def test_lengths_beyond_eight_ulp_are_no_change_point():
 # Sliders
 
 
+@pytest.mark.filterwarnings("ignore:.*stands still:kinetostatics.errors.HintWarning")
 @pytest.mark.parametrize("guide_angle", [0.0, 0.7, -2.0])
 def test_coupler_as_long_as_the_crank_carries_the_slider_through_the_centre(guide_angle):
     angles = np.linspace(-7.0, 7.0, 41)

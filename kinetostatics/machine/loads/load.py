@@ -9,15 +9,38 @@ from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` nam
 the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what
 such a function gives in its place before (`settled` in mechanics/pushes.py). ``LENGTHS`` names the fields that hold
 lengths and angles of the geometry. ``misplaced(mechanism)`` says what of a mechanism it names wrongly,
-``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion.
+``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion; ``signs(motion)`` how it is drawn.
 """
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from ...numbers import checks
 from ...numbers.batched import Batched
 from .period import TURN
 from .tables import Table
+
+
+class Sign(NamedTuple):
+    """How a load is drawn, in the poses of a motion.
+
+    Attributes
+    ----------
+    kind : "spring", "damper", "line", "force", "couple", "spiral" or "ring"
+        A spring, damper or line is drawn between two places, all else at the first.
+    start : array (2, N)
+    end : array (2, N), optional
+        Of a spring on a slider None: beside its guide, from the end of its way.
+    direction : array (2, N), optional
+        Of a force: unit vector of a positive one.
+    slider : str
+        That a spring is on.
+    """
+
+    kind: str
+    start: Any
+    end: Any = None
+    direction: Any = None
+    slider: str = ""
 
 
 class Load(checks.Checked, Batched):
@@ -60,6 +83,10 @@ class Load(checks.Checked, Batched):
 
     def refusals(self, motion) -> Any:
         """Where it has no value, as sentences."""
+        return ()
+
+    def signs(self, motion) -> Any:
+        """How it is drawn, each as a `Sign`."""
         return ()
 
 

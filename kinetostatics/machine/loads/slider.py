@@ -5,7 +5,7 @@ from typing import Any
 
 from ...numbers import checks
 from ..links import present
-from .load import Load, valued
+from .load import Load, Sign, valued
 from .period import TURN, WholeTurns
 from .tables import Table
 
@@ -21,7 +21,10 @@ class OnSlider(Load):
 
     def misplaced(self, mechanism):
         """Say if there is no such slider."""
-        yield checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+        problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+        if problem and not mechanism.guides:
+            problem += f"; {mechanism.name} has no slider, a Force or PointSpring acts at any point"
+        yield problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +75,10 @@ class Spring(OnSlider):
             return -self.stiffness * elongation
         return -(self.stiffness + self.cubic * elongation * elongation) * elongation
 
+    def signs(self, motion):
+        """A spring along the guide."""
+        yield Sign("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
+
 
 @dataclass(frozen=True, eq=False)
 class ProcessForce(OnSlider):
@@ -118,3 +125,9 @@ class ProcessForce(OnSlider):
     def push(self, motion):
         """Force on the slider along the guide, N."""
         return self.force
+
+    def signs(self, motion):
+        """An arrow in the guide's direction."""
+        mechanism = motion.mechanism
+        along = motion.as_vector(mechanism.guides[self.on].direction)
+        yield Sign("force", motion.position(mechanism.references[self.on]), direction=along)

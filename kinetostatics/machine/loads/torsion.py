@@ -12,7 +12,7 @@ from ...numbers.planar import minus, number, product, unturned
 from ..crank import ray
 from ..group import FRAME
 from ..links import Wrench, present
-from .load import Load, valued
+from .load import Load, Sign, valued
 from .period import TURN
 
 SAMPLES = 720
@@ -25,7 +25,7 @@ class Couple(Load):
     on: str
     against: Any
 
-    UNIT = "N m"
+    UNIT, SIGN = "N m", "couple"
 
     def couple(self, motion) -> Any:
         """Couple on the link, N m."""
@@ -50,6 +50,10 @@ class Couple(Load):
         yield self.on, Wrench(None, couple)
         if self._other is not None:
             yield self._other, Wrench(None, minus(None, couple))
+
+    def signs(self, motion):
+        """A sign at the link's reference joint."""
+        yield Sign(self.SIGN, motion.position(motion.mechanism.references[self.on]))
 
     @property
     def _other(self):
@@ -136,7 +140,7 @@ class TorsionSpring(Couple):
     against: Any = field(default=None, kw_only=True)
     moment: Any = field(default=0.0, kw_only=True)
 
-    PATH, LENGTHS, REFUSES = "torsion_spring", ("free_angle",), True
+    PATH, LENGTHS, REFUSES, SIGN = "torsion_spring", ("free_angle",), True, "spiral"
     RULES = checks.Rules(
         "torsion spring",
         stiffness=checks.Number("N*m/rad", low=0.0),
@@ -223,7 +227,7 @@ class TorsionDamper(Couple):
     on: str = field(kw_only=True)
     against: Any = field(default=None, kw_only=True)
 
-    PATH = "torsion_damper"
+    PATH, SIGN = "torsion_damper", "ring"
     RULES = checks.Rules(
         "torsion damper",
         coefficient=checks.Number("N*m*s/rad", low=0.0),

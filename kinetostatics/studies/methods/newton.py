@@ -24,7 +24,9 @@ from ...machine.pin import Pin
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
+from ...mechanics.pushes import pushed, settled
 from ...numbers.planar import left
+from .acting import Acting
 from .method import Method, NotGivenError, require_one_design
 
 STEP = np.radians(15.0)
@@ -280,7 +282,13 @@ class Configuration:
     def solve(self, right, transposed=False):
         """Solution of J or of its transpose."""
         matrix = np.swapaxes(self.jacobian, -1, -2) if transposed else self.jacobian
-        return np.linalg.solve(matrix, right[..., None])[..., 0]
+        try:
+            return np.linalg.solve(matrix, right[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            if not self.model.mechanism.change_points:
+                raise
+            name = self.model.mechanism.name
+            raise NotGivenError(f"{name} passes change points, where constraint equations are singular") from None
 
     def corrected(self):
         """Coordinates after one Newton iteration."""
@@ -303,14 +311,22 @@ class Configuration:
         force = model.mass * (self._plane(accelerations) + arm * (1j * turning_up - turning * turning) - gravity)
         moment = model.inertia * turning_up + (arm.conj() * force).imag
         for item in solution.loads:
-            if not isinstance(item, Gravity):
+            if hasattr(item, "push"):
                 link, along = model.names.index(item.on), model.guides[item.on]
                 if isinstance(item, Spring):
-                    travel = (self._plane(self.q)[..., link] * along.conjugate()).real
-                    push = -item.stiffness * (travel - item.free_position)
+                    elongation = (self._plane(self.q)[..., link] * along.conjugate()).real - item.free_position
+                    push = -item.stiffness * elongation - item.cubic * elongation**3
                 else:
-                    push = item.push(solution)
+                    push = pushed(item, solution)
                 force[..., link] -= push * along
+            elif not isinstance(item, Gravity):
+                for name, applied, at, couple in _Acting(self, rates).of(settled(item, solution)):
+                    if name in model.names:
+                        link = model.names.index(name)
+                        force[..., link] -= applied
+                        moment[..., link] -= couple
+                        lever = at - self._plane(self.q)[..., link]
+                        moment[..., link] -= (np.conj(lever) * applied).imag
         return np.concatenate([force.real, force.imag, moment], axis=-1)
 
     def _plane(self, part):
@@ -342,6 +358,28 @@ class Configuration:
 def _nearest(angle, wanted):
     """The angle less or plus whole turns, next to another."""
     return angle + 2 * np.pi * np.rint((wanted - angle) / (2 * np.pi))
+
+
+class _Acting(Acting):
+    """What loads do in a configuration that moves at `rates`."""
+
+    expj, arg, where = (staticmethod(function) for function in (lambda angle: np.exp(1j * angle), np.angle, np.where))
+
+    def __init__(self, configuration, rates):
+        self.mechanism, self._at, self._rates = configuration.model.mechanism, configuration, rates
+
+    def number(self, value):
+        return value
+
+    def value(self, item):
+        return item.value_now
+
+    def at(self, link):
+        """Reference joint, axis, velocity of the joint and angular velocity of a link."""
+        at, index = self._at, self._at.model.names.index(link)
+        axis = at.cosine[..., index] + 1j * at.sine[..., index]
+        spin = self._rates[..., 2 * at.model.size + index]
+        return at._plane(at.q)[..., index], axis, at._plane(self._rates)[..., index], spin
 
 
 def modelled(solution, quantity):
