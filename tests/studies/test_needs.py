@@ -396,3 +396,15 @@ def test_needs_of_new_groups_and_loads_names_what_fails_alone_only():
     assert found.smallest.name == "no point spring"
     assert found.left_out == {}
     assert "two harmonics" in {made.name for made in found.alone}
+
+
+def test_a_simplification_that_takes_a_slider_beyond_the_table_of_its_load_is_told_as_left_out():
+    """Harmonics miss the dead centres by microns, a guide moved to O by much more; the table ends there."""
+    machine = cranked(guide_offset=0.05)
+    ends = np.sort(ks.extremes(ks.solve(machine, TURN, crank_speed=SPEED), "slider_position").value)
+    table = ks.Table([*ends], [-90.0, -50.0], over="travel")
+    found = ks.needs(ks.solve(machine, TURN, crank_speed=SPEED, loads=ks.ProcessForce(table)), "balancing_torque")
+    for name in ("guide through O", "one harmonic"):
+        assert "but the table from" in found.left_out[name]
+        assert all(name not in model.simplifications for model in (*found.alone, *found.ladder))
+    assert found.smallest.error <= 0.01

@@ -10,22 +10,15 @@ m r omega^2 along the crank, which a counterweight balances; the second make one
 sqrt(2) m r omega^2 A2 sin(2 phi).
 """
 
-from math import comb
-
 import numpy as np
 import pytest
-from scipy.special import binom
 
 import kinetostatics as ks
+from support.engines import second_harmonic
 
 R, ROD, MASS, SPEED = 0.05, 0.16, 1.3, 200.0
 ANGLES = np.linspace(0.0, 2 * np.pi, 64, endpoint=False)
 UNIT = MASS * R * SPEED**2
-
-
-def second_harmonic(ratio):
-    """A2 from the binomial series of sqrt(1 - lambda^2 sin^2 phi) and the second cosine coefficients of its powers."""
-    return sum(-8 * (-1) ** k * binom(0.5, k) * comb(2 * k, k - 1) / 4**k * ratio ** (2 * k - 1) for k in range(1, 40))
 
 
 def engine(banks, pins=("A", "A"), crank=ks.Link(), **rods):
