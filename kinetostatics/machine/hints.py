@@ -1,6 +1,7 @@
 """What looks like a slip, though a machine could have it: a warning, and computed all the same."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,10 +17,8 @@ THIN = 1000.0
 
 def of_mechanism(mechanism):
     """Sentences on sliders that stand still, and on mass centres and inertias that look like those of another unit."""
-    lengths = [bar.length for bar in mechanism.bars]
-    if len(mechanism.groups) == 1 and len(lengths) == len(set(map(_rounded, lengths))):  # no two bars of one length
-        return _of_units(mechanism)
-    return (*_still(mechanism), *_of_units(mechanism))
+    units = _of_units(mechanism)
+    return (*_still(mechanism), *units) if _may_stand_still(mechanism) else units
 
 
 def _of_units(mechanism):
@@ -39,9 +38,12 @@ def _of_units(mechanism):
     return (*found, *(text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link)))))
 
 
-def _rounded(length):
-    """A length without its last digits; what is no plain number is as every other."""
-    return f"{length:.9e}" if type(length) is float else None
+def _may_stand_still(mechanism):
+    """Whether a quick look at plain numbers leaves it open: several groups, or two bars of one length."""
+    lengths = [bar.length for bar in mechanism.bars]
+    if len(mechanism.groups) > 1 or not all(type(length) is float for length in lengths):
+        return True
+    return any(abs(one - other) <= 1e-9 * one for one, other in pairwise(sorted(lengths)))
 
 
 def _still(mechanism):

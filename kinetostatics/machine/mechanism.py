@@ -85,7 +85,7 @@ class Mechanism(Batched):
         """Crank and groups."""
         return (self.crank, *self.groups)
 
-    @property
+    @cached_property
     def trusted(self):
         """Whether crank and groups are the library's own, whose forces are known to balance."""
         return all(part.trusted for part in self.parts)
