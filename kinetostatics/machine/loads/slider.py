@@ -70,6 +70,14 @@ class Spring(OnSlider):
             return -self.stiffness * elongation
         return -(self.stiffness + self.cubic * elongation * elongation) * elongation
 
+    def potential(self, motion):
+        """Energy stored, J."""
+        elongation = motion.elongation(self.free_position, self.on)
+        square = elongation * elongation
+        if present(self.cubic) is None:
+            return 0.5 * self.stiffness * square
+        return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
+
 
 @dataclass(frozen=True, eq=False)
 class ProcessForce(OnSlider):
