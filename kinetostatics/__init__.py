@@ -18,6 +18,7 @@ Rooms, in the order in which they build on each other
     engines     how fast, how sure: kernels recorded once a structure, NumPy lines, compiled loops, derivatives
     results     extremes, means, reductions, comparison, tables
     solution    what users hold: scene, solution, solve, compile
+    drive       motors, periodic running, flywheels, starting and coasting
     design      static balancing, four-bar classes
     sweeps      designs, sweep, workers, datasets, tolerances
     studies     needs, precision, stability, the methods under study
@@ -29,6 +30,7 @@ from .errors import (
     AssemblyError,
     CaseError,
     ConditionWarning,
+    DriveError,
     HintWarning,
     KinetostaticsError,
     ParameterError,
@@ -64,6 +66,7 @@ __all__ = [
     "ConditionWarning",
     "Crank",
     "CylinderGroup",
+    "DriveError",
     "Dyad",
     "Force",
     "Gravity",
@@ -95,6 +98,7 @@ __all__ = [
     "compile",
     "crank_slider",
     "designs",
+    "drive",
     "extremes",
     "four_bar",
     "linkage",
@@ -117,6 +121,7 @@ _LATER = {
     "check": "solution.group_check:check",
     "compare": "results.comparison:compare",
     "designs": "sweeps.designs:",
+    "drive": "drive:",
     "linkage": "design.linkage:",
     "load_case": "casefile.case:load_case",
     "needs": "studies.needs:needs",

@@ -58,6 +58,11 @@ class Tabulated:
             object.__setattr__(self, name, values)
         object.__setattr__(self, "period", WholeTurns().taken(period)[0])
 
+    @property
+    def kinks(self):
+        """Crank angles at which it has kinks, rad."""
+        return self.angle
+
     def __call__(self, motion):
         return np.interp(motion.crank_angle, self.angle, self.force, period=self.period)
 

@@ -1,0 +1,18 @@
+"""The machine under its real drive: motors, periodic running, flywheels, starting and coasting.
+
+May import all rooms above: numbers to solution.
+
+motor       motors: torque over speed at their own shaft
+driven      the one degree of freedom: reduced inertia and load torque of a scene by crank angle and speed
+pieces      functions of the crank angle as Chebyshev series between their kinks
+steady      exact periodic running
+sizing      flywheels for a coefficient of fluctuation
+transient   starting and coasting over time
+"""
+
+from .motor import Motor
+
+from .steady import Running, steady
+
+
+__all__ = ["Motor", "Running", "steady"]
