@@ -53,6 +53,7 @@ class Driven:
         self.scene = with_fields(scene, crank_speed=self.direction, crank_acceleration=0.0)
         checks.require(owner, _batch_problem(self.scene))
         self.program = compiled(self.scene, QUANTITIES, parameters=("crank_speed",), engine=engine or "numpy")
+        self._kept = None, None
         self._require_no_acceleration(owner)
 
     @property
@@ -84,8 +85,13 @@ class Driven:
         return kinks[(kinks > 0.0) & (kinks < self.period)]
 
     def at(self, angle, speed=None) -> State:
-        """State at crank angles, at crank speeds if loads depend on them."""
-        return self._checked(angle, State(*self._values(angle, speed)))
+        """State at crank angles, at crank speeds if loads depend on them; kept for the same angles if they do not."""
+        known, found = self._kept
+        if known is angle and not self.by_speed:
+            return found
+        found = self._checked(angle, State(*self._values(angle, speed)))
+        self._kept = angle, found
+        return found
 
     def torque_by_speed(self, angle, speed, torque):
         """Derivative of the load torque by the crank speed, for a torque known there."""

@@ -71,6 +71,11 @@ class Pieces:
         """Integral over each piece."""
         return self.half[:, 0] * (values @ rule(self.count).weights)
 
+    def integrated(self, values):
+        """Integral from the first edge to each point."""
+        before = np.concatenate([[0.0], np.cumsum(self.whole(values))[:-1]])
+        return self.integral(values) + before[:, None]
+
     def total(self, values):
         """Integral over all pieces."""
         return float(self.whole(values).sum())

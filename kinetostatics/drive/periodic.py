@@ -24,7 +24,7 @@ from .motor import Motor, single
 from .pieces import Pieces
 from .running import RunningSolution
 
-POINTS, FEW_POINTS, MANY = 20, 10, 60
+POINTS, FEW_POINTS, MANY = 24, 12, 60
 """Points of a piece, and those where there are so many pieces."""
 WIDEST = TURN / 6
 TAIL = 2e-14
@@ -313,10 +313,7 @@ class Running:
 
     def _time_at(self, angle):
         slowness = 1.0 / np.abs(self._speed)
-        whole = self._pieces.whole(slowness)
-        before = np.concatenate([[0.0], np.cumsum(whole)[:-1]])
-        series = self._pieces.series(self._pieces.integral(slowness) + before[:, None])
-        return self._pieces.evaluate(series, angle)
+        return self._pieces.evaluate(self._pieces.series(self._pieces.integrated(slowness)), angle)
 
 
 # Finding it
@@ -325,7 +322,7 @@ class Running:
 def _driven_running(driven, scene):
     """Pieces, and the energy U at their points, of stable periodic running under a motor."""
     start = _operating_speed(driven)
-    pieces = _resolved_loads(driven, start)
+    pieces = resolved(driven, start)
     _require_inertia(driven, pieces)
     energy = _newton(driven, pieces, _energy_at(driven, pieces, start))
     if energy is None:
@@ -450,10 +447,12 @@ def _operating_speed(driven):
         low, high = speed[crossing[-1]], speed[crossing[-1] + 1]
 
         def spare_at(own):
+            if not driven.by_speed:
+                return motor.torque(own) - load[0]
             mean = _mean_load(driven, np.array([own / motor.transmission]))[0] / motor.transmission
             return float(motor.torque(own) - mean)
 
-        return brentq(spare_at, low, high, xtol=1e-9 * high, rtol=1e-9) / motor.transmission
+        return float(brentq(spare_at, low, high, xtol=1e-9 * high, rtol=1e-9)) / motor.transmission
     if spare[-1] > 0.0:
         raise DriveError(
             f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest speed of the motor that is looked at, "
@@ -479,12 +478,12 @@ def _mean_load(driven, speed):
     """Mean load torque over the period at constant crank speeds, N m."""
     angle = (np.arange(SAMPLED) + 0.5) * driven.period / SAMPLED
     if not driven.by_speed:
-        return np.full(speed.shape, driven.at(angle).torque.mean())
+        return driven.at(angle).torque.mean() + 0.0 * speed
     grid = np.broadcast_arrays(angle[None, :], speed[:, None])
     return driven.at(*grid).torque.mean(axis=1)
 
 
-def _resolved_loads(driven, speed):
+def resolved(driven, speed):
     """Pieces in which inertia and load torque at a speed are series that are done."""
     edges = _edges(np.concatenate([[0.0], driven.kinks, [driven.period]]))
     pieces = _refined(driven, Pieces(edges, FEW_POINTS if len(edges) > MANY else POINTS), speed)
@@ -612,13 +611,13 @@ def _prescribed(driven, scene):
     from scipy.optimize import brentq
 
     speed = abs(scene.crank_speed)
-    pieces = _resolved_loads(driven, speed)
+    pieces = resolved(driven, speed)
     _require_inertia(driven, pieces)
     for _ in range(LEVELS):
         state = driven.at(pieces.angle)
         inertia = driven.flywheel + state.inertia
         spare = pieces.total(state.torque) / driven.period - state.torque
-        gained = pieces.integral(spare) + np.concatenate([[0.0], np.cumsum(pieces.whole(spare))[:-1]])[:, None]
+        gained = pieces.integrated(spare)
         gained = gained + pieces.largest(-gained)[0]
         scale = 0.5 * speed * speed * pieces.total(inertia) / driven.period
 
