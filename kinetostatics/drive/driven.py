@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import DriveError, NotGivenError
 from ..machine.loads import TURN, is_given, value_of
+from ..mechanics.pushes import title_of
 from ..numbers import checks
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
@@ -69,8 +70,8 @@ class Driven:
     @cached_property
     def by_speed(self):
         """Whether the load torque depends on the speed."""
-        functions = (value_of(item) for item in self.scene.loads if not is_given(item))
-        return self.program.depends_on("crank_speed") or any(not hasattr(one, "kinks") for one in functions)
+        functions = (item for item in self.scene.loads if not is_given(item) and not hasattr(value_of(item), "kinks"))
+        return self.program.depends_on("crank_speed") or any(title_of(one) in self.program.unrecorded for one in functions)
 
     @cached_property
     def kinks(self):
@@ -92,6 +93,13 @@ class Driven:
         found = self._checked(angle, State(*self._values(angle, speed)))
         self._kept = angle, found
         return found
+
+    def here(self, angle, speed):
+        """Reduced inertia with the flywheel, its slope, and torque left over, at one crank angle and speed, as floats."""
+        found = self.program(angle, {"crank_speed": speed}) if self.by_speed else self.program(angle)
+        inertia, slope, load = (float(found[name]) for name in QUANTITIES)
+        drive = 0.0 if self.motor is None else float(self.motor.torque_at_crank(speed))
+        return self.flywheel + inertia, slope, drive - load
 
     def torque_by_speed(self, angle, speed, torque):
         """Derivative of the load torque by the crank speed, for a torque known there."""

@@ -41,6 +41,7 @@ SAMPLED = 96
 """Crank angles by which mean load torques are judged, before running is known."""
 SEEN = 512
 """Speeds at which the mean torques of motor and loads are compared."""
+FOLLOWED = 1e-6
 TURNS = 400
 """Turns that are followed from above, where Newton's iteration does not find the way."""
 
@@ -538,17 +539,11 @@ def _from_above(driven, pieces, start):
     """
     from scipy.integrate import solve_ivp
 
-    inertia = pieces.series(driven.inertia(pieces.angle))
     period, direction = driven.period, driven.direction
 
-    def speed_of(angle, energy):
-        here = pieces.evaluate(inertia, np.mod(np.atleast_1d(angle), period))
-        return direction * np.sqrt(2.0 * np.maximum(energy, 0.0) / here)
-
     def net(angle, energy):
-        speed = speed_of(angle, energy)
-        state = driven.at(np.mod(np.atleast_1d(angle), period), speed if driven.by_speed else None)
-        return driven.motor_torque(speed) - state.torque
+        angle, inertia = float(angle), driven.here(float(angle), direction)[0]
+        return driven.here(angle, direction * math.sqrt(2.0 * max(float(energy[0]), 0.0) / inertia))[2]
 
     most = 0.5 * driven.inertia(pieces.angle).max() * (2.0 * start) ** 2
 
@@ -559,11 +554,11 @@ def _from_above(driven, pieces, start):
     energy, ends = most, (0.0, period) if direction > 0 else (period, 0.0)
     for turn in range(TURNS):
         found = solve_ivp(
-            net, ends, [energy], "LSODA", rtol=1e-8, atol=1e-10 * most, dense_output=True, events=standstill
+            net, ends, [energy], "LSODA", rtol=FOLLOWED, atol=1e-10 * most, dense_output=True, events=standstill
         )
         if found.status != 0:
             angle = float(found.t[-1]) % period
-            missing = abs(float(net(angle, np.zeros(1))[0]))
+            missing = abs(net(angle, np.zeros(1)))
             raise DriveError(
                 f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running: followed from "
                 f"{2.0 * abs(start):.6g} rad/s, the machine comes to a standstill at crank angle "
@@ -631,7 +626,7 @@ def _prescribed(driven, scene):
                 f"{scene.mechanism.name}: no constant torque keeps a mean speed as low as {speed:.6g} rad/s: the energy "
                 "gained over the turn alone makes it faster; give a larger flywheel or a higher speed"
             )
-        energy = gained + scale * math.exp(brentq(too_fast, low, 5.0, xtol=1e-15, rtol=4e-16))
+        energy = gained + scale * math.exp(brentq(too_fast, low, 5.0, xtol=1e-15, rtol=1e-15))
         slow = np.sqrt(0.5 * inertia / energy)
         marked = ((pieces.tail(energy) > TAIL) | (pieces.tail(slow) > TAIL)) & pieces.can_split
         if not marked.any():

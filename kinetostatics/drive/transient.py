@@ -304,17 +304,10 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     """The motion from an angle and speed until a time, a standstill, or a target speed."""
     from scipy.integrate import solve_ivp
 
-    program, by_speed, flywheel, motor = driven.program, driven.by_speed, driven.flywheel, driven.motor
-
     def change(time, state):
         angle, speed = float(state[0]), float(state[1])
-        found = program(angle, {"crank_speed": speed}) if by_speed else program(angle)
-        spare = -float(found["load_torque"])
-        if motor is not None:
-            spare += motor.torque_at_crank(speed)
-        inertia = flywheel + float(found["reduced_inertia"])
-        alpha = (spare - 0.5 * speed * speed * float(found["reduced_inertia_slope"])) / inertia
-        return speed, alpha, spare * speed
+        inertia, slope, spare = driven.here(angle, speed)
+        return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed
 
     def still(time, state):
         return state[1]
@@ -349,7 +342,7 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     named += [Event("reversal", float(t), float(y[0])) for t, y in zip(found.t_events[0], found.y_events[0], strict=True) if 0.0 < t < time[-1]]
     named.append(Event(last, float(time[-1]), float(angles[-1])))
     arrays = map(read_only, (time, angles, speeds, _acceleration(driven, angles, speeds)))
-    return Trajectory(scene, motor, flywheel, *arrays, tuple(named), drift, driven, found.sol)
+    return Trajectory(scene, driven.motor, driven.flywheel, *arrays, tuple(named), drift, driven, found.sol)
 
 
 def _which(found):

@@ -166,8 +166,13 @@ class Program:
             for quantity, found in self._program.recording.named(rows).items()
         }
 
+    @property
+    def unrecorded(self):
+        """What messages call the code of the user's behind the quantities whose dependence is not recorded."""
+        return self._program.unrecorded
+
     def depends_on(self, path):
-        """Whether any of the quantities depends on a parameter; of functions of yours that are not recorded: unknown."""
+        """Whether any of the quantities depends on a parameter, as far as is recorded; see `unrecorded`."""
         self._require_known((path,))
         place, _ = self._numbers[path]
         return self._program.recording.parameters[place] in set(needed(self._program.outputs))

@@ -34,7 +34,7 @@ class Tabulated:
 
     angle: Any = field(repr=False)
     force: Any = field(repr=False)
-    period: float = TURN
+    period: float = field(default=TURN, metadata={"structural": True})
 
     TABULATED = True
 
