@@ -19,7 +19,7 @@ from ..solution.compile import compile as compiled
 from ..solution.scene import Scene
 from .motor import Motor, single
 
-INERTIA, SLOPE, TORQUE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque")
+INERTIA, SLOPE, TORQUE, CLOSURE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque", "closure")
 STEP = 1e-6
 """Relative step of speed by which functions that cannot be recorded are differentiated, for the iteration alone."""
 
@@ -30,6 +30,7 @@ class State(NamedTuple):
     inertia: np.ndarray
     slope: np.ndarray
     torque: np.ndarray
+    closure: np.ndarray
 
 
 class Driven:
@@ -97,7 +98,7 @@ class Driven:
     def here(self, angle, speed):
         """Reduced inertia with the flywheel, its slope, and torque left over, at one crank angle and speed, as floats."""
         found = self.program(angle, {"crank_speed": speed}) if self.by_speed else self.program(angle)
-        inertia, slope, load = (float(found[name]) for name in QUANTITIES)
+        inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
         drive = 0.0 if self.motor is None else float(self.motor.torque_at_crank(speed))
         return self.flywheel + inertia, slope, drive - load
 
@@ -135,12 +136,15 @@ class Driven:
             found = self.program(angle)
             return tuple(found[name] for name in QUANTITIES)
         found = self.program(angle.reshape(-1, 1), {"crank_speed": np.asarray(speed, dtype=float).reshape(-1, 1)})
-        return tuple(np.broadcast_to(found[name], (angle.size, 1)).reshape(angle.shape) for name in QUANTITIES)
+        *scalars, closure = (np.reshape(found[name], (-1, *angle.shape)) for name in QUANTITIES)
+        return *(part[0] for part in scalars), closure
 
     def _checked(self, angle, state):
         """The state, where all of it is finite; else what `solve` says of these crank angles."""
-        if not (np.isfinite(state.torque).all() and np.isfinite(state.inertia).all()):
+        finite = np.isfinite(state.torque).all() and np.isfinite(state.inertia).all()
+        if not (finite and state.closure.min(initial=0.0) >= 0.0):
             self.scene.solve(np.ravel(angle))
+        if not finite:
             raise DriveError(f"{self.scene.mechanism.name}: the loads have no finite torque at some crank angles")
         return state
 

@@ -34,6 +34,10 @@ STIFF = 4.0
 LEVELS = 60
 MOST_PIECES = 20_000
 STEPS = 40
+HALVED = 3
+"""How often all pieces are halved where Newton's iteration does not settle, as that of stiff motors on wide ones."""
+JUMP = 1e-9
+"""Difference of values, relative to the largest, from both sides of an edge that is a jump."""
 CONVERGED = 1e-14
 VANISHING = 1e-10
 """Smallest inertia, relative to the largest, with which there is a speed."""
@@ -207,8 +211,12 @@ class Running:
 
     def motion(self, angle):
         """Speed and acceleration of the crank at any crank angles, rad/s, rad/s2."""
-        angle = np.mod(angle, self.period)
-        return tuple(self._pieces.evaluate(series, angle) for series in self._motion_series)
+        driven, angle = self._driven, np.mod(angle, self.period)
+        energy, inertia = self._pieces.evaluate(self._energy_series, angle), driven.inertia(angle)
+        speed = driven.direction * np.sqrt(2.0 * energy / inertia)
+        state = driven.at(angle, speed)
+        turning = self._transmission * self._motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
+        return speed, turning / inertia
 
     @cached_property
     def solution(self):
@@ -290,14 +298,8 @@ class Running:
         return self._driven.direction * np.sqrt(2.0 * self._energy / (self._driven.flywheel + self._state.inertia))
 
     @cached_property
-    def _motion_series(self):
-        turning = self._crank_torque_of_motor - self._state.torque - 0.5 * self._speed**2 * self._state.slope
-        alpha = turning / (self._driven.flywheel + self._state.inertia)
-        return self._pieces.series(self._speed), self._pieces.series(alpha)
-
-    @property
-    def _crank_torque_of_motor(self):
-        return self._transmission * self._motor_torque(self._speed)
+    def _energy_series(self):
+        return self._pieces.series(self._energy)
 
     @property
     def _transmission(self):
@@ -310,7 +312,7 @@ class Running:
 
     @property
     def _powers(self):
-        return self._crank_torque_of_motor * self._speed
+        return self._transmission * self._motor_torque(self._speed) * self._speed
 
     def _time_at(self, angle):
         slowness = 1.0 / np.abs(self._speed)
@@ -325,20 +327,28 @@ def _driven_running(driven, scene):
     start = _operating_speed(driven)
     pieces = resolved(driven, start)
     _require_inertia(driven, pieces)
-    energy = _newton(driven, pieces, _energy_at(driven, pieces, start))
-    if energy is None:
-        pieces, energy = _from_above(driven, pieces, start)
+    found = _settled(driven, pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
+    pieces, energy = found or _from_above(driven, pieces, start)
     for _ in range(LEVELS):
         marked = _unresolved(driven, pieces, energy)
         if not marked.any() or len(pieces.half) > MOST_PIECES:
             break
-        finer = pieces.split(marked)
-        energy = _newton(driven, finer, pieces.evaluate(pieces.series(energy), finer.angle))
-        pieces = finer
-        if energy is None:
-            pieces, energy = _from_above(driven, pieces, start)
+        coarse, series = pieces, pieces.series(energy)
+        found = _settled(driven, pieces.split(marked), lambda finer: coarse.evaluate(series, finer.angle))
+        pieces, energy = found or _from_above(driven, pieces.split(marked), start)
     _require_known(driven, pieces, energy)
     return pieces, energy
+
+
+def _settled(driven, pieces, guess):
+    """Pieces and energy of periodic running near a guess, a function of pieces, halved while that helps; or None."""
+    for halving in range(HALVED + 1):
+        if halving:
+            pieces = pieces.split(pieces.can_split)
+        energy = _newton(driven, pieces, guess(pieces))
+        if energy is not None:
+            return pieces, energy
+    return None
 
 
 def _unresolved(driven, pieces, energy):
@@ -349,6 +359,7 @@ def _unresolved(driven, pieces, energy):
     scale = max(np.abs(state.torque).max(), np.abs(driven.motor_torque(speed)).max())
     rough = np.abs(pieces.series(net)[-3:]).max(axis=0) > 10.0 * TAIL * scale if scale else np.zeros(len(wide), bool)
     tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]
+    tails.append(pieces.tail(speed) > 10.0 * TAIL)
     return (np.any([wide, rough, *tails], axis=0)) & pieces.can_split
 
 
@@ -489,19 +500,46 @@ def resolved(driven, speed):
     edges = _edges(np.concatenate([[0.0], driven.kinks, [driven.period]]))
     pieces = _refined(driven, Pieces(edges, FEW_POINTS if len(edges) > MANY else POINTS), speed)
     width = 2.0 * pieces.half[:, 0]
-    tiny = width < 1e-9 * driven.period
-    if not tiny.any():
-        return pieces
-    jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
-    edges = _edges(np.unique(np.concatenate([[0.0], driven.kinks, jumps, [driven.period]])))
-    again = _refined(driven, Pieces(edges, pieces.count), speed)
-    return again if len(again.half) < len(pieces.half) else pieces
+    if np.any(width < 1e-6 * driven.period):
+        jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
+        edges = _edges(np.unique(np.concatenate([[0.0], driven.kinks, jumps, [driven.period]])))
+        again = _refined(driven, Pieces(edges, pieces.count), speed)
+        pieces = again if len(again.half) < len(pieces.half) else pieces
+    return _with_jumps(driven, pieces, speed)
+
+
+def _with_jumps(driven, pieces, speed):
+    """Pieces with further edges where the load torque jumps between an edge and the points beside it, which see none."""
+    torque = _state_at(driven, pieces.angle, speed).torque
+    series = pieces.series(torque)
+    ends, starts = series.sum(axis=0), (series * (-1.0) ** np.arange(pieces.count)[:, None]).sum(axis=0)
+    starts = np.append(starts[1:], starts[0])
+    jumping = np.flatnonzero(np.abs(ends - starts) > JUMP * np.abs(torque).max())
+    found = []
+    for piece in jumping:
+        low = pieces.angle[piece, -1]
+        high = pieces.angle[(piece + 1) % len(ends), 0] + (driven.period if piece + 1 == len(ends) else 0.0)
+        while high - low > 1e-15 * driven.period:
+            inner = np.linspace(low, high, 34)[1:-1]
+            if not (inner[0] > low and inner[-1] < high):
+                break
+            values = _state_at(driven, np.mod(inner, driven.period), speed).torque
+            after = np.abs(values - starts[piece]) < np.abs(values - ends[piece])
+            first = int(np.argmax(after)) if after.any() else after.size
+            bounds = np.concatenate([[low], inner, [high]])
+            low, high = bounds[first], bounds[first + 1]
+        found.append(high % driven.period)
+    edges = np.unique(np.concatenate([pieces.edges, found]))
+    return Pieces(edges[np.append(True, np.diff(edges) > 1e-15 * driven.period)], pieces.count) if found else pieces
+
+
+def _state_at(driven, angle, speed):
+    return driven.at(angle, np.full(angle.shape, speed) if driven.by_speed else None)
 
 
 def _refined(driven, pieces, speed):
     for _ in range(LEVELS):
-        angle = pieces.angle
-        state = driven.at(angle, np.full(angle.shape, speed) if driven.by_speed else None)
+        state = _state_at(driven, pieces.angle, speed)
         marked = ((pieces.tail(state.inertia) > TAIL) | (pieces.tail(state.torque) > TAIL)) & pieces.can_split
         if not marked.any() or len(marked) > MOST_PIECES:
             break
@@ -513,10 +551,6 @@ def _edges(breaks):
     """Edges at breaks, and between them where they are far apart."""
     parts = [np.linspace(a, b, math.ceil((b - a) / WIDEST - 1e-9) + 1)[:-1] for a, b in itertools.pairwise(breaks)]
     return np.concatenate([*parts, breaks[-1:]])
-
-
-def _energy_at(driven, pieces, speed):
-    return 0.5 * driven.inertia(pieces.angle) * speed * speed
 
 
 def _require_inertia(driven, pieces):
@@ -568,17 +602,20 @@ def _from_above(driven, pieces, start):
                 angle,
             )
         last, energy = energy, float(found.y[0, -1])
-        guess = np.maximum(found.sol(pieces.angle.ravel())[0].reshape(pieces.angle.shape), 1e-9 * most)
         if abs(energy - last) < 0.05 * last:
-            settled = _newton(driven, pieces, guess)
+            settled = _settled(driven, pieces, lambda pieces, path=found.sol: _on_path(pieces, path, 1e-9 * most))
             if settled is not None:
-                return pieces, settled
+                return settled
         if abs(energy - last) < 1e-9 * last:
             break
     raise DriveError(
         f"{driven.scene.mechanism.name}: no periodic running was found in {turn + 1} turns from "
         f"{2.0 * abs(start):.6g} rad/s; give a larger flywheel"
     )
+
+
+def _on_path(pieces, path, least):
+    return np.maximum(path(pieces.angle.ravel())[0].reshape(pieces.angle.shape), least)
 
 
 def _require_known(driven, pieces, energy):
