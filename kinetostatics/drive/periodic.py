@@ -31,6 +31,8 @@ TAIL = 2e-14
 """Size of the last coefficients of a series, relative to its largest value, that is rounding."""
 STIFF = 4.0
 """Integral of a over a piece, at most: more takes digits."""
+ROUNDED = 1e-14
+"""Relative change of speed that is rounding, for what a motor's torque makes of it."""
 LEVELS = 60
 MOST_PIECES = 20_000
 STEPS = 40
@@ -46,7 +48,8 @@ SAMPLED = 96
 SEEN = 512
 """Speeds at which the mean torques of motor and loads are compared."""
 FOLLOWED = 1e-6
-TURNS = 400
+"""Tolerance to which a machine is followed from above."""
+TURNS = 100
 """Turns that are followed from above, where Newton's iteration does not find the way."""
 
 
@@ -345,19 +348,32 @@ def _settled(driven, pieces, guess):
     for halving in range(HALVED + 1):
         if halving:
             pieces = pieces.split(pieces.can_split)
+        pieces = _yielding(driven, pieces, guess)
         energy = _newton(driven, pieces, guess(pieces))
         if energy is not None:
             return pieces, energy
     return None
 
 
+def _yielding(driven, pieces, guess):
+    """Pieces divided where the motor is stiff, as near a guess."""
+    _, _, _, growth = _looked_at(driven, pieces, guess(pieces))
+    parts = np.ceil(np.abs(pieces.whole(growth)) / STIFF).astype(int)
+    if parts.max() <= 1 or parts.sum() > MOST_PIECES:
+        return pieces
+    spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)
+    edges = [np.linspace(low, high, max(count, 1), endpoint=False) for low, high, count in spans]
+    return Pieces(np.concatenate([*edges, pieces.edges[-1:]]), pieces.count)
+
+
 def _unresolved(driven, pieces, energy):
     """Which pieces have series that are not done, and can be halved."""
     state, inertia, speed, growth = _looked_at(driven, pieces, energy)
-    net = driven.motor_torque(speed) - state.torque
+    drive = driven.motor_torque(speed)
     wide = np.abs(pieces.whole(growth)) > STIFF
-    scale = max(np.abs(state.torque).max(), np.abs(driven.motor_torque(speed)).max())
-    rough = np.abs(pieces.series(net)[-3:]).max(axis=0) > 10.0 * TAIL * scale if scale else np.zeros(len(wide), bool)
+    rounding = ROUNDED * np.abs(driven.motor.slope_at_crank(speed) * speed).max()
+    floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(drive).max()), rounding)
+    rough = np.abs(pieces.series(drive - state.torque)[-3:]).max(axis=0) > floor
     tails = [pieces.tail(part) > TAIL for part in (energy, inertia)]
     tails.append(pieces.tail(speed) > 10.0 * TAIL)
     return (np.any([wide, rough, *tails], axis=0)) & pieces.can_split
@@ -606,8 +622,8 @@ def _from_above(driven, pieces, start):
             settled = _settled(driven, pieces, lambda pieces, path=found.sol: _on_path(pieces, path, 1e-9 * most))
             if settled is not None:
                 return settled
-        if abs(energy - last) < 1e-9 * last:
-            break
+            if abs(energy - last) < 1e-4 * last:
+                break
     raise DriveError(
         f"{driven.scene.mechanism.name}: no periodic running was found in {turn + 1} turns from "
         f"{2.0 * abs(start):.6g} rad/s; give a larger flywheel"

@@ -14,6 +14,8 @@ from .periodic import Running, resolved, steady
 LARGEST = 60
 """How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""
 PRECISION = 1e-13
+LIGHTEST = 1e-3
+"""Flywheel, relative to the machine's own inertia, below which no lighter one is looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +127,8 @@ def _true(scene, wanted, motor, engine):
         steady(scene, motor, size, engine=engine)  # says why the machine does not run
         raise DriveError(f"flywheel: even {size:.3g} kg m2 do not bring the fluctuation to {wanted:g}")
     while not math.isfinite(excess(low)):  # too light to run at all
+        if high < LIGHTEST * unit:
+            return _found(runs[high], high)
         middle = 0.5 * (low + high)
         low, high = (low, middle) if excess(middle) <= 0.0 else (middle, high)
     inertia = float(brentq(excess, low, high, xtol=PRECISION * high, rtol=PRECISION))

@@ -19,7 +19,7 @@ mp.mp.dps = 40
 L, MASS, SLIDER = mp.mpf(2), mp.mpf(150), mp.mpf(600)
 R, INERTIA, G = mp.mpf(0.3), mp.mpf(20.5), mp.mpf(9.81)  # as double precision has them
 FLYWHEEL, POWER, SPEED, FIELD, OVERLOAD, RATIO = 1000, 55000, mp.mpf(153.9), 157, mp.mpf(2.5), mp.mpf(4.6875)
-POINTS = 97
+POINTS = 129
 
 
 def machine(phi):
