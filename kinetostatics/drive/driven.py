@@ -6,7 +6,7 @@ Functions as loads may depend on the crank angle and speed, not on the accelerat
 """
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -55,7 +55,7 @@ class Driven:
         self.scene = with_fields(scene, crank_speed=self.direction, crank_acceleration=0.0)
         checks.require(owner, _batch_problem(self.scene))
         self.program = compiled(self.scene, QUANTITIES, parameters=("crank_speed",), engine=engine or "numpy")
-        self._kept = None, None
+        self._kept: tuple[Any, State] | None = None
         self._require_no_acceleration(owner)
 
     @property
@@ -72,7 +72,9 @@ class Driven:
     def by_speed(self):
         """Whether the load torque depends on the speed."""
         functions = (item for item in self.scene.loads if not is_given(item) and not hasattr(value_of(item), "kinks"))
-        return self.program.depends_on("crank_speed") or any(title_of(one) in self.program.unrecorded for one in functions)
+        return self.program.depends_on("crank_speed") or any(
+            title_of(one) in self.program.unrecorded for one in functions
+        )
 
     @cached_property
     def kinks(self):
@@ -88,15 +90,14 @@ class Driven:
 
     def at(self, angle, speed=None) -> State:
         """State at crank angles, at crank speeds if loads depend on them; kept for the same angles if they do not."""
-        known, found = self._kept
-        if known is angle and not self.by_speed:
-            return found
+        if self._kept and self._kept[0] is angle and not self.by_speed:
+            return self._kept[1]
         found = self._checked(angle, State(*self._values(angle, speed)))
         self._kept = angle, found
         return found
 
     def here(self, angle, speed):
-        """Reduced inertia with the flywheel, its slope, and torque left over, at one crank angle and speed, as floats."""
+        """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats."""
         found = self.program(angle, {"crank_speed": speed}) if self.by_speed else self.program(angle)
         inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
         drive = 0.0 if self.motor is None else float(self.motor.torque_at_crank(speed))

@@ -316,7 +316,9 @@ def single(value, name, unequal=None, **rule):
 def _below(speed, synchronous_speed):
     """What is wrong with a rated speed, or None."""
     if all(isinstance(value, int | float) for value in (speed, synchronous_speed)) and not speed < synchronous_speed:
-        return f"synchronous_speed must be greater than the rated speed of {speed:.9g} rad/s, got {synchronous_speed:.9g}"
+        return (
+            f"synchronous_speed must be greater than the rated speed of {speed:.9g} rad/s, got {synchronous_speed:.9g}"
+        )
     return None
 
 

@@ -1,7 +1,7 @@
 """Exact periodic running of a machine under its motor.
 
-The state is U = (Jf + J(phi)) omega^2 / 2 as a function of the crank angle: dU/dphi = motor torque - load torque, with no
-derivative of J. Newton's iteration on U, each step a linear equation u' = a u + g that is solved by its integrating
+The state is U = (Jf + J(phi)) omega^2 / 2 as a function of the crank angle: dU/dphi = motor torque - load torque, with
+no derivative of J. Newton's iteration on U, each step a linear equation u' = a u + g that is solved by its integrating
 factor in Chebyshev series between the kinks, converges to rounding in about four steps.
 """
 
@@ -9,7 +9,6 @@ import itertools
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -254,7 +253,9 @@ class Running:
     def air_gap_energy_per_turn(self):
         """Energy through the air gap of an induction motor in a turn, J: torque times speed of the field."""
         if self.motor is None or self.motor.field_speed is None:
-            raise DriveError("air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows")
+            raise DriveError(
+                "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
+            )
         power = self._motor_torque(self._speed) * self.motor.field_speed
         return self._pieces.total(power / np.abs(self._speed)) / self.turns
 
@@ -336,11 +337,16 @@ def _driven_running(driven, scene):
         marked = _unresolved(driven, pieces, energy)
         if not marked.any() or len(pieces.half) > MOST_PIECES:
             break
-        coarse, series = pieces, pieces.series(energy)
-        found = _settled(driven, pieces.split(marked), lambda finer: coarse.evaluate(series, finer.angle))
+        found = _settled(driven, pieces.split(marked), _interpolated(pieces, energy))
         pieces, energy = found or _from_above(driven, pieces.split(marked), start)
     _require_known(driven, pieces, energy)
     return pieces, energy
+
+
+def _interpolated(pieces, energy):
+    """Energy as a function of other pieces."""
+    series = pieces.series(energy)
+    return lambda finer: pieces.evaluate(series, finer.angle)
 
 
 def _settled(driven, pieces, guess):
@@ -483,16 +489,16 @@ def _operating_speed(driven):
         return float(brentq(spare_at, low, high, xtol=1e-9 * high, rtol=1e-9)) / motor.transmission
     if spare[-1] > 0.0:
         raise DriveError(
-            f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest speed of the motor that is looked at, "
-            f"{spare[-1]:.6g} N m are left over at its shaft"
+            f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest speed of the motor that is looked "
+            f"at, {spare[-1]:.6g} N m are left over at its shaft"
         )
     best = int(np.argmax(spare))
     missing = float(-spare[best] * abs(motor.transmission))
     raise DriveError(
         f"{name}: the motor is too weak, so there is no periodic running: the loads take {load[best]:.6g} N m at its "
         f"shaft in the mean, where it gives {motor.torque(speed[best]):.6g} N m at most (at {speed[best]:.6g} rad/s); "
-        f"{-spare[best]:.6g} N m are missing, {missing:.6g} N m at the crank; give a motor {_times(load[best], motor, speed)}"
-        "or another transmission",
+        f"{-spare[best]:.6g} N m are missing, {missing:.6g} N m at the crank; give a motor "
+        f"{_times(load[best], motor, speed)}or another transmission",
         missing,
     )
 
@@ -525,7 +531,7 @@ def resolved(driven, speed):
 
 
 def _with_jumps(driven, pieces, speed):
-    """Pieces with further edges where the load torque jumps between an edge and the points beside it, which see none."""
+    """Pieces with further edges where the load torque jumps between an edge and the points beside it."""
     torque = _state_at(driven, pieces.angle, speed).torque
     series = pieces.series(torque)
     ends, starts = series.sum(axis=0), (series * (-1.0) ** np.arange(pieces.count)[:, None]).sum(axis=0)
@@ -546,7 +552,7 @@ def _with_jumps(driven, pieces, speed):
             low, high = bounds[first], bounds[first + 1]
         found.append(high % driven.period)
     edges = np.unique(np.concatenate([pieces.edges, found]))
-    return Pieces(edges[np.append(True, np.diff(edges) > 1e-15 * driven.period)], pieces.count) if found else pieces
+    return Pieces(edges, pieces.count) if found else pieces
 
 
 def _state_at(driven, angle, speed):
@@ -576,8 +582,8 @@ def _require_inertia(driven, pieces):
     if not -least > VANISHING * inertia.max():
         raise DriveError(
             f"{driven.scene.mechanism.name}: all inertia vanishes at crank angle {math.degrees(angle):.6g} deg "
-            f"({max(-least, 0.0):.3g} kg m2, {inertia.max():.3g} at most), so there is no speed there; give a flywheel, "
-            "or the crank or the rotor of the motor its inertia",
+            f"({max(-least, 0.0):.3g} kg m2, {inertia.max():.3g} at most), so there is no speed there; give a "
+            "flywheel, or the crank or the rotor of the motor its inertia",
             crank_angle=angle,
         )
 
@@ -600,7 +606,7 @@ def _from_above(driven, pieces, start):
     def standstill(angle, energy):
         return energy[0] - 1e-9 * most
 
-    standstill.terminal = True
+    vars(standstill)["terminal"] = True
     energy, ends = most, (0.0, period) if direction > 0 else (period, 0.0)
     for turn in range(TURNS):
         found = solve_ivp(
@@ -676,8 +682,8 @@ def _prescribed(driven, scene):
         low = next((size for size in (-5.0, -12.0, -25.0) if too_fast(size) < 0.0), None)
         if low is None:
             raise DriveError(
-                f"{scene.mechanism.name}: no constant torque keeps a mean speed as low as {speed:.6g} rad/s: the energy "
-                "gained over the turn alone makes it faster; give a larger flywheel or a higher speed"
+                f"{scene.mechanism.name}: no constant torque keeps a mean speed as low as {speed:.6g} rad/s: the "
+                "energy gained over the turn alone makes it faster; give a larger flywheel or a higher speed"
             )
         energy = gained + scale * math.exp(brentq(too_fast, low, 5.0, xtol=1e-15, rtol=1e-15))
         slow = np.sqrt(0.5 * inertia / energy)

@@ -100,13 +100,13 @@ class Pieces:
         """Largest value of a function given at the points, and where: crank angle."""
         dense = values @ rule(self.count).dense.T
         piece, at = np.unravel_index(np.argmax(dense), dense.shape)
-        place = float(rule(self.count).places[at])
+        place = rule(self.count).places[at]
         series = rule(self.count).series @ values[piece]
         slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
         for _ in range(4):
             curved = chebyshev.chebval(place, bend)
             if curved < 0.0:
-                place = min(max(place - chebyshev.chebval(place, slope) / curved, -1.0), 1.0)
+                place = np.clip(place - chebyshev.chebval(place, slope) / curved, -1.0, 1.0)
         angle = 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place
         return float(chebyshev.chebval(place, series)), float(angle)
 

@@ -2,13 +2,14 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ..errors import DriveError
 from ..numbers import checks
 from .driven import Driven
-from .motor import Motor, single
+from .motor import single
 from .periodic import Running, resolved, steady
 
 LARGEST = 60
@@ -46,8 +47,8 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
 
     Without motor as in textbooks (Khurmi and Gupta, *Theory of Machines*, chapter 16; Uicker, Pennock and Shigley,
     *Theory of Machines and Mechanisms*, on flywheels): the torque is that at constant speed, the motor gives its mean,
-    and the energy E between the extremes of what is left over makes J = E / (fluctuation * speed^2), with fluctuation by
-    the mean of largest and smallest speed. With a motor truly: periodic running (`steady`) whose `fluctuation`, by the
+    and the energy E between the extremes of what is left over makes J = E / (fluctuation * speed^2), with fluctuation
+    by the mean of largest and smallest speed. With a motor truly: periodic running (`steady`) whose `fluctuation`, by the
     mean over time, is the one given.
 
     Parameters
@@ -104,7 +105,7 @@ def _true(scene, wanted, motor, engine):
 
     driven = Driven("flywheel", scene, motor, 0.0, engine)
     unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
-    runs: dict[float, Running | None] = {}
+    runs: dict[float, Any] = {}
 
     def excess(inertia):
         """Logarithm of the fluctuation over the one wanted; large where the machine does not run."""

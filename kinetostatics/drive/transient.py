@@ -1,7 +1,7 @@
 """Machines over time: starting from rest, and coasting from a speed, through standstill and reversal.
 
-The equation of motion (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2 is integrated by the method DOP853 of
-scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), with the work of
+The equation of motion (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2 is integrated by the method DOP853
+of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), with the work of
 motor and loads beside it: what kinetic energy and work differ by at the end is the drift.
 """
 
@@ -89,7 +89,9 @@ class Trajectory:
         time = np.atleast_1d(np.array(time, dtype=float))
         low, high = self.time[0], self.time[-1]
         if time.min() < low or time.max() > high:
-            checks.require("at", f"time must lie between {low:.9g} and {high:.9g} s, got {time.min():.9g} to {time.max():.9g}")
+            checks.require(
+                "at", f"time must lie between {low:.9g} and {high:.9g} s, got {time.min():.9g} to {time.max():.9g}"
+            )
         angle, speed = self._dense(time)[:2]
         found = map(read_only, (time, angle, speed, _acceleration(self._driven, angle, speed)))
         return with_fields(self, **dict(zip(("time", "crank_angle", "speed", "acceleration"), found, strict=True)))
@@ -213,8 +215,8 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     Raises
     ------
     DriveError
-        It does not start: the torque of the loads at rest exceeds that of the motor at this or a later crank angle; with
-        the torque missing, and what would help. Or it has no steady running to start to.
+        It does not start: the torque of the loads at rest exceeds that of the motor at this or a later crank angle;
+        with the torque missing, and what would help. Or it has no steady running to start to.
     ParameterError
         A value is out of range.
 
@@ -255,8 +257,8 @@ def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)
     if not here[0] > 1e-12 * here.max():
         raise DriveError(
-            f"{scene.mechanism.name}: no inertia at crank angle {math.degrees(angle):.6g} deg ({here[0]:.3g} kg m2), so "
-            "there is no acceleration there; give a flywheel, or the crank its inertia",
+            f"{scene.mechanism.name}: no inertia at crank angle {math.degrees(angle):.6g} deg ({here[0]:.3g} kg m2), "
+            "so there is no acceleration there; give a flywheel, or the crank its inertia",
             crank_angle=angle,
         )
     return driven, inertia, angle, speed
@@ -292,8 +294,8 @@ def _no_start(driven, angle, what):
         remedies.append(f"another crank angle (least is asked at {easiest:.6g} deg)")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
-        f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} N m "
-        f"at rest, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing; over the turn the loads ask up to "
+        f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "
+        f"N m at rest, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing; over the turn the loads ask up to "
         f"{asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: {', '.join(remedies)}",
         missing,
         angle,
@@ -315,20 +317,26 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     def ready(time, state):
         return (state[1] - target) * driven.direction
 
-    still.terminal = until == "standstill" or one_way
-    still.direction = -driven.direction if one_way else 0
-    ready.terminal = True
+    vars(still).update(terminal=until == "standstill" or one_way, direction=-driven.direction if one_way else 0)
+    vars(ready)["terminal"] = True
     events = [still] if target is None else [still, ready]
     end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
     found = solve_ivp(
-        change, (0.0, end), (angle, speed, 0.0), "DOP853", rtol=RELATIVE, atol=ABSOLUTE, dense_output=True, events=events
+        change,
+        (0.0, end),
+        (angle, speed, 0.0),
+        "DOP853",
+        rtol=RELATIVE,
+        atol=ABSOLUTE,
+        dense_output=True,
+        events=events,
     )
     if found.status < 0 or not np.isfinite(found.y).all():
         at = math.degrees(found.y[0, -1])
         driven.scene.solve(found.y[0, -1:] + found.y[1, -1:] * 1e-6)
         raise DriveError(
-            f"{scene.mechanism.name}: the motion cannot be followed beyond {found.t[-1]:.6g} s, at crank angle {at:.6g} deg "
-            f"and {found.y[1, -1]:.6g} rad/s: the mechanism may stand in a limit position there",
+            f"{scene.mechanism.name}: the motion cannot be followed beyond {found.t[-1]:.6g} s, at crank angle {at:.6g} "
+            f"deg and {found.y[1, -1]:.6g} rad/s: the mechanism may stand in a limit position there",
             crank_angle=float(found.y[0, -1]),
         )
     if found.status == 0 and not isinstance(until, float):
@@ -339,10 +347,18 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     drift = float(np.abs(energy - energy[0] - work).max())
     last = ("end", "standstill" if until == "standstill" else "reversal", "end")[_which(found)]
     named = [Event("start", 0.0, angle)]
-    named += [Event("reversal", float(t), float(y[0])) for t, y in zip(found.t_events[0], found.y_events[0], strict=True) if 0.0 < t < time[-1]]
+    named += [
+        Event("reversal", float(t), float(y[0]))
+        for t, y in zip(found.t_events[0], found.y_events[0], strict=True)
+        if 0.0 < t < time[-1]
+    ]
     named.append(Event(last, float(time[-1]), float(angles[-1])))
-    arrays = map(read_only, (time, angles, speeds, _acceleration(driven, angles, speeds)))
-    return Trajectory(scene, driven.motor, driven.flywheel, *arrays, tuple(named), drift, driven, found.sol)
+    for array in (time, angles, speeds):
+        read_only(array)
+    alpha = read_only(_acceleration(driven, angles, speeds))
+    return Trajectory(
+        scene, driven.motor, driven.flywheel, time, angles, speeds, alpha, tuple(named), drift, driven, found.sol
+    )
 
 
 def _which(found):

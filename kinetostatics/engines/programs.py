@@ -67,7 +67,6 @@ class Program:
     @cached_property
     def unrecorded(self):
         """Names of code of the user's behind the outputs that could not be recorded."""
-        needed_rows = self._rows_needed
         tables = (table for table in self.recording.tables if not self._rows_needed.isdisjoint(table.rows))
         return tuple(table.moved_by for table in tables if table.moved_by)
 

@@ -1,7 +1,7 @@
 """Energies of a scene, and the inertia that the crank feels: sums over links of squares of kinematic coefficients.
 
-With s the mass centre of a link and theta its angle, derivatives by the crank angle phi, the kinetic energy of all links
-is J omega^2 / 2 with the reduced inertia
+With s the mass centre of a link and theta its angle, derivatives by the crank angle phi, the kinetic energy of all
+links is J omega^2 / 2 with the reduced inertia
 
     J = sum m |s'|^2 + I theta'^2        dJ/dphi = 2 sum m s' . s'' + I theta' theta''
 

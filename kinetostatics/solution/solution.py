@@ -155,7 +155,7 @@ class Solution(Motion):
 
     @property
     def reduced_inertia(self):
-        """Inertia of all links as the crank feels it, (..., N), kg m2: twice the kinetic energy over the square speed."""
+        """Inertia of all links as the crank feels it, (..., N), kg m2: twice the energy over the speed squared."""
         return self._found("reduced_inertia")
 
     @property

@@ -61,7 +61,7 @@ GOOD = {"power": 55e3, "speed": 153.9, "synchronous_speed": 157.0, "overload": 2
 )
 def test_what_no_motor_can_have_is_refused(changes, words):
     given = {**GOOD, **changes}
-    with pytest.raises(ks.ParameterError, match="Motor.kloss: ") as caught:
+    with pytest.raises(ks.ParameterError, match=r"Motor\.kloss: ") as caught:
         Motor.kloss(given.pop("power"), given.pop("speed"), **given)
     assert words in str(caught.value)
 
@@ -85,6 +85,6 @@ def test_all_that_is_wrong_with_a_motor_is_said_at_once():
     ],
 )
 def test_rows_that_are_no_table_are_refused(speed, torque, words):
-    with pytest.raises(ks.ParameterError, match="Motor.table: ") as caught:
+    with pytest.raises(ks.ParameterError, match=r"Motor\.table: ") as caught:
         Motor.table(speed, torque)
     assert words in str(caught.value)

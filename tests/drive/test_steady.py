@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from support import DATA
 
 import kinetostatics as ks
 from kinetostatics.machine.loads import Tabulated
+from support import DATA
 
 TURN = 2 * math.pi
 MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875)
@@ -192,9 +192,13 @@ def test_a_motor_too_weak_for_the_mean_load_is_told_with_the_torque_missing():
 def test_a_motor_too_weak_for_the_peak_without_flywheel_stalls_at_a_crank_angle():
     peak = ks.Torque(lambda motion: -8000.0 * (0.5 - 0.5 * np.cos(motion.crank_angle)), on="crank")
     small = ks.Scene(ks.crank_slider(0.3, 2.0, crank=ks.Link(0.0, 0.0, 3.0)), 1.0, loads=(peak,))
-    assert ks.drive.steady(small, ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875), 4e3)
+    assert ks.drive.steady(
+        small, ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875), 4e3
+    )
     with pytest.raises(ks.DriveError, match="comes to a standstill at crank angle") as caught:
-        ks.drive.steady(small, ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875), 0.0)
+        ks.drive.steady(
+            small, ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875), 0.0
+        )
     assert 1.5 < caught.value.crank_angle < math.pi
 
 

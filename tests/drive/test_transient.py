@@ -45,7 +45,15 @@ def n_four_bar(windows):
     bar = ks.Link(1.0, 0.5, 1 / 12)
     groups = tuple(
         ks.RockerGroup(
-            float(k), 1.0, (float(k), 0.0), "open", ks.Link(1.0, k - 0.5), bar, pin=f"B{k}", pivot_name=f"P{k}", label=f"_{k}"
+            float(k),
+            1.0,
+            (float(k), 0.0),
+            "open",
+            ks.Link(1.0, k - 0.5),
+            bar,
+            pin=f"B{k}",
+            pivot_name=f"P{k}",
+            label=f"_{k}",
         )
         for k in range(1, windows + 1)
     )
@@ -108,7 +116,9 @@ def test_a_pendulum_reverses_at_its_height_of_release_with_its_period():
     length = (0.055 + 0.02 + 2.0 * 0.15**2) / (2.0 * 0.15)
     with mp.workdps(20):
         period = float(4 * mp.sqrt(length / 9.81) * mp.ellipk(mp.sin(amplitude / 2) ** 2))
-    assert [event.time for event in reversals] == pytest.approx(np.arange(1, len(reversals) + 1) * period / 2, rel=1e-11)
+    assert [event.time for event in reversals] == pytest.approx(
+        np.arange(1, len(reversals) + 1) * period / 2, rel=1e-11
+    )
     assert reversals[0].crank_angle == pytest.approx(-math.pi + 1.0, abs=1e-11)
 
 

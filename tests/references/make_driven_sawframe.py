@@ -112,7 +112,10 @@ def main():
     print("shooting   ", mp.nstr(other, 34))
     assert abs(omega[0] - other) < mp.mpf(10) ** -28
     duration = 2 * mp.pi * sum(1 / one for one in omega) / POINTS
-    rising = lambda phi: rate(phi, between(nodes, omega, phi))
+
+    def rising(phi):
+        return rate(phi, between(nodes, omega, phi))
+
     sizes = [between(nodes, omega, mp.findroot(rising, start)) for start in _turning(nodes, omega)]
     mean = 2 * mp.pi / duration
     angles = [2 * mp.pi * k / 24 for k in range(24)]
