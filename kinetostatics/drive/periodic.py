@@ -93,7 +93,7 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> "Running":
     >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
     >>> run = ks.drive.steady(pump, motor, flywheel=0.05)
     >>> print(f"{run.mean_speed:.4f} rad/s, fluctuation {run.fluctuation:.5f}")
-    104.7008 rad/s, fluctuation 0.03018
+    104.6753 rad/s, fluctuation 0.05021
     """
     direction = _direction(scene) if motor is None else None
     driven = Driven("steady", scene, motor, flywheel, engine, direction)
@@ -224,6 +224,28 @@ class Running:
     def solution(self):
         """`Solution` at the crank angles with the true speed and acceleration, for tables, extremes, plots, compare."""
         return RunningSolution.of(self)
+
+    def plot(self, ax=None):
+        """Crank speed over the crank angle, and on a second axis the torques of motor and machine at the crank.
+
+        Returns both axes.
+        """
+        import matplotlib.pyplot as plt
+
+        ax = ax if ax is not None else plt.subplots()[1]
+        angle = np.linspace(0.0, self.period, 721)
+        speed, acceleration = self.motion(angle)
+        drive = self._transmission * self._motor_torque(speed)
+        ax.plot(np.degrees(angle), speed, color="C0", label="crank speed")
+        ax.axhline(self.mean_speed, color="C0", lw=0.8, ls=":", label="its mean")
+        ax.set(xlabel="crank angle [deg]", ylabel="crank speed [rad/s]", title=self.scene.mechanism.name)
+        torques = ax.twinx()
+        torques.plot(np.degrees(angle), drive, color="C1", label="motor")
+        torques.plot(np.degrees(angle), drive - self.flywheel * acceleration, color="C2", label="machine")
+        torques.set_ylabel("torque at the crank [N m]")
+        lines = [*ax.get_lines(), *torques.get_lines()]
+        torques.legend(lines, [str(line.get_label()) for line in lines], frameon=False, fontsize="small")
+        return ax, torques
 
     def frame(self):
         """Table with a row for each crank angle, a pandas DataFrame: time, motion, torques and power of the drive."""

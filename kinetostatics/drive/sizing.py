@@ -48,8 +48,8 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     Without motor as in textbooks (Khurmi and Gupta, *Theory of Machines*, chapter 16; Uicker, Pennock and Shigley,
     *Theory of Machines and Mechanisms*, on flywheels): the torque is that at constant speed, the motor gives its mean,
     and the energy E between the extremes of what is left over makes J = E / (fluctuation * speed^2), with fluctuation
-    by the mean of largest and smallest speed. With a motor truly: periodic running (`steady`) whose `fluctuation`, by the
-    mean over time, is the one given.
+    by the mean of largest and smallest speed. With a motor truly: periodic running (`steady`) whose `fluctuation`, by
+    the mean over time, is the one given.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     >>> import kinetostatics as ks
     >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0, loads=ks.ProcessForce(-200.0))
     >>> print(f"{ks.drive.flywheel(pump, 0.01).inertia:.6f} kg m2")
-    0.152588 kg m2
+    0.259863 kg m2
     """
     wanted, wrong = single(fluctuation, name="fluctuation", low=0.0, strict=True)
     if not wrong and not wanted < 2.0:

@@ -1,8 +1,8 @@
 """Machines over time: starting from rest, and coasting from a speed, through standstill and reversal.
 
 The equation of motion (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2 is integrated by the method DOP853
-of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), with the work of
-motor and loads beside it: what kinetic energy and work differ by at the end is the drift.
+of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), with the work
+of motor and loads beside it: what kinetic energy and work differ by at the end is the drift.
 """
 
 import math
@@ -178,12 +178,12 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     >>> pendulum = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15)), 1.0, loads=ks.Gravity())
     >>> motion = ks.drive.coast(pendulum, 0.06, from_angle=-1.0, until=2.0)
     >>> [event.name for event in motion.events]
-    ['start', 'reversal', 'reversal', 'end']
+    ['start', 'reversal', 'reversal', 'reversal', 'end']
     >>> motion.energy_drift < 1e-12
     True
     """
     driven, flywheel, angle, speed = _begun("coast", scene, motor, flywheel, from_angle, from_speed, engine)
-    if until != "standstill" or not isinstance(until, str):
+    if not (isinstance(until, str) and until == "standstill"):
         until, wrong = single(until, name="until", low=0.0, strict=True)
         checks.require("coast", 'until must be a time in s, or "standstill"' + f", got {until!r}" if wrong else None)
     elif speed == 0.0:
@@ -227,7 +227,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
     >>> motion = ks.drive.start(pump, motor, 0.05, from_angle=0.3)
     >>> print(f"{motion.time[-1]:.4f} s")
-    0.3850 s
+    0.4189 s
     """
     if not isinstance(motor, Motor):
         checks.require("start", f"motor must be a Motor, got {checks.shown(motor)}")
@@ -295,8 +295,8 @@ def _no_start(driven, angle, what):
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
         f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "
-        f"N m at rest, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing; over the turn the loads ask up to "
-        f"{asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: {', '.join(remedies)}",
+        f"N m at rest, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing; over the turn the loads ask up "
+        f"to {asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: {', '.join(remedies)}",
         missing,
         angle,
     )
@@ -335,8 +335,8 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
         at = math.degrees(found.y[0, -1])
         driven.scene.solve(found.y[0, -1:] + found.y[1, -1:] * 1e-6)
         raise DriveError(
-            f"{scene.mechanism.name}: the motion cannot be followed beyond {found.t[-1]:.6g} s, at crank angle {at:.6g} "
-            f"deg and {found.y[1, -1]:.6g} rad/s: the mechanism may stand in a limit position there",
+            f"{scene.mechanism.name}: the motion cannot be followed beyond {found.t[-1]:.6g} s, at crank angle "
+            f"{at:.6g} deg and {found.y[1, -1]:.6g} rad/s: the mechanism may stand in a limit position there",
             crank_angle=float(found.y[0, -1]),
         )
     if found.status == 0 and not isinstance(until, float):

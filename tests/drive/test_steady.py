@@ -169,6 +169,16 @@ def test_extremes_frames_and_comparison_take_running_as_any_solution():
     assert len(run.solution.frame()) == 720
 
 
+def test_figures_show_speed_and_the_torques_at_the_crank():
+    run = ks.drive.steady(saw(CUT), MOTOR, 1000.0)
+    speed, torques = run.plot()
+    assert speed.get_ylabel() == "crank speed [rad/s]"
+    drive, machine = (line.get_ydata() for line in torques.get_lines())
+    assert drive[:-1:2].shape == (360,)
+    assert machine[:-1] == pytest.approx(run.solution.balancing_torque, abs=1e-6)
+    assert drive[:-1] == pytest.approx(MOTOR.transmission * run.motor_torque)
+
+
 def test_without_motor_a_constant_torque_keeps_the_mean_speed_of_the_scene():
     run = ks.drive.steady(saw(CUT), None, 500.0)
     assert run.mean_speed == pytest.approx(33.0, rel=1e-13)
