@@ -2,6 +2,8 @@
 
 Call first
     crank_slider, cam_crank_slider, four_bar    a mechanism; Link its masses, Gravity, Spring, ProcessForce its loads
+    slotted_lever, scotch_yoke                  more of them; Pin, Dyad, LeverGroup ... for chains of one's own
+    Force, Torque, PointForce, PointSpring ...  loads on any link; Table of their values by angle or travel
     solve(mechanism, angles, crank_speed=...)   its Solution: motion, every reaction, the torque of the drive
     Scene(mechanism, crank_speed, ...)          all that together; .solve(angles), .varied({"slider.mass": 620.0})
     load_case("sawframe_2r63")                  the same from a file; shipped cases by name
@@ -26,6 +28,9 @@ Rooms, in the order in which they build on each other
     views       plots, charts, drawings
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from .errors import (
     AssemblyError,
     CaseError,
@@ -36,26 +41,50 @@ from .errors import (
     ParameterError,
     QuantityError,
 )
-from .machine import cams
-from .machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
-from .machine.cam_roller import CamRoller
-from .machine.crank import Crank
-from .machine.cylinder_group import CylinderGroup
-from .machine.dyad import Dyad
-from .machine.guide import Guide
-from .machine.lever_group import LeverGroup
-from .machine.links import Link
-from .machine.loads import Force, Gravity, PointDamper, PointForce, PointSpring, ProcessForce, Spring, Torque
-from .machine.mechanism import Mechanism
-from .machine.pin import Pin
-from .machine.rocker_group import RockerGroup
-from .machine.slider_group import SliderGroup
-from .machine.yoke_group import YokeGroup
-from .mechanics.principal_points import principal_points
-from .results.extremes import extremes
-from .solution.compile import compile  # noqa: A004 - the contract's name
-from .solution.scene import Scene, solve
-from .solution.solution import Solution
+
+if TYPE_CHECKING:
+    from .casefile.case import load_case
+    from .design import balancing, linkage
+    from .machine import cams
+    from .machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
+    from .machine.cam_roller import CamRoller
+    from .machine.crank import Crank
+    from .machine.cylinder_group import CylinderGroup
+    from .machine.dyad import Dyad
+    from .machine.guide import Guide
+    from .machine.lever_group import LeverGroup
+    from .machine.links import Link
+    from .machine.loads import (
+        Force,
+        Gravity,
+        PointDamper,
+        PointForce,
+        PointSpring,
+        ProcessForce,
+        Spring,
+        Table,
+        Torque,
+        TorsionDamper,
+        TorsionSpring,
+    )
+    from .machine.mechanism import Mechanism
+    from .machine.pin import Pin
+    from .machine.rocker_group import RockerGroup
+    from .machine.slider_group import SliderGroup
+    from .machine.yoke_group import YokeGroup
+    from .mechanics.principal_points import principal_points
+    from .results.comparison import compare
+    from .results.extremes import extremes
+    from .solution.compile import compile  # noqa: A004 - the contract's name
+    from .solution.group_check import check
+    from .solution.scene import Scene, solve
+    from .solution.solution import Solution
+    from .studies import precision, stability
+    from .studies.needs import needs
+    from .sweeps import designs
+    from .sweeps.sweeps import sweep
+    from .sweeps.tolerance import tolerances
+    from .views import plots
 
 __version__ = "0.1.0"
 
@@ -88,7 +117,10 @@ __all__ = [
     "SliderGroup",
     "Solution",
     "Spring",
+    "Table",
     "Torque",
+    "TorsionDamper",
+    "TorsionSpring",
     "YokeGroup",
     "balancing",
     "cam_crank_slider",
@@ -116,29 +148,64 @@ __all__ = [
 ]
 
 
-_LATER = {
-    "balancing": "design.balancing:",
-    "check": "solution.group_check:check",
-    "compare": "results.comparison:compare",
-    "designs": "sweeps.designs:",
-    "drive": "drive:",
-    "linkage": "design.linkage:",
-    "load_case": "casefile.case:load_case",
-    "needs": "studies.needs:needs",
-    "plots": "views.plots:",
-    "precision": "studies.precision:",
-    "stability": "studies.stability:",
-    "sweep": "sweeps.sweeps:sweep",
-    "tolerances": "sweeps.tolerance:tolerances",
+_WHERE = {
+    "machine": ["cams"],
+    "machine.builders": ["cam_crank_slider", "crank_slider", "four_bar", "scotch_yoke", "slotted_lever"],
+    "machine.cam_roller": ["CamRoller"],
+    "machine.crank": ["Crank"],
+    "machine.cylinder_group": ["CylinderGroup"],
+    "machine.dyad": ["Dyad"],
+    "machine.guide": ["Guide"],
+    "machine.lever_group": ["LeverGroup"],
+    "machine.links": ["Link"],
+    "machine.loads": [
+        "Force",
+        "Gravity",
+        "PointDamper",
+        "PointForce",
+        "PointSpring",
+        "ProcessForce",
+        "Spring",
+        "Table",
+        "Torque",
+        "TorsionDamper",
+        "TorsionSpring",
+    ],
+    "machine.mechanism": ["Mechanism"],
+    "machine.rocker_group": ["RockerGroup"],
+    "machine.pin": ["Pin"],
+    "machine.slider_group": ["SliderGroup"],
+    "machine.yoke_group": ["YokeGroup"],
+    "mechanics.principal_points": ["principal_points"],
+    "results.comparison": ["compare"],
+    "results.extremes": ["extremes"],
+    "solution.compile": ["compile"],
+    "solution.group_check": ["check"],
+    "solution.scene": ["Scene", "solve"],
+    "solution.solution": ["Solution"],
+    "drive": ["drive"],
+    "design": ["balancing", "linkage"],
+    "sweeps": ["designs"],
+    "sweeps.sweeps": ["sweep"],
+    "sweeps.tolerance": ["tolerances"],
+    "studies": ["precision", "stability"],
+    "studies.needs": ["needs"],
+    "casefile.case": ["load_case"],
+    "views": ["plots"],
 }
-"""Names loaded, with the libraries they need, only when used: where each is, "module:function" or "module:"."""
+"""Names by where they are: loaded, with the libraries they need, when first used."""
 
 
 def __getattr__(name):
-    import importlib
-
-    if name not in _LATER:
+    place = next((place for place, names in _WHERE.items() if name in names), None)
+    if place is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    path, _, attribute = _LATER[name].partition(":")
-    module = importlib.import_module(f".{path}", __name__)
-    return getattr(module, attribute) if attribute else module
+    path = f"{__name__}.{place}"
+    room = import_module(path)
+    found = room if place == name else getattr(room, name, None) or import_module(f"{path}.{name}")
+    globals()[name] = found
+    return found
+
+
+def __dir__():
+    return sorted({*globals(), *__all__})

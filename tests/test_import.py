@@ -1,16 +1,52 @@
-"""Importing the package is cheap."""
+"""Importing the package is cheap, and all its names are there when asked for."""
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import kinetostatics as ks
 
-HEAVY = ("matplotlib", "pandas", "pint", "pydantic", "scipy.optimize", "sympy")
+HEAVY = ("matplotlib", "numba", "pandas", "pint", "pydantic", "scipy.optimize", "sympy")
+FEW = 3
+"""Modules that importing the package may load, the standard library's aside."""
 
 
-def test_import_leaves_heavy_libraries_alone_until_they_are_used():
-    code = f"import sys, kinetostatics; print([name for name in {HEAVY} if name in sys.modules])"
+def printed(code):
     root = Path(ks.__file__).parents[1]
-    done = subprocess.run([sys.executable, "-c", code], cwd=root, check=True, capture_output=True, text=True)
-    assert done.stdout.strip() == "[]"
+    return subprocess.run([sys.executable, "-c", code], cwd=root, check=True, capture_output=True, text=True).stdout
+
+
+def test_import_loads_next_to_nothing_and_solve_no_heavy_library():
+    loaded = "{name for name in sys.modules if name.partition('.')[0] not in sys.stdlib_module_names}"
+    code = (
+        f"import sys; before = {loaded}; import kinetostatics as ks; print(len({loaded} - before)); "
+        f"ks.solve, ks.compile; print([name for name in {HEAVY} if name in sys.modules])"
+    )
+    count, heavy = printed(code).splitlines()
+    assert 1 <= int(count) <= FEW
+    assert heavy == "[]"
+
+
+def test_every_public_name_is_there_by_star_by_dir_and_for_type_checkers():
+    found: dict = {}
+    exec("from kinetostatics import *", found)
+    assert set(ks.__all__) <= set(found)
+    assert set(ks.__all__) <= set(dir(ks))
+    (checked,) = [item for item in ast.parse(Path(ks.__file__).read_text("utf-8")).body if isinstance(item, ast.If)]
+    shown = {item.module: [name.name for name in item.names] for item in checked.body}
+    assert shown == ks._WHERE
+
+
+def test_a_name_is_looked_for_once_and_is_the_same_as_in_its_module():
+    from kinetostatics.solution.scene import solve
+
+    assert ks.solve is solve
+    assert vars(ks)["solve"] is solve
+
+
+def test_a_name_that_is_not_there_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="module 'kinetostatics' has no attribute 'sovle'"):
+        ks.sovle  # noqa: B018 - looking it up is the test

@@ -1,85 +1,113 @@
 """Build: a validated variant made a scene, with the counterweights that balance it."""
 
-import typing
+from typing import Any
 
 from ..design import balancing, linkage
 from ..errors import CaseError, KinetostaticsError, ParameterError
 from ..machine import cams
-from ..machine.builders import cam_crank_slider, crank_slider, four_bar
-from ..machine.guide import Guide
-from ..machine.links import Link
-from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Tabulated
+from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
+from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, value_of
 from ..numbers.files import read_columns
 from ..solution.scene import Scene
-from . import schema
+from . import chain, parameters, schema
+from .pieces import all_of, cam_of, guide_of, link_of
 
 
 def tabulated(table, folder):
-    """What a validated variant has in files: cam and process force, by their keys."""
-    found: dict[str, typing.Any] = {}
-    cam, force = getattr(table, "cam", None), getattr(table, "process_force", None)
-    if isinstance(cam, schema.SampledTable):
-        found["cam"] = _from_csv(folder / cam.table, {"angle": "rad", "radius": "m"}, cams.Sampled)
-    if force is not None and force.table is not None:
-        found["process_force"] = _from_csv(
-            folder / force.table,
-            {"crank_angle": "rad", "force": "N"},
-            lambda angle, values: Tabulated(angle, values, force.period or TURN),
-        )
-    return found
+    """What a validated variant has in files, by the keys that lead there: cams, and values of loads."""
+    found = list(parameters.files(table))
+    return all_of(
+        (keys, lambda part=part, keys=keys, name=name: _read(folder / name, part, table, keys))
+        for keys, part, name in found
+    )
 
 
-def _from_csv(path, wanted, make):
-    """What is made of columns of a file."""
-    columns = read_columns(path, wanted)
-    try:
-        return make(*columns)
-    except ParameterError as error:
-        raise CaseError(path, [str(error)]) from None
+def without(table, wrong):
+    """A validated variant without what could not be read at some keys, or None, as without its cam."""
+    values: dict[Any, Any] = {
+        keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)
+    }
+    values |= {keys: None for keys in wrong if isinstance(parameters.value(table, keys), schema.ProcessForceTable)}
+    return None if len(values) < len(set(wrong)) else parameters.with_values(table, values)
+
+
+def _read(path, part, table, keys):
+    """Cam or values in a file that a part of a table names."""
+    if isinstance(part, schema.SampledTable):
+        columns = read_columns(path, {"angle": "rad", "radius": "m"})
+        try:
+            return cams.Sampled(*columns)
+        except ParameterError as error:
+            raise CaseError(path, [str(error)]) from None
+    period = part.period or TURN
+    if isinstance(part, schema.ValuesTable):
+        unit = parameters.unit(table, keys)
+        return Table.from_csv(path, unit, part.area, period, part.slider, over=part.over)
+    return Table.from_csv(path, period=period)
 
 
 def built(table, tabulated):
     """Scene of a validated variant with what it has in files, and how it was balanced, or None."""
     mechanism = _mechanism(table, tabulated)
-    loads = tuple(_loads(table, tabulated))
     balanced = _balanced(mechanism, table.balancing) if table.balancing else None
     mechanism = mechanism if balanced is None else balanced.mechanism
+    loads = (*_loads(table, tabulated), *chain.loads(table, tabulated, mechanism))
     return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads), balanced
 
 
+def require_values(table, solution):
+    """Raise an error where a table over travel does not reach as far as its slider."""
+    own = len(solution.loads) - len(table.loads)
+    read = [(number - own, value_of(item)) for number, item in enumerate(solution.loads)]
+    all_of(
+        (("loads", number) if number >= 0 else ("process_force",), lambda value=value: value(solution))
+        for number, value in read
+        if isinstance(value, Table)
+    )
+
+
 def _mechanism(table, tabulated):
+    if isinstance(table, schema.ChainVariant):
+        return chain.chain(table, tabulated)
     if isinstance(table, schema.FourBarVariant | schema.ChainUnitVariant):
         lengths = table.crank_length, table.coupler_length, table.rocker_length
         links = {
-            name: _link(getattr(table, name), length)
+            name: link_of(getattr(table, name), length)
             for name, length in zip(("crank", "coupler", "rocker"), lengths, strict=True)
         }
         if isinstance(table, schema.ChainUnitVariant):
             return linkage.chain_unit(*lengths, pivot_x=table.pivot_x, assembly=table.assembly, **links)
         return four_bar(*lengths, rocker_pivot=table.rocker_pivot, assembly=table.assembly, **links)
-    guide = _guide(table)
-    shared = {"guide": guide, "assembly": table.assembly, "slider": _link(table.slider)}
-    if isinstance(table, schema.CrankSliderVariant):
-        return crank_slider(
-            table.crank_length,
-            table.coupler_length,
-            crank=_link(table.crank, table.crank_length),
-            coupler=_link(table.coupler, table.coupler_length),
-            **shared,
+    if isinstance(table, schema.CamVariant):
+        return _cam_crank_slider(table, tabulated.get(("cam",)))
+    crank = link_of(table.crank, table.crank_length)
+    if isinstance(table, schema.SlottedLeverVariant):
+        links = {"lever": link_of(table.lever), "block": link_of(table.block)}
+        return slotted_lever(
+            table.crank_length, pivot=table.lever_pivot, offset=table.slot_offset, crank=crank, **links
         )
-    cam = tabulated.get("cam") or _cam(table.cam, guide.guide_angle)
+    shared = {"guide": guide_of(table), "slider": link_of(table.slider), "crank": crank}
+    if isinstance(table, schema.ScotchYokeVariant):
+        return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, block=link_of(table.block), **shared)
+    coupler = link_of(table.coupler, table.coupler_length)
+    return crank_slider(table.crank_length, table.coupler_length, assembly=table.assembly, coupler=coupler, **shared)
+
+
+def _cam_crank_slider(table, read):
+    guide = guide_of(table)
+    cam = cam_of(table.cam, read, guide.guide_angle)
     length = _cam_coupler_length(table, cam)
-    coupler = _link(table.coupler, length)
-    return cam_crank_slider(cam, length, crank=_link(table.crank), block=_link(table.block), coupler=coupler, **shared)
+    links = {name: link_of(getattr(table, name)) for name in ("crank", "block", "slider")}
+    coupler = link_of(table.coupler, length)
+    return cam_crank_slider(cam, length, guide=guide, assembly=table.assembly, coupler=coupler, **links)
 
 
-def _guide(table):
-    if table.guide_through is None:
-        angle, offset = (0.0 if value is None else value for value in (table.guide_angle, table.guide_offset))
-        return Guide.at(angle, offset)
-    if table.guide_angle is not None or table.guide_offset is not None:
-        raise KinetostaticsError("give either guide_through or guide_angle and guide_offset")
-    return Guide.through(*table.guide_through)
+def _cam_coupler_length(table, cam):
+    if table.coupler_length is not None:
+        return table.coupler_length
+    if not isinstance(cam, cams.CosineLaw):
+        raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
+    return cam.coupler_length
 
 
 def _balanced(mechanism, table):
@@ -101,33 +129,8 @@ def _balanced(mechanism, table):
     return balancing.partial(mechanism, table.ratio, **weights)
 
 
-def _link(table, length=None):
-    centre = table.centre
-    if isinstance(centre, str):
-        if length is None:
-            raise KinetostaticsError(
-                'centre "mid-length" is for links between two joints, not for slider, block or slotted crank; give a '
-                "distance there"
-            )
-        centre = (length / 2, 0.0)
-    return Link(table.mass, centre, table.inertia)
-
-
-def _cam(table, guide_angle):
-    if table.kind == "circle":
-        return cams.Circle(table.radius, table.centre)
-    return cams.CosineLaw(table.amplitude, table.mean, guide_angle)
-
-
-def _cam_coupler_length(table, cam):
-    if table.coupler_length is not None:
-        return table.coupler_length
-    if not isinstance(cam, cams.CosineLaw):
-        raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
-    return cam.coupler_length
-
-
 def _loads(table, tabulated):
+    """Loads that have a table of their own."""
     if table.gravity is not None:
         yield Gravity(table.gravity.acceleration, table.gravity.direction)
     spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)
@@ -136,7 +139,6 @@ def _loads(table, tabulated):
             yield Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position)
         else:
             yield Spring(spring.stiffness, spring.free_position)
-    if "process_force" in tabulated:
-        yield ProcessForce(tabulated["process_force"], period=tabulated["process_force"].period)
-    elif force is not None:
-        yield ProcessForce(force.force)
+    if force is not None:
+        read = tabulated.get(("process_force",)) or tabulated.get(("process_force", "force"))
+        yield ProcessForce(force.force) if read is None else ProcessForce(read, period=read.period)

@@ -3,7 +3,7 @@
 import re
 import typing
 import warnings
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from types import MappingProxyType
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from ..design import balancing, linkage
 from ..design.balancing_table import balancing_table
-from ..errors import AssemblyError, CaseError, HintWarning, KinetostaticsError
+from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
@@ -22,6 +22,7 @@ from ..solution.scene import Scene
 from ..solution.solution import Solution
 from ..sweeps import designs
 from . import build, parameters, reading, schema
+from .pieces import PartsError
 from .reading import shipped_cases
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
@@ -41,7 +42,7 @@ class Variant:
     balanced: balancing.Balanced | None = None
     folder: Path = field(default=Path(), repr=False)
     tabulated: typing.Mapping[str, typing.Any] = field(default_factory=dict, repr=False)
-    """By key of the table what was read from a file in the folder: a cam, a process force. It is not read again."""
+    """By the keys that lead there what was read from a file in the folder: cams, tables. It is not read again."""
 
     @property
     def mechanism(self):
@@ -62,18 +63,17 @@ class Variant:
     @property
     def units(self):
         """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x"."""
-        return parameters.paths(self.table)
+        return {path: place.unit for path, place in parameters.paths(self.table).items()}
 
     @property
     def parameters(self):
         """What stands in the file by path: a number in SI, or the word for one that is derived, "mid-length"."""
-        return {path: parameters.value(self.table, path) for path in self.units}
+        return {path: parameters.value(self.table, place.steps) for path, place in parameters.paths(self.table).items()}
 
     @property
     def content(self):
         """What a case's variant is made of as bytes, the same in every session: its table, and what files held."""
-        arrays = (getattr(part, column.name) for part in self.tabulated.values() for column in fields(part))
-        return self.table.model_dump_json().encode() + b"".join(np.asarray(values).tobytes() for values in arrays)
+        return self.table.model_dump_json().encode() + b"".join(_bytes(part) for part in self.tabulated.values())
 
     def varied(self, values) -> "Variant":
         """The variant with other values at some paths of its file, in SI, as if they stood there.
@@ -85,15 +85,15 @@ class Variant:
         ----------
         values : dict of path to float or array (designs, 1)
         """
-        known = self.units
+        known = parameters.paths(self.table)
         checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
-        return _made(parameters.with_values(self.table, values), self.folder, self.tabulated)
+        varied = parameters.with_values(self.table, {known[path].steps: value for path, value in values.items()})
+        return _made(varied, self.folder, self.tabulated)
 
     @property
     def files(self):
         """Files that it is made from besides the case file, a list of paths."""
-        named = (getattr(getattr(self.table, part, None), "table", None) for part in ("cam", "process_force"))
-        return [self.folder / name for name in named if name]
+        return [self.folder / name for _, _, name in parameters.files(self.table)]
 
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over the period of the loads from 0, one turn unless they take more.
@@ -102,6 +102,13 @@ class Variant:
         """
         checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
         return self.scene.solve(angles)
+
+
+def _bytes(item):
+    """What was read from a file as bytes: arrays, and what is made of them."""
+    if is_dataclass(item):
+        return b"".join(_bytes(getattr(item, column.name)) for column in fields(item))
+    return np.asarray(item).tobytes() if isinstance(item, np.ndarray) else repr(item).encode()
 
 
 def _made(table, folder, tabulated):
@@ -194,8 +201,8 @@ class Case:
         return balancing_table(self.solve(self.reference), found, self.published.sampling) if found else None
 
     def linkage_table(self):
-        """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are four-bars."""
-        if any("rocker" not in variant.mechanism.links for variant in self.variants.values()):
+        """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are crank-rockers."""
+        if not all(linkage.swings(variant.mechanism) for variant in self.variants.values()):
             return None
         return linkage.characteristics({name: self.solve(name) for name in self.variants}, self.reference)
 
@@ -294,7 +301,7 @@ def _variant(name, own, common, folder, problems):
         inherited = reading.holds(common, keys) and not reading.holds(own, keys)
         return ("common", *keys) if inherited else ("variants", name, *keys)
 
-    kind = merged.get("mechanism")
+    kind = merged.get("mechanism", "chain" if "groups" in merged else None)
     if not isinstance(kind, str) or kind not in schema.VARIANTS:
         path = reading.key_path(place(("mechanism",)))
         problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS)))
@@ -306,14 +313,27 @@ def _variant(name, own, common, folder, problems):
     problems += found
     if table is None:
         return None
+
+    def tell(error):
+        problems.extend(f"{reading.key_path(place(keys))}: {text}" for keys, text in error.problems)
+
     try:
-        variant = _made(table, folder, build.tabulated(table, folder))
+        read = build.tabulated(table, folder)
+    except PartsError as error:
+        tell(error)
+        table = build.without(table, [keys for keys, _ in error.problems])
+        if table is None:
+            return None
+        read = build.tabulated(table, folder)
+    try:
+        variant = _made(table, folder, read)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", HintWarning)  # `load_case` gives them, with the file and the variant
-            variant.solve(angles=720)
+            warnings.simplefilter("ignore", ConditionWarning)  # whoever solves it gets them
+            build.require_values(table, variant.solve(angles=720))
         assembly.require_turn(variant.mechanism)
-    except CaseError as error:
-        problems += [f"variants.{name}: {error.path}: {problem}" for problem in error.problems]
+    except PartsError as error:
+        tell(error)
     except AssemblyError as error:
         problems.append(f"variants.{name}: {error.condition}; change the lengths")
     except KinetostaticsError as error:

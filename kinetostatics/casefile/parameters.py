@@ -1,9 +1,9 @@
-"""What designs may vary: paths into a variant of a case file, such as "spring.stiffness" or "cam.centre.x"."""
+"""What designs may vary: paths into a variant of a case file, as in scenes: "spring.stiffness", "slider2.mass"."""
 
 import typing
-from typing import Any
+from typing import Any, NamedTuple
 
-from .schema import Table
+from .schema import MADE_OF, SampledTable, Table, ValuesTable
 
 PARTS = {"x": 0, "y": 1, "along": 0, "across": 1}
 """Names of the components of a pair."""
@@ -11,56 +11,100 @@ GUIDE = ("guide_angle", "guide_offset")
 """What two points of the guide fix, if they are given."""
 
 
-def paths(table) -> dict[str, str]:
-    """Paths of all numbers in a validated table that can be varied, with their SI units."""
-    found: dict[str, str] = {}
-    if getattr(table, "table", None):  # a file of numbers
-        return found
-    for name, field in type(table).model_fields.items():
-        value = getattr(table, name)
-        unit = _unit(field)
+class Place(NamedTuple):
+    """Where a number stands in a validated table: fields and numbers of items, from the outermost; and its unit."""
+
+    steps: tuple[str | int, ...]
+    unit: str
+
+
+def paths(table, prefix="", label="") -> dict[str, Place]:
+    """Place by path of all numbers in a validated table that can be varied; a label goes behind the first name."""
+    names = getattr(MADE_OF.get(type(table)), "PATHS", {})
+    found: dict[str, Place] = {}
+    for name, field in type(table).model_fields.items() if not _is_in_file(table) else ():
         if name in GUIDE and getattr(table, "guide_through", None):
             continue
-        if isinstance(value, Table):
-            found |= {f"{name}.{path}": inner for path, inner in paths(value).items()}
-        elif unit and isinstance(value, tuple):
-            parts = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
-            found |= {f"{name}.{part}": unit for part in parts}
-        elif unit:
-            found[name] = unit
+        value = getattr(table, name)
+        if isinstance(value, tuple) and value and isinstance(value[0], Table):
+            inner = _of_parts(table, value)
+        else:
+            inner = _of_value(table, name, value, field, f"{prefix}{names.get(name, name)}{label}")
+        found |= {path: place._replace(steps=(name, *place.steps)) for path, place in inner.items()}
     return found
 
 
-def _unit(field):
-    """SI unit of a field: the text in its annotation; None if it is no number."""
+def _of_parts(table, parts):
+    """Those of groups or loads; the second load of a kind is numbered so, after one that has a table of its own."""
+    found: dict[str, Place] = {}
+    counts: dict[str, int] = {}
+    for number, part in enumerate(parts):
+        named = getattr(MADE_OF[type(part)], "PATH", "")
+        counts[named] = counts.get(named, int(bool(named and getattr(table, named, None)))) + 1
+        again = str(counts[named]) if counts[named] > 1 else ""
+        label = getattr(part, "label", getattr(part, "name", ""))
+        inner = paths(part, f"{named}{again}.") if named else paths(part, "", label)
+        found |= {path: place._replace(steps=(number, *place.steps)) for path, place in inner.items()}
+    return found
+
+
+def _of_value(table, name, value, field, path):
+    if isinstance(value, Table):
+        return paths(value, f"{path}.")
+    meant = _meant(field)
+    if hasattr(meant, "numbers"):
+        return {f"{path}.{part}": Place(steps, rule.unit) for part, steps, rule in meant.numbers(value)}
+    if meant is None:
+        return {}
+    if isinstance(value, tuple):
+        parts = ("along", "across") if name == "centre" and hasattr(table, "mass") else ("x", "y")
+        return {f"{path}.{part}": Place((PARTS[part],), meant) for part in parts}
+    return {path: Place((), meant)}
+
+
+def _is_in_file(table):
+    """Whether a table stands for numbers in a file."""
+    return isinstance(table, SampledTable | ValuesTable) or getattr(table, "table", None) is not None
+
+
+def _meant(field):
+    """SI unit of a field, or the rule of its numbers, from its annotation; None if it is no number."""
     candidates = [field.metadata, *(getattr(part, "__metadata__", ()) for part in typing.get_args(field.annotation))]
-    return next((item for metadata in candidates for item in metadata if isinstance(item, str)), None)
+    found = (item for metadata in candidates for item in metadata if isinstance(item, str) or hasattr(item, "numbers"))
+    return next(found, None)
 
 
-def value(table, path):
-    """Value at a path of a validated table: a number in SI, or the word that stands there."""
-    for name in path.split("."):
-        table = getattr(table, name) if isinstance(table, Table) else table[PARTS[name]]
+def unit(table, keys):
+    """SI unit of the field that keys lead to."""
+    return _meant(type(value(table, keys[:-1])).model_fields[keys[-1]])
+
+
+def value(table, steps):
+    """Value at a place of a validated table: a number in SI, or the word that stands there."""
+    for step in steps:
+        table = table[step] if isinstance(step, int) else getattr(table, step)
     return table
 
 
-def with_values(table, values):
-    """Copy of a validated table with values at some paths, as they are: numbers or arrays of designs."""
-    own: dict[str, Any] = {}
-    inner: dict[str, dict[str, Any]] = {}
-    for path, value in values.items():
-        name, _, rest = path.partition(".")
-        if not rest:
-            own[name] = value
-        else:
-            inner.setdefault(name, {})[rest] = value
-    for name, changes in inner.items():
-        current = getattr(table, name)
-        if isinstance(current, Table):
-            own[name] = with_values(current, changes)
-        else:
-            parts = list(current)
-            for part, value in changes.items():
-                parts[PARTS[part]] = value
-            own[name] = tuple(parts)
-    return table.model_copy(update=own)
+def with_values(table, values: dict):
+    """Copy of a validated table with values by steps, as they are: numbers or arrays of designs."""
+    if () in values:
+        return values[()]
+    inner: dict[Any, dict] = {}
+    for (first, *rest), value in values.items():
+        inner.setdefault(first, {})[tuple(rest)] = value
+    if isinstance(table, tuple):
+        return tuple(with_values(part, inner[place]) if place in inner else part for place, part in enumerate(table))
+    return table.model_copy(update={name: with_values(getattr(table, name), own) for name, own in inner.items()})
+
+
+def files(table, keys=()):
+    """Keys that lead to each table that stands for numbers in a file, that table, and the file's name."""
+    if isinstance(table, tuple):
+        for number, part in enumerate(table):
+            yield from files(part, (*keys, number))
+    elif isinstance(table, Table):
+        if _is_in_file(table):
+            yield keys, table, getattr(table, "file" if isinstance(table, ValuesTable) else "table")
+        for name in type(table).model_fields:
+            yield from files(getattr(table, name), (*keys, name))

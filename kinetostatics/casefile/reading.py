@@ -90,8 +90,10 @@ def merged(common, own):
 
 
 def holds(table, keys):
-    """Whether keys, each within the one before, lead to something."""
+    """Whether keys, each within the one before, lead to something; a list is looked at as a whole."""
     for key in keys:
+        if isinstance(key, int):
+            return True
         if not isinstance(table, dict) or key not in table:
             return False
         table = table[key]
@@ -107,20 +109,26 @@ def validated(model, raw, place):
 
 
 def _sentence(model, item, place):
-    keys = tuple(key for key in item["loc"] if key not in schema.CAM_KINDS)
+    keys = tuple(key for key in item["loc"] if key not in schema.TAGS)
     path = key_path(place(keys))
+    found = item["input"]
     if item["type"] == "missing":
         return f"{path} is missing"
     if item["type"] == "extra_forbidden":
         allowed = _allowed(model, item["loc"][:-1])
         return f"{path} is not a key here{checks.hint(keys[-1], allowed)} (allowed: {', '.join(allowed)})"
-    if item["type"] in ("union_tag_invalid", "union_tag_not_found"):
-        if "tag" in item["ctx"]:
-            return checks.choice(f"{path}.kind", item["ctx"]["tag"], tuple(schema.CAM_KINDS))
-        return f"{path}.kind is missing; allowed: {', '.join(map(repr, schema.CAM_KINDS))}"
+    if item["type"] == "kind":
+        allowed = schema.kinds(item["msg"])
+        if not isinstance(found, dict):
+            return f"{path} must be a table with a kind, of {', '.join(map(repr, allowed))}, found {shown(found)}"
+        if "kind" not in found:
+            return f"{path}.kind is missing; allowed: {', '.join(map(repr, allowed))}"
+        return checks.choice(f"{path}.kind", found["kind"], allowed)
+    if item["type"] == "literal_error" and keys[-1] == "kind":
+        return checks.choice(path, found, schema.kinds(item["loc"][-2]))
     if item["type"] == "value_error":
         return f"{path} {item['ctx']['error']}"
-    return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {shown(item['input'])}"
+    return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {shown(found)}"
 
 
 def key_path(keys):
@@ -133,23 +141,19 @@ def key_path(keys):
 
 def _allowed(model, keys):
     """Keys allowed in the table at a path of the model."""
+    return [key for table in _at(model, keys) for key in table.model_fields]
+
+
+def _at(model, keys):
+    """Tables that may stand at a path of the model."""
     candidates = [model]
     for key in keys:
-        if isinstance(key, int):
-            continue
-        tagged = [table for table in candidates if key in _tags(table)]
-        candidates = tagged or [
-            inner
-            for table in candidates
-            if key in table.model_fields
-            for inner in _tables(table.model_fields[key].annotation)
-        ]
-    return [key for table in candidates for key in table.model_fields]
-
-
-def _tags(table):
-    kind = table.model_fields.get("kind")
-    return typing.get_args(kind.annotation) if kind else ()
+        if key in schema.TAGS:
+            candidates = [schema.TAGS[key]]
+        elif not isinstance(key, int):
+            fields = [table.model_fields[key].annotation for table in candidates if key in table.model_fields]
+            candidates = [inner for annotation in fields for inner in _tables(annotation)]
+    return candidates
 
 
 def _tables(annotation):

@@ -1,5 +1,6 @@
 """What each command does with its options."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -11,6 +12,32 @@ SWEEP_OUTPUTS = ("mean_absolute balancing_torque", "largest O")
 """What a sweep tells unless asked for something else."""
 TABLE_ENDINGS = (".csv", ".parquet")
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
+
+
+STARTERS = ("crank-slider", "four-bar", "chain")
+"""Mechanisms of the case files to start from."""
+
+
+def list_cases(options):
+    from ..casefile.reading import read, shipped_cases
+
+    cases = shipped_cases()
+    width = max(map(len, cases))
+    for name, path in cases.items():
+        _, raw = read(path)
+        print(f"{name:{width}}  {raw['title']} ({', '.join(raw['variants'])})")
+
+
+def new(options):
+    from ..casefile.starters import starter
+
+    path = Path(options.name if options.name.lower().endswith(".toml") else f"{options.name}.toml")
+    checks.require("new", f"{path} is there already; give another name" if os.path.lexists(path) else None)
+    checks.require("new", files.unwritable(path))
+    with files.written_whole(path) as temporary:
+        Path(temporary).write_text(starter(options.kind, path.stem), encoding="utf-8")
+    name = f'"{path}"' if " " in str(path) else path
+    print(f"wrote {path}; kinetostatics run {name}")
 
 
 def run(options):

@@ -18,6 +18,12 @@ def parser():
     main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")
     group = main.add_subparsers(required=True, metavar="COMMAND")
 
+    _command(group, "list", commands.list_cases, "the shipped cases, with title and variants", False)
+
+    new = _command(group, "new", commands.new, "write a commented case file to start from", False)
+    new.add_argument("name", type=_text, metavar="NAME", help="of the case: NAME.toml is written, never over another")
+    new.add_argument("--kind", choices=commands.STARTERS, default=commands.STARTERS[0], help="mechanism (%(default)s)")
+
     run = _command(group, "run", commands.run, "extremes of every force, with the power check")
     run.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
     run.add_argument("--angles", type=_angles, default=720, metavar="N", help="crank angles over the turn (720)")

@@ -50,4 +50,4 @@ def _alignment(table):
 def _cell(value):
     if isinstance(value, str):
         return value
-    return "" if value != value else f"{value:.6g}"
+    return "" if value != value else f"{value + 0.0:.6g}"  # a zero has no sign

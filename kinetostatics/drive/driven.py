@@ -20,6 +20,8 @@ from ..solution.scene import Scene
 from .motor import Motor, single
 
 INERTIA, SLOPE, TORQUE, CLOSURE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque", "closure")
+SAME = 1e-12
+"""Crank angles this near, rad, are the same."""
 STEP = 1e-6
 """Relative step of speed by which functions that cannot be recorded are differentiated, for the iteration alone."""
 
@@ -61,8 +63,7 @@ class Driven:
     @property
     def period(self):
         """Crank angle after which motion and loads repeat, rad."""
-        turns = round(self.scene.period / TURN)
-        return TURN * float(np.lcm(turns, self.scene.mechanism.turns))
+        return self.scene.period
 
     @property
     def turns(self):
@@ -79,14 +80,16 @@ class Driven:
     @cached_property
     def kinks(self):
         """Crank angles in (0, period) at which tables of loads have kinks, rad."""
-        found = [np.zeros(0)]
+        found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
         for item in self.scene.loads:
             value = value_of(item)
             if hasattr(value, "kinks"):
+                kinks, jumps = value.kinks(motion)
                 repeats = np.arange(round(self.period / value.period))[:, None]
-                found.append(np.ravel(np.mod(value.kinks, value.period) + value.period * repeats))
-        kinks = np.unique(np.concatenate(found))
-        return kinks[(kinks > 0.0) & (kinks < self.period)]
+                found.append(np.ravel(np.concatenate([kinks, jumps]) + value.period * repeats))
+        kinks = np.unique(np.mod(np.concatenate(found), self.period))
+        apart = np.diff(kinks, prepend=0.0) > SAME
+        return kinks[apart & (kinks < self.period - SAME)]
 
     def at(self, angle, speed=None) -> State:
         """State at crank angles, at crank speeds if loads depend on them; kept for the same angles if they do not."""

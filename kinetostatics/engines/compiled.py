@@ -6,7 +6,6 @@ import os
 from functools import cache
 
 from ..errors import MissingLibraryError
-from .machine_code import load
 
 
 def cores():
@@ -42,5 +41,7 @@ def require():
 @cache
 def _loaded(text):
     """Module of the source, its machine code kept on disk."""
+    from .machine_code import load
+
     require()
     return load(text, keep=True)

@@ -5,7 +5,6 @@ no calls, so the compiler vectorises it. Many values are shared out to threads.
 """
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -65,6 +64,8 @@ def run(loop, angle, sine, cosine, parameters, tables, results):
             found = np.empty((1, results.shape[1], stop - start))
             loop(*given[:3], parameters, given[3], found)
             results[..., start:stop] = found
+
+    from concurrent.futures import ThreadPoolExecutor
 
     with ThreadPoolExecutor(pieces) as threads:
         list(threads.map(piece, edges[:-1], edges[1:]))

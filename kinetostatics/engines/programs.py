@@ -46,7 +46,7 @@ class Program:
         self._slopes: dict[tuple[int, ...], Program] = {}
 
     def by_parameters(self, places):
-        """Program of the derivatives of all outputs, one after the other, by each of the parameters at some places.
+        """Program of all outputs and, one after the other, their derivatives by each of the parameters at some places.
 
         Raises
         ------
@@ -61,7 +61,7 @@ class Program:
                     "sin, cos and sqrt of `elementary`, so how its values hang on the parameters is not recorded"
                 )
             rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
-            self._slopes[places] = Program(recording, tuple(part for row in rows for part in row))
+            self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
         return self._slopes[places]
 
     @cached_property
@@ -109,7 +109,7 @@ class Program:
     def by_numpy(self, angle, numbers, rows, shape):
         """Outputs (outputs, *shape) from crank angles (..., N), numbers or arrays (..., 1), and rows of tables."""
         if not shape:
-            return self.by_numpy(angle.reshape(1), numbers, rows, (1,))[:, 0]
+            return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
         (single, batch), count = self._buffered
         results = np.empty((len(self.outputs), *shape))
         with np.errstate(all="ignore"):

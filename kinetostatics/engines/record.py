@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..machine import loads
 from ..machine.crank import ray
 from ..machine.loads import Load, ProcessForce
 from ..mechanics.dynamics import Dynamics
@@ -125,12 +126,12 @@ class _Recorder:
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
         self._rows = self._arrays = 0
-        mechanism, speed, acceleration, loads = put_together(structure, self._parameter, self._array, lambda: None)
+        mechanism, speed, acceleration, items = put_together(structure, self._parameter, self._array, lambda: None)
         self.angle = self._nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))
         idle = Dynamics(mechanism, self.angle, speed, acceleration, way=way)
-        self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(loads)))
+        self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(items)))
 
     def _parameter(self):
         self.parameters.append(self.graph.parameter(len(self.parameters)))
@@ -171,19 +172,29 @@ class _Recorder:
 
         if isinstance(load, Load):
             of_item, value = amount, load.value_now
-            if not load.VALUE or not (value is None or callable(value)):
+            if isinstance(value, loads.Table):
+                return with_fields(load, **{load.VALUE: self._read(value, place, idle)})
+            if not callable(value):
                 return load
-            if callable(value) and self._is_elementwise(
-                value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]
-            ):
+            if self._is_elementwise(value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]):
                 return load
-            (values,) = self._tabled(1, compute, "" if value is None else load.title)
+            (values,) = self._tabled(1, compute, load.title)
             return with_fields(load, **{load.VALUE: values})
         of_item = pushed
         if self._is_elementwise(load, lambda angle: [load.push(moving(replace(idle, crank_angle=angle)))]):
             return load
         (values,) = self._tabled(1, compute, title_of(load))
         return ProcessForce(values, load.on)
+
+    def _read(self, table, place, idle):
+        """Values of a table over travel by recorded arithmetic on its pieces, which are found beforehand."""
+
+        def item(motion):
+            return motion.loads[place].value_now
+
+        if table.over == "angle":
+            return self._tabled(1, lambda motion, arrays: [item(motion)(motion)])[0]
+        return table.read(idle, self._tabled(3, lambda motion, arrays: item(motion).pieces(motion)))
 
     def _is_elementwise(self, part, compute):
         """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""

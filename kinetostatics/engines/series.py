@@ -41,7 +41,10 @@ def closed_paths(mechanism, angle):
     """The same over a whole turn; refused where no joint moves but the crank pin, and where one cannot be found."""
     found = positions(mechanism, angle)
     if not found.size:
-        raise NotGivenError(f"{mechanism.name} is a crank alone: it has no joint whose path is to be found as a series")
+        what = "moves no joint but the crank pin" if mechanism.groups else "is a crank alone"
+        raise NotGivenError(f"{mechanism.name} {what}: it has no joint whose path is to be found as a series")
+    if mechanism.turns > 1:
+        raise NotGivenError(f"{mechanism.name} takes {mechanism.turns} turns to repeat, a Fourier series one")
     if not np.all(np.isfinite(found)):
         raise NotGivenError(f"{mechanism.name} does not close all around the turn, which a Fourier series needs")
     return found

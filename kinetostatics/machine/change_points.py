@@ -6,26 +6,28 @@ reduced to one turn. With A -> O2 of length e, four times the area of the triang
 
     e^2 = (d+a)^2 - 4 a d cos^2(psi/2) = (d-a)^2 + 4 a d sin^2(psi/2)
 
-so that one factor is a whole square where a + d = b + h ("far": A is farthest from O2), the other where |d - a| = |b - h|
-("near"). Its root with its sign, cos(psi/2) or sin(psi/2), is smooth through the change point, and is divided out of the
-rates. Where both hold the linkage is a parallelogram or a kite, whose other branch is its mirror image in the line
-A O2; where a = d and b = h A meets O2 ("meeting"), and sin(psi/2) is divided out of e as well.
+so that one factor is a whole square where a + d = b + h ("far": A is farthest from O2), the other where
+|d - a| = |b - h| ("near"). Its root with its sign, cos(psi/2) or sin(psi/2), is smooth through the change point, and is
+divided out of the rates. Where both hold the linkage is a parallelogram or a kite, whose other branch is its mirror
+image in the line A O2; where a = d and b = h A meets O2 ("meeting"), and sin(psi/2) is divided out of e as well.
 
 All vectors are taken in the frame that turns half as fast as the crank, in which A -> O2 is
 ((d-a) cos(psi/2), -(d+a) sin(psi/2)).
 """
 
 import math
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt
 from ..numbers.planar import added, cross, dot, left, number, product, stretched, subtracted, turned, unturned
 from .links import Joint, LinkMotion, present
 
-SIDES = {"open": 1, "crossed": -1}
+SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
 """Words for an assembly that passes change points, and the side that it has where there is none."""
 FAR, NEAR, MEETING, PARALLEL, KITE, RHOMBUS = "far", "near", "meeting", "parallel", "kite", "rhombus"
 BOTH = "both"
@@ -37,7 +39,7 @@ ULPS = 8
 SMALLEST = 2.0**-27
 """Root of a margin that is not divided by less."""
 UNSEEN = 2.0**-984
-"""Distance from a change point, by which a zero of it becomes the smallest number there is, and nothing else changes."""
+"""Distance that makes the smallest number there is of a zero, and changes no other."""
 CALLED = {
     "": "none",
     FAR: "a + d = b + h",
@@ -55,7 +57,7 @@ FACING = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 
 
 class PassedMotion(NamedTuple):
-    """A rocker group placed on a branch through its change points.
+    """A rocker group placed on a branch through its change points; `closure` leaves these out.
 
     The sine of the transmission angle is `factor` times `distance`, which vanishes at the change points alone.
     """
@@ -79,37 +81,31 @@ def of_rocker_group(group, crank):
     ParameterError
         It hangs on no crank pin, or the designs of a batch are not all of one kind.
     """
-    owner, x, y = "rocker group", *group.pivot
-    lengths = _lengths(owner, group, crank, crank.length, group.coupler_length, group.rocker_length, x, y)
-    if lengths is None:
-        return ""
-    a, b, h, x, y = lengths
+    a, b, h, x, y = _known("rocker group", group, crank, group.coupler_length, group.rocker_length, *group.pivot)
     d = np.sqrt(x * x + y * y)
     unit = _unit(a, b, h, d)
     far, near = abs(a + d - b - h) <= unit, abs(abs(d - a) - abs(b - h)) <= unit
+    far, near = far & (d > unit), near & (d > unit)
     meeting = near & (abs(d - a) <= unit)
     kite = abs(a - b) + abs(d - h) < abs(a - h) + abs(d - b)
     cases = [far & meeting, far & near & kite, far & near, far, meeting, near]
     kind = np.select(cases, [RHOMBUS, KITE, PARALLEL, FAR, MEETING, NEAR], "")
-    return _joined(owner, kind, CALLED, _facing(x, y))
+    return _joined("rocker group", kind, CALLED, _facing(x, y))
 
 
 def of_slider_group(group, crank):
     """How a slider group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
-    owner, (x, y) = "slider group", group.guide.direction
-    guide = group.guide.guide_offset, x, y
-    lengths = _lengths(owner, group, crank, crank.length, group.coupler_length, *guide)
-    if lengths is None:
-        return ""
-    a, b, e, x, y = lengths
+    line = group.guide.guide_offset, *group.guide.direction
+    a, b, e, x, y = _known("slider group", group, crank, group.coupler_length, *line)
     unit = _unit(a, b, abs(e))
     far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
-    return _joined(owner, np.select([far & near, far, near], [BOTH, FAR, NEAR], ""), SLIDING, _facing(y, -x))
+    kind = np.select([far & near, far, near], [BOTH, FAR, NEAR], "")
+    return _joined("slider group", kind, SLIDING, _facing(y, -x))
 
 
-def _lengths(owner, group, crank, *lengths):
-    """The lengths as arrays of more than double precision."""
-    problem = None
+def _known(owner, group, crank, *lengths):
+    """Length of the crank, and other lengths, as arrays of more than double precision."""
+    problem, lengths = None, (crank.length, *lengths)
     if group.on != "A" or crank.length is None:
         where = f"it hangs on {group.on!r}" if group.on != "A" else "the crank pin slides in its slot"
         problem = f"assembly {group.assembly!r} is for a group on the pin A of a crank of constant length, but {where}"
@@ -138,14 +134,37 @@ def _joined(owner, kind, called, facing):
 
 def _several(found, what, called):
     """What is wrong with designs that are not of one kind, or None."""
-    kinds = np.unique(found).tolist()
-    if len(kinds) == 1:
+    kinds, counts = np.unique(found, return_counts=True)
+    if kinds.size == 1:
         return None
+    texts = "; ".join(called[kind] for kind in kinds.tolist())
     return checks.Problem(
-        f"designs that pass change points must be of one kind, but these have {what} "
-        f"{'; '.join(called[kind] for kind in kinds)} (equal within {ULPS} ulp of the longest length); make a batch of each",
-        found != found.flat[0],
+        f"designs that pass change points must be of one kind, but these have {what} {texts} (equal within {ULPS} ulp "
+        "of the longest length); make a batch of each",
+        found != kinds[counts.argmax()],
     )
+
+
+def kink(group, crank):
+    """What a chosen side makes of the motion at change points, in words; "" where there are none."""
+    if type(group.assembly) is not int or group.on != "A" or crank.length is None:
+        return ""
+    try:
+        passing = replace(group, assembly="open").on_crank(crank)
+        angles = passing.change_points
+    except ParameterError:  # a batch of several kinds, or of several change points
+        return ""
+    if not angles:
+        return ""
+    named = dict.fromkeys(angles, "a kink")
+    if parted(passing.passage)[0] in (MEETING, RHOMBUS):
+        named[angles[0] if len(angles) == 1 else _meeting_angle(passing)] = "a jump, as A meets the pivot"
+    texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
+    return f'assembly {group.assembly:+d} keeps to its side at change points: {texts}; "open" or "crossed" passes them'
+
+
+def _meeting_angle(group):
+    return math.atan2(group.pivot[1], group.pivot[0]) % (2 * math.pi)
 
 
 def parted(passage):
@@ -163,6 +182,8 @@ def angles(passage, start):
     """Crank angles in [0, 2 pi) at which change points are passed, rad, from the direction that the kinds refer to."""
     if not passage:
         return ()
+    several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
+    checks.require("change points", several if any(map(np.ndim, start)) else None)
     kind, first = parted(passage)[0], math.atan2(start[1], start[0])
     at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,)}.get(kind, (0.0, math.pi))
     return tuple(sorted((first + angle) % (2 * math.pi) for angle in at))
@@ -184,11 +205,12 @@ def _half(angle, pivot, ground, facing):
     ray = cos(half), sin(half)
     x, y = pivot
     if not facing and present(y) is None:
-        return _Half(*ray, ray)
+        return _Half(ray[0], ray[1], ray)
     reach = ground - x if facing else ground + x
     size = sqrt(2.0 * ground * reach)
     start = (facing * y / size, facing * reach / size) if facing else (reach / size, y / size)
-    return _Half(*unturned(ray, start), turned(ray, start))
+    cosine, sine = unturned(ray, start)
+    return _Half(cosine, sine, turned(ray, start))
 
 
 def place(placement, joint, coupler_length, rocker_length, pivot, passage, side):
@@ -285,14 +307,14 @@ def _mirrored(half, kind, a, d, side):
         coupler, rocker = (ground, *as_ground), (crank, *as_crank)
     else:
         coupler, rocker = (subtracted(None, crank), *as_crank), (subtracted(None, ground), *as_ground)
-    return coupler, rocker, 1.0, 2.0 * side, sine * cosine
+    return coupler, rocker, square / (n * n), 2.0 * side, sine * cosine
 
 
 def _swung(kind, half, a, d, size, constant, side):
     """Root of the factor that is no whole square, and what follows from it.
 
-    That is the closure, the rate at which the angles of the triangle A B O2 change where O2 A B stay in place, its slope,
-    and `factor` and `distance` of `PassedMotion`.
+    That is the closure, the rate at which the links turn besides A -> O2, its slope, and `factor` and `distance` of
+    `PassedMotion`.
     """
     cosine, sine, _ = half
     passed, other = (cosine, sine) if kind == FAR else (sine, cosine)
@@ -313,6 +335,8 @@ def _single(half, kind, a, b, h, d, side):
     height, closure, rate, bend, factor, passed = _swung(kind, half, a, d, 4.0 * b * h, constant, side)
     x, y = m * cosine, n * sine
     square = x * x + y * y
+    if kind == NEAR:  # with A almost on O2 links turn fast
+        closure = closure * square / (n * n)
     share = gap * both / square
     aside = 2.0 * side * sqrt(a * d) * passed * height / square
     reach = ((1.0 + share) * x + aside * y, aside * x - (1.0 + share) * y)

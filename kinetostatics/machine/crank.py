@@ -66,6 +66,11 @@ class Crank(checks.Checked):
     slots = ()
     hangs_on = ()
     trusted = True
+    """Whether the library's own: a class derived from it may do otherwise."""
+
+    def __init_subclass__(cls, **options):
+        super().__init_subclass__(**options)
+        cls.trusted = False
 
     @property
     def names(self):

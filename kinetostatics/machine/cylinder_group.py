@@ -81,7 +81,7 @@ class CylinderGroup(checks.Checked, Group):
 
     @property
     def slots(self):
-        return (Slot(self._cylinder, self.on),)
+        return (Slot(self._cylinder, self.on, self._rod),)
 
     @property
     def lengths(self):

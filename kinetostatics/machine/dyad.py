@@ -4,7 +4,7 @@ Seen from the second joint it is a rocker group whose pivot stands still: the in
 both links and all forces are those of `rocker_group`, of the motion of the first joint relative to the second.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -86,7 +86,7 @@ class Dyad(checks.Checked, Group):
 
     length1: Any
     length2: Any
-    on: Any = field(default=("B", "C"), metadata={"structural": True})
+    on: Any = ("B", "C")
     pin: str = "D"
     assembly: int = 1
     dyad1: Link = Link()
@@ -162,8 +162,8 @@ class Dyad(checks.Checked, Group):
         return {**inner, self.pin: Output("N", True, f"{self._link1} on {self._link2}")}
 
     def place(self, placement):
-        ends = (placement.joints[name] for name in self.on)
-        self._set(placement, place(*ends, self.length1, self.length2, self.assembly))
+        first, second = (placement.joints[name] for name in self.on)
+        self._set(placement, place(first, second, self.length1, self.length2, self.assembly))
 
     def follow(self, placement, joints):
         """Place both links at joints found in another way."""

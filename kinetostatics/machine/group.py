@@ -5,7 +5,7 @@ frozen dataclass derived from `Group`. It declares, by name,
 
     links       the links it adds, each a `Link`
     references  the joint by which each link is placed
-    joints      the joints it adds, each a `Point` of a link, or of the frame
+    joints      the joints it adds, each a `Point` of a link, its own or one placed before it, or of the frame
     hangs_on    the joints it hangs on
     bars        the links that keep two joints at a distance
     guides      the guide of each link that slides along one, without turning
@@ -52,7 +52,7 @@ but the crank can be asked.
 
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
-forces and power; tests/test_a_group_of_ones_own.py has a whole example.
+forces and power; tests/machine/test_a_group_of_ones_own.py has a whole example.
 
 Nothing else in the library knows what a group looks like, nor the names of its links.
 """
@@ -104,10 +104,14 @@ class Bar(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A link with a straight slot, from its reference joint through `joint` and beyond."""
+    """A link along which `joint` slides in a straight line, in a slot; `rod` is the link that slides in it as a piston.
+
+    Without a rod what slides is a block at the joint.
+    """
 
     link: str
     joint: str
+    rod: str = ""
 
 
 class Output(NamedTuple):
@@ -154,7 +158,6 @@ class Placement:
 class Group:
     """What follows from what a group declares; see the module for what that is."""
 
-    label = ""
     TRUSTED = False
     """Whether its forces are known to balance and its names to come from its texts: the library's own, as tested."""
     trusted = False
@@ -163,6 +166,11 @@ class Group:
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)
         cls.trusted = vars(cls).get("TRUSTED", False)
+
+    @property
+    def label(self):
+        """What tells its names, and paths of its numbers, from those of another of its kind."""
+        return ""
 
     @property
     def follows(self):
@@ -219,6 +227,23 @@ class Group:
         """The group as it is on a crank: what its structure owes to lengths that are not its own."""
         return self
 
+    passage = ""
+    """How it passes change points, which belongs to its structure; "" where there are none."""
+
+    @property
+    def passes(self):
+        """Whether it passes change points: motion is smooth there, but forces grow without bound."""
+        return self.passage != ""
+
+    @property
+    def through(self):
+        """Whether it is to pass change points, had it any."""
+        return type(getattr(self, "assembly", 1)) is str
+
+    def kink(self, crank):
+        """What becomes of its motion at change points that it does not pass, in words; "" without any."""
+        return ""
+
     @property
     def turns(self):
         """Turns of the crank after which its branch closes."""
@@ -226,7 +251,7 @@ class Group:
 
     @property
     def change_points(self):
-        """Crank angles in [0, 2 pi) of the change points that it passes, rad: motion is smooth there, forces grow."""
+        """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
         return ()
 
     @property

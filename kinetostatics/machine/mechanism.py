@@ -87,17 +87,32 @@ class Mechanism(Batched):
 
     @property
     def trusted(self):
-        """Whether all groups are the library's own, whose forces are known to balance."""
-        return all(group.trusted for group in self.groups)
+        """Whether crank and groups are the library's own, whose forces are known to balance."""
+        return all(part.trusted for part in self.parts)
 
     @cached_property
     def turns(self):
-        """Turns of the crank after which the motion repeats: 1, or 2 where a branch through a change point takes them."""
+        """Turns of the crank after which the motion repeats: 1, or 2 for a branch through one change point a turn."""
         return math.lcm(*(group.turns for group in self.groups))
+
+    @property
+    def passages(self):
+        """How each group passes its change points: a text, "" where it has none, None where it keeps to its side."""
+        return tuple(group.passage if group.through else None for group in self.groups)
+
+    @cached_property
+    def passes(self):
+        """Whether it passes change points: motion is smooth there, but forces grow without bound."""
+        return any(group.passes for group in self.groups)
+
+    def grows(self, name):
+        """Whether a force grows without bound at change points that it passes: one of a group that does, or at O."""
+        parts = [group for group in self.groups if group.passes]
+        return bool(parts) and name != "balancing_torque" and any(name in part.outputs for part in (self.crank, *parts))
 
     @cached_property
     def change_points(self):
-        """Crank angles in [0, 2 pi) of the change points that it passes, rad: motion is smooth there, forces grow."""
+        """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
         return tuple(sorted({angle for group in self.groups for angle in group.change_points}))
 
     @cached_property
@@ -124,6 +139,13 @@ class Mechanism(Batched):
     def guides(self):
         """Guide by slider."""
         return {name: guide for group in self.groups for name, guide in group.guides.items()}
+
+    @cached_property
+    def slider(self):
+        """The slider that is meant where none is named: the only one, or that without a label; None: there is none."""
+        bare = [name for name in self.guides if name == self.own_names[name]]
+        found = bare if len(bare) == 1 else list(self.guides)
+        return found[0] if len(found) == 1 else None
 
     @cached_property
     def own_names(self):
@@ -260,8 +282,8 @@ def _name_problems(parts):
         links += part.links
         for name, point in part.joints.items():
             if point.link not in links:
-                link = checks.choice(f"{kind} puts joint {name!r} on link", point.link, links)
-                problems.append(f"{link}; the part that adds the link must stand before it")
+                found = checks.choice(f"{kind}: link that carries joint {name!r}", point.link, links)
+                problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
         add(points, "joint", kind, _spelled(part, "joints"))
         add(points, "link", kind, part.links)
         outputs = _spelled(part, "outputs")

@@ -1,11 +1,11 @@
 """Pin: a further joint fixed to a link, where more may hang: ternary links, second throws, articulated rods."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from ..numbers import checks
 from ..numbers.planar import added
-from .group import Group, Point, Resolved
+from .group import FRAME, Group, Point, Resolved
 from .links import Joint, Link, LinkMotion, arm, first_at, present, second_at
 
 
@@ -25,10 +25,11 @@ class Pin(checks.Checked, Group):
     Parameters
     ----------
     on : str
-        Name of the link: the crank, or one that a group before it adds, as it is called with that group's label.
+        Name of the link: the crank, or one that a group before it adds, as it is called with that group's label;
+        "frame" for a fixed point.
     at : (along, across)
         From the link's reference joint (see `Link`) along its direction and across it, a quarter turn
-        counter-clockwise, m.
+        counter-clockwise, m; on the frame (x, y) from O.
     name : str
 
     Raises
@@ -53,12 +54,18 @@ class Pin(checks.Checked, Group):
     name: str = "C"
 
     TRUSTED = True
+    PATHS: ClassVar = {"at": "pin_"}
     RULES = checks.Rules(
         "pin",
         on=checks.Name(),
         at=checks.Pair("m", parts=("along", "across")),
         name=checks.Name(),
     )
+
+    @property
+    def label(self):
+        """Its name, so that paths of its numbers are its own: "pin_C.along"."""
+        return self.name
 
     @property
     def hangs_on(self):
@@ -85,11 +92,16 @@ class Pin(checks.Checked, Group):
         return self.at
 
     def place(self, placement):
-        placement.joints[self.name] = place(placement.links[self.on], *map(present, self.at))
+        fixed = self.on == FRAME
+        at = Joint(self.at, None, None) if fixed else place(placement.links[self.on], *map(present, self.at))
+        placement.joints[self.name] = at
 
     def follow(self, placement, joints):
-        """Keep the joint as it was found in another way."""
-        placement.joints[self.name] = joints[self.name]
+        """Keep a joint that moves as it was found in another way."""
+        if self.on == FRAME:
+            self.place(placement)
+        else:
+            placement.joints[self.name] = joints[self.name]
 
     def closure(self, placement):
         return 1.0

@@ -154,9 +154,12 @@ class RockerGroup(checks.Checked, Group):
     )
 
     def on_crank(self, crank):
-        if type(self.assembly) is int:
+        if not self.through:
             return self
         return with_fields(self, passage=change_points.of_rocker_group(self, crank))
+
+    def kink(self, crank):
+        return change_points.kink(self, crank)
 
     @property
     def turns(self):
@@ -213,11 +216,8 @@ class RockerGroup(checks.Checked, Group):
         """Add joints B and O2, coupler and rocker."""
         given = placement.joints[self.on], self.coupler_length, self.rocker_length, self.pivot
         side = change_points.SIDES.get(self.assembly, self.assembly)
-        if self.passage:
-            motion = change_points.place(placement, *given, self.passage, side)
-        else:
-            motion = place(*given, side)
-        self._set(placement, motion)
+        passed = self.passage and change_points.place(placement, *given, self.passage, side)
+        self._set(placement, passed or place(*given, side))
 
     def follow(self, placement, joints):
         """Place coupler and rocker at joints found in another way."""

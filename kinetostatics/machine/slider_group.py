@@ -4,8 +4,8 @@ With the guide along the unit vector u, left normal n, at offset e, a coupler of
 d = e - A.n across the guide and +-sqrt((l - d)(l + d)) along it; no angle is ever formed, so nothing happens at the
 dead centres, whatever the inclination of the guide.
 
-Where l = r + |e| on a crank r, the coupler comes to stand across the guide: on a chosen side the slider turns back there,
-the words "open" and "crossed" let it run on (`change_points`).
+Where l = r + |e| on a crank r, the coupler comes to stand across the guide: on a chosen side the slider turns back
+there, the words "open" and "crossed" let it run on (`change_points`).
 """
 
 from dataclasses import dataclass, field
@@ -182,9 +182,12 @@ class SliderGroup(checks.Checked, Group):
     )
 
     def on_crank(self, crank):
-        if type(self.assembly) is int:
+        if not self.through:
             return self
         return with_fields(self, passage=change_points.of_slider_group(self, crank))
+
+    def kink(self, crank):
+        return change_points.kink(self, crank)
 
     @property
     def turns(self):
@@ -248,11 +251,8 @@ class SliderGroup(checks.Checked, Group):
 
     def place(self, placement):
         given = placement.joints[self.on], self.coupler_length, self.guide.line
-        if self.passage:
-            motion = passed(placement, *given, self.passage, self._side)
-        else:
-            motion = place(*given, self._side)
-        self._set(placement, motion)
+        motion = self.passage and passed(placement, *given, self.passage, self._side)
+        self._set(placement, motion or place(*given, self._side))
 
     def follow(self, placement, joints):
         """Place coupler and slider at joints found in another way."""

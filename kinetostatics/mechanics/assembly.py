@@ -8,9 +8,11 @@ import numpy as np
 
 from ..errors import AssemblyError, ConditionWarning, ParameterError
 from ..numbers.elementary import ROUNDING
+from . import quantities
 
 TURN = 2 * np.pi
-GRID = np.linspace(0.0, TURN, 721)[:-1]
+STEPS = 720
+"""Crank angles a turn at which margins are looked at first."""
 HALF = 1e8
 """Condition from which half of the digits are lost."""
 NO_DIGIT = 1e16
@@ -121,10 +123,35 @@ def _warn_where_digits_are_lost(solution, margins):
         f"magnified {found[worst]:.3g} times, so rates and "
         f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {points.size} of "
         f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
-        "angle by angle)",
+        f"angle by angle){_kinks(solution.mechanism)}",
         ConditionWarning,
         stacklevel=6,
     )
+
+
+def growth(solution, name, values):
+    """What must be said of forces near change points that are passed, as a sentence, or None."""
+    sizes = np.abs(values) if values.shape == solution.shape else np.abs(values).max(axis=0)
+    terms = np.maximum(solution.largest_force_term, solution.largest_torque_term)
+    with np.errstate(invalid="ignore"):
+        beyond = (
+            sizes > HALF * np.broadcast_to(terms, sizes.shape[:-1])[..., None] if sizes.ndim else sizes > HALF * terms
+        )
+    if not np.any(beyond):
+        return None
+    worst = int(np.argmax(np.where(beyond, sizes, 0.0)))
+    angle, size = np.broadcast_to(solution.crank_angle, sizes.shape).flat[worst], sizes.flat[worst]
+    found = "infinite" if np.isinf(size) else f"{size:.3g} {quantities.unit_of(solution, name)}"
+    return (
+        f"{solution.mechanism.name}: {name} is {found} at crank angle {np.degrees(angle):.9g} deg, at a change point "
+        "that the mechanism passes: it has a second freedom there for an instant, and its joints hold no load; motion "
+        f"and balancing torque are right ({int(np.sum(beyond))} of {sizes.size} crank angles)"
+    )
+
+
+def _kinks(mechanism):
+    texts = [text for group in mechanism.groups if (text := group.kink(mechanism.crank))]
+    return "".join(f"; {text}" for text in texts)
 
 
 def _error(mechanism, group, placement, margin):
@@ -145,21 +172,21 @@ def _error(mechanism, group, placement, margin):
 
 
 def intervals(mechanism, group, design=(), angles=()):
-    """Crank-angle intervals within one turn where a group does not close, to rounding accuracy.
+    """Crank-angle intervals where a group does not close, to rounding accuracy, within the turns that its motion takes.
 
     Found on a grid of half a degree, at the given angles and where the closure margin is smallest between them, each
     end by root finding on the margin.
     """
     from scipy.optimize import elementwise
 
-    margin = _margin(mechanism, group, design)
-    grid = np.concatenate([GRID, np.mod(angles, TURN)])
+    margin, whole = _margin(mechanism, group, design), TURN * mechanism.turns
+    grid = np.concatenate([_grid(mechanism), np.mod(angles, whole)])
     with np.errstate(invalid="ignore"):
-        grid = np.unique(np.concatenate([grid, np.mod(_lowest(margin, 0.0), TURN)]))
+        grid = np.unique(np.concatenate([grid, np.mod(_lowest(margin, mechanism, 0.0), whole)]))
         gap = margin(grid) < 0
         if gap.all():
-            return ((0.0, TURN),)
-        ends = np.append(grid, grid[0] + TURN)
+            return ((0.0, whole),)
+        ends = np.append(grid, grid[0] + whole)
         change = np.flatnonzero(gap != np.roll(gap, -1))
         if not change.size:
             return tuple((float(angle), float(angle)) for angle in angles[margin(angles) < 0])
@@ -168,7 +195,7 @@ def intervals(mechanism, group, design=(), angles=()):
     starts, stops = edges[~gap[change]], edges[gap[change]]
     if stops.size and stops[0] < starts[0]:
         stops = np.roll(stops, -1)
-        stops[-1] += TURN
+        stops[-1] += whole
     with np.errstate(invalid="ignore"):
         real = (
             margin((starts + stops) / 2) < -ROUNDING
@@ -178,21 +205,24 @@ def intervals(mechanism, group, design=(), angles=()):
 
 
 def near_limits(mechanism, below):
-    """Crank angles within one turn, rad, where the closure margin of a group is smallest, and less than `below`."""
-    found = [_lowest(_margin(mechanism, group), below) for group in mechanism.groups]
-    return np.unique(np.mod(np.concatenate([np.empty(0), *found]), TURN))
+    """Crank angles, rad, where the closure margin of a group is smallest, and less than `below`.
+
+    Within one turn, or the turns after which the motion repeats.
+    """
+    found = [_lowest(_margin(mechanism, group), mechanism, below) for group in mechanism.groups]
+    return np.unique(np.mod(np.concatenate([np.empty(0), *found]), TURN * mechanism.turns))
 
 
 def gaps(mechanism):
-    """Crank-angle intervals within one turn where some group does not close, in order; they do not overlap."""
+    """Crank-angle intervals where some group does not close, in order, as `near_limits`; they do not overlap."""
     found = []
     for group in mechanism.groups:
         margin = _margin(mechanism, group)
         with np.errstate(invalid="ignore"):
-            angle = np.concatenate([GRID, _lowest(margin, 0.0)])
+            angle = np.concatenate([_grid(mechanism), _lowest(margin, mechanism, 0.0)])
             if (margin(angle) < -ROUNDING).any():
                 found += intervals(mechanism, group)
-    return _united(found)
+    return _united(found, TURN * mechanism.turns)
 
 
 def require_turn(mechanism):
@@ -200,7 +230,7 @@ def require_turn(mechanism):
     for group in mechanism.groups:
         margin = _margin(mechanism, group)
         with np.errstate(invalid="ignore"):
-            angle = np.concatenate([GRID, _lowest(margin, 0.0)])
+            angle = np.concatenate([_grid(mechanism), _lowest(margin, mechanism, 0.0)])
             found = margin(angle)
         if (found < -ROUNDING).any():
             where = intervals(mechanism, group)
@@ -222,24 +252,30 @@ def _margin(mechanism, group, design=()):
     return margin
 
 
-def _lowest(margin, below):
+def _grid(mechanism):
+    """Crank angles half a degree apart, as far as the motion takes to repeat."""
+    return np.linspace(0.0, TURN * mechanism.turns, STEPS * mechanism.turns, endpoint=False)
+
+
+def _lowest(margin, mechanism, below):
     """Crank angles of the local minima of a margin that may be less than `below`, found between half degrees."""
     from scipy.optimize import elementwise
 
-    samples = margin(GRID)
+    grid = _grid(mechanism)
+    samples = margin(grid)
     before, after = np.roll(samples, 1), np.roll(samples, -1)
     bend = np.abs(before - 2.0 * samples + after)
-    place = GRID[(samples <= before) & (samples <= after) & (samples - bend < below) & (bend > 0)]
+    place = grid[(samples <= before) & (samples <= after) & (samples - bend < below) & (bend > 0)]
     if not place.size:
         return place
-    step = TURN / GRID.size
+    step = TURN / STEPS
     with np.errstate(invalid="ignore"):
         found = elementwise.find_minimum(margin, (place - step, place, place + step))
     lowest = np.where(margin(found.x) < margin(place) - ROUNDING, found.x, place)
     return lowest[margin(lowest) < below]
 
 
-def _united(intervals):
+def _united(intervals, whole):
     """The same intervals in order, those that overlap as one."""
     united: list[tuple[float, float]] = []
     for start, stop in sorted(intervals):
@@ -247,8 +283,8 @@ def _united(intervals):
             united[-1] = united[-1][0], max(stop, united[-1][1])
         else:
             united.append((start, stop))
-    if len(united) > 1 and united[-1][1] >= united[0][0] + TURN:
+    if len(united) > 1 and united[-1][1] >= united[0][0] + whole:
         start, stop = united.pop()
-        united[0] = start - TURN, max(united[0][1], stop - TURN)
-        united = [(united[0][0] + TURN, united[0][1] + TURN), *united[1:]]
+        united[0] = start - whole, max(united[0][1], stop - whole)
+        united = [(united[0][0] + whole, united[0][1] + whole), *united[1:]]
     return tuple(sorted(united))

@@ -48,6 +48,8 @@ class Dynamics(Motion):
             found = self.mechanism.resolve(self.placement, self.link_loads, self.pushes)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
+        if self.mechanism.passes:  # the crank's equilibrium has reactions that grow without bound
+            found.scalars["balancing_torque"] = self._torque_by_power
         return found
 
     def _warn_of_lost_power(self, torque):
@@ -79,14 +81,21 @@ class Dynamics(Motion):
 
     @property
     def balancing_torque(self):
-        """Torque on the crank that keeps the prescribed motion, from the crank's equilibrium, N m."""
+        """Torque on the crank that keeps the prescribed motion, from the crank's equilibrium, N m.
+
+        From the balance of powers where change points are passed.
+        """
         return self.scalar("balancing_torque")
 
     @property
     def balancing_torque_by_power(self):
         """The same torque from the balance of powers, without any reaction, N m."""
+        return self._scalar(self._torque_by_power)
+
+    @property
+    def _torque_by_power(self):
         total = reduce(plus, self.powers)
-        return self._scalar(minus(None, total) if total is not None else 0.0)
+        return minus(None, total) if total is not None else 0.0
 
     @property
     def shaking_force(self):

@@ -9,6 +9,18 @@ from ..numbers.elementary import is_foreign_array
 from ..numbers.leaves import with_fields
 from .motion import Motion
 
+KNOWN = (
+    "crank_angle",
+    "crank_speed",
+    "crank_acceleration",
+    *(f"{name}(point)" for name in ("position", "velocity", "acceleration")),
+    *(f"{name}(link)" for name in ("rate", "angular_acceleration")),
+    *(f"{name}(slider)" for name in ("travel", "travel_velocity", "travel_acceleration")),
+    "measure(name)",
+    "mechanism",
+)
+"""What a function of the motion may ask for."""
+
 
 class Moving(Motion):
     """A motion as functions of it see it, without forces: these come of what the functions give."""
@@ -16,10 +28,9 @@ class Moving(Motion):
     def __getattr__(self, name):
         if name.startswith("_"):
             raise AttributeError(name)
-        known = [name for name in dir(Motion) if not name.startswith("_")]
         raise UnknownForceError(
-            f"a function of the motion asks for {name!r}, which hangs on the forces that it gives itself; it may ask "
-            f"for {', '.join(known)}"
+            f"a function of the motion asks for {name!r}, which it has not: forces come of what the function gives; it "
+            f"may ask for {', '.join(KNOWN)}"
         )
 
 
@@ -87,7 +98,7 @@ def _checked(item, found, motion):
     if not _fits(array.shape, motion.shape):
         raise ParameterError(f"{owner} {wanted}, got shape {array.shape}")
     if not np.isfinite(array).all():
-        _require_finite(owner, array, motion)
+        _require_finite(f"{owner} must return finite {what}s", array, motion)
     return array if array.dtype.kind == "f" else array.astype(float)
 
 
@@ -105,7 +116,7 @@ def _require_finite(owner, push, motion):
         angle = np.broadcast_to(motion.crank_angle, motion.shape)[wrong]
         places = ", ".join(f"{place:.6g}" for place in np.degrees(angle[:3]))
         raise ParameterError(
-            f"{owner} must return finite forces, got {np.broadcast_to(push, motion.shape)[wrong][0]} at {angle.size} "
+            f"{owner}, got {np.broadcast_to(push, motion.shape)[wrong][0]} at {angle.size} "
             f"crank angles, the first {places} deg",
             wrong.any(axis=-1) if wrong.ndim > 1 else None,
         )

@@ -25,7 +25,7 @@ from ..machine.crank import ray
 from ..machine.group import Group
 from ..machine.guide import Guide
 from ..machine.links import Link, arm, first_at, second_at, virtual_work
-from ..machine.loads import Load, ProcessForce
+from ..machine.loads import Load, ProcessForce, Table
 from ..numbers.duals import Dual
 from ..numbers.elementary import UNIT
 from ..numbers.leaves import is_structural, mapped, with_fields
@@ -45,14 +45,19 @@ STEP = 1e-4
 """Step of the crank angle for the third derivative of a cam that takes plain numbers only, rad."""
 
 
-def condition(solution, points=None):
+def condition(solution, points=None, reactions=None):
     """Bound of the magnification at each crank angle, NaN where the mechanism does not close.
+
+    Where change points are passed reactions grow without bound, but not motion and torque: there it is of these alone
+    unless told, and with `reactions` of them too, over what they have grown to.
 
     Parameters
     ----------
     solution : Solution
     points : array of int, optional
         Places in the flattened shape of the solution; all unless told.
+    reactions : bool, optional
+        Whether reactions count; unless told they do where no change points are passed.
 
     Returns
     -------
@@ -65,20 +70,21 @@ def condition(solution, points=None):
         A group of the user's own does more than arithmetic and comparisons.
     """
     points = np.arange(math.prod(solution.shape)) if points is None else np.asarray(points)
+    reactions = not solution.mechanism.passes if reactions is None else reactions
     with np.errstate(all="ignore"):
-        blocks = [_at(solution, points[start : start + BLOCK]) for start in range(0, points.size, BLOCK)]
+        blocks = [_at(solution, points[start : start + BLOCK], reactions) for start in range(0, points.size, BLOCK)]
     return np.concatenate(blocks)
 
 
-def _at(solution, points):
+def _at(solution, points, reactions):
     try:
         seeded = _Seeded(solution, points)
-        return _magnified(seeded.solution, seeded.largest_pushes, points.size)
+        return _magnified(seeded.solution, seeded.largest_pushes, points.size, reactions)
     except (TypeError, ValueError, AttributeError) as error:
         if points.size == 1:
             name = solution.mechanism.name
             raise NotGivenError(f"{name}: no condition, its kernels cannot be differentiated ({error})") from error
-    return np.concatenate([_at(solution, points[number : number + 1]) for number in range(points.size)])
+    return np.concatenate([_at(solution, points[number : number + 1], reactions) for number in range(points.size)])
 
 
 class _Seeded:
@@ -173,9 +179,15 @@ class _Seeded:
         copied = with_fields(mapped(item, self._constant), **lengths)
         if item.is_given:
             return copied
-        return with_fields(
-            copied, **{item.VALUE: self._given(lambda: item.value_now(moving(idle)), amount(item, self._plain))}
-        )
+        return with_fields(copied, **{item.VALUE: self._value_of(item, idle)})
+
+    def _value_of(self, item, idle):
+        """What a table or function gives, with derivatives where it lets them through."""
+        value = item.value_now
+        if not isinstance(value, Table):
+            return self._given(lambda: value(moving(idle)), amount(item, self._plain))
+        pieces = [self._value(part) for part in value.pieces(self._plain)]
+        return value.read(idle, [_array(Dual(part)) for part in pieces])
 
     def _given(self, compute, plain):
         """What a function of the user's computes, or its plain values where it takes plain numbers only."""
@@ -246,7 +258,7 @@ class _Terms(NamedTuple):
     length: Any
 
 
-def _magnified(solution, largest_pushes, count):
+def _magnified(solution, largest_pushes, count, reactions):
     """Bound at the points of a solution with derivatives."""
     placement, links = solution.placement, _terms(solution)
     speed = reduce(np.maximum, (link.speed for link in links.values()))
@@ -258,7 +270,7 @@ def _magnified(solution, largest_pushes, count):
         motion = placement.links[name]
         shares.append(_over(motion.ratio, PASSING * link.rate))
         shares.append(_over(motion.ratio_slope, PASSING * link.rate_change))
-    shares += _of_forces(solution, links, largest_pushes)
+    shares += _of_forces(solution, links, largest_pushes, reactions)
     found = np.maximum(SAFETY * reduce(np.maximum, shares, np.zeros(count)), 1.0)
     positions = [_number(part).value for joint in placement.joints.values() for part in joint.position]
     closed = np.isfinite(reduce(np.add, positions))
@@ -310,7 +322,7 @@ def _terms(solution):
     return found
 
 
-def _of_forces(solution, links, largest_pushes):
+def _of_forces(solution, links, largest_pushes, reactions):
     """Magnification in reactions and torque; nothing without loads."""
     forces, torques = [0.0], [0.0]
     for name, wrench in solution.link_loads.items():
@@ -326,7 +338,10 @@ def _of_forces(solution, links, largest_pushes):
         torques += [_Sized(work).certain, PASSING * size * links[name].speed]
     force, torque = reduce(np.maximum, forces), reduce(np.maximum, torques)
     found = solution.resolved
-    outputs = solution.mechanism.outputs
+    of_torque = _quotient(_Sized(found.scalars["balancing_torque"]).change, torque)
+    if not reactions:
+        return [of_torque]
+    outputs, grow = solution.mechanism.outputs, solution.mechanism.passes
     supports = [*found.reactions.values(), *(part for name, part in found.scalars.items() if outputs[name].unit == "N")]
-    shares = [_quotient(_Sized(vector(part) if part is None else part).change, force) for part in supports]
-    return [*shares, _quotient(_Sized(found.scalars["balancing_torque"]).change, torque)]
+    sized = [_Sized(vector(part) if part is None else part) for part in supports]
+    return [*(_quotient(one.change, np.fmax(force, one.size) if grow else force) for one in sized), of_torque]

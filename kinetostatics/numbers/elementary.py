@@ -48,7 +48,9 @@ def sqrt(x):
 
 
 def atan(x):
-    return namespace(x).atan(x)
+    if _holds_objects(x):
+        return np.frompyfunc(lambda part: part.arctan() if hasattr(part, "arctan") else part.atan(), 1, 1)(x)
+    return x.atan() if hasattr(x, "atan") else namespace(x).atan(x)
 
 
 _OBJECT = np.dtype(object)

@@ -89,6 +89,11 @@ def read_columns(path, wanted):
     return columns
 
 
+def headings(path):
+    """Name and unit of each column of a CSV file, from its first line."""
+    return [parted(heading) for heading in _rows(path)[0]]
+
+
 def _column(headings, rows, name, wanted):
     """Values of a column in the SI unit wanted; `ValueError` says what is wrong with it."""
     names, units = zip(*map(parted, headings), strict=True)

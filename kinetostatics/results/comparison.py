@@ -177,7 +177,7 @@ def _mean_absolute(function, turn, floor):
 
     nodes, weights = (part / 2 for part in np.polynomial.legendre.leggauss(ORDER))
     even = np.linspace(0.0, turn.period, turn.panels + 1)
-    grid = np.unique(np.concatenate([even, turn.limits % turn.period]))
+    grid = np.unique(np.concatenate([even, turn.limits % turn.period, turn.kinks]))
     samples = function(grid)
     change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
     kinks = elementwise.find_root(function, (grid[change], grid[change + 1])).x if change.size else []

@@ -138,7 +138,8 @@ def extrema(solution, quantity):
         return values(at, quantity)
 
     require_single(solution, "extremes", quantity)
-    turn = solution.sampled
+    grows = callable(quantity) or solution.mechanism.grows(quantity)
+    turn = solution.sampled_for_forces if grows else solution.sampled
     position = unit_of(solution, quantity) == "m"
     left_out = np.empty(0) if position else turn.lost
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):

@@ -272,8 +272,16 @@ class Output:
         ------
         QuantityError
             The mechanism has no such quantity; the message lists those it has.
+        ParameterError
+            It is of a force that grows without bound at change points that the mechanism passes.
         """
-        return replace(self, unit=quantity(scene, self.quantity).unit)
+        unit, mechanism = quantity(scene, self.quantity).unit, scene.mechanism
+        if mechanism.grows(self.quantity):
+            raise ParameterError(
+                f"output {str(self)!r}: {self.quantity} grows as one over the distance from change points that "
+                f"{mechanism.name} passes, so it has no mean and no largest value; ks.extremes tells where"
+            )
+        return replace(self, unit=unit)
 
     @property
     def column(self):

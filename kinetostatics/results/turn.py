@@ -4,16 +4,17 @@ Near a limit position rates and forces change within a distance as small as they
 where nothing of them is right they are left out, and what the quantity tends to on both sides stands in their place.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, is_given
+from ..machine.loads import TURN, Table, is_given, refusals, value_of
 from ..mechanics import assembly
 from ..mechanics.pushes import given, title_of
+from ..numbers import checks
 
 SAMPLES = 1440
 """Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""
@@ -31,6 +32,8 @@ APPROACH = 0.1 * 2.0 ** (-np.arange(120) / 3)
 """Distances from a limit position, rad, by which it is approached; every third is half as far."""
 GROWING = 1.15
 """How much more a quantity must change each time the distance is halved to grow without bound."""
+BESIDE = (-(2.0**-44), 2.0**-44)
+"""Distances from a jump, rad, at which samples stand on both sides of it."""
 SAME = 1e-9
 """Crank angles this near, rad, are the same."""
 LONGEST = 6
@@ -54,16 +57,22 @@ class Turn:
         Crank angles between which the mechanism does not close.
     limits : array
         Crank angles at which a group stands in a limit position, or nearly so, ends of gaps among them.
+    kinks : array
+        Crank angles at which a table has a kink, or may jump.
+    passed : array
+        Those of them that are change points passed, where forces grow; empty where no forces are asked for.
     """
 
     at: Any
     period: float
     gaps: tuple[tuple[float, float], ...]
     limits: np.ndarray
+    kinks: np.ndarray
+    passed: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     @classmethod
-    def of(cls, solution):
-        """Turn of a solution, whatever its own crank angles.
+    def of(cls, solution, forces=False):
+        """Turn of a solution, whatever its own crank angles; of its `forces` where it passes change points.
 
         Raises
         ------
@@ -73,20 +82,29 @@ class Turn:
         turns = round(solution.period / TURN)
         count = SAMPLES * turns * (1 if all(map(is_given, solution.loads)) else FINER)
         grid = np.linspace(0.0, solution.period, count, endpoint=False)
+        kinks, jumps = _kinks(solution)
+        if jumps.size:
+            grid = np.unique(np.concatenate([grid, *(np.mod(jumps + side, solution.period) for side in BESIDE)]))
         first = solution.at(grid)
         require_repeating(solution)
+        checks.require("extremes", *refusals(first))
         near = assembly.near_limits(solution.mechanism, NEAR)
         gaps = assembly.gaps(solution.mechanism) if near.size else ()
+        own = TURN * solution.mechanism.turns
         near = np.concatenate([near, *gaps])
-        near = np.unique(np.mod(near + SAME, TURN) - SAME)
+        near = np.unique(np.mod(near + SAME, own) - SAME)
         near = near[np.diff(near, prepend=-1.0) > 2 * SAME]
-        limits = np.ravel(near + TURN * np.arange(turns)[:, None])
+        limits = np.ravel(near + own * np.arange(round(solution.period / own))[:, None])
+        passed = np.array(solution.mechanism.change_points if forces else ())
+        passed = np.ravel(passed + TURN * np.arange(turns)[:, None])
+        limits = np.sort(np.concatenate([limits[~_beside(limits, passed)], passed]))
         if not limits.size:
-            return cls(first, solution.period, (), limits)
+            return cls(first, solution.period, (), limits, kinks)
         dense = limits[:, None] + np.concatenate([-LADDER, [0.0], LADDER])
         angle = np.unique(np.concatenate([grid, np.mod(dense.ravel(), solution.period)]))
-        repeated = tuple((a + TURN * turn, b + TURN * turn) for turn in range(turns) for a, b in gaps)
-        return cls(solution.at(angle), solution.period, repeated, limits)
+        starts = own * np.arange(round(solution.period / own))
+        repeated = tuple((a + start, b + start) for start in starts.tolist() for a, b in gaps)
+        return cls(solution.at(angle), solution.period, repeated, limits, kinks, passed)
 
     @property
     def angle(self):
@@ -100,7 +118,17 @@ class Turn:
     @cached_property
     def condition(self):
         """Condition at each angle, not looked at where no limit position is near."""
-        return self.at.condition if self.limits.size else np.ones(self.angle.size)
+        return self._condition(self.at) if self.limits.size else np.ones(self.angle.size)
+
+    def _condition(self, solution):
+        if not self.passed.size:
+            return solution.condition
+        from ..mechanics import sensitivity
+
+        found = sensitivity.condition(solution.dynamics, reactions=True)
+        distance = (solution.crank_angle[:, None] - self.passed + self.period / 2) % self.period - self.period / 2
+        with np.errstate(divide="ignore"):  # forces grow as one over it, also at 0, near which angles are exact
+            return np.fmax(found, 1.0 / np.abs(distance).min(axis=-1))
 
     @cached_property
     def usable(self):
@@ -116,7 +144,7 @@ class Turn:
         for run in runs(~good):
             low, high = self.angle[run[0]], self.angle[run[-1]]
             middle = [angle for angle in self.limits if (angle - low) % self.period <= (high - low) % self.period]
-            if not any(np.isclose(angle, self.edges, rtol=0, atol=SAME).any() for angle in middle):
+            if not any(_beside(angle, np.append(self.edges, self.passed)) for angle in middle):
                 places.append(middle[0] if middle else self.angle[run[run.size // 2]])
         return np.array(places)
 
@@ -146,7 +174,8 @@ class Turn:
         near = self._approached[angle, side]
         values = np.asarray(function(near), dtype=float)
         with np.errstate(invalid="ignore"):
-            trusted = np.isfinite(values) & (near.condition < TRUSTED)
+            condition = self._condition(near)
+            trusted = np.isfinite(values) & (condition < TRUSTED)
         count = trusted.size if trusted.all() else int(np.argmin(trusted))
         if count < 10:
             return np.nan
@@ -158,7 +187,7 @@ class Turn:
             return np.copysign(np.inf, change[-1])
         edge = np.isclose(angle, self.edges, rtol=0, atol=SAME).any()
         place = np.sqrt(distance) if edge else distance  # by the root of the distance rates change at the end of a gap
-        weight = 1.0 / (1e-10 + 1e-16 * near.condition[:count])
+        weight = 1.0 / (1e-10 + 1e-16 * condition[:count])
         fit = np.polynomial.Polynomial.fit(place, values, min(6, count - 3), domain=[0.0, place[0]], w=weight)(0.0)
         there = self._outermost(angle, side) if edge else angle
         direct = float(self.evaluate(function, np.array([there]))[0])
@@ -184,6 +213,21 @@ class Turn:
         index = np.searchsorted(self.angle, angle)
         inside = ~self.usable[index % self.usable.size] | ~self.usable[index - 1]
         return np.where(inside, np.where(angle - low < high - angle, low, high), angle)
+
+
+def _kinks(solution):
+    """Crank angles of kinks and jumps of all tables among the loads, over the period."""
+    found: list[Any] = [(np.empty(0), np.empty(0))]
+    for table in map(value_of, solution.loads):
+        if isinstance(table, Table):
+            again = np.arange(0.0, solution.period - SAME, table.period)[:, None]
+            found.append(tuple(np.ravel(angles + again) for angles in table.kinks(solution)))
+    return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
+
+
+def _beside(angle, others):
+    """Whether crank angles are among others, but for rounding."""
+    return np.isclose(np.asarray(angle)[..., None], others, rtol=0, atol=SAME).any(axis=-1)
 
 
 def runs(marked):

@@ -11,16 +11,16 @@ ANGLE = checks.Number("rad", "crank_angle", table=True)
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 
 
-def crank_angles(given):
+def crank_angles(given, owner="solve"):
     """Crank angles of any kind: a locked copy of plain ones, those of another array library as they are."""
     if type(given) is np.ndarray and given.dtype in PRECISIONS:
         return read_only(given.copy())
     if ANGLE.quick(given) is not checks.UNSURE:
         return read_only(np.array(float(given)))
     if isinstance(given, list | tuple) and not given:
-        checks.require("solve", "there are no crank angles")
+        checks.require(owner, "there are no crank angles")
     angle, problem = ANGLE.taken(given)
-    checks.require("solve", problem)
+    checks.require(owner, problem)
     return angle if hasattr(angle, "shape") else read_only(np.array(angle))
 
 

@@ -10,6 +10,7 @@ from ..engines import programs
 from ..engines.compiled import available, require
 from ..engines.trace import needed
 from ..errors import ParameterError
+from ..machine.loads import may_refuse, refusals
 from ..mechanics.dynamics import Dynamics
 from ..numbers import checks, paths
 from ..numbers.elementary import read_only
@@ -90,7 +91,7 @@ class Program:
             if _is_zero(places[path].value(scene)):
                 scene = _with_kept(scene, places[path].steps)
         state = Dynamics(scene.mechanism, np.zeros(1), scene.crank_speed, scene.crank_acceleration, scene.loads)
-        self._fields = dict(vars(state))
+        self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)
         numbered = programs.numbered(state)
         found = {path: place.value(numbered) for path, place in places.items()}
@@ -99,6 +100,10 @@ class Program:
         }
         self._absent = tuple(path for path in places if path not in self._numbers)
         self._doors = {path for path in self._numbers if _is_judged_together(scene, places[path].steps)}
+        self._passages = scene.mechanism.passages
+        groups = scene.mechanism.groups
+        self._lengths = _shaping(places, scene.mechanism, [group for group in groups if group.through])
+        self._fixed = _shaping(places, scene.mechanism, [group for group in groups if group.passes])
         values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
         self.parameters: Mapping[str, Any] = MappingProxyType(values)
 
@@ -142,25 +147,35 @@ class Program:
         angle, values
             As for a call.
         by : sequence of str, optional
-            Paths; all parameters unless told.
+            Paths; all parameters unless told, but for lengths where change points are passed.
 
         Returns
         -------
         dict of str to dict of path to array
-            Shaped as the quantities, in units of the quantity by units of the parameter.
+            Shaped as the quantities, in units of the quantity by units of the parameter; NaN where these are.
 
         Raises
         ------
+        ParameterError
+            There is no such parameter, or it is a length of a mechanism that passes change points: any other length
+            makes another kind of it.
         NotGivenError
             A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
-        names = tuple(self.parameters) if by is None else ((by,) if isinstance(by, str) else tuple(by))
+        every = tuple(path for path in self.parameters if path not in self._fixed)
+        names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
         checks.require("program", None if names else "by names no parameter to derive by")
         self._require_known(names)
+        name = self.scene.mechanism.name
+        checks.require("program", *(_FIXED.format(name, path) for path in names if path in self._fixed))
         state, leaves = self._at(angle, values)
         places = tuple(self._numbers[name][0] for name in names)
         rows = self._program.by_parameters(places).run(state, leaves, self._compiled)
-        rows = read_only(rows.reshape(-1, len(names), *state.shape))
+        count = len(self._program.outputs)
+        gaps, slopes = np.isnan(rows[:count]), rows[count:].reshape(count, len(names), *state.shape)
+        if gaps.any():
+            slopes = np.where(gaps[:, None], np.nan, slopes)
+        rows = read_only(slopes)
         return {
             quantity: dict(zip(names, np.moveaxis(found, -1 - len(state.shape), 0), strict=True))
             for quantity, found in self._program.recording.named(rows).items()
@@ -179,7 +194,7 @@ class Program:
 
     def _at(self, angle, values):
         """The scene at crank angles, with its leaves."""
-        angle = np.array(angle) if type(angle) is float else crank_angles(angle)
+        angle = np.array(angle) if type(angle) is float else crank_angles(angle, "program")
         wrong = problems(angle)
         if wrong:
             checks.require("program", wrong)
@@ -187,9 +202,11 @@ class Program:
             checks.require("program", f"values must be a dict of parameter to number, got {checks.shown(values)}")
         leaves = self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
         shape = _shape(angle, leaves)
-        if self._program.recording.tables:
+        if self._refuses or self._program.recording.tables:
             scene = self.scene.varied(values) if values else self.scene
-            return Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads), leaves
+            state = Dynamics(scene.mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads)
+            checks.require("program", *refusals(state))
+            return state, leaves
         state = object.__new__(Dynamics)
         vars(state).update(self._fields, crank_angle=angle, shape=shape)
         return state, leaves
@@ -209,7 +226,19 @@ class Program:
             checks.require("program", *wrong)
         if not self._doors.isdisjoint(values):
             self.scene.varied(values)
+        if not self._lengths.isdisjoint(values):
+            self._require_same_kind(values)
         return numbers
+
+    def _require_same_kind(self, values):
+        """Refuse lengths that make change points, or take them away: the arithmetic is that of one kind."""
+        name, before = self.scene.mechanism.name, self._passages
+        if self.scene.varied(values).mechanism.passages != before:
+            given = ", ".join(sorted(self._lengths.intersection(values)))
+            raise ParameterError(
+                f"program: {name} with other values of {given} is of another kind (which change points it passes), "
+                "whose arithmetic is another: change lengths together so that it stays, or compile a program of it"
+            )
 
     def _require_known(self, names):
         if all(path in self._numbers for path in names):
@@ -221,6 +250,23 @@ class Program:
                     f'compile(..., parameters=("{path}",))'
                 )
         checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+
+
+_FIXED = (
+    "there is no derivative by {1}: {0} passes change points, and with any other length it would be of another kind"
+)
+
+
+def _shaping(places, mechanism, groups):
+    """Paths of what decides which change points some groups pass: crank length, and their own lengths and lines."""
+    numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
+    owners = [("mechanism", "groups", number) for number in numbers] + [("mechanism", "crank")] * bool(numbers)
+    return {
+        path
+        for path, place in places.items()
+        if any(place.steps[: len(owner)] == owner for owner in owners)
+        and not {"link", "coupler", "rocker", "slider"} & set(place.steps)
+    }
 
 
 def _shape(angle, leaves):

@@ -17,7 +17,7 @@ from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, refusals, 
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from .angles import crank_angles, problems
-from .solution import Solution
+from .solution import Solution, drive_and_loads
 
 DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
@@ -36,12 +36,12 @@ class Scene:
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive; an array has a value for each crank angle, or is (designs, 1).
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`, or one of them.
+        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them.
 
     Raises
     ------
     ParameterError
-        A value is not finite, or a load acts on a link that is not there.
+        A value is not finite, or a load acts on a link or joint that is not there.
 
     Examples
     --------
@@ -79,10 +79,13 @@ class Scene:
         checks.require(owner, *wrong, _period_problem(loads))
         values.update(drive, loads=tuple(item if type(item) in KINDS else checks.kept(item) for item in loads))
 
+    def __repr__(self):
+        return f"<Scene: {self.mechanism.name}, {drive_and_loads(self)}>"
+
     @property
     def period(self):
         """Crank angle after which motion and loads repeat, rad."""
-        return period_of(self.loads)
+        return period_of(self.loads, self.mechanism.turns)
 
     @cached_property
     def _places(self):
@@ -150,8 +153,8 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing. Loads of your own, as all
-        arrays, are taken as they are now: what is changed of them later is not seen.
+        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them; what is left out costs
+        nothing. Loads of your own, as all arrays, are taken as they are now: what is changed of them later is not seen.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
         give NaN there and exact values elsewhere (as needed under ``jax.jit``).
@@ -170,7 +173,8 @@ def solve(mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=
     AssemblyError
         The mechanism does not close at some of the angles and ``on_gap="raise"``.
     ParameterError
-        A value is not finite, or a load acts on a link that is not there.
+        A value is not finite, a load acts on a link or joint that is not there, or has no value at a crank angle, as a
+        force between points that meet.
     MissingLibraryError
         ``engine="compiled"`` without numba.
     NotGivenError
@@ -269,6 +273,6 @@ def _load_problems(mechanism, item):
     if isinstance(item, Load):
         return item.problems(mechanism)
     if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):
-        names = ", ".join(kind.__name__ for kind in KINDS)
-        return (f"loads must be of {names}, got {checks.shown(item)}",)
+        *names, last = (kind.__name__ for kind in KINDS)
+        return (f"loads must be {', '.join(names)} or {last}, got {checks.shown(item)}",)
     return (checks.choice(f"{type(item).__name__}: on", item.on, tuple(mechanism.guides)),)

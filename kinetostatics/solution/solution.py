@@ -1,19 +1,21 @@
 """What users hold: motion and forces of a scene, each computed by an engine when first asked for."""
 
 import math
-from dataclasses import dataclass, fields, replace
+import warnings
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..engines.engines import NUMPY
-from ..errors import ParameterError
+from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import is_given, period_of, value_of
 from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
 from ..mechanics.quantities import scale, values
+from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..results.turn import Turn
 from .angles import crank_angles
@@ -31,6 +33,7 @@ class Solution(Motion):
     """
 
     engine: Any = NUMPY
+    silent: bool = field(default=False, repr=False)
 
     def check(self):
         """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""
@@ -42,9 +45,7 @@ class Solution(Motion):
         assembly.warn_of_lost_digits(self.dynamics)
 
     def __repr__(self):
-        drive = f"crank_speed={self.crank_speed}, crank_acceleration={self.crank_acceleration}"
-        loads = ", ".join(type(item).__name__ for item in self.loads) or "no loads"
-        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive}, {loads}>"
+        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive_and_loads(self)}>"
 
     def at(self, crank_angle):
         """The same mechanism, speed and loads at other crank angles."""
@@ -67,12 +68,17 @@ class Solution(Motion):
     @property
     def period(self):
         """Crank angle after which motion and loads repeat, rad: what extremes, means and tables run over."""
-        return period_of(self.loads)
+        return period_of(self.loads, self.mechanism.turns)
 
     @cached_property
     def sampled(self):
         """The solution over its period as extremes and means look at it (`turn.Turn`), whatever its crank angles."""
         return Turn.of(self)
+
+    @cached_property
+    def sampled_for_forces(self):
+        """The same with change points that are passed as limit positions: reactions grow there."""
+        return Turn.of(replace(self, silent=True), forces=True) if self.mechanism.passes else self.sampled
 
     @property
     def reactions(self):
@@ -80,12 +86,14 @@ class Solution(Motion):
         return tuple(name for name, output in self.mechanism.outputs.items() if output.vector)
 
     def reaction(self, joint):
-        """Reaction at a joint, (2, ..., N), N.
+        """Reaction at a joint, (2, ..., N), N; infinite at a change point that is passed, with a ConditionWarning.
 
         "O": ground on crank; "A": on the coupler at A, from crank or block; "B": coupler on slider; "guide": ground
         on slider.
         """
-        return self._force("reaction", joint, True)
+        found = self._force("reaction", joint, True)
+        self._warn_of_growth(joint, found)
+        return found
 
     @property
     def scalars(self):
@@ -94,7 +102,9 @@ class Solution(Motion):
 
     def scalar(self, name):
         """A force or moment by name, (..., N): "guide_force", "guide_moment", "cam_force", "slot_force" ..."""
-        return self._force("quantity", name, False)
+        found = self._force("quantity", name, False)
+        self._warn_of_growth(name, found)
+        return found
 
     @property
     def guide_force(self):
@@ -201,6 +211,9 @@ class Solution(Motion):
         term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
         at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
         16 - log10(condition) correct digits of its largest term, or more.
+
+        Where change points are passed ("open", "crossed") it is of motion and torque alone, which are ordinary there;
+        `condition_of` tells it of a reaction.
         """
         from ..mechanics.sensitivity import condition
 
@@ -212,10 +225,15 @@ class Solution(Motion):
         Geometry (`condition`) times cancellation: the largest of the terms that a force or torque is the sum of, over
         its largest value, where spring and inertia nearly balance for instance. 16 - log10 of it are the digits left.
         """
-        largest = np.asarray(self.dynamics.largest(values(self, quantity)))
+        largest = np.asarray(self.dynamics.largest(values(replace(self, silent=True), quantity)))
         terms = np.broadcast_to(scale(self, quantity), largest.shape)
         cancelled = np.divide(terms, largest, out=np.ones(largest.shape), where=largest > 0)
-        return self.condition * np.fmax(cancelled, 1.0).reshape(*largest.shape, *[1] * (self.condition.ndim > 0))
+        condition = self.condition
+        if not callable(quantity) and self.mechanism.grows(quantity):
+            from ..mechanics import sensitivity
+
+            condition = sensitivity.condition(self.dynamics, reactions=True).reshape(self.shape)
+        return condition * np.fmax(cancelled, 1.0).reshape(*largest.shape, *[1] * (condition.ndim > 0))
 
     def frame(self):
         """All results as a pandas DataFrame, one row for each crank angle (and design), units in the column names."""
@@ -251,6 +269,17 @@ class Solution(Motion):
         """Whether nothing of it is code of the user's, which may be wrong and is to be told when it is asked."""
         return self.mechanism.trusted and all(map(is_given, self.loads))
 
+    def _warn_of_growth(self, name, values):
+        """Say once that forces grow without bound at a change point that is passed."""
+        if not self.mechanism.passes or self.silent or not self.mechanism.grows(name):
+            return
+        if not isinstance(values, np.ndarray) or values.dtype != float:
+            return
+        text = assembly.growth(self, name, values)
+        if text:
+            object.__setattr__(self, "silent", True)
+            warnings.warn(text, ConditionWarning, stacklevel=3)
+
     def _force(self, kind, name, vector):
         """A force by name; all are computed together if they are not too many."""
         if name not in self._values:
@@ -266,3 +295,14 @@ class Solution(Motion):
             together = of_all and math.prod(self.shape) <= SHARE
             self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
         return self._values[name]
+
+
+def drive_and_loads(item):
+    """Drive and loads of a scene or solution in a line."""
+    loads = ", ".join(type(load).__name__ for load in item.loads) or "no loads"
+    drive = f"crank_speed={_short(item.crank_speed)}, crank_acceleration={_short(item.crank_acceleration)}"
+    return f"{drive}, {loads}"
+
+
+def _short(value):
+    return checks.shown(value) if np.ndim(value) == 0 else f"<array of shape {np.shape(value)}>"

@@ -114,8 +114,8 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
     their centres, the coupler as two masses at its joints, and kinematics as Fourier series of one or two harmonics.
     Links of one kind, such as coupler and coupler2, are simplified together. Where
     that makes more than `MOST_MODELS` combinations, the simplifications that alone change most are left out; so are
-    those that the scene does not allow, such as two masses for a coupler whose mass centre lies beyond its joints. The
-    result tells them by name, with the reason.
+    those that the scene does not allow, such as two masses for a coupler whose mass centre lies beyond its joints, or
+    harmonics that take a slider beyond the table of its load. The result tells them by name, with the reason.
 
     Parameters
     ----------
@@ -168,15 +168,20 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
             try:
                 made = choice.simplified(simplified)
             except NotGivenError as why:
-                left_out[choice.name] = str(why)
+                if len(choices) == 1:
+                    left_out[choice.name] = str(why)
                 return None
             if made is None:
                 return None
             simplified = made
-        with np.errstate(all="ignore"):
-            change = np.linalg.norm(np.array(components(simplified, quantity)) - exact, axis=0).max() / largest
-        error = float(change) if math.isfinite(change) else math.inf
         names = tuple(choice.name for choice in choices)
+        try:
+            with np.errstate(all="ignore"):
+                change = np.linalg.norm(np.array(components(simplified, quantity)) - exact, axis=0).max() / largest
+        except ParameterError as why:  # a load has no value where the model goes, as a table over travel
+            left_out[" with ".join(names)] = str(why)
+            return None
+        error = float(change) if math.isfinite(change) else math.inf
         return Model(names, error, programs.of(simplified.dynamics, (quantity,))[0].recording.operations, simplified)
 
     parts = ingredients(solution.mechanism).values()

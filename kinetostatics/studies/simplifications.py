@@ -11,7 +11,7 @@ from ..errors import NotGivenError
 from ..machine.group import FRAME
 from ..machine.guide import Guide
 from ..machine.links import Link
-from ..machine.loads import Gravity, ProcessForce, Spring
+from ..machine.loads import KINDS
 from ..numbers.leaves import mapped
 from ..solution.solution import Solution
 
@@ -138,9 +138,7 @@ def _up_to_harmonic(order):
 
 
 BEFORE = {
-    "gravity": (Choice("no gravity", _without_load(Gravity)),),
-    "spring": (Choice("no spring", _without_load(Spring)),),
-    "process force": (Choice("no process force", _without_load(ProcessForce)),),
+    **{name: (Choice(f"no {name}", _without_load(kind)),) for kind in KINDS for name in [kind.RULES.owner]},
     "crank acceleration": (Choice("constant crank speed", _at_constant_speed),),
     "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
     "mass-centre offsets": (Choice("mass centres on the links", _with_links(_centred)),),

@@ -1,6 +1,6 @@
 """Design sweeps: a row of numbers for each of many designs, on one core or many machines.
 
-A sweep goes chunk by chunk (`chunks`) through any `concurrent.futures.Executor` (`dispatch`); with a folder the results
+A sweep goes chunk by chunk (`chunks`) through any `concurrent.futures.Executor` (`workers`); with a folder the results
 stream to a Parquet dataset (`dataset`), from which a sweep that was stopped goes on.
 """
 
@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import closing
 from functools import partial
+from os import PathLike
 
 import numpy as np
 import pandas as pd
@@ -109,6 +110,8 @@ def sweep(
     >>> table.iloc[:, 1].round(1).tolist()
     [3.9, 7.6, 50.6]
     """
+    path = folder is None or isinstance(folder, str | PathLike)
+    checks.require("sweep", None if path else f"folder must be a path, got {checks.shown(folder)}")
     job, engines, compared = _job(
         source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
     )

@@ -11,8 +11,9 @@ import numpy as np
 
 from ..engines import loops, programs
 from ..errors import ParameterError
-from ..machine.loads import TURN
+from ..machine.loads import TURN, refusals
 from ..mechanics.quantities import sizes
+from ..numbers import checks
 from ..numbers.elementary import ROUNDING
 from ..results.passes import Passes
 from ..results.turn import NEAR
@@ -40,6 +41,7 @@ def run(scene, job, count, outputs):
     nearest to a limit position (designs,), NaN if it is not near.
     """
     solution = solution_of(scene, job.angles)
+    checks.require("solve", *refusals(solution))
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
         raise ParameterError(

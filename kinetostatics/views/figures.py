@@ -70,8 +70,8 @@ def _has(quantity):
     return lambda case: bool(_that_have(quantity, case.variants))
 
 
-def _all_have(quantity):
-    return lambda case: len(_that_have(quantity, case.variants)) == len(case.variants)
+def _all_have_one_slider(case):
+    return all(item.mechanism.slider is not None for item in case.variants.values())
 
 
 def _is_four_bar(case):
@@ -139,7 +139,7 @@ FIGURES = {
     "overview": (_overview, _always),
     "mechanism": (_one_each(plots.mechanism, 8, 2.6, stacked=True), _always),
     "torque": (_single(plots.torque), _always),
-    "acceleration_error": (_single(plots.acceleration_error), _all_have("slider_acceleration")),
+    "acceleration_error": (_single(plots.acceleration_error), _all_have_one_slider),
     "hodograph": (_one_each(plots.hodograph, 4.4, 4.2), _always),
     "pressure_angle": (_of_those_that_have("pressure_angle"), _has("pressure_angle")),
     "cam_force": (_of_those_that_have("cam_force"), _has("cam_force")),

@@ -377,6 +377,7 @@ def test_the_stiffness_of_a_spring_that_balances_is_compared_with_its_number(tmp
 
 def test_a_cam_of_a_kind_that_is_not_there_is_told_the_nearest(tmp_path):
     text = PLAIN + '[variants.cam]\nmechanism = "cam-crank-slider"\ncoupler_length = "2 m"\ncam = { kind = "cirkle" }\n'
-    (found,) = problems(tmp_path, text)
-    assert found.startswith("variants.cam.cam.kind is 'cirkle'")
-    assert "did you mean 'circle'?" in found
+    kind, radius = problems(tmp_path, text)
+    assert kind.startswith("variants.cam.cam.kind is 'cirkle'")
+    assert "did you mean 'circle'?" in kind
+    assert radius == "variants.cam.cam.radius is missing"

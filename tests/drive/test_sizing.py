@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine.loads import Tabulated
 
 TURN = 2 * math.pi
 RPM = TURN / 60
@@ -84,7 +83,7 @@ def test_for_small_fluctuation_the_textbook_and_the_true_flywheel_agree():
 
 def test_the_textbook_s_energy_is_the_integral_between_crossings_of_the_mean():
     angle = np.linspace(0.0, TURN, 61)[:-1]
-    scene = ks.Scene(SAW, 33.0, loads=(ks.Gravity(), ks.ProcessForce(Tabulated(angle, 5e3 * np.cos(angle) ** 2))))
+    scene = ks.Scene(SAW, 33.0, loads=(ks.Gravity(), ks.ProcessForce(ks.Table(angle, 5e3 * np.cos(angle) ** 2))))
     found = ks.drive.flywheel(scene, 0.02)
     fine = np.linspace(0.0, TURN, 60 * 400, endpoint=False) + TURN / 48000
     torque = scene.solve(fine).balancing_torque

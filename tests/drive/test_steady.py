@@ -8,7 +8,6 @@ import pytest
 from scipy.integrate import quad
 
 import kinetostatics as ks
-from kinetostatics.machine.loads import Tabulated
 from support import DATA
 
 TURN = 2 * math.pi
@@ -16,7 +15,7 @@ MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5,
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
 CAM = ks.cams.CosineLaw(0.3, 2.0)
 FAN = ks.Torque(lambda motion: -2.0 * motion.crank_speed * motion.crank_speed, on="crank")
-CUT = ks.ProcessForce(Tabulated(np.linspace(0.0, TURN, 41)[:-1], 4e3 + 4e3 * np.sin(TURN / 40 * np.arange(40))))
+CUT = ks.ProcessForce(ks.Table(np.linspace(0.0, TURN, 41)[:-1], 4e3 + 4e3 * np.sin(TURN / 40 * np.arange(40))))
 DAMPER = ks.PointDamper(150.0, between=("A", (0.5, 1.0)))
 
 
@@ -133,7 +132,7 @@ def test_of_several_running_speeds_the_stable_one_is_found():
 
 def test_a_load_of_two_turns_runs_over_two_turns():
     angle = np.linspace(0.0, 2 * TURN, 81)[:-1]
-    gas = ks.ProcessForce(Tabulated(angle, -3e4 * np.exp(-((angle - 6.0) ** 2)), period=2 * TURN), period=2 * TURN)
+    gas = ks.ProcessForce(ks.Table(angle, -3e4 * np.exp(-((angle - 6.0) ** 2)), period=2 * TURN))
     run = ks.drive.steady(saw(gas), MOTOR, 300.0)
     assert run.turns == 2
     assert run.period == pytest.approx(2 * TURN)

@@ -204,9 +204,8 @@ def test_recorded_program_equals_solve(interpreted, name):
     assert_program_equals(solve(SCENES[name], ANGLES))
 
 
-@pytest.mark.parametrize("name", ["circle cam, everything", "six-bar"])
-def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba, name):
-    assert_program_equals(solve(SCENES[name], ANGLES))
+def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba):
+    assert_program_equals(solve(SCENES["circle cam, everything"], ANGLES))
     sine, cosine = loops.turn(ANGLES[None])
     assert largest(sine - np.sin(ANGLES)) <= 2**-52
     assert largest(cosine - np.cos(ANGLES)) <= 2**-52
@@ -257,7 +256,9 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
     ]
     expected = np.array(slopes).swapaxes(0, 1).astype(float)
     for compiled_loop in (False, True):
-        found = made.by_parameters(places).run(state, leaves, compiled_loop).reshape(expected.shape)
+        found = (
+            made.by_parameters(places).run(state, leaves, compiled_loop)[len(made.outputs) :].reshape(expected.shape)
+        )
         size = np.abs(expected).max(axis=-1, keepdims=True)
         assert np.all(np.abs(found - expected) <= 1e-12 * np.maximum(size, 1e-3 * size.max(axis=1, keepdims=True)))
 

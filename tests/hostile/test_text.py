@@ -446,7 +446,7 @@ def test_a_table_of_force_that_is_not_over_its_period_is_refused(tmp_path, name)
     (tmp_path / "force.csv").write_text("\n".join([HEADING, *rows]))
     told = f', period = "{period}"' if period else ""
     path = case_file(tmp_path, CASE + f'process_force = {{ table = "force.csv"{told} }}')
-    with pytest.raises(ks.CaseError, match=r"force.csv: table of force: ") as caught:
+    with pytest.raises(ks.CaseError, match=r"force.csv: table: ") as caught:
         ks.load_case(path)
     assert message in str(caught.value)
 

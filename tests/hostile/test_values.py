@@ -5,6 +5,7 @@ import re
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
@@ -32,6 +33,11 @@ CONSTRUCTORS = {
     "Crank": (ks.Crank, {"length": 0.3}),
     "SliderGroup": (ks.SliderGroup, {"coupler_length": 1.1}),
     "RockerGroup": (ks.RockerGroup, {"coupler_length": 0.4, "rocker_length": 0.3, "pivot": (0.35, 0.1)}),
+    "Pin": (partial(ks.Pin, "crank"), {"at": (0.1, 0.05)}),
+    "Dyad": (ks.Dyad, {"length1": 0.4, "length2": 0.3}),
+    "LeverGroup": (ks.LeverGroup, {"pivot": (0.35, 0.1), "offset": 0.02}),
+    "CylinderGroup": (ks.CylinderGroup, {"pivot": (0.35, 0.1)}),
+    "YokeGroup": (ks.YokeGroup, {"slot_angle": 1.3}),
     "Guide.at": (ks.Guide.at, {"guide_angle": 0.3, "guide_offset": 0.1}),
     "Guide.through": (ks.Guide.through, {"W1": (0.0, 0.1), "W2": (1.0, 0.2)}),
     "Circle": (ks.cams.Circle, {"radius": 0.3, "centre": (0.05, 0.0)}),
@@ -98,7 +104,7 @@ BAD = {
 SHAPES = {"one value for each angle", "row", "square", "list"}
 """What a table may be, or has its own test."""
 NAMES = {"crank_angle": "crank"} | {f"{link}length": f"{link[:-1]} length" for link in ("coupler_", "rocker_")}
-PAIRS = {"centre", "pivot", "W1", "W2"}
+PAIRS = {"centre", "pivot", "at", "W1", "W2"}
 
 
 def made(kind, **changes):
@@ -131,6 +137,8 @@ LENGTHS = [
     ("SliderGroup", "coupler_length"),
     ("RockerGroup", "coupler_length"),
     ("RockerGroup", "rocker_length"),
+    ("Dyad", "length1"),
+    ("Dyad", "length2"),
     ("Circle", "radius"),
     ("CosineLaw", "amplitude"),
     ("CosineLaw", "mean"),
@@ -159,6 +167,11 @@ def test_sizes_must_not_be_negative(kind, field, value):
         lambda bad: ks.SliderGroup(1.0, on=bad),
         lambda bad: ks.SliderGroup(1.0, pin=bad),
         lambda bad: ks.RockerGroup(0.4, 0.3, (0.35, 0.1), pivot_name=bad),
+        lambda bad: ks.Pin(on=bad, at=(0.1, 0.0)),
+        lambda bad: ks.Dyad(0.4, 0.3, ("A", bad)),
+        lambda bad: ks.LeverGroup((0.0, -0.3), on=bad),
+        lambda bad: ks.CylinderGroup((0.0, -0.3), pivot_name=bad),
+        lambda bad: ks.YokeGroup(pin=bad),
         lambda bad: ks.Spring(1.0, 0.0, on=bad),
         lambda bad: ks.ProcessForce(1.0, on=bad),
         lambda bad: ks.Mechanism(bad, ks.Crank(0.1), (ks.SliderGroup(0.5),)),
@@ -172,7 +185,11 @@ def test_names_are_texts(make, bad):
 @pytest.mark.parametrize("bad", [0, 2, -1.5, True, "+1", None, np.array([1, -1]), "open up", [1]])
 @pytest.mark.parametrize(
     "make",
-    [lambda bad: ks.SliderGroup(1.0, assembly=bad), lambda bad: ks.RockerGroup(0.4, 0.3, (0.35, 0.1), assembly=bad)],
+    [
+        lambda bad: ks.SliderGroup(1.0, assembly=bad),
+        lambda bad: ks.RockerGroup(0.4, 0.3, (0.35, 0.1), assembly=bad),
+        lambda bad: ks.Dyad(0.4, 0.3, assembly=bad),
+    ],
 )
 def test_assembly_is_a_sign(make, bad):
     with pytest.raises(ks.ParameterError, match=r"assembly must be \+1 or -1"):
@@ -187,6 +204,10 @@ def test_assembly_is_a_sign(make, bad):
         lambda bad: crank_slider(slider=bad),
         lambda bad: ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=bad),
         lambda bad: ks.CamRoller(ks.cams.Circle(0.3), bad),
+        lambda bad: ks.Dyad(0.4, 0.3, dyad2=bad),
+        lambda bad: ks.slotted_lever(0.1, pivot=(0.0, -0.3), block=bad),
+        lambda bad: ks.CylinderGroup((0.0, -0.3), rod=bad),
+        lambda bad: ks.scotch_yoke(0.1, block=bad),
     ],
 )
 def test_links_are_links(make, bad):
@@ -240,6 +261,9 @@ def test_a_guide_has_a_direction_and_an_offset(given):
     "make",
     [
         lambda bad: ks.RockerGroup(0.4, 0.3, bad),
+        lambda bad: ks.Pin("crank", bad),
+        lambda bad: ks.slotted_lever(0.1, pivot=bad),
+        lambda bad: ks.CylinderGroup(bad),
         lambda bad: ks.cams.Circle(0.3, bad),
         lambda bad: ks.Guide.through(bad, (1.0, 0.0)),
     ],
@@ -293,7 +317,7 @@ def test_a_variant_of_a_case_is_solved_by_itself():
 )
 @pytest.mark.parametrize("wrapped", [False, True])
 def test_loads_are_loads(bad, wrapped):
-    with pytest.raises(ks.ParameterError, match="loads must be Gravity, Spring or ProcessForce, got"):
+    with pytest.raises(ks.ParameterError, match=r"loads must be Gravity, Spring, .* or TorsionDamper, got"):
         solve(loads=[bad] if wrapped else bad)
 
 

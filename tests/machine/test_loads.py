@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine.loads import Tabulated
+from kinetostatics.machine.loads import Table
 
 TURN = 2 * np.pi
 STROKES = np.radians([0, 170, 180, 190, 360, 720])
@@ -42,52 +42,55 @@ def written(folder, angles, forces, period=""):
 
 
 def test_a_table_is_linear_between_its_rows_and_repeats_after_its_period():
-    table = Tabulated(np.radians([0, 90, 180, 270]), np.array([0.0, 10.0, 4.0, -2.0]))
+    table = Table(np.radians([0, 90, 180, 270]), np.array([0.0, 10.0, 4.0, -2.0]))
     angle = np.radians([0, 45, 90, 315, 360 + 45, -45])
     assert pushed(table, angle) == pytest.approx([0, 5, 10, -1, 5, -1], abs=1e-12)
 
 
 def test_a_table_over_two_turns_is_not_folded_to_one():
-    table = Tabulated(STROKES, GAS, period=2 * TURN)
+    table = Table(STROKES, GAS, period=2 * TURN)
     angle = np.radians([175, 175 + 360, 175 + 720, 175 - 360, 180, 540])
     assert pushed(table, angle) == pytest.approx([-2500, 0, -2500, 0, -5000, 0], abs=1e-9)
 
 
 def test_the_end_of_the_period_may_be_given_or_left_out_and_angles_may_fall():
-    closed, left_out = Tabulated(STROKES, GAS, 2 * TURN), Tabulated(np.append(STROKES[:-1], 3 * np.pi), GAS, 2 * TURN)
-    falling = Tabulated(STROKES[::-1], GAS[::-1], 2 * TURN)
+    closed, left_out = (
+        Table(STROKES, GAS, period=2 * TURN),
+        Table(np.append(STROKES[:-1], 3 * np.pi), GAS, period=2 * TURN),
+    )
+    falling = Table(STROKES[::-1], GAS[::-1], period=2 * TURN)
     angle = np.linspace(-3.0, 20.0, 500)
     for other in (left_out, falling):
         np.testing.assert_allclose(pushed(other, angle), pushed(closed, angle), rtol=0, atol=1e-9)
-    assert closed.angle.size == 5
+    assert closed.x.size == 5
 
 
 def test_an_end_rounded_in_radians_counts_as_the_start():
     angle = np.round(np.linspace(0, TURN, 37), 3)
-    assert Tabulated(angle, np.sin(angle) * (angle < 6.28)).angle.size == 36
+    assert Table(angle, np.sin(angle) * (angle < 6.28)).x.size == 36
 
 
 def test_tables_are_frozen_equal_by_content_and_can_be_pickled():
-    table, same = (Tabulated(STROKES, GAS, 2 * TURN) for _ in range(2))
+    table, same = (Table(STROKES, GAS, period=2 * TURN) for _ in range(2))
     assert table == same == pickle.loads(pickle.dumps(table))
     assert hash(table) == hash(same)
-    assert table != Tabulated(STROKES, 2 * GAS, 2 * TURN)
+    assert table != Table(STROKES, 2 * GAS, period=2 * TURN)
     assert table != 3
     with pytest.raises(ValueError, match="read-only"):
-        table.force[0] = 1.0
+        table.y[0] = 1.0
     with pytest.raises(AttributeError):
         table.period = TURN
 
 
 def test_a_table_does_not_follow_the_array_it_was_made_from():
     force = GAS.copy()
-    table = Tabulated(STROKES, force, 2 * TURN)
+    table = Table(STROKES, force, period=2 * TURN)
     force[:] = 7.0
-    assert table.force.tolist() == GAS[:-1].tolist()
+    assert table.y.tolist() == GAS[:-1].tolist()
 
 
 def test_a_load_must_have_the_period_of_its_table():
-    table = Tabulated(STROKES, GAS, 2 * TURN)
+    table = Table(STROKES, GAS, period=2 * TURN)
     assert ks.ProcessForce(table, period=4 * np.pi).period == 4 * np.pi
     with pytest.raises(ks.ParameterError, match=r"the period is 6.28.*, but that of its force 12.56"):
         ks.ProcessForce(table)

@@ -53,6 +53,20 @@ def test_arrays_of_numbers_make_a_batch():
         assert np.array_equal(found["balancing_torque"][row], alone.balancing_torque)
 
 
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.parametrize("angle", [np.linspace(0.0, 6.0, 25), 3.0])
+def test_derivatives_are_nan_where_the_values_are_by_every_parameter(interpreted, angle, engine):
+    coupler, rocker = ks.Link(2.0, 0.2, 0.03), ks.Link(2.0, 0.1, 0.02)
+    crank = {"crank": ks.Link(1.0, 0.1, 0.01), "coupler": coupler, "rocker": rocker}
+    scene = ks.Scene(ks.four_bar(0.3, 0.4, 0.3, rocker_pivot=(0.55, 0.1), **crank), 20.0, 0.0, ks.Gravity())
+    program = ks.compile(scene, ["balancing_torque", "O", "rocker_rate"], engine=engine)
+    values, slopes = program(angle), program.derivatives(angle)
+    assert np.isnan(values["balancing_torque"]).any()
+    for quantity, by_path in slopes.items():
+        for path, slope in by_path.items():
+            assert np.array_equal(np.isnan(slope), np.isnan(values[quantity])), (quantity, path)
+
+
 def test_parameters_are_those_present_and_those_asked_for():
     program = ks.compile(saw(), "balancing_torque", parameters=("crank.mass", "slider.centre.across"), engine="numpy")
     assert program.parameters["crank.mass"] == 0.0
@@ -191,6 +205,9 @@ def test_one_kept_parameter_may_be_a_text():
         (lambda program: program(0.5, ["slider.mass"]), "values must be a dict"),
         (lambda program: program(0.5, 3), "values must be a dict"),
         (lambda program: program.derivatives(0.5, ()), "by names no parameter"),
+        (lambda program: program([]), "program: there are no crank angles"),
+        (lambda program: program(np.array([])), "program: there are no crank angles"),
+        (lambda program: program(["a"]), "program: crank_angle must be a number"),
     ],
 )
 def test_calls_of_a_program_that_make_no_sense_are_refused(call, words):

@@ -6,29 +6,52 @@ slider      spring and process force along a guide
 places      points of links, by which loads say where they act
 points      forces, springs and dampers at points
 torsion     couples on links
-tables      values by crank angle or travel
+tables      values by crank angle or travel, rows their rows
+period      turns after which loads repeat
 """
 
 from .gravity import Gravity
-from .load import MOST_TURNS, TURN, Load, WholeTurns, is_given, period_of, refusals, value_of
+from .load import Load, is_given, may_refuse, refusals, value_of
+from .period import MOST_TURNS, TURN, WholeTurns, period_of
 from .points import Force, PointDamper, PointForce, PointSpring
 from .slider import ProcessForce, Spring
-from .tables import Tabulated
-from .torsion import Torque
+from .tables import Table
+from .torsion import Torque, TorsionDamper, TorsionSpring
 
-KINDS = (Gravity, Spring, ProcessForce, Force, PointForce, PointSpring, PointDamper, Torque)
+KINDS = (
+    Gravity,
+    Spring,
+    ProcessForce,
+    Force,
+    PointForce,
+    PointSpring,
+    PointDamper,
+    Torque,
+    TorsionSpring,
+    TorsionDamper,
+)
 """Every load of the library."""
 
 __all__ = [
     "KINDS",
     "MOST_TURNS",
     "TURN",
+    "Force",
+    "Gravity",
     "Load",
+    "PointDamper",
+    "PointForce",
+    "PointSpring",
+    "ProcessForce",
+    "Spring",
+    "Table",
+    "Torque",
+    "TorsionDamper",
+    "TorsionSpring",
     "WholeTurns",
-    "Tabulated",
     "is_given",
+    "may_refuse",
     "period_of",
     "refusals",
     "value_of",
-    *(kind.__name__ for kind in KINDS),
 ]

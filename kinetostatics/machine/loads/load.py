@@ -9,33 +9,39 @@ from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` nam
 the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what
 such a function gives in its place before (`settled` in mechanics/pushes.py). ``LENGTHS`` names the fields that hold
 lengths and angles of the geometry. ``potential(motion)``, of loads that have one, is their potential energy, J.
-``problems(mechanism)`` says what is wrong with a load on that mechanism, ``refusals(motion)`` where it has no value.
+``misplaced(mechanism)`` says what of a mechanism it names wrongly,
+``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion; ``signs(motion)`` how it is drawn.
 """
 
-import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from ...numbers import checks
 from ...numbers.batched import Batched
-
-TURN = 2 * math.pi
-MOST_TURNS = 100
-"""Turns after which loads must repeat, all together."""
+from .period import TURN
+from .tables import Table
 
 
-class WholeTurns:
-    """Rule of a period: 2 pi or a whole multiple of it, but for rounding, which is taken away."""
+class Sign(NamedTuple):
+    """How a load is drawn, in the poses of a motion.
 
-    def quick(self, value):
-        return value if value is TURN else checks.UNSURE
+    Attributes
+    ----------
+    kind : "spring", "damper", "line", "force", "couple", "spiral" or "ring"
+        A spring, damper or line is drawn between two places, all else at the first.
+    start : array (2, N)
+    end : array (2, N), optional
+        Of a spring on a slider None: beside its guide, from the end of its way.
+    direction : array (2, N), optional
+        Of a force: unit vector of a positive one.
+    slider : str
+        That a spring is on.
+    """
 
-    def taken(self, value, field=""):
-        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-        turns = value / TURN if number else 0.0
-        if round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns:
-            many = f"{field} must be at most {MOST_TURNS} turns, got {round(turns):.6g}"
-            return round(turns) * TURN, many if round(turns) > MOST_TURNS else None
-        return value, f"{field} must be 2 pi or a whole multiple of it, got {checks.shown(value)}"
+    kind: str
+    start: Any
+    end: Any = None
+    direction: Any = None
+    slider: str = ""
 
 
 class Load(checks.Checked, Batched):
@@ -45,6 +51,7 @@ class Load(checks.Checked, Batched):
     VALUE: ClassVar[str] = ""
     UNIT: ClassVar[str] = "N"
     LENGTHS: ClassVar[tuple[str, ...]] = ()
+    REFUSES: ClassVar[bool] = False
 
     @property
     def value_now(self) -> Any:
@@ -67,17 +74,21 @@ class Load(checks.Checked, Batched):
         return type(self).__name__
 
     def problems(self, mechanism):
-        """What is wrong with it on a mechanism, as sentences."""
+        """What is wrong with it, and with its table, on a mechanism, as sentences."""
+        table = self.value_now
+        return [*self.misplaced(mechanism), *(table.problems(mechanism) if isinstance(table, Table) else ())]
+
+    def misplaced(self, mechanism) -> Any:
+        """What is wrong with the joints and links that it names."""
         return ()
 
-    def refusals(self, motion):
+    def refusals(self, motion) -> Any:
         """Where it has no value, as sentences."""
         return ()
 
-
-def period_of(loads):
-    """Crank angle after which all loads repeat, rad: the turns that their periods have in common, one at least."""
-    return TURN * math.lcm(*(max(1, round(getattr(item, "period", TURN) / TURN)) for item in loads))
+    def signs(self, motion) -> Any:
+        """How it is drawn, each as a `Sign`."""
+        return ()
 
 
 def is_given(item):
@@ -92,7 +103,12 @@ def value_of(item):
 
 def refusals(motion):
     """Where loads have no value at the crank angles of a motion, as sentences."""
-    return [text for item in motion.loads if isinstance(item, Load) for text in item.refusals(motion)]
+    return [text for item in motion.loads if may_refuse(item) for text in item.refusals(motion)]
+
+
+def may_refuse(item):
+    """Whether there are motions for which a load has no value."""
+    return isinstance(item, Load) and item.REFUSES
 
 
 def valued(unit):

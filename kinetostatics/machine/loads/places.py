@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from ...numbers import checks
 from ...numbers.planar import moment
 from ..group import FRAME, Point
@@ -110,4 +112,5 @@ def shown(place):
     """How a place looks in a message."""
     if isinstance(place, str):
         return repr(place)
-    return f"({', '.join(repr(part) if isinstance(part, str) else f'{part:.6g}' if isinstance(part, float) else '...' for part in place)})"
+    words = (repr(part) if isinstance(part, str) else f"{part:.6g}" for part in place if not np.ndim(part))
+    return f"({', '.join(words)})"

@@ -12,7 +12,7 @@ from ..crank import ray
 from ..group import FRAME
 from ..links import present
 from . import places
-from .load import Load, valued
+from .load import Load, Sign, valued
 from .places import Between, Place, acting, carrier
 
 NEAR = 2.0**-50
@@ -70,7 +70,7 @@ class Force(Load):
     def title(self):
         return f"Force at {places.shown(self.at)}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there is no such joint or link."""
         yield places.problem("Force", "at", self.at, mechanism)
         if self.along is not None:
@@ -78,23 +78,37 @@ class Force(Load):
 
     def wrenches(self, motion):
         """Wrench on the link of its point."""
-        axis = None if self.along is None else motion.placement.links[self.along].direction
-        if present(self.direction) is not None:
-            axis = turned(ray(self.direction), axis)
+        axis = self._axis(motion)
         force = (self.value, 0.0) if axis is None else stretched(self.value, axis)
         yield acting(motion, self.at, force)
 
+    def _axis(self, motion):
+        """Unit vector of a positive force; None for +x."""
+        axis = None if self.along is None else motion.placement.links[self.along].direction
+        return axis if present(self.direction) is None else turned(ray(self.direction), axis)
+
+    def signs(self, motion):
+        """An arrow."""
+        axis = self._axis(motion)
+        yield Sign("force", motion.position(self.at), direction=motion.as_vector((1.0, 0.0) if axis is None else axis))
+
 
 class PointLoad(Load):
-    """A load along the line of two points `between`; `pull` is its force on the first one over the vector to it."""
+    """A load along the line of two points `between`."""
 
     between: Any
+
+    REFUSES, SIGN = True, "line"
+
+    def pull(self, motion) -> Any:
+        """Force on the first point, N."""
+        raise NotImplementedError
 
     @property
     def title(self):
         return f"{type(self).__name__} between {' and '.join(map(places.shown, self.between))}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there are no such points, or if both move as one."""
         owner = type(self).__name__
         wrong = [places.problem(owner, f"between {n}", place, mechanism) for n, place in enumerate(self.between, 1)]
@@ -110,6 +124,10 @@ class PointLoad(Load):
         force = self.pull(motion)
         for place, part in zip(self.between, (force, subtracted(None, force)), strict=True):
             yield acting(motion, place, part)
+
+    def signs(self, motion):
+        """Its sign between both points."""
+        yield Sign(self.SIGN, *map(motion.position, self.between))
 
     def _apart(self, motion):
         """Vector from the second point to the first."""
@@ -174,6 +192,16 @@ class PointForce(PointLoad):
         d = self._apart(motion)
         return stretched(self.value / length(d), d)
 
+    def signs(self, motion):
+        """A line between both points, and arrows that push them apart."""
+        first, second = map(motion.position, self.between)
+        apart = first - second
+        with np.errstate(invalid="ignore"):
+            unit = apart / np.hypot(*apart)
+        yield Sign("line", first, second)
+        yield Sign("force", first, direction=unit)
+        yield Sign("force", second, direction=-unit)
+
 
 @dataclass(frozen=True, eq=False)
 class PointSpring(PointLoad):
@@ -206,7 +234,7 @@ class PointSpring(PointLoad):
     free_length: Any = 0.0
     between: Any = field(kw_only=True)
 
-    PATH, LENGTHS = "point_spring", ("free_length", "between")
+    PATH, LENGTHS, SIGN = "point_spring", ("free_length", "between"), "spring"
     RULES = checks.Rules(
         "point spring",
         stiffness=checks.Number("N/m", low=0.0),
@@ -267,7 +295,7 @@ class PointDamper(PointLoad):
     coefficient: Any
     between: Any = field(kw_only=True)
 
-    PATH, LENGTHS = "point_damper", ("between",)
+    PATH, LENGTHS, REFUSES, SIGN = "point_damper", ("between",), False, "damper"
     RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
 
     def pull(self, motion):

@@ -5,7 +5,9 @@ from typing import Any
 
 from ...numbers import checks
 from ..links import present
-from .load import TURN, Load, WholeTurns, valued
+from .load import Load, Sign, valued
+from .period import TURN, WholeTurns
+from .tables import Table
 
 
 class OnSlider(Load):
@@ -17,9 +19,12 @@ class OnSlider(Load):
     def title(self):
         return f"{type(self).__name__} on {self.on!r}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there is no such slider."""
-        yield checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+        problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+        if problem and not mechanism.guides:
+            problem += f"; {mechanism.name} has no slider, a Force or PointSpring acts at any point"
+        yield problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +83,10 @@ class Spring(OnSlider):
             return 0.5 * self.stiffness * square
         return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
 
+    def signs(self, motion):
+        """A spring along the guide."""
+        yield Sign("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
+
 
 @dataclass(frozen=True, eq=False)
 class ProcessForce(OnSlider):
@@ -85,10 +94,11 @@ class ProcessForce(OnSlider):
 
     Parameters
     ----------
-    force : float, array or function
-        N; an array has one value for each crank angle; a function takes the `Motion` and returns such values, so the
-        force may depend on crank angle, position or velocity, at each crank angle by itself. The compiled engine takes
-        its constants into the program, so a function with other constants is compiled anew.
+    force : float, array, Table or function
+        N; an array has one value for each crank angle; a `Table` is read by crank angle or travel; a function
+        takes the `Motion` and returns such values, so the force may depend on crank angle, position or velocity, at
+        each crank angle by itself. The compiled engine takes its constants into the program, so a function with other
+        constants is compiled anew.
     on : str
         The slider it acts on.
     period : float
@@ -115,6 +125,17 @@ class ProcessForce(OnSlider):
         period=WholeTurns(),
     )
 
+    @property
+    def value_now(self):
+        """The force, a table over travel by the slider itself."""
+        return self.force.of(self.on) if isinstance(self.force, Table) else self.force
+
     def push(self, motion):
         """Force on the slider along the guide, N."""
         return self.force
+
+    def signs(self, motion):
+        """An arrow in the guide's direction."""
+        mechanism = motion.mechanism
+        along = motion.as_vector(mechanism.guides[self.on].direction)
+        yield Sign("force", motion.position(mechanism.references[self.on]), direction=along)

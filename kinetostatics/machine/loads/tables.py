@@ -1,133 +1,284 @@
-"""Tables of values: by crank angle."""
+"""Tables of values for loads: by crank angle, or by the travel of a slider."""
 
-import math
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from ...errors import CaseError, ParameterError
 from ...numbers import checks
-from .load import TURN, WholeTurns
+from ...numbers.leaves import with_fields
+from . import rows
+from .period import TURN, WholeTurns
+
+OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
+"""By what a table may be over: the heading of such a column, and its unit."""
+SAMPLES = 720
+"""Crank angles a turn between which the kinks of a table over travel are found."""
+VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
+"""Heading of a column of values, by unit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Rows of a table, in order: arrays (N,); `back` is None where both strokes have the same values."""
+
+    x: Any
+    y: Any
+    back: Any = None
+
+    TABULATED = True
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class Tabulated:
-    """Function of the motion that interpolates a table of force by crank angle.
+class Table:
+    """Values for any load: linear between rows by crank angle, or by the travel of a slider.
 
-    Linear between the rows, and from the last to the first of the next period. It passes through every row, adds no
-    extrema between them, and has a kink at each.
+    It passes through every row, adds no extrema between them, and has a kink at each. It is a function of the crank
+    angle once read: extremes, means, `Solution.at` and sweeps take it, programs give derivatives through its travel.
 
     Parameters
     ----------
-    angle : array (N,)
-        Crank angles, rad, rising or falling, over one period; its end may be given too, with the force of the start.
-    force : array (N,)
-        N.
+    x : array (N,)
+        Crank angles, rad, over one period, whose end may be given too, with the value of the start; or coordinates of
+        the slider's pin along its guide (B . guide direction), m. Rising or falling.
+    y : array (N,)
+        Values in the unit of the load, N or N m.
+    over : "angle" or "travel"
+    back : array (N,), optional
+        Over travel, the values of the stroke with negative velocity of the slider along its guide: an indicator
+        diagram. At the ends of the stroke the value jumps where both differ there.
     period : float
-        Crank angle after which the force repeats, rad: 2 pi or a whole multiple of it.
+        Crank angle after which a table over the angle repeats, rad: 2 pi or a whole multiple of it.
+    slider : str, optional
+        Over travel, the slider it is read by: unless told the one that the load acts on, or the only one there is.
 
     Raises
     ------
     ParameterError
-        Fewer than three rows, angles that do not rise, rows over more or less than a period, unequal ends.
+        Over the angle: fewer than three rows, angles that do not rise, rows over more or less than a period, unequal
+        ends; over travel: fewer than two rows, coordinates that do not rise. When it is read: a travel outside of it.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2)
+    >>> gas = ks.Table([0.15, 0.2, 0.25], [-900.0, -500.0, -100.0], over="travel", back=[0.0, 0.0, 0.0])
+    >>> s = ks.solve(pump, [1.0, 5.0], crank_speed=100.0, loads=ks.ProcessForce(gas))
+    >>> [round(float(torque), 3) for torque in s.balancing_torque]
+    [0.0, 22.287]
     """
 
-    angle: Any = field(repr=False)
-    force: Any = field(repr=False)
+    rows: Any = field(repr=False)
+    over: str = "angle"
+    slider: Any = None
     period: float = field(default=TURN, metadata={"structural": True})
 
-    TABULATED = True
+    RULES = checks.Rules("table")
 
-    def __init__(self, angle, force, period=TURN):
+    def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None):
+        given = {"x": x, "y": y} if back is None else {"x": x, "y": y, "back": back}
         checks.require(
-            "table of force",
-            checks.table("angle", angle),
-            checks.table("force", force),
+            "table",
+            *(checks.table(name, values) for name, values in given.items()),
+            checks.choice("over", over, tuple(OVER)),
             WholeTurns().taken(period, "period")[1],
+            None if slider is None else checks.Name().taken(slider, "slider")[1],
+            None if back is None or over == "travel" else 'back is for a table over="travel"',
+            None if slider is None or over == "travel" else 'slider is for a table over="travel"',
         )
-        angle, force = (np.array(values, dtype=float) for values in (angle, force))
-        fits = angle.ndim == 1 and angle.shape == force.shape
-        checks.require("table of force", None if fits else "angle and force must be 1-D, of one length")
-        if angle.size > 1 and angle[0] > angle[-1]:
-            angle, force = angle[::-1], force[::-1]
-        checks.require("table of force", _rows_problem(angle, force, period))
-        if _closes(angle, period):
-            angle, force = angle[:-1], force[:-1]
-        for name, values in (("angle", angle), ("force", force)):
+        arrays = {name: np.array(values, dtype=float) for name, values in given.items()}
+        shapes = {values.shape for values in arrays.values()}
+        fits = len(shapes) == 1 and arrays["x"].ndim == 1
+        checks.require("table", None if fits else f"{' and '.join(arrays)} must be 1-D, of one length")
+        checks.require("table", rows.order_problem(arrays["x"], over))
+        if arrays["x"][0] > arrays["x"][-1]:
+            arrays = {name: values[::-1] for name, values in arrays.items()}
+        period = WholeTurns().taken(period)[0]
+        if over == "angle":
+            checks.require("table", rows.problem(arrays["x"], arrays["y"], period))
+            if rows.closes(arrays["x"], period):
+                arrays = {name: values[:-1] for name, values in arrays.items()}
+        else:
+            short = None if period == TURN else "over travel the period is one turn"
+            checks.require("table", rows.travel_problem(arrays["x"]), short)
+        for values in arrays.values():
             values.setflags(write=False)
-            object.__setattr__(self, name, values)
-        object.__setattr__(self, "period", WholeTurns().taken(period)[0])
+        for name, part in {"rows": Rows(**arrays), "over": over, "slider": slider, "period": period}.items():
+            object.__setattr__(self, name, part)
+
+    @classmethod
+    def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None, over=None):
+        """Read a table with two or three columns, each headed by its name and a unit that converts.
+
+        Parameters
+        ----------
+        path : path
+            First column ``crank_angle [deg]`` or ``travel [mm]``; then ``force [kN]``, ``torque [N m]``, or with an
+            `area` ``pressure [bar]``; over travel the same for the stroke back, if any, headed ``force_back [kN]``
+            and so on.
+        unit : "N" or "N m"
+            Of the load.
+        area : float, optional
+            m2, by which pressures become forces along the guide; negative where they push against its direction.
+        period, slider
+            As of the table.
+        over : "angle" or "travel", optional
+            Which column to take where the file has both; unless told, the travel.
+
+        Raises
+        ------
+        CaseError
+            The file cannot be read, or makes no table.
+        """
+        from ...numbers.files import headings, read_columns
+
+        checks.require(
+            "table",
+            checks.choice("unit", unit, ("N", "N*m", "N m")),
+            None if area is None else _area(area),
+            None if over is None else checks.choice("over", over, tuple(OVER)),
+            "area makes forces of pressures, but this load is a torque" if area is not None and unit != "N" else None,
+        )
+        names = [name for name, _ in headings(path)]
+        if area is None and "pressure" in names and VALUES[unit] not in names:
+            raise CaseError(path, ["no column 'force', but pressures; give the area that they act on, as area"])
+        over = over or ("travel" if OVER["travel"][0] in names else "angle")
+        column, own = OVER[over]
+        of = unit.replace(" ", "*") if area is None else "Pa"
+        value = VALUES[of]
+        back = over == "travel" and f"{value}_back" in names
+        x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
+        y, back, *_ = *(part if area is None else area * part for part in values), None
+        try:
+            return cls(x, y, over, back, period, slider)
+        except ParameterError as error:
+            raise CaseError(path, [str(error)]) from None
 
     @property
-    def kinks(self):
-        """Crank angles at which it has kinks, rad."""
-        return self.angle
+    def x(self):
+        """Crank angles, rad, or coordinates along the guide, m."""
+        return self.rows.x
+
+    @property
+    def y(self):
+        """Values in the unit of the load."""
+        return self.rows.y
+
+    @property
+    def back(self):
+        """Values of the stroke with negative velocity; None where there are no others."""
+        return self.rows.back
+
+    def of(self, slider):
+        """The table read by the travel of a slider unless it names one itself."""
+        return self if self.over == "angle" or self.slider is not None else with_fields(self, slider=slider)
+
+    def problems(self, mechanism):
+        """What is wrong with it on a mechanism, as sentences."""
+        if self.over == "angle":
+            return
+        sliders = tuple(mechanism.guides)
+        if self.slider is not None:
+            yield checks.choice("table over travel: slider", self.slider, sliders)
+        elif len(sliders) != 1:
+            there = f"sliders {', '.join(map(repr, sliders))}: say which, slider=..." if sliders else "no slider"
+            yield f"table over travel: the mechanism has {there}"
 
     def __call__(self, motion):
-        return np.interp(motion.crank_angle, self.angle, self.force, period=self.period)
+        return self.read(motion, self.pieces(motion))
+
+    def place(self, motion):
+        """What it is read by: crank angle, or travel of the slider."""
+        return motion.crank_angle if self.over == "angle" else motion.travel(self._slider(motion))
+
+    def read(self, motion, pieces):
+        """Values at a motion of whatever numbers that runs through these pieces."""
+        start, value, slope = pieces
+        return value + slope * (self.place(motion) - start)
+
+    def _slider(self, motion):
+        return self.slider or next(iter(motion.mechanism.guides))
+
+    def pieces(self, motion):
+        """Where the piece of the table starts at each crank angle, the value there, and its slope.
+
+        Raises
+        ------
+        ParameterError
+            The travel goes beyond the table.
+        """
+        place, x, y = np.asarray(self.place(motion), dtype=float), self.x, self.y
+        if self.over == "angle":
+            turns = np.floor((place - x[0]) / self.period)
+            x, y = np.append(x, x[0] + self.period), np.append(y, y[0])
+            piece = _piece(x, place - turns * self.period)
+            return x[piece] + turns * self.period, y[piece], (np.diff(y) / np.diff(x))[piece]
+        rows.require_inside(x, place, motion)
+        piece, step = _piece(x, place), np.diff(x)
+        if self.back is None:
+            return x[piece], y[piece], (np.diff(y) / step)[piece]
+        returning = self.returns(motion)
+        slope = np.where(returning, (np.diff(self.back) / step)[piece], (np.diff(y) / step)[piece])
+        return x[piece], np.where(returning, self.back[piece], y[piece]), slope
+
+    def returns(self, motion):
+        """Whether the slider is on its stroke with negative velocity; standing still, as if the crank turned on."""
+        forward = np.where(np.asarray(motion.crank_speed) < 0, -1.0, 1.0)
+        return forward * motion.placement.travels[self._slider(motion)].first < 0
+
+    def kinks(self, motion):
+        """Crank angles (K,) in a turn, or its period, at which it has kinks, and (J,) at which it may jump.
+
+        Those over travel lie where the slider passes a row, and at the ends of its strokes.
+        """
+        if self.over == "angle":
+            return np.mod(self.x, self.period), np.empty(0)
+        name = self._slider(motion)
+
+        def travel(angle):
+            return motion.mechanism.place(angle).travels[name]
+
+        ends = _passed(lambda angle: travel(angle).first, np.zeros(1))
+        passed = _passed(lambda angle: travel(angle).position, self.x)
+        return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
     @property
     def _content(self):
-        return self.angle.tobytes(), self.force.tobytes(), self.period
+        own = self.rows
+        return own.x.tobytes(), own.y.tobytes(), None if own.back is None else own.back.tobytes(), *self._structure
+
+    @property
+    def _structure(self):
+        return self.over, self.slider, self.period
 
     def __eq__(self, other):
-        return self._content == other._content if isinstance(other, Tabulated) else NotImplemented
+        return self._content == other._content if isinstance(other, Table) else NotImplemented
 
     def __hash__(self):
         return hash(self._content)
 
 
-def _closes(angle, period):
-    """Whether the last row stands at the angle of the first, a period later, but for rounding."""
-    return abs(angle[-1] - angle[0] - period) < min(0.1 * np.median(np.diff(angle)), 0.005)
+def _piece(x, place):
+    """Number of the piece between rows that each place lies in; the first or last beyond them."""
+    return np.clip(np.searchsorted(x, place, side="right") - 1, 0, x.size - 2)
 
 
-def _rows_problem(angle, force, period):
-    """What is wrong with rows of a table in order, or None."""
-    if angle.size < 3:
-        return f"at least 3 rows are needed, got {angle.size}; a force that does not change is no table"
-    step, span = np.diff(angle), angle[-1] - angle[0]
-    if np.any(step <= 0):
-        row = int(np.argmax(step <= 0)) + 1
-        return (
-            f"angles must rise, but {_degrees(angle[row])} follows {_degrees(angle[row - 1])}; for a jump give two "
-            "angles close together"
-        )
-    if _closes(angle, period):
-        unequal = abs(force[-1] - force[0]) > 1e-9 * np.max(np.abs(force))
-        return (
-            f"the force must end as it began, a period of {_degrees(period)} before, but is {force[0]:.9g} N at "
-            f"{_degrees(angle[0])} and {force[-1]:.9g} N at {_degrees(angle[-1])}; leave one of these rows out"
-            if unequal
-            else None
-        )
-    if span > period:
-        turns = math.ceil(span / TURN - 1e-9)
-        remedy = f'if it repeats after {turns} turns, give period = "{360 * turns} deg" ({2 * turns} pi in Python)'
-        if turns > 8:
-            remedy = "are they degrees under a heading of rad?"
-        return f"the angles span {_degrees(span)}, more than the period of {_degrees(period)}; {remedy}"
-    return _missing(angle, force, period, step)
+def _passed(function, levels):
+    """Crank angles at which a function of it passes some levels."""
+    from scipy.optimize import elementwise
+
+    grid = np.linspace(0.0, TURN, SAMPLES + 1)
+    above = np.broadcast_to(function(grid), grid.shape) - levels[:, None]
+    _, exact = np.nonzero(above[:, :-1] == 0)
+    with np.errstate(invalid="ignore"):
+        level, before = np.nonzero(above[:, :-1] * above[:, 1:] < 0)
+    if not before.size:
+        return grid[exact]
+    bracket, given = (grid[before], grid[before + 1]), (levels[level],)
+    found = elementwise.find_root(lambda angle, level: function(angle) - level, bracket, args=given).x
+    return np.mod(np.concatenate([grid[exact], found]), TURN)
 
 
-def _missing(angle, force, period, step):
-    """What is wrong with the distances between rows, or None."""
-    rest = period - (angle[-1] - angle[0])
-    if rest > 1.5 * step.max():
-        return (
-            f"rows are missing: they end at {_degrees(angle[-1])}, {_degrees(rest)} before the next begins at "
-            f"{_degrees(angle[0] + period)} (period {_degrees(period)}); if the force runs straight between them "
-            f"repeat the first row at {_degrees(angle[0] + period)}; are the angles in the unit of their heading?"
-        )
-    wide = (step > max(5 * float(np.median(step)), math.radians(20.0))) & (np.diff(force) != 0)
-    if np.any(wide):
-        row = int(np.argmax(wide))
-        return (
-            f"rows are missing between {_degrees(angle[row])} and {_degrees(angle[row + 1])}; if the force runs "
-            "straight between them add a row halfway"
-        )
-    return None
-
-
-def _degrees(angle):
-    return f"{math.degrees(angle):.9g} deg"
+def _area(value):
+    return checks.Number("m**2").taken(value, "area")[1]

@@ -2,12 +2,21 @@
 
 from dataclasses import dataclass, field
 from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
 
 from ...numbers import checks
-from ...numbers.planar import minus
+from ...numbers.elementary import atan
+from ...numbers.planar import minus, number, product, unturned
+from ..crank import ray
 from ..group import FRAME
-from ..links import Wrench
-from .load import Load, valued
+from ..links import Wrench, present
+from .load import Load, Sign, valued
+from .period import TURN
+
+SAMPLES = 720
+"""Crank angles a turn at which the angle of a torsion spring is looked at."""
 
 
 class Couple(Load):
@@ -16,20 +25,24 @@ class Couple(Load):
     on: str
     against: Any
 
-    UNIT = "N m"
+    UNIT, SIGN = "N m", "couple"
+
+    def couple(self, motion) -> Any:
+        """Couple on the link, N m."""
+        raise NotImplementedError
 
     @property
     def title(self):
         return f"{type(self).__name__} on {self.on!r}"
 
-    def problems(self, mechanism):
+    def misplaced(self, mechanism):
         """Say if there are no such links, or if both are one."""
         owner = type(self).__name__
         yield checks.choice(f"{owner}: on", self.on, tuple(mechanism.links))
         if self.against is not None:
             yield checks.choice(f"{owner}: against", self.against, (*mechanism.links, FRAME))
         if self.against == self.on:
-            yield f"{self.title} is against the same link, so it loads nothing; give another link, or None for the frame"
+            yield f"{self.title} is against the same link, so it loads nothing; name another, or None for the frame"
 
     def wrenches(self, motion):
         """Opposite couples on both links."""
@@ -37,6 +50,10 @@ class Couple(Load):
         yield self.on, Wrench(None, couple)
         if self._other is not None:
             yield self._other, Wrench(None, minus(None, couple))
+
+    def signs(self, motion):
+        """A sign at the link's reference joint."""
+        yield Sign(self.SIGN, motion.position(motion.mechanism.references[self.on]))
 
     @property
     def _other(self):
@@ -68,7 +85,7 @@ class Torque(Couple):
     >>> import kinetostatics as ks
     >>> bar = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
     >>> s = ks.solve(bar, 0.7, crank_speed=10.0, loads=ks.Torque(50.0, on="rocker"))
-    >>> round(float(s.balancing_torque + 50.0 * s.rate("rocker") / 10.0), 9)
+    >>> abs(round(float(s.balancing_torque + 50.0 * s.rate("rocker") / 10.0), 9))
     0.0
     """
 
@@ -82,3 +99,153 @@ class Torque(Couple):
     def couple(self, motion):
         """Couple on the link, N m."""
         return self.value
+
+
+@dataclass(frozen=True, eq=False)
+class TorsionSpring(Couple):
+    """Linear torsion spring between a link and the frame, or another link.
+
+    Its couple on the link is `moment` less `stiffness` times the angle of the link from `free_angle`, in (-pi, pi] and
+    counter-clockwise; of a link that passes half a turn from there that angle would jump.
+
+    Parameters
+    ----------
+    stiffness : float or array
+        N m/rad.
+    free_angle : float or array
+        Angle at which the spring is free, rad: of the axis of the link from +x, or from the axis of the link `against`.
+    on, against : str
+        As for `Torque`.
+    moment : float or array
+        N m, a constant couple besides, as by a long spring wound up.
+
+    Raises
+    ------
+    ParameterError
+        As for `Torque`; when a scene is solved: the link makes full turns, as the crank does, or passes half a turn
+        from `free_angle`; the message names the crank angles.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bar = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+    >>> s = ks.solve(bar, 0.7, crank_speed=1.0, loads=ks.TorsionSpring(40.0, 1.5, on="rocker"))
+    >>> bool(s.power_residual < 1e-13)
+    True
+    """
+
+    stiffness: Any
+    free_angle: Any = 0.0
+    on: str = field(kw_only=True)
+    against: Any = field(default=None, kw_only=True)
+    moment: Any = field(default=0.0, kw_only=True)
+
+    PATH, LENGTHS, REFUSES, SIGN = "torsion_spring", ("free_angle",), True, "spiral"
+    RULES = checks.Rules(
+        "torsion spring",
+        stiffness=checks.Number("N*m/rad", low=0.0),
+        free_angle=checks.Number("rad"),
+        on=checks.Name(),
+        against=checks.Optional(checks.Name()),
+        moment=checks.Number("N*m"),
+    )
+
+    def couple(self, motion):
+        """Couple on the link, N m."""
+        return minus(present(self.moment), self.stiffness * self._angle(motion))
+
+    def potential(self, motion):
+        """Energy stored, J; none where it is free."""
+        angle = self._angle(motion)
+        return minus(0.5 * self.stiffness * angle * angle, product(present(self.moment), angle))
+
+    def _angle(self, motion):
+        """Angle of the link from where the spring is free."""
+        cosine, sine = self._leaning(motion.placement)
+        return 2.0 * atan(sine / (1.0 + cosine))
+
+    def _leaning(self, placement):
+        """Unit vector of the link as seen from where the spring is free."""
+        axis = placement.links[self.on].direction
+        axis = axis if self._other is None else unturned(axis, placement.links[self._other].direction)
+        return axis if present(self.free_angle) is None else unturned(axis, ray(self.free_angle))
+
+    def refusals(self, motion):
+        """Say if the link passes half a turn from where the spring is free, and at which crank angles."""
+        if not checks.known(self.free_angle):
+            return ()
+        known = _LOOKED_AT.setdefault(motion.mechanism, {})
+        key = (self.on, self.against, np.asarray(self.free_angle).tobytes())
+        if key not in known:
+            known[key] = tuple(self._passing(motion.mechanism))
+        return known[key]
+
+    def _passing(self, mechanism):
+        grid = np.linspace(0.0, TURN, SAMPLES + 1)
+        parts = self._leaning(mechanism.place(grid))
+        if not all(isinstance(part, float | np.ndarray) and checks.known(part) for part in parts):
+            return
+        angle = np.atleast_1d(np.arctan2(*np.broadcast_arrays(*parts)[::-1]))
+        step = np.diff(angle, axis=-1)
+        with np.errstate(invalid="ignore"):
+            passing = np.abs(step) > np.pi
+        if not passing.any():
+            return
+        turns = np.round(np.sum(step - TURN * np.round(step / TURN), axis=-1) / TURN)
+        full = "it makes full turns" if np.any(turns) else "give a free angle nearer to it"
+        places = np.unique(np.nonzero(passing)[-1])
+        many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
+        wrong = checks.Problem(
+            f"{self.title}: the link passes half a turn from the free angle at crank angle "
+            f"{many}{' ...' if places.size > 4 else ''} deg, where the couple would jump; {full}",
+        )
+        wrong.designs = passing.any(axis=-1) if passing.ndim > 1 else None
+        yield wrong
+
+
+_LOOKED_AT: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+"""By mechanism: what was found of torsion springs on it."""
+
+
+@dataclass(frozen=True, eq=False)
+class TorsionDamper(Couple):
+    """Viscous damper that turns: a couple against the angular velocity of a link, or against its change from another.
+
+    Parameters
+    ----------
+    coefficient : float or array
+        N m s/rad.
+    on, against : str
+        As for `Torque`; links that turn without limit may have one.
+
+    Raises
+    ------
+    ParameterError
+        As for `Torque`.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bar = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+    >>> s = ks.solve(bar, 0.7, crank_speed=10.0, loads=ks.TorsionDamper(0.5, on="crank"))
+    >>> round(float(s.balancing_torque), 9)
+    5.0
+    """
+
+    coefficient: Any
+    on: str = field(kw_only=True)
+    against: Any = field(default=None, kw_only=True)
+
+    PATH, SIGN = "torsion_damper", "ring"
+    RULES = checks.Rules(
+        "torsion damper",
+        coefficient=checks.Number("N*m*s/rad", low=0.0),
+        on=checks.Name(),
+        against=checks.Optional(checks.Name()),
+    )
+
+    def couple(self, motion):
+        """Couple on the link, N m."""
+        links = motion.placement.links
+        ratio = minus(links[self.on].ratio, None if self._other is None else links[self._other].ratio)
+        return number(product(-self.coefficient * motion.crank_speed, ratio))

@@ -102,7 +102,7 @@ def choice(name, value, allowed):
     """What is wrong with a name that must be one of `allowed`; names the nearest."""
     if (type(value) is str and value in allowed) or any(value is word for word in allowed):
         return None
-    return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed))}{hint(value, allowed)}"
+    return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed)) or 'none'}{hint(value, allowed)}"
 
 
 def hint(value, allowed):

@@ -67,7 +67,8 @@ class Number:
             )
         beyond = (size >= self.below) | (array <= self.above)
         if np.any(beyond):
-            words = f"between {self.above:g} and {self.below:g}"
+            low = self.above if self.low is None or self.strict else self.low
+            words = f"between {low:g} and {self.below:g}"
             return Problem(f"{name} must lie {words} to be computed in double precision, got {shown(number)}", beyond)
         return None
 
@@ -113,8 +114,8 @@ class Pair:
 
     def numbers(self, value):
         """Name, steps and rule of each number, for paths."""
-        for number, part in enumerate(self.parts):
-            yield part, (number,), self.rule
+        for place, part in enumerate(self.parts):
+            yield part, (place,), self.rule
 
     @property
     def _pair(self):
@@ -215,8 +216,8 @@ class Sign:
             return int(value), None
         if isinstance(value, str) and value in self.words:
             return str(value), None
-        others = "".join(f", {word!r}" for word in self.words)
-        return value, f"{field} must be +1 or -1{others}, got {shown(value)}"
+        words = f", nor one of {', '.join(map(repr, self.words))}" if isinstance(value, str) and self.words else ""
+        return value, f"{field} must be +1 or -1, got {shown(value)}{words}"
 
 
 class Rules:

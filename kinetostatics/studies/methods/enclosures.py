@@ -15,8 +15,9 @@ import numpy as np
 from ...errors import MissingLibraryError, NotGivenError
 from ...machine.crank import ray
 from ...machine.guide import Guide
-from ...machine.loads import Gravity, ProcessForce
+from ...machine.loads import Load, ProcessForce, Table
 from ...mechanics.dynamics import Dynamics
+from ...mechanics.pushes import moving, title_of
 from ...mechanics.quantities import components
 from ...numbers.leaves import mapped, with_fields
 
@@ -124,7 +125,7 @@ def _closing(run, solution):
 
 
 def on_arb(arb, solution) -> Dynamics:
-    """The solution with arb numbers in place of its own, every push on a slider evaluated."""
+    """The solution with arb numbers in place of its own, every table and function of its loads evaluated."""
     angle = _copied(np.atleast_1d(np.asarray(solution.crank_angle, dtype=float)), arb)
     mechanism = _copied(solution.mechanism, arb)
     for cam in (group.cam for group in mechanism.groups if hasattr(group, "cam")):
@@ -133,18 +134,26 @@ def on_arb(arb, solution) -> Dynamics:
             _require_exact(what, values, arb)
     drive = _copied((solution.crank_speed, solution.crank_acceleration), arb)
     idle = Dynamics(mechanism, angle, *drive)
-    loads = (_load_on_arb(arb, item, place, idle) for place, item in enumerate(solution.loads, 1))
-    return replace(idle, loads=tuple(loads))
+    named = ((item, f"load {place}, {title_of(item)},") for place, item in enumerate(solution.loads, 1))
+    return replace(idle, loads=tuple(_load_on_arb(arb, item, what, idle, solution) for item, what in named))
 
 
-def _load_on_arb(arb, item, place, motion):
+def _load_on_arb(arb, item, what, motion, solution):
     exact = _copied(item, arb)
-    if isinstance(item, Gravity):
+    if not isinstance(item, Load):
+        push = _attempted(what, lambda: exact.push(moving(motion)))
+        _require_exact(what, push, arb)
+        return ProcessForce(push, item.on)
+    value = item.value_now
+    if not callable(value):
+        _require_exact(what, getattr(exact, item.VALUE, 0.0), arb)
         return exact
-    what = f"load {place}, {type(item).__name__} on {item.on!r},"
-    push = _attempted(what, lambda: exact.push(motion))
-    _require_exact(what, push, arb)
-    return ProcessForce(push, item.on)
+    if isinstance(value, Table):
+        found = value.read(motion, [_copied(np.atleast_1d(part), arb) for part in value.pieces(solution)])
+    else:
+        found = _attempted(what, lambda: value(moving(motion)))
+    _require_exact(what, found, arb)
+    return with_fields(exact, **{item.VALUE: found})
 
 
 def _copied(item, arb):

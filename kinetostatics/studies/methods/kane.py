@@ -20,7 +20,7 @@ from ...machine.loads import Gravity, ProcessForce, Spring
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from .kane_equations import KINDS, LINK
-from .method import Method, NotGivenError, require_one_design
+from .method import Method, NotGivenError, on_a_side, require_one_design
 
 
 @cache
@@ -66,7 +66,7 @@ def in_order(steps, results):
 def described(solution):
     """Kind of the mechanism, and its parameters by name."""
     require_one_design(solution)
-    mechanism = solution.mechanism
+    mechanism = on_a_side(solution.mechanism)
     group: Any = mechanism.groups[-1] if mechanism.groups else None
     values = {
         "crank_angle": solution.crank_angle,
@@ -116,8 +116,11 @@ def loading(loads):
     kinds: Any = (Gravity, Spring, ProcessForce)
     weights, springs, pushes = ([item for item in loads if isinstance(item, kind)] for kind in kinds)
     number = all(isinstance(item.force, int | float) for item in pushes)
-    if len(weights) + len(springs) + len(pushes) < len(loads) or len(springs) > 1 or not number:
-        raise NotGivenError("SymPy's Kane method takes gravity, one spring, and process forces that are numbers")
+    linear = len(springs) < 2 and all(isinstance(item.cubic, float) and item.cubic == 0 for item in springs)
+    if len(weights) + len(springs) + len(pushes) < len(loads) or not linear or not number:
+        raise NotGivenError(
+            "SymPy's Kane method takes gravity, one spring without cubic term, and process forces that are numbers"
+        )
     stiffness, free = (springs[0].stiffness, springs[0].free_position) if springs else (0, 0)
     pull = [sum(parts) for parts in zip((0, 0), *(item.vector for item in weights), strict=True)]
     push = sum(item.force for item in pushes)

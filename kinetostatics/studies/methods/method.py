@@ -1,14 +1,25 @@
 """What a method under study is: one way to a quantity, to be measured against the library's own."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ...errors import NotGivenError
+from ...machine.change_points import SIDES
 
-__all__ = ["Method", "NotGivenError", "require_one_design"]
+__all__ = ["Method", "NotGivenError", "on_a_side", "require_one_design"]
+
+
+def on_a_side(mechanism):
+    """The mechanism with sides in place of the words "open" and "crossed", which formulas of one side do not know."""
+    if mechanism.passes:
+        raise NotGivenError(f"{mechanism.name} passes change points, but the formulas keep to one side of them")
+    groups = tuple(
+        replace(group, assembly=SIDES[group.assembly]) if group.through else group for group in mechanism.groups
+    )
+    return replace(mechanism, groups=groups)
 
 
 @dataclass(frozen=True)

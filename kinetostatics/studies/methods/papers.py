@@ -21,7 +21,7 @@ from ...machine.slider_group import SliderGroup, SliderMotion
 from ...mechanics.quantities import components
 from ...numbers.planar import added, cross, dot, left, minus, stretched, subtracted, vector
 from ...solution.solution import Solution
-from .method import Method, NotGivenError, require_one_design
+from .method import Method, NotGivenError, on_a_side, require_one_design
 from .printed import (
     CircleAsPrinted,
     CosineLawAsPrinted,
@@ -138,12 +138,12 @@ class RockerByAtanAcos(RockerGroup):
 
 def _as(kind, original, **more):
     """A group or cam with the same data but formulas of another kind."""
-    return kind(*(getattr(original, field.name) for field in fields(original)), **more)
+    return kind(*(getattr(original, field.name) for field in fields(original) if field.init), **more)
 
 
 def _groups(mechanism, sign):
     """Groups of a mechanism as its study calculates them."""
-    groups = mechanism.groups
+    groups = on_a_side(mechanism).groups
     kinds = [type(group) for group in groups]
     if kinds == [SliderGroup]:
         return (_as(SliderByVectors, groups[0]),)

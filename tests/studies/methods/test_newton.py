@@ -135,3 +135,14 @@ def test_integration_refuses_all_but_constant_speed_and_angles_that_rise_within_
     ):
         with pytest.raises(NotGivenError, match="integration runs"):
             method.prepare(replace(s, **change), "O", 1e-6)
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.errors.ConditionWarning")
+def test_singular_equations_at_a_change_point_passed_are_refused_in_one_line():
+    deltoid = ks.four_bar(0.1, 0.2, 0.2, rocker_pivot=(0.1, 0.0), assembly="open", coupler=ks.Link(1.0, 0.1))
+    s = ks.solve(deltoid, np.linspace(0.0, 6.0, 7), crank_speed=10.0)
+    for method in (NEWTON, *integration.METHODS):
+        with pytest.raises(
+            NotGivenError, match="four-bar passes change points, where constraint equations are singular"
+        ):
+            method.prepare(s, "balancing_torque", method.settings[-1])()

@@ -1,0 +1,50 @@
+"""What a case file may hold, as pydantic models: keys, units, allowed values. `build` turns them into mechanisms.
+
+texts       numbers with units, and words in their place
+tables      links, cams, counterweights, files of values
+parts       groups and loads, by the rules of their classes
+variants    mechanisms, and the head of a file
+"""
+
+from .parts import MADE_OF
+from .tables import TAGS, CosineLawTable, LinkTable, SampledTable, Table, ValuesTable, kinds
+from .texts import BALANCE_THE_SLIDER, MID_LENGTH
+from .variants import (
+    VARIANTS,
+    CamVariant,
+    CaseTable,
+    ChainUnitVariant,
+    ChainVariant,
+    CrankSliderVariant,
+    FourBarVariant,
+    MechanismVariant,
+    ProcessForceTable,
+    PublishedTable,
+    ScotchYokeVariant,
+    SlottedLeverVariant,
+)
+
+__all__ = [
+    "BALANCE_THE_SLIDER",
+    "MADE_OF",
+    "MID_LENGTH",
+    "TAGS",
+    "VARIANTS",
+    "CamVariant",
+    "CaseTable",
+    "ChainUnitVariant",
+    "ChainVariant",
+    "CosineLawTable",
+    "CrankSliderVariant",
+    "FourBarVariant",
+    "LinkTable",
+    "MechanismVariant",
+    "ProcessForceTable",
+    "PublishedTable",
+    "SampledTable",
+    "ScotchYokeVariant",
+    "SlottedLeverVariant",
+    "Table",
+    "ValuesTable",
+    "kinds",
+]

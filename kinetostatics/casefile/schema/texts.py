@@ -1,0 +1,96 @@
+"""What stands in a case file as text: numbers with units, and words in their place."""
+
+import math
+from typing import Annotated
+
+from pydantic import BeforeValidator, Field
+
+from ...machine.loads import WholeTurns
+from ...numbers.units import shown, to_si
+
+MID_LENGTH = "mid-length"
+BALANCE_THE_SLIDER = "balance the slider"
+
+
+def reader(unit, *, low=None, strict=False):
+    """Function that reads text with a unit, within bounds."""
+
+    def read(text):
+        value = to_si(text, unit)
+        if low is not None and (value <= low if strict else value < low):
+            raise ValueError(f"must be {'greater than' if strict else 'at least'} {low:g} {unit}, found {text!r}")
+        return value
+
+    return read
+
+
+# each type ends with its SI unit, by which `parameters` finds what a design may vary
+Length = Annotated[float, BeforeValidator(reader("m", low=0.0, strict=True)), "m"]
+Coordinate = Annotated[float, BeforeValidator(reader("m")), "m"]
+Angle = Annotated[float, BeforeValidator(reader("rad")), "rad"]
+Mass = Annotated[float, BeforeValidator(reader("kg", low=0.0)), "kg"]
+Inertia = Annotated[float, BeforeValidator(reader("kg m^2", low=0.0)), "kg m^2"]
+Speed = Annotated[float, BeforeValidator(reader("rad/s")), "rad/s"]
+AngularAcceleration = Annotated[float, BeforeValidator(reader("rad/s^2")), "rad/s^2"]
+GravityAcceleration = Annotated[float, BeforeValidator(reader("m/s^2", low=0.0)), "m/s^2"]
+
+_STIFFNESS = reader("N/m", low=0.0)
+_COORDINATE = reader("m")
+
+
+def or_else(read, words):
+    """Function that reads a text, and says what else might be written."""
+
+    def read_or_say(text):
+        try:
+            return read(text)
+        except ValueError as error:
+            raise ValueError(f"{error}; or write {words}") from None
+
+    return read_or_say
+
+
+def _stiffness(text):
+    return text if text == BALANCE_THE_SLIDER else or_else(_STIFFNESS, f'"{BALANCE_THE_SLIDER}"')(text)
+
+
+def point(value):
+    """A pair of coordinates."""
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(f'must be a pair such as ["10 mm", "0 mm"], found {shown(value)}')
+    return tuple(to_si(part, "m") for part in value)
+
+
+def _centre(value):
+    if isinstance(value, str) and value == MID_LENGTH:
+        return value
+    return point(value) if isinstance(value, list) else (or_else(_COORDINATE, f'"{MID_LENGTH}"')(value), 0.0)
+
+
+def _sampling(text):
+    value = to_si(text, "rad")
+    if not math.radians(0.001) <= value <= math.pi:
+        raise ValueError(f"must be a step of the crank angle from 0.001 to 180 deg, found {text!r}")
+    return value
+
+
+def _two_points(value):
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(f'must be two points such as [["0 m", "0 m"], ["1 m", "0 m"]], found {shown(value)}')
+    return tuple(point(part) for part in value)
+
+
+def _period(text):
+    period, problem = WholeTurns().taken(to_si(text, "rad"))
+    if problem:
+        raise ValueError(f'must be a whole number of turns, such as "720 deg", found {text!r}')
+    return period
+
+
+Weight = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0)]
+Point = Annotated[tuple[float, float], BeforeValidator(point), "m"]
+GuidePoints = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_two_points)]
+Centre = Annotated[tuple[float, float] | str, BeforeValidator(_centre), "m"]
+Stiffness = Annotated[float | str, BeforeValidator(_stiffness), "N/m"]
+Period = Annotated[float | None, BeforeValidator(_period)]
+Sampling = Annotated[float | None, BeforeValidator(_sampling)]

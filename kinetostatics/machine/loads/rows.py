@@ -1,0 +1,94 @@
+"""Rows of a table: what is wrong with them, and with what is read from them."""
+
+import math
+
+import numpy as np
+
+from ...errors import ParameterError
+from .period import TURN
+
+BEYOND = 1e-9
+"""Share of a table over travel by which a slider may go beyond it: rounding."""
+
+
+def order_problem(x, over):
+    """What is wrong with the order of rows as they are given, rising or falling, or None."""
+    falls = x.size > 1 and x[-1] < x[0]
+    wrong = np.diff(x) >= 0 if falls else np.diff(x) <= 0
+    if not np.any(wrong):
+        return None
+    row = int(np.argmax(wrong)) + 1
+    here, before = (f"{part:.9g} m" if over == "travel" else _degrees(part) for part in (x[row], x[row - 1]))
+    what, remedy = ("angles", "for a jump give two angles close together")
+    if over == "travel":
+        what, remedy = "travel", "give the stroke back as back=..., in a file as a third column"
+    return f"{what} must {'fall' if falls else 'rise'}, but {here} follows {before} in row {row + 1}; {remedy}"
+
+
+def travel_problem(x):
+    """What is wrong with coordinates of a table over travel in order, or None."""
+    return None if x.size > 1 else "at least 2 rows are needed, got 1; a value that does not change is no table"
+
+
+def require_inside(x, place, motion):
+    """Raise an error where a slider goes beyond the rows."""
+    room = BEYOND * (x[-1] - x[0])
+    out = (place < x[0] - room) | (place > x[-1] + room)
+    if out.any():
+        angle = np.degrees(np.broadcast_to(motion.crank_angle, out.shape)[out])
+        raise ParameterError(
+            f"table over travel: the slider goes from {np.nanmin(place):.9g} to {np.nanmax(place):.9g} m, but the "
+            f"table from {x[0]:.9g} to {x[-1]:.9g} m; beyond it at {angle.size} crank angles, the first "
+            f"{angle[0]:.6g} deg; travel is the coordinate of the pin along the guide (solution.slider_position)",
+            out.any(axis=-1) if out.ndim > 1 else None,
+        )
+
+
+def closes(angle, period):
+    """Whether the last row stands at the angle of the first, a period later, but for rounding."""
+    return abs(angle[-1] - angle[0] - period) < min(0.1 * np.median(np.diff(angle)), 0.005)
+
+
+def problem(angle, value, period):
+    """What is wrong with rows of a table in order, or None."""
+    if angle.size < 3:
+        return f"at least 3 rows are needed, got {angle.size}; one that does not change is no table"
+    step, span = np.diff(angle), angle[-1] - angle[0]
+    if closes(angle, period):
+        unequal = abs(value[-1] - value[0]) > 1e-9 * np.max(np.abs(value))
+        return (
+            f"the value must end as it began, a period of {_degrees(period)} before, but is {value[0]:.9g} at "
+            f"{_degrees(angle[0])} and {value[-1]:.9g} at {_degrees(angle[-1])}; leave one of these rows out"
+            if unequal
+            else None
+        )
+    if span > period:
+        turns = math.ceil(span / TURN - 1e-9)
+        remedy = f'if it repeats after {turns} turns, give period = "{360 * turns} deg" ({2 * turns} pi in Python)'
+        if turns > 8:
+            remedy = "are they degrees under a heading of rad?"
+        return f"the angles span {_degrees(span)}, more than the period of {_degrees(period)}; {remedy}"
+    return _missing(angle, value, period, step)
+
+
+def _missing(angle, value, period, step):
+    """What is wrong with the distances between rows, or None."""
+    rest = period - (angle[-1] - angle[0])
+    if rest > 1.5 * step.max():
+        return (
+            f"rows are missing: they end at {_degrees(angle[-1])}, {_degrees(rest)} before the next begins at "
+            f"{_degrees(angle[0] + period)} (period {_degrees(period)}); if the values run straight between them "
+            f"repeat the first row at {_degrees(angle[0] + period)}; are the angles in the unit of their heading?"
+        )
+    wide = (step > max(5 * float(np.median(step)), math.radians(20.0))) & (np.diff(value) != 0)
+    if np.any(wide):
+        row = int(np.argmax(wide))
+        return (
+            f"rows are missing between {_degrees(angle[row])} and {_degrees(angle[row + 1])}; if the value runs "
+            "straight between them add a row halfway"
+        )
+    return None
+
+
+def _degrees(angle):
+    return f"{math.degrees(angle):.9g} deg"

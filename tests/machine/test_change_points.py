@@ -1,0 +1,470 @@
+"""Change points passed: motion, forces and torque equal a reference of 60 digits on both sides, however near."""
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from itertools import product
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+
+DATA = {"crank": (2.0, 0.3, 0.1, 0.2), "coupler": (1.5, 0.7, -0.2, 0.1), "rocker": (3.0, 0.4, 0.25, 0.5)}
+LINKS = {name: ks.Link(mass, (along, across), inertia) for name, (mass, along, across, inertia) in DATA.items()}
+LINKAGES = {
+    "parallelogram": (1, 2, 1, 2),
+    "kite": (2, 2, 1, 1),
+    "deltoid": (1, 2, 2, 1),
+    "rhombus": (1, 1, 1, 1),
+    "4/1/3/2": (1, 3, 2, 4),
+    "near": (2, 5, 4, 1),
+}
+"""Crank, coupler, rocker, ground."""
+SINGLE = {"deltoid": "near", "4/1/3/2": "far", "near": "near"}
+"""Those with one change point, nearest to O2 or farthest from it."""
+SIDES = {"open": 1, "crossed": -1}
+every = pytest.mark.parametrize(("name", "assembly"), list(product(LINKAGES, SIDES)))
+SPEED, ACCELERATION, WEIGHT = 2.0, 1.5, 9.81
+DIGITS = 240
+"""Carried; differences over a step of 1e-80 leave more than 60, also 1e-17 rad from a change point."""
+
+
+def four_bar(name, assembly, pivot=None, **links):
+    a, b, h, d = map(float, LINKAGES[name])
+    return ks.four_bar(a, b, h, rocker_pivot=pivot or (d, 0.0), assembly=assembly, **(links or LINKS))
+
+
+def solve(made, angles, **options):
+    given = {"crank_speed": SPEED, "crank_acceleration": ACCELERATION, "loads": ks.Gravity(WEIGHT)}
+    return ks.solve(made, angles, **given | options)
+
+
+# Reference: intersection of circles on the side of the branch, differences of positions, moments of coupler and rocker
+
+
+def side(name, assembly, psi):
+    kind = SINGLE.get(name)
+    turning = mp.cos(psi / 2) if kind == "far" else mp.sin(psi / 2) if kind else mp.sin(psi)
+    return SIDES[assembly] * mp.sign(turning)
+
+
+def places(name, assembly, start, angle):
+    """A, O2, B, directions and mass centres of the links, as complex numbers."""
+    a, b, h, d = LINKAGES[name]
+    ray, O2 = mp.expj(angle), d * mp.expj(start)
+    A = a * ray
+    square = abs(O2 - A) ** 2
+    height = mp.sqrt(abs((b + h) ** 2 - square)) * mp.sqrt(abs(square - (b - h) ** 2))
+    ratio = (square + b * b - h * h + 1j * side(name, assembly, angle - start) * height) / (2 * square)
+    B = A + ratio * (O2 - A)
+    ways = (ray, (B - A) / b, (B - O2) / h)
+    centres = [
+        joint + way * mp.mpc(along, across)
+        for joint, way, (_, along, across, _) in zip((0, A, O2), ways, DATA.values(), strict=True)
+    ]
+    return [A, O2, B, *ways, *centres]
+
+
+@cache
+def reference(name, assembly, behind, angle):
+    """By quantity; O2 stands on the negative x-axis if `behind`."""
+    with mp.workdps(DIGITS):
+        phi, step, start = mp.mpf(angle), mp.mpf(10) ** -80, mp.pi if behind else mp.mpf(0)
+        times = (-step, mp.mpf(0), step)
+        before, here, after = (places(name, assembly, start, phi + SPEED * t + ACCELERATION * t * t / 2) for t in times)
+        first = [(y - x) / (2 * step) for x, y in zip(before, after, strict=True)]
+        second = [(x - 2 * m + y) / step**2 for x, m, y in zip(before, here, after, strict=True)]
+        rates = [(v / way).imag for v, way in zip(first[3:6], here[3:6], strict=True)]
+        slopes = [(v / way).imag for v, way in zip(second[3:6], here[3:6], strict=True)]
+        data = list(DATA.values())
+        forces = [mass * (-1j * mp.mpf(WEIGHT) - a) for (mass, *_), a in zip(data, second[6:], strict=True)]
+        moments = [-inertia * slope for (*_, inertia), slope in zip(data, slopes, strict=True)]
+        parts = zip(forces, first[6:], moments, rates, strict=True)
+        torque = -sum((mp.conj(v) * f).real + m * rate for f, v, m, rate in parts) / SPEED
+        A, O2, B = here[:3]
+        of_coupler = (mp.conj(here[7] - A) * forces[1]).imag + moments[1]
+        of_rocker = (mp.conj(here[8] - O2) * forces[2]).imag + moments[2]
+        q, p = B - A, B - O2
+        pin = -(of_rocker * q + of_coupler * p) / (mp.conj(p) * q).imag
+        inner = pin - forces[1]
+        return {
+            "balancing_torque": torque,
+            "B": pin,
+            "A": inner,
+            "O2": -pin - forces[2],
+            "O": inner - forces[0],
+            "position": B,
+            "velocity": first[2],
+            "acceleration": second[2],
+            **{f"{link}_rate": rate for link, rate in zip(DATA, rates, strict=True)},
+            **{f"{link}_angular_acceleration": slope for link, slope in zip(DATA, slopes, strict=True)},
+        }
+
+
+def errors(solution, place, expected):
+    """Of motion and torque relative to their values, of reactions to the largest component at the angle."""
+    found = {}
+    for quantity in ("balancing_torque", *(key for key in expected if key.endswith(("_rate", "acceleration")))):
+        if quantity == "acceleration":
+            continue
+        link = quantity.removesuffix("_angular_acceleration").removesuffix("_rate")
+        values = (
+            solution.balancing_torque
+            if quantity == "balancing_torque"
+            else solution.rate(link)
+            if quantity.endswith("rate")
+            else solution.angular_acceleration(link)
+        )
+        value, exact = mp.mpf(float(values[place])), expected[quantity]
+        found[quantity] = abs(value - exact) / abs(exact) if abs(exact) > 1e-40 else abs(value - exact)
+    for quantity in ("position", "velocity", "acceleration"):
+        value, exact = getattr(solution, quantity)("B")[:, place], expected[quantity]
+        size = 1.0 if quantity == "position" or abs(exact) < 1e-40 else abs(exact)
+        found[quantity] = abs(mp.mpc(*map(float, value)) - exact) / size
+    for joint in ("A", "B", "O", "O2"):
+        value, exact = solution.reaction(joint)[:, place], expected[joint]
+        apart = mp.mpc(*map(float, value)) - exact
+        found[joint] = max(abs(apart.real), abs(apart.imag)) / max(abs(exact.real), abs(exact.imag))
+    return {quantity: float(error) for quantity, error in found.items()}
+
+
+NEAR = [sign * 10.0**-power for power in (1, 2, 4, 6, 8, 11, 14, 17) for sign in (1, -1)]
+
+
+@every
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+def test_motion_forces_and_torque_are_exact_on_both_sides_of_a_change_point_however_near(name, assembly):
+    """The change point lies at crank angle 0, near which angles are as fine as they can be."""
+    behind = SINGLE.get(name) == "far"
+    made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
+    angles = np.array([*NEAR, 0.7, -2.0, 4.0, 9.0])
+    solution = solve(made, angles)
+    wrong = {
+        (angle, quantity): error
+        for place, angle in enumerate(angles.tolist())
+        for quantity, error in errors(solution, place, reference(name, assembly, behind, angle)).items()
+        if not error < 1e-12
+    }
+    assert not wrong
+
+
+@every
+def test_torque_and_motion_at_the_exact_angle_are_what_both_sides_tend_to_and_reactions_are_infinite(name, assembly):
+    behind = SINGLE.get(name) == "far"
+    made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
+    solution = solve(made, np.array([-1e-10, 0.0, 1e-10]))
+    for values in (
+        solution.balancing_torque,
+        *solution.velocity("B"),
+        *solution.acceleration("B"),
+        solution.rate("rocker"),
+        solution.angular_acceleration("coupler"),
+    ):
+        assert np.ptp(values) < 1e-6
+    with pytest.warns(ks.ConditionWarning, match="B is infinite at crank angle 0 deg, at a change point"):
+        force = solution.reaction("B")
+    assert np.isinf(np.hypot(*force)[1])
+    assert np.isinf(np.hypot(*solution.reaction("O"))[1])
+
+
+@every
+def test_engines_agree(name, assembly, interpreted):
+    scene = ks.Scene(four_bar(name, assembly, (1.2, -0.9)) if name == "near" else four_bar(name, assembly), SPEED)
+    angles = np.array([0.3, 2.0, 5.0, 8.0, 11.0])
+    numpy, compiled = (scene.solve(angles, engine=engine) for engine in ("numpy", "compiled"))
+    kernels = numpy.dynamics
+    for found in (compiled, kernels):
+        np.testing.assert_allclose(found.balancing_torque, numpy.balancing_torque, rtol=1e-13, atol=1e-13)
+        np.testing.assert_allclose(found.reaction("O2"), numpy.reaction("O2"), rtol=1e-13, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        four_bar("4/1/3/2", "open"),
+        four_bar("deltoid", "crossed"),
+        ks.four_bar(2.5, 5.0, 2.5, rocker_pivot=(-3.0, -4.0), assembly="crossed", **LINKS),
+        ks.crank_slider(0.5, 0.75, guide_angle=2.5, guide_offset=-0.25, assembly="crossed", slider=LINKS["rocker"]),
+        ks.crank_slider(0.5, 0.5, guide_angle=0.4, assembly="open", slider=LINKS["rocker"], coupler=LINKS["coupler"]),
+    ],
+    ids=lambda made: f"{made.name} {made.groups[0].passage}",
+)
+def test_enclosures_by_the_kernels_hold_what_other_formulas_give(made):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    from kinetostatics.studies.methods.certified import certified
+
+    solution = solve(made, np.array([0.3, 4.0, 9.0]))
+    for quantity in ("balancing_torque", "B"):
+        found = certified(solution, quantity)
+        assert found.agreement < 1e-25
+        values = solution.balancing_torque[None] if quantity != "B" else solution.reaction("B")
+        np.testing.assert_allclose(values, found.middle, rtol=0, atol=1e-14 * found.largest)
+
+
+# What the branches are
+
+
+def test_parallelogram_stays_a_parallelogram():
+    solution = solve(four_bar("parallelogram", "open"), np.linspace(-7.0, 7.0, 99))
+    np.testing.assert_allclose(solution.position("B") - solution.position("A"), [[2.0] * 99, [0.0] * 99], atol=1e-15)
+    assert not solution.rate("coupler").any()
+    assert set(solution.rate("rocker")) == {SPEED}
+
+
+def test_folded_kite_and_folded_rhombus_leave_the_rocker_at_rest():
+    for name in ("kite", "rhombus"):
+        solution = solve(four_bar(name, "crossed"), np.linspace(-7.0, 7.0, 99))
+        np.testing.assert_allclose(solution.position("B"), 0.0, atol=1e-15)
+        assert not solution.rate("rocker").any()
+
+
+@every
+def test_open_is_left_of_the_line_from_the_crank_pin_to_the_pivot_in_the_first_half_turn(name, assembly):
+    solution = solve(four_bar(name, assembly), np.linspace(0.1, 3.0, 9))
+    along, reach = (solution.position(joint) - solution.position("A") for joint in ("O2", "B"))
+    assert np.all(SIDES[assembly] * (along[0] * reach[1] - along[1] * reach[0]) > -1e-12)
+
+
+@every
+def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
+    """The crank angle counts from the direction O -> O2, whose own angle lies between -pi and pi."""
+    psi, ground = np.linspace(-7.0, 7.0, 29), LINKAGES[name][3]
+    x, y = solve(four_bar(name, assembly), psi, loads=()).acceleration("B")
+    for start in (-3.1, -2.0, -1.0, 1.0, 2.0, 3.1):
+        cosine, sine = np.cos(start), np.sin(start)
+        made = four_bar(name, assembly, (ground * cosine, ground * sine))
+        found = solve(made, start + psi, loads=()).acceleration("B")
+        expected = cosine * x - sine * y, sine * x + cosine * y
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs([x, y]).max())
+
+
+def test_group_on_a_crank_is_checked_as_on_its_own():
+    assert ks.check(four_bar("4/1/3/2", "open").groups[0]).ok
+
+
+@every
+def test_motion_goes_on_through_every_change_point_and_closes_after_its_turns(name, assembly):
+    """Positions by cubic interpolation of what is around them: no side is left, and no velocity jumps."""
+    made = four_bar(name, assembly, (LINKAGES[name][3] * 0.6, LINKAGES[name][3] * 0.8))
+    assert made.turns == (2 if name in SINGLE else 1)
+    period = 2 * np.pi * made.turns
+    for change in (angle + 2 * np.pi * turn for angle in made.change_points for turn in range(made.turns)):
+        solution = solve(made, change + 1e-3 * np.array([-3, -1, 1, 3]))
+        for values in (*solution.position("B"), *solution.velocity("B"), *solution.acceleration("B")):
+            assert abs(np.diff(values, 3)[0]) < 1e-3
+    first, later = (solve(made, np.array([0.2, 1.0, 4.0]) + shift).position("B") for shift in (0.0, period))
+    np.testing.assert_allclose(first, later, atol=1e-13)
+    if made.turns == 2:
+        other = "crossed" if assembly == "open" else "open"
+        turned = solve(four_bar(name, other, made.groups[0].pivot), np.array([0.2, 1.0, 4.0]) + 2 * np.pi)
+        np.testing.assert_allclose(first, turned.position("B"), atol=1e-13)
+
+
+def test_pin_that_passes_close_by_the_pivot_is_warned_of():
+    made = ks.four_bar(1.0, 2.0, 2.0 - 2.0**-24, rocker_pivot=(1.0 + 2.0**-24, 0.0), assembly="crossed", **LINKS)
+    with pytest.warns(ks.ConditionWarning, match="correct digits"):
+        solve(made, np.array([1e-8, 3e-8, 6e-8, 1e-7, 1.0]))
+
+
+@pytest.mark.parametrize("assembly", SIDES)
+def test_linkages_without_change_points_keep_their_side_to_the_last_bit(assembly):
+    word, number = (
+        ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), assembly=way) for way in (assembly, SIDES[assembly])
+    )
+    assert word.turns == 1
+    assert word.change_points == ()
+    assert not word.passes
+    angles = np.linspace(0.0, 7.0, 50)
+    np.testing.assert_array_equal(solve(word, angles).acceleration("B"), solve(number, angles).acceleration("B"))
+
+
+def test_lengths_in_decimals_count_as_equal_and_close_everywhere():
+    for crank, coupler, rocker, ground in (
+        (0.1 + 0.2, 0.7, 0.3, 0.7),
+        (0.4, 0.7, 0.9, 0.2),
+        (0.1, 0.6, 0.5, 0.1 + 0.9),
+    ):
+        a, b, h, d = map(Fraction, (crank, coupler, rocker, ground))
+        apart = min(abs(a + d - b - h), abs(abs(d - a) - abs(b - h)))
+        assert 0 <= apart <= 8 * Fraction(float(np.spacing(max(crank, coupler, rocker, ground))))
+        made = ks.four_bar(crank, coupler, rocker, rocker_pivot=(ground, 0.0), assembly="open")
+        assert made.passes
+        assert np.isfinite(solve(made, np.linspace(-6.3, 6.3, 721)).position("B")).all()
+
+
+def test_lengths_beyond_eight_ulp_are_no_change_point():
+    ulp = float(np.spacing(2.0))
+    kinds = [ks.four_bar(1.0 + n * ulp, 2.0, 1.0, rocker_pivot=(2.0, 0.0), assembly="open").passes for n in (7, 9)]
+    assert kinds == [True, False]
+
+
+# Sliders
+
+
+@pytest.mark.filterwarnings("ignore:.*stands still:kinetostatics.errors.HintWarning")
+@pytest.mark.parametrize("guide_angle", [0.0, 0.7, -2.0])
+def test_coupler_as_long_as_the_crank_carries_the_slider_through_the_centre(guide_angle):
+    angles = np.linspace(-7.0, 7.0, 41)
+    made = {
+        way: ks.crank_slider(
+            0.5, 0.5, guide_angle=guide_angle, assembly=way, coupler=LINKS["coupler"], slider=ks.Link(3.0)
+        )
+        for way in SIDES
+    }
+    along = np.cos(angles - guide_angle)
+    np.testing.assert_allclose(solve(made["open"], angles).slider_position, along, atol=1e-15)
+    np.testing.assert_allclose(solve(made["open"], angles).rate("coupler"), -SPEED)
+    np.testing.assert_allclose(solve(made["crossed"], angles).slider_position, 0.0, atol=1e-15)
+    assert {item.turns for item in made.values()} == {1}
+
+
+def test_slider_with_an_offset_passes_its_only_change_point_in_two_turns():
+    made = ks.crank_slider(0.5, 0.75, guide_offset=0.25, assembly="open", coupler=LINKS["coupler"], slider=ks.Link(3.0))
+    assert made.turns == 2
+    (change,) = made.change_points
+    assert change == pytest.approx(1.5 * np.pi)
+    solution = solve(made, change + 1e-3 * np.array([-3, -1, 1, 3]))
+    for values in (solution.slider_position, solution.slider_velocity, solution.slider_acceleration):
+        assert abs(np.diff(values, 3)[0]) < 1e-6
+    assert np.ptp(np.sign(solution.slider_velocity)) == 0
+
+
+# What follows from it
+
+
+@every
+def test_a_turn_is_solved_without_a_warning_until_reactions_are_read(name, assembly):
+    """Warnings are errors in the tests."""
+    solution = ks.Scene(four_bar(name, assembly), SPEED, loads=ks.Gravity()).solve(72)
+    assert solution.crank_angle[-1] > 2 * np.pi * (solution.mechanism.turns - 0.1)
+    assert np.isfinite(solution.balancing_torque).all()
+    assert np.isfinite(solution.acceleration("B")).all()
+    assert solution.condition.max() < 1e4
+    assert solution.condition_of("balancing_torque").max() < 1e4
+    with pytest.warns(ks.ConditionWarning, match="second freedom"):
+        solution.reaction("A")
+
+
+@pytest.mark.parametrize(
+    ("name", "places"), [("parallelogram", "0, 180"), ("4/1/3/2", "180, 540"), ("deltoid", "0, 360")]
+)
+def test_extremes_of_torque_are_ordinary_and_those_of_reactions_infinite_at_change_points(name, places):
+    solution = ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()).solve(12)
+    torque = ks.extremes(solution, "balancing_torque")
+    fine = ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()).solve(7200).balancing_torque
+    np.testing.assert_allclose(torque.range, [fine.min(), fine.max()], rtol=1e-6)
+    with pytest.warns(ks.ConditionWarning, match=f"B grows without bound at {places} deg"):
+        found = ks.extremes(solution, "B")
+    assert found.range[1] == np.inf
+    assert 0 < found.range[0] < 100
+
+
+def test_reactions_that_no_load_makes_grow_stay_what_they_are():
+    made = replace(four_bar("parallelogram", "open", crank=LINKS["crank"]))
+    solution = solve(made, np.linspace(0.0, 6.0, 13))
+    assert not solution.reaction("B").any()
+    assert np.isfinite(solution.reaction("O")).all()
+
+
+def test_work_of_the_torque_over_the_period_is_zero_without_friction():
+    for name in LINKAGES:
+        torque = ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()).solve(360).balancing_torque
+        assert abs(torque.mean()) < 1e-9 * abs(torque).max()
+
+
+def test_fixed_side_names_its_kinks_and_jumps():
+    for name, words in (("parallelogram", "a kink at 0 deg and a kink at 180 deg"), ("deltoid", "a jump, as A meets")):
+        with pytest.warns(ks.ConditionWarning, match=words):
+            solve(four_bar(name, 1), np.array([0.0, 1.0]))
+
+
+# What is refused
+
+
+def program(name, quantities="balancing_torque"):
+    return ks.compile(ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()), quantities, engine="numpy")
+
+
+def test_program_takes_values_that_keep_the_kind():
+    longer = {"crank_length": 2.0, "rocker_length": 2.0, "coupler_length": 3.0, "rocker_pivot.x": 3.0}
+    found = program("parallelogram")(0.3, longer)["balancing_torque"]
+    made = ks.four_bar(2.0, 3.0, 2.0, rocker_pivot=(3.0, 0.0), assembly="open", **LINKS)
+    assert found == ks.Scene(made, SPEED, loads=ks.Gravity()).solve(0.3).balancing_torque
+    assert program("parallelogram")(0.3, {"crank_length": 1.0 + 2.0**-52})["balancing_torque"] > 0
+
+
+@pytest.mark.parametrize(
+    "values", [{"crank_length": 1.1}, {"rocker_pivot.x": 2.5}, {"coupler_length": 2.0, "rocker_length": 3.0}]
+)
+def test_program_refuses_values_of_another_kind(values):
+    with pytest.raises(ks.ParameterError, match="another kind"):
+        program("parallelogram")(0.3, values)
+
+
+def test_program_of_no_change_point_refuses_values_that_make_one():
+    made = ks.four_bar(1.0, 3.0, 2.5, rocker_pivot=(3.0, 0.0), assembly="open", **LINKS)
+    found = ks.compile(ks.Scene(made, SPEED), "balancing_torque", engine="numpy")
+    assert found.derivatives(0.3, "crank_length")["balancing_torque"]["crank_length"] != 0
+    with pytest.raises(ks.ParameterError, match="another kind"):
+        found(0.3, {"rocker_length": 1.0})
+
+
+@pytest.mark.parametrize("path", ["crank_length", "coupler_length", "rocker_length", "rocker_pivot.x"])
+def test_derivatives_by_lengths_are_refused_and_those_by_masses_given(path):
+    found = program("4/1/3/2")
+    with pytest.raises(ks.ParameterError, match=f"no derivative by {path}"):
+        found.derivatives(0.3, (path, "crank.mass"))
+    slopes = found.derivatives(0.3)["balancing_torque"]
+    assert path not in slopes
+    step = 1e-3
+    difference = (
+        found(0.3, {"coupler.mass": 1.5 + step})["balancing_torque"]
+        - found(0.3, {"coupler.mass": 1.5 - step})["balancing_torque"]
+    )
+    assert slopes["coupler.mass"] == pytest.approx(difference / (2 * step), rel=1e-9)
+
+
+def test_batches_of_one_kind_are_solved_and_of_several_refused():
+    scale = np.array([[1.0], [2.5], [0.3]])
+    made = ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4 * scale, 0.0), assembly="open")
+    assert solve(made, np.linspace(0.0, 12.0, 9)).position("B").shape == (2, 3, 9)
+    with pytest.raises(
+        ks.ParameterError, match=r"must be of one kind, but these have change points none; a \+ d = b"
+    ) as error:
+        ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4.0, 0.0), assembly="open")
+    assert error.value.designs.tolist() == [True, False, False]
+
+
+def test_words_are_refused_where_no_crank_tells_the_change_points():
+    chain = (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.SliderGroup(0.5, assembly="open", on="B", pin="C", label="2"))
+    with pytest.raises(ks.ParameterError, match="but it hangs on 'B'; give"):
+        ks.Mechanism("chain", ks.Crank(0.1), chain)
+    with pytest.raises(ks.ParameterError, match="slides in its slot"):
+        ks.cam_crank_slider(ks.cams.Circle(0.2, (0.01, 0.0)), 0.8, assembly="crossed")
+
+
+def test_reductions_of_forces_that_grow_are_refused_in_sweeps():
+    import pandas as pd
+
+    scene = ks.Scene(four_bar("4/1/3/2", "open"), SPEED, loads=ks.Gravity())
+    designs = pd.DataFrame({"coupler.mass": [1.0, 2.0]})
+    with pytest.raises(ks.ParameterError, match="no mean and no largest value"):
+        ks.sweep(scene, designs, ["mean B"], progress=False)
+    table = ks.sweep(scene, designs, ["largest balancing_torque"], angles=720, progress=False)
+    with_mass = scene.varied({"coupler.mass": 2.0})
+    largest = ks.extremes(with_mass.solve(12), "balancing_torque").range[1]
+    assert table.iloc[1, 1] == pytest.approx(largest, rel=1e-6)
+
+
+def test_case_files_know_the_words(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(
+        'title = "4/1/3/2"\nsource = "assumed"\nreference = "a"\n[common]\nmechanism = "four-bar"\n'
+        'crank_speed = "2 rad/s"\ncoupler_length = "3 m"\nrocker_length = "2 m"\nrocker_pivot = ["4 m", "0 m"]\n'
+        'assembly = "crossed"\n[variants.a]\ncrank_length = "1 m"\n'
+    )
+    solution = ks.load_case(path).solve("a")
+    assert solution.mechanism.turns == 2
+    assert solution.crank_angle[-1] > 3.9 * np.pi

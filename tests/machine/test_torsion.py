@@ -1,0 +1,75 @@
+"""Torsion springs: the angle that they see, and links that they are refused on."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from support.machines import largest
+from support.scenes import six_bar
+
+BAR = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("item", "words"),
+    [
+        (ks.TorsionSpring(4.0, 0.1, on="crank"), r"passes half a turn .* 185.8 deg, .* it makes full turns"),
+        (ks.TorsionSpring(4.0, 0.1, on="rocker", against="crank"), "it makes full turns"),
+        (ks.TorsionSpring(4.0, -1.1, on="rocker"), "give a free angle nearer to it"),
+    ],
+)
+def test_a_spring_on_a_link_that_passes_half_a_turn_is_refused_at_any_crank_angle(item, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.solve(BAR, 0.7, crank_speed=1.0, loads=item)
+
+
+def test_a_coupler_that_turns_with_the_crank_takes_no_spring():
+    double_crank = ks.four_bar(0.4, 0.35, 0.45, rocker_pivot=(0.1, 0.0))
+    with pytest.raises(ks.ParameterError, match=r"TorsionSpring on 'rocker'.*it makes full turns"):
+        ks.solve(double_crank, 0.7, crank_speed=1.0, loads=ks.TorsionSpring(4.0, on="rocker"))
+    together = ks.TorsionSpring(4.0, on="rocker", against="crank")
+    assert ks.solve(double_crank, 0.7, crank_speed=1.0, loads=together).power_residual < 1e-13
+
+
+@pytest.mark.parametrize("free", [-0.6, 0.9, 1.5, 4.4, 1.5 - 4 * np.pi])
+def test_the_angle_is_the_principal_one_to_rounding(free):
+    """Against angles of positions with 40 digits; free angles may be wound up by whole turns."""
+    s = ks.solve(BAR, np.linspace(0, 6, 7), crank_speed=1.0, loads=ks.TorsionSpring(7.0, free, on="rocker", moment=2.0))
+    spring = s.loads[0]
+    with mp.workdps(40):
+        axes = [mp.mpc(*map(float, part)) for part in zip(*s.placement.links["rocker"].direction, strict=True)]
+        angles = np.array([float(mp.arg(axis * mp.expj(-mp.mpf(free)))) for axis in axes])
+    assert largest(spring.couple(s) - (2.0 - 7.0 * angles)) < 2e-14
+
+
+def test_a_sweep_names_the_design_whose_link_turns_round():
+    import pandas as pd
+
+    scene = ks.Scene(BAR, 1.0, 0.0, ks.TorsionSpring(4.0, 1.5, on="rocker"))
+    designs = pd.DataFrame({"torsion_spring.free_angle": [1.5, -1.1, 1.2]})
+    swept = ks.sweep(scene, designs, ["largest O2"], angles=360, progress=False)
+    assert swept["largest O2 [N]"].notna().tolist() == [True, False, True]
+    assert "half a turn" in swept["failed"][1]
+
+
+def test_a_program_refuses_values_by_which_a_link_turns_round():
+    program = ks.compile(ks.Scene(BAR, 1.0, 0.0, ks.TorsionSpring(4.0, 1.5, on="rocker")), "O2", engine="numpy")
+    assert np.isfinite(program(0.3, {"torsion_spring.free_angle": 1.2})["O2"]).all()
+    with pytest.raises(ks.ParameterError, match="half a turn"):
+        program(0.3, {"torsion_spring.free_angle": -1.1})
+
+
+def test_a_torque_on_a_slider_is_taken_by_its_guide():
+    pump = ks.crank_slider(0.1, 0.4)
+    s = ks.solve(pump, [0.3, 2.0], crank_speed=1.0, loads=ks.Torque(6.0, on="slider"))
+    assert s.guide_moment.tolist() == [-6.0, -6.0]
+    assert not s.balancing_torque.any()
+
+
+def test_a_torsion_damper_between_links_takes_the_square_of_their_relative_rate():
+    damper = ks.TorsionDamper(0.4, on="coupler", against="coupler2")
+    s, still = (ks.solve(six_bar(), [0.3, 2.0], crank_speed=3.0, loads=loads) for loads in (damper, ()))
+    power = 3.0 * (s.balancing_torque - still.balancing_torque)
+    expected = 0.4 * (s.rate("coupler") - s.rate("coupler2")) ** 2
+    assert largest(power - expected) < 1e-12 * largest(expected)

@@ -1,0 +1,103 @@
+"""Reductions of values over the crank angle, and outputs as they are written."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.mechanics import quantities
+from kinetostatics.results.reductions import REDUCTIONS, parsed
+
+
+def wave(order=3):
+    """Values of two designs at 48 crank angles, and a function of them at any."""
+    amplitude = np.array([[2.0], [5.0]])
+
+    def at(angle):
+        return amplitude * np.cos(order * angle - 1.0) + np.sin(angle) - amplitude
+
+    turn = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    return at(turn), at
+
+
+def test_reductions_are_what_plain_numpy_says():
+    values, _ = wave()
+    expected = {
+        "mean": values.sum(axis=1) / 48,
+        "rms": np.sqrt((values**2).sum(axis=1) / 48),
+        "harmonic_0": np.abs(values.sum(axis=1)) / 48,
+        "harmonic_1": [1.0, 1.0],
+        "harmonic_2": [0.0, 0.0],
+        "harmonic_3": [2.0, 5.0],
+        "harmonic_7": 2 * np.abs(np.fft.rfft(values)[:, 7]) / 48,
+    }
+    for name, wanted in expected.items():
+        assert parsed(f"{name} O").reduced(values) == pytest.approx(np.array(wanted), abs=1e-14), name
+
+
+def test_extremes_are_found_between_the_samples():
+    values, at = wave(order=2)
+    fine = np.linspace(0, 2 * np.pi, 200_001)
+    many = at(fine)
+    found = {name: REDUCTIONS[name](values) for name in REDUCTIONS}
+    assert found["largest"] == pytest.approx(many.max(axis=1), abs=1e-6)
+    assert found["smallest"] == pytest.approx(many.min(axis=1), abs=1e-6)
+    assert found["range"] == pytest.approx(np.ptp(many, axis=1), abs=1e-6)
+    assert found["largest_absolute"] == pytest.approx(np.abs(many).max(axis=1), abs=1e-6)
+    assert found["mean_absolute"] == pytest.approx(np.abs(many[:, :-1]).mean(axis=1), rel=2e-4)
+    assert found["largest_at"] == pytest.approx(fine[many.argmax(axis=1)], abs=1e-4)
+    assert found["smallest_at"] == pytest.approx(fine[many.argmin(axis=1)], abs=1e-4)
+
+
+@pytest.mark.parametrize(("case", "name"), [("sawframe_2r63", "cam-circle"), ("chain_unit", "rho-0.5")])
+def test_extremes_are_those_of_the_mechanism_to_a_millionth(case, name):
+    s = ks.load_case(case).solve(name, 360)
+    for quantity in (*s.reactions, "balancing_torque", "shaking_force"):
+        low, high = ks.extremes(s, quantity).range
+        samples = quantities.values(s, quantity)[None]
+        size = max(abs(low), abs(high))
+        assert REDUCTIONS["largest"](samples)[0] == pytest.approx(high, abs=1e-6 * size), quantity
+        assert REDUCTIONS["smallest"](samples)[0] == pytest.approx(low, abs=1e-6 * size), quantity
+
+
+TURN = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+JUMPS = {
+    "step": (np.where(TURN < 1, 0.0, 10.0), 10.0),
+    "step up, then falling": (np.where(TURN < 1, -5.0, 10 - 0.1 * TURN), 10 - 0.1 * TURN[58]),
+    "step beside a smooth peak": (np.where(TURN > 0.56, 0.0, 10 + np.sin(3 * TURN)), 11.0),
+    "constant": (np.full(360, 7357.5), 7357.5),
+    "corner": (-np.abs(np.sin(TURN - 0.3)), 0.0),
+}
+
+
+@pytest.mark.parametrize("name", JUMPS)
+def test_nothing_is_made_up_beside_jumps_and_corners(name):
+    """To half of the digits: a corner at zero is found from squares."""
+    values, highest = JUMPS[name]
+    found = [sign * REDUCTIONS[kind](sign * values[None])[0] for sign, kind in ((1, "largest"), (-1, "smallest"))]
+    assert found == pytest.approx([highest, highest], abs=np.sqrt(np.finfo(float).eps))
+
+
+@pytest.mark.parametrize("count", [1, 2, 8, 9])
+def test_extremes_of_few_samples_are_at_least_the_largest(count):
+    values = np.cos(2 * np.pi * np.arange(count) / count + 0.1)[None]
+    assert values.max() <= REDUCTIONS["largest"](values)[0] <= 1.0 + 1e-12
+
+
+def test_what_is_no_number_stays_none():
+    values = np.vstack([TURN, np.where(np.arange(360) == 9, np.nan, TURN)])
+    for name in (*REDUCTIONS, "harmonic_2"):
+        assert np.isnan(parsed(f"{name} O").reduced(values)).tolist() == [False, True], name
+
+
+def test_outputs_are_read_with_any_name_of_a_quantity():
+    output = parsed("  ratio  mean_absolute   pan moment ")
+    assert (output.ratio, output.reduction, output.quantity) == (True, "mean_absolute", "pan moment")
+    assert str(output) == "ratio mean_absolute pan moment"
+    assert parsed(output) is output
+    assert parsed("largest_at balancing_torque").column == "largest_at balancing_torque [rad]"
+    assert parsed("ratio rms O").column == "ratio rms O [1]"
+    for text in ("largest", "larges O", "harmonic_x O", "ratio", "", "O largest"):
+        with pytest.raises(ks.ParameterError, match=r"must be a reduction and a quantity.*harmonic_1"):
+            parsed(text)
+    with pytest.raises(ks.ParameterError, match="did you mean 'largest'"):
+        parsed("larges O")

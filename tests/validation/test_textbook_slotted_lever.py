@@ -1,0 +1,135 @@
+"""Quick returns of textbooks: slotted lever of a shaper and Whitworth's, by time ratio and stroke; and a Scotch yoke.
+
+With crank r about O and the lever's pivot at the distance d > r, the lever stands still where crank and lever are at
+right angles, so it swings by asin(r/d) to each side and a uniform crank spends the times of the strokes in the ratio
+(pi + 2 asin(r/d)) / (pi - 2 asin(r/d)). With d < r (Whitworth) the lever makes full turns, and the ram at its end turns
+back where the lever lies along the line of stroke through its pivot: (pi + 2 asin(d/r)) / (pi - 2 asin(d/r)).
+
+Numbers are those of exercises in the manner of R. S. Khurmi and J. K. Gupta, *Theory of Machines*, chapter 5, as worked
+solutions print them; the formulas above give them to all digits.
+"""
+
+from math import asin, degrees, pi, sqrt
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import kinetostatics as ks
+
+
+def shaper(crank, centres, lever):
+    """Pivot below O; the free end C of the lever drives a ram on a level guide by a long link."""
+    parts = (
+        ks.LeverGroup((0.0, -centres)),
+        ks.Pin(on="lever", at=(lever, 0.0)),
+    )
+    return ks.Mechanism("crank shaper", ks.Crank(crank), parts)
+
+
+def whitworth(crank, centres, lever, rod):
+    """Pivot above O, inside the crank circle; the other end of the lever drives the ram along a line through it."""
+    parts = (
+        ks.LeverGroup((0.0, centres)),
+        ks.Pin(on="lever", at=(-lever, 0.0)),
+        ks.SliderGroup(rod, ks.Guide.at(0.0, centres), on="C", pin="D"),
+    )
+    return ks.Mechanism("Whitworth", ks.Crank(crank), parts)
+
+
+def zeros(made, read):
+    """Crank angles over a turn at which a motion reverses, rad."""
+
+    def value(angle):
+        return float(read(ks.solve(made, float(angle), crank_speed=1.0)))
+
+    grid = np.linspace(0.0, 2 * pi, 41) + 0.01
+    values = [value(angle) for angle in grid]
+    pairs = zip(grid, grid[1:], values, values[1:], strict=False)
+    return [brentq(value, low, high, xtol=1e-14) for low, high, before, behind in pairs if before * behind < 0.0]
+
+
+def ratio(angles):
+    """Of the longer part of the turn between two angles to the shorter."""
+    part = angles[1] - angles[0]
+    return max(part, 2 * pi - part) / min(part, 2 * pi - part)
+
+
+@pytest.mark.parametrize(
+    ("crank", "centres", "printed"), [(0.120, 0.240, 2.0), (0.075, 0.200, 1.647), (0.150, 0.370, 1.72397)]
+)
+def test_a_shaper_cuts_and_returns_in_the_printed_ratio_of_times(crank, centres, printed):
+    made = shaper(crank, centres, 0.45)
+    swing = asin(crank / centres)
+    found = ratio(zeros(made, lambda s: s.rate("lever")))
+    assert found == pytest.approx((pi + 2 * swing) / (pi - 2 * swing), rel=1e-12)
+    assert found == pytest.approx(printed, abs=2e-3)
+
+
+def test_a_shaper_has_the_printed_stroke_and_inclination():
+    """The lever leans by 30 degrees, its free end at 450 mm runs over 450 mm between the extremes."""
+    made = shaper(0.120, 0.240, 0.45)
+    first, second = (ks.solve(made, angle, crank_speed=1.0) for angle in zeros(made, lambda s: s.rate("lever")))
+    ends = [s.position("C") for s in (first, second)]
+    assert abs(ends[0][0] - ends[1][0]) == pytest.approx(0.45, rel=1e-12)
+    assert ends[0][1] == pytest.approx(ends[1][1], abs=1e-12)
+    for s in (first, second):
+        x, y = s.placement.links["lever"].direction
+        assert degrees(np.arctan2(abs(x), y)) == pytest.approx(30.0, abs=1e-10)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_the_stroke_of_any_shaper_is_by_the_sine_of_its_swing(share):
+    made = shaper(share * 0.3, 0.3, 0.5)
+    ends = [ks.solve(made, angle, crank_speed=1.0).position("C")[0] for angle in zeros(made, lambda s: s.rate("lever"))]
+    assert abs(ends[0] - ends[1]) == pytest.approx(2 * 0.5 * share, rel=1e-12)
+
+
+def test_a_whitworth_cuts_and_returns_in_the_printed_ratio_of_times():
+    """Centres 50 mm apart, crank 75 mm: 2.735; the ram turns back where the lever is level."""
+    made = whitworth(0.075, 0.050, 0.100, 0.135)
+    found = zeros(made, lambda s: s.travel_velocity("slider"))
+    assert ratio(found) == pytest.approx((pi + 2 * asin(2 / 3)) / (pi - 2 * asin(2 / 3)), rel=1e-12)
+    assert ratio(found) == pytest.approx(2.735, abs=1e-3)
+    ends = [float(ks.solve(made, angle, crank_speed=1.0).slider_position) for angle in found]
+    assert abs(ends[0] - ends[1]) == pytest.approx(0.200, rel=1e-12)
+
+
+def test_a_whitworth_lever_turns_fully_between_the_speeds_of_its_extremes():
+    """At its nearest and farthest the block moves across the lever: rates r / (r + d) and r / (r - d)."""
+    made = whitworth(0.075, 0.050, 0.100, 0.135)
+    s = ks.solve(made, np.linspace(0.0, 2 * pi, 720, endpoint=False), crank_speed=1.0)
+    found = ks.extremes(s, "lever_rate")
+    assert found.range == pytest.approx((0.075 / 0.125, 0.075 / 0.025), rel=1e-12)
+    assert np.mean(s.rate("lever")) == pytest.approx(1.0, abs=1e-14)
+
+
+def test_an_oscillating_cylinder_has_the_stroke_of_its_crank_and_the_swing_of_a_shaper():
+    made = ks.Mechanism("oscillating engine", ks.Crank(0.1), (ks.CylinderGroup((0.0, -0.4)),))
+    s = ks.solve(made, np.linspace(0.0, 2 * pi, 72, endpoint=False), crank_speed=1.0)
+    assert ks.extremes(s, "cylinder_length").range == pytest.approx((0.3, 0.5), rel=1e-14)
+    still = zeros(made, lambda s: s.rate("cylinder"))
+    leans = [ks.solve(made, angle, crank_speed=1.0).placement.links["cylinder"].direction[0] for angle in still]
+    assert sorted(leans) == pytest.approx([-0.25, 0.25], abs=1e-13)
+
+
+def test_a_yoke_pump_needs_the_torque_of_its_pressure_and_of_its_mass():
+    """Force P against the motion and mass m on a pure cosine: T = r sin(phi) P + m r^2 omega^2 sin(2 phi) / 2."""
+    r, mass, speed, push = 0.05, 4.0, 20.0, 300.0
+    angle = np.linspace(0.1, 6.2, 12)
+    made = ks.scotch_yoke(r, slider=ks.Link(mass))
+    s = ks.solve(made, angle, crank_speed=speed, loads=[ks.ProcessForce(push)])
+    inertia = mass * r**2 * speed**2 * np.sin(angle) * np.cos(angle)
+    assert s.balancing_torque == pytest.approx(push * r * np.sin(angle) + inertia, rel=1e-12)
+    slot = mass * r * speed**2 * np.cos(angle) + push
+    assert s.scalar("slot_force") * -1.0 == pytest.approx(slot, rel=1e-12)
+    assert s.scalar("guide_moment") == pytest.approx(-slot * r * np.sin(angle), rel=1e-12)
+
+
+def test_a_slot_at_an_angle_lengthens_the_stroke_by_its_sine():
+    slot = 1.0
+    made = ks.scotch_yoke(0.05, slot_angle=slot)
+    s = ks.solve(made, np.linspace(0, 2 * pi, 72, endpoint=False), crank_speed=1.0)
+    half = 0.05 / np.sin(slot)
+    assert ks.extremes(s, "slider_position").range == pytest.approx((-half, half), rel=1e-14)
+    assert sqrt(0.05**2 + (0.05 / np.tan(slot)) ** 2) == pytest.approx(half, rel=1e-14)
