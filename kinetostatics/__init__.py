@@ -44,6 +44,7 @@ from .errors import (
 
 if TYPE_CHECKING:
     from .casefile.case import load_case
+    from . import drive
     from .design import balancing, linkage
     from .machine import cams
     from .machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
@@ -183,7 +184,7 @@ _WHERE = {
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],
     "solution.solution": ["Solution"],
-    "drive": ["drive"],
+    "": ["drive"],
     "design": ["balancing", "linkage"],
     "sweeps": ["designs"],
     "sweeps.sweeps": ["sweep"],
@@ -200,9 +201,8 @@ def __getattr__(name):
     place = next((place for place, names in _WHERE.items() if name in names), None)
     if place is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    path = f"{__name__}.{place}"
-    room = import_module(path)
-    found = room if place == name else getattr(room, name, None) or import_module(f"{path}.{name}")
+    path = f"{__name__}.{place}".rstrip(".")
+    found = (getattr(import_module(path), name, None) if place else None) or import_module(f"{path}.{name}")
     globals()[name] = found
     return found
 

@@ -132,7 +132,7 @@ def test_of_several_running_speeds_the_stable_one_is_found():
 
 def test_a_load_of_two_turns_runs_over_two_turns():
     angle = np.linspace(0.0, 2 * TURN, 81)[:-1]
-    gas = ks.ProcessForce(ks.Table(angle, -3e4 * np.exp(-((angle - 6.0) ** 2)), period=2 * TURN))
+    gas = ks.ProcessForce(ks.Table(angle, -3e4 * np.exp(-((angle - 6.0) ** 2)), period=2 * TURN), period=2 * TURN)
     run = ks.drive.steady(saw(gas), MOTOR, 300.0)
     assert run.turns == 2
     assert run.period == pytest.approx(2 * TURN)
