@@ -141,6 +141,21 @@ def test_a_load_of_two_turns_runs_over_two_turns():
     assert run.solution.period == run.period
 
 
+def test_a_linkage_whose_branch_takes_two_turns_runs_over_two_turns():
+    deltoid = ks.four_bar(0.3, 0.8, 0.8, rocker_pivot=(0.3, 0.0), assembly="open", rocker=ks.Link(20.0, 0.5, 2.0))
+    run = ks.drive.steady(ks.Scene(deltoid, 1.0, loads=(ks.Gravity(), ks.Torque(-300.0, on="crank"))), MOTOR, 20.0)
+    assert run.turns == 2
+    assert run.energy_per_turn == pytest.approx(300.0 * TURN, rel=1e-12)
+    left = run.solution.balancing_torque + 20.0 * run.acceleration - MOTOR.transmission * run.motor_torque
+    assert np.abs(left).max() < 1e-13 * np.abs(MOTOR.transmission * run.motor_torque).max()
+
+
+def test_a_table_over_travel_with_a_stroke_back_does_its_exact_work():
+    cut = ks.Table([1.6, 1.9, 2.4], [3e3, 3e3, 5e3], over="travel", back=[0.0, 0.0, 0.0])
+    run = ks.drive.steady(saw(ks.ProcessForce(cut)), MOTOR, 20.0)
+    assert run.energy_per_turn == pytest.approx(-(0.2 * 3e3 + 0.4 * 3.8e3), rel=1e-12)
+
+
 def test_a_load_that_jumps_where_nobody_told_is_resolved_at_its_jump():
     jump = 1.2345
     pushed = ks.Torque(lambda motion: np.where(np.mod(motion.crank_angle, TURN) < jump, -800.0, 0.0), on="crank")

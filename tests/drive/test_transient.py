@@ -127,6 +127,9 @@ def test_coasting_until_standstill_ends_there():
     assert motion.events[-1].name == "standstill"
     assert abs(motion.speed[-1]) < 1e-12
     assert motion.at(7).time.size == 7
+    ax = motion.plot()
+    assert ax.get_ylabel() == "crank speed [rad/s]"
+    assert [line.get_xdata().size for line in ax.get_lines()] == [400, 1]
     assert len(motion.frame()) == motion.time.size
 
 

@@ -22,7 +22,8 @@ def slider():
 
 def bar():
     mechanism = ks.four_bar(0.3, 0.8, 0.6, rocker_pivot=(0.7, 0.4), rocker=ks.Link(5.0, (0.3, 0.08), 0.4), **LINKS)
-    return ks.Scene(mechanism, -4.0, 3.0, POTENTIALS)
+    turned = ks.TorsionSpring(40.0, 1.5, on="rocker", moment=7.0)
+    return ks.Scene(mechanism, -4.0, 3.0, (*POTENTIALS, turned))
 
 
 def cam():
