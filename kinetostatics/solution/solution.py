@@ -186,6 +186,13 @@ class Solution(Motion):
         """
         return self._found("potential_energy")
 
+    @cached_property
+    def energy_per_turn(self):
+        """Work of the balancing torque in a turn of the crank, J: what the loads take of the drive; of one design."""
+        from ..results.comparison import energy_per_turn
+
+        return energy_per_turn(self)
+
     @property
     def load_torque(self):
         """Torque on the crank that holds weight and loads at their speed, without any inertia, (..., N), N m.

@@ -76,3 +76,16 @@ def test_a_machine_without_masses_and_loads_has_no_energy():
     s = ks.solve(ks.crank_slider(0.1, 0.4), ANGLES, crank_speed=5.0)
     for name in ("reduced_inertia", "reduced_inertia_slope", "kinetic_energy", "potential_energy", "load_torque"):
         assert np.array_equal(getattr(s, name), np.zeros(ANGLES.size)), name
+
+
+@pytest.mark.parametrize("speed", [7.0, -7.0])
+def test_energy_per_turn_is_what_the_loads_take(speed):
+    mechanism = ks.crank_slider(0.3, 1.1, slider=ks.Link(11.0), **LINKS)
+    cut = ks.Table([0.7, 1.0, 1.5], [0.0, -200.0, -400.0], over="travel", back=[0.0, 50.0, 0.0])
+    loads = (ks.Gravity(), ks.Spring(2e3, 1.0), ks.ProcessForce(cut), ks.Torque(-3.0, on="crank"))
+    s = ks.Scene(mechanism, speed, loads=loads).solve(8)
+    # the slider runs from 0.8 to 1.4 m and back, the table holds it both ways
+    forward = (0.2 * (200 / 3 + 200) + 0.4 * (200 + 360)) / 2
+    back = (0.2 * (50 / 3 + 50) + 0.4 * (50 + 10)) / 2
+    work = forward + back + np.sign(speed) * 3.0 * 2.0 * np.pi
+    assert s.energy_per_turn == pytest.approx(work, rel=1e-11)
