@@ -43,8 +43,8 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from .casefile.case import load_case
     from . import drive
+    from .casefile.case import load_case
     from .design import balancing, linkage
     from .machine import cams
     from .machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
