@@ -20,6 +20,7 @@ Rooms, in the order in which they build on each other
     engines     how fast, how sure: kernels recorded once a structure, NumPy lines, compiled loops, derivatives
     results     extremes, means, reductions, comparison, tables
     solution    what users hold: scene, solution, solve, compile
+    drive       motors, periodic running, flywheels, starting and coasting
     design      static balancing, four-bar classes
     sweeps      designs, sweep, workers, datasets, tolerances
     studies     needs, precision, stability, the methods under study
@@ -34,6 +35,7 @@ from .errors import (
     AssemblyError,
     CaseError,
     ConditionWarning,
+    DriveError,
     HintWarning,
     KinetostaticsError,
     ParameterError,
@@ -41,6 +43,7 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
+    from . import drive
     from .casefile.case import load_case
     from .design import balancing, linkage
     from .machine import cams
@@ -93,6 +96,7 @@ __all__ = [
     "ConditionWarning",
     "Crank",
     "CylinderGroup",
+    "DriveError",
     "Dyad",
     "Force",
     "Gravity",
@@ -127,6 +131,7 @@ __all__ = [
     "compile",
     "crank_slider",
     "designs",
+    "drive",
     "extremes",
     "four_bar",
     "linkage",
@@ -179,6 +184,7 @@ _WHERE = {
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],
     "solution.solution": ["Solution"],
+    "": ["drive"],
     "design": ["balancing", "linkage"],
     "sweeps": ["designs"],
     "sweeps.sweeps": ["sweep"],
@@ -195,8 +201,8 @@ def __getattr__(name):
     place = next((place for place, names in _WHERE.items() if name in names), None)
     if place is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    path = f"{__name__}.{place}"
-    found = getattr(import_module(path), name, None) or import_module(f"{path}.{name}")
+    path = f"{__name__}.{place}".rstrip(".")
+    found = (getattr(import_module(path), name, None) if place else None) or import_module(f"{path}.{name}")
     globals()[name] = found
     return found
 

@@ -73,7 +73,16 @@ RATES = ("_rate", "_angular_acceleration")
 """Endings that make quantities of a link's name."""
 TRAVELS = ("_position", "_velocity", "_acceleration")
 """Endings that make quantities of a slider's name."""
-RESERVED = ("balancing_torque_by_power", "shaking_force", "shaking_moment")
+RESERVED = (
+    "balancing_torque_by_power",
+    "shaking_force",
+    "shaking_moment",
+    "reduced_inertia",
+    "reduced_inertia_slope",
+    "kinetic_energy",
+    "potential_energy",
+    "load_torque",
+)
 """Quantities that every mechanism has besides those that its parts declare."""
 
 

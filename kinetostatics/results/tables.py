@@ -21,6 +21,8 @@ def extremes_frame(solution):
 
     rows, several = [], []
     for name, quantity in of_mechanism(solution.mechanism).items():
+        if quantity.kind == "energy":
+            continue
         if quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio_slope):
             continue
         found = extrema(solution, name)

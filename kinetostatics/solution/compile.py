@@ -8,6 +8,7 @@ import numpy as np
 
 from ..engines import programs
 from ..engines.compiled import available, require
+from ..engines.trace import needed
 from ..errors import ParameterError
 from ..machine.loads import may_refuse, refusals
 from ..mechanics.dynamics import Dynamics
@@ -179,6 +180,17 @@ class Program:
             quantity: dict(zip(names, np.moveaxis(found, -1 - len(state.shape), 0), strict=True))
             for quantity, found in self._program.recording.named(rows).items()
         }
+
+    @property
+    def unrecorded(self):
+        """What messages call the code of the user's behind the quantities whose dependence is not recorded."""
+        return self._program.unrecorded
+
+    def depends_on(self, path):
+        """Whether any of the quantities depends on a parameter, as far as is recorded; see `unrecorded`."""
+        self._require_known((path,))
+        place, _ = self._numbers[path]
+        return self._program.recording.parameters[place] in set(needed(self._program.outputs))
 
     def _at(self, angle, values):
         """The scene at crank angles, with its leaves."""

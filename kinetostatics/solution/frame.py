@@ -10,7 +10,7 @@ from ..mechanics.quantities import of_mechanism, still
 from ..results.turn import NEAR
 
 ORDER = ("rate", "reaction", "force", "whole", "slider", "motion")
-"""Kinds of quantities as they stand in the table, after the positions of joints."""
+"""Kinds of quantities as they stand in the table, after the positions of joints; energies are left out."""
 
 
 def solution_frame(solution):
@@ -27,7 +27,7 @@ def solution_frame(solution):
     columns = {"crank_angle [deg]": np.degrees(solution.crank_angle)}
     for joint in solution.placement.joints:
         columns |= _components(joint, "m", solution.position(joint))
-    quantities = of_mechanism(solution.mechanism).items()
+    quantities = ((name, item) for name, item in of_mechanism(solution.mechanism).items() if item.kind in ORDER)
     for name, quantity in sorted(quantities, key=lambda pair: ORDER.index(pair[1].kind)):
         if quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio):
             continue

@@ -129,6 +129,10 @@ class Scene:
         """
         return _solved(self, self.turn(angles), on_gap, engine)
 
+    def unsolved(self, angle):
+        """Motion and forces at crank angles, an array, nothing checked."""
+        return Solution(self.mechanism, angle, self.crank_speed, self.crank_acceleration, self.loads)
+
     def turn(self, angles):
         """Crank angles of so many over one period from 0, its end excluded; what is no whole number stays as it is."""
         if not isinstance(angles, int | np.integer) or isinstance(angles, bool):

@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any
 
 from ...numbers import checks
+from ...numbers.planar import added, dot, plus, product
 from ..crank import ray
+from ..links import arm
 from .load import Load
 
 
@@ -33,3 +35,12 @@ class Gravity(Load):
         """Components (x, y), m/s2."""
         x, y = ray(self.direction)
         return self.acceleration * x, self.acceleration * y
+
+    def potential(self, motion):
+        """Energy of all weights, J; zero at the height of O."""
+        links = motion.placement.links
+        return reduce(plus, (self._of_link(links[name], link.body) for name, link in motion.mechanism.links.items()))
+
+    def _of_link(self, motion, body):
+        centre = added(motion.joint.position, arm(motion.direction, body.along, body.across))
+        return product(body.mass, -dot(self.vector, centre))

@@ -251,6 +251,15 @@ class PointSpring(PointLoad):
         distance = length(d)
         return stretched(-self.stiffness * ((distance - self.free_length) / distance), d)
 
+    def potential(self, motion):
+        """Energy stored, J."""
+        d = self._apart(motion)
+        square = dot(d, d)
+        if present(self.free_length) is not None:
+            elongation = length(d) - self.free_length
+            square = elongation * elongation
+        return 0.5 * self.stiffness * square
+
     def refusals(self, motion):
         """As for `PointForce`; nothing for a spring without free length."""
         return () if present(self.free_length) is None else super().refusals(motion)

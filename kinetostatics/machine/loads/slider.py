@@ -75,6 +75,14 @@ class Spring(OnSlider):
             return -self.stiffness * elongation
         return -(self.stiffness + self.cubic * elongation * elongation) * elongation
 
+    def potential(self, motion):
+        """Energy stored, J."""
+        elongation = motion.elongation(self.free_position, self.on)
+        square = elongation * elongation
+        if present(self.cubic) is None:
+            return 0.5 * self.stiffness * square
+        return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
+
     def signs(self, motion):
         """A spring along the guide."""
         yield Sign("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)

@@ -152,8 +152,17 @@ class TorsionSpring(Couple):
 
     def couple(self, motion):
         """Couple on the link, N m."""
+        return minus(present(self.moment), self.stiffness * self._angle(motion))
+
+    def potential(self, motion):
+        """Energy stored, J; none where it is free."""
+        angle = self._angle(motion)
+        return minus(0.5 * self.stiffness * angle * angle, product(present(self.moment), angle))
+
+    def _angle(self, motion):
+        """Angle of the link from where the spring is free."""
         cosine, sine = self._leaning(motion.placement)
-        return minus(present(self.moment), self.stiffness * (2.0 * atan(sine / (1.0 + cosine))))
+        return 2.0 * atan(sine / (1.0 + cosine))
 
     def _leaning(self, placement):
         """Unit vector of the link as seen from where the spring is free."""
