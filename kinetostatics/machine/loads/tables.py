@@ -170,6 +170,12 @@ class Table:
         """Values of the stroke with negative velocity; None where there are no others."""
         return self.rows.back
 
+    @property
+    def largest(self):
+        """Value of largest magnitude, with its sign."""
+        values = self.y if self.back is None else np.concatenate([self.y, self.back])
+        return float(values[np.argmax(np.abs(values))])
+
     def of(self, slider):
         """The table read by the travel of a slider unless it names one itself."""
         return self if self.over == "angle" or self.slider is not None else with_fields(self, slider=slider)
