@@ -98,7 +98,9 @@ def acceleration_error(solutions, ax=None, slider=None):
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
         ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
-    return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named))
+    return _finished(
+        ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named)
+    )
 
 
 def hodograph(solutions, joint="O", ax=None, marks=30):

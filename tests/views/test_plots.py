@@ -6,6 +6,8 @@ import pytest
 from matplotlib.animation import FuncAnimation, PillowWriter
 
 import kinetostatics as ks
+from kinetostatics.casefile.starters import starter
+from kinetostatics.views import figures
 
 PLOTS = {
     "torque": ks.plots.torque,
@@ -150,3 +152,42 @@ def test_hodograph_marks_that_fall_together_share_a_short_label(axes):
     )
     ks.plots.hodograph(solution, "O", ax=axes)
     assert {text.get_text() for text in axes.texts} == {"0°, 30° … 330°", "180°"}
+
+
+@pytest.mark.parametrize(("turns", "ticks"), [(1, [0, 90, 180, 270, 360]), (2, [0, 180, 360, 540, 720])])
+def test_curves_over_the_crank_angle_have_the_limits_of_the_period_and_ticks_at_its_quarters(axes, turns, ticks):
+    load = ks.ProcessForce(-100.0, period=2 * np.pi * turns)
+    machine = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
+    ks.plots.torque(ks.Scene(machine, 10.0, loads=load).solve(48 * turns), ax=axes)
+    assert list(axes.get_xticks()) == ticks
+    assert axes.get_xlim() == (0, ticks[-1])
+
+
+@pytest.mark.parametrize(("case", "relative"), [("chain_unit", True), ("four-bar", False)])
+def test_only_a_chain_unit_has_figures_of_its_study(tmp_path, monkeypatch, case, relative):
+    monkeypatch.setitem(figures.FIGURES, "overview", (None, lambda case: False))
+    if case == "four-bar":
+        path = tmp_path / "bars.toml"
+        path.write_text(starter("four-bar", "bars"))
+        case = path
+    drawn = {name for name, (_, applies) in figures.FIGURES.items() if applies(ks.load_case(case))}
+    assert ("rocker_velocity" in drawn) == relative
+    assert "mechanism" in drawn
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.5707963267948966])
+def test_mechanisms_fill_most_of_their_panels_in_one_direction_wide_or_tall(angle):
+    machine = ks.crank_slider(0.1, 0.4, guide_angle=angle, slider=ks.Link(1.0))
+    solution = ks.Scene(machine, 10.0).solve(24)
+    for figure, axes in (
+        (figures._overview({"a": solution, "b": solution}), 0),
+        (figures._mechanisms({"a": solution, "b": solution}), 0),
+    ):
+        figure.canvas.draw()
+        ax = figure.axes[axes]
+        shares = [
+            np.ptp(data) / np.ptp(seen)
+            for data, seen in ((ax.dataLim.intervalx, ax.get_xlim()), (ax.dataLim.intervaly, ax.get_ylim()))
+        ]
+        plt.close(figure)
+        assert min(shares) > 0.6

@@ -116,7 +116,7 @@ class Table:
         path : path
             First column ``crank_angle [deg]`` or ``travel [mm]``; then ``force [kN]``, ``torque [N m]``, or with an
             `area` ``pressure [bar]``; over travel the same for the stroke back, if any, headed ``force_back [kN]``
-            and so on.
+            and so on. Before the heading there may be lines of comment that begin with ``#``.
         unit : "N" or "N m"
             Of the load.
         area : float, optional
