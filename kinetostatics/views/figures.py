@@ -2,6 +2,7 @@
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -138,17 +139,18 @@ def _overview(solutions) -> Figure:
     shown = list(dict.fromkeys([next(iter(solutions)), next(reversed(solutions))]))
     last = solutions[shown[-1]]
     wide = _proportion(last)
-    ratios: dict[str, list[float]] = {}
+    many = len(shown)
+    rows: list[Any] = [["mechanism", "torque"], shown]
+    widths = heights = None
     if wide > 1.5 * WIDE:
-        rows, ratios = [["mechanism"] * (1 + len(shown)), ["torque", *shown]], {"height_ratios": [0.8, 1]}
-    elif wide > 1 / WIDE and len(shown) > 1:
-        rows, ratios = [["mechanism", "torque"], shown]
-    else:
-        beside = [["mechanism", "torque", "torque"], ["mechanism", *shown]]
+        rows, heights = [["mechanism"] * (1 + many), ["torque", *shown]], [0.8, 1.0]
+    elif wide < 1 / WIDE or many == 1:
         left = float(np.clip(5.4 * wide + LETTERING, 2.0, 4.0))
-        rows = [row[: 1 + len(shown)] for row in beside]
-        ratios = {"width_ratios": [left, *[(11.0 - left) / len(shown)] * len(shown)]}
-    figure, axes = plt.subplot_mosaic(rows, figsize=(11, 6.4), layout="constrained", **ratios)
+        rows = [["mechanism", *["torque"] * many], ["mechanism", *shown]]
+        widths = [left, *[(11.0 - left) / many] * many]
+    figure, axes = plt.subplot_mosaic(
+        rows, figsize=(11, 6.4), layout="constrained", width_ratios=widths, height_ratios=heights
+    )
     plots.mechanism(last, ax=axes["mechanism"])
     axes["mechanism"].set_title(f"{shown[-1]}: {last.mechanism.name}")
     plots.torque(solutions, ax=axes["torque"])

@@ -191,3 +191,21 @@ def test_mechanisms_fill_most_of_their_panels_in_one_direction_wide_or_tall(angl
         ]
         plt.close(figure)
         assert min(shares) > 0.6
+
+
+SHAPES = {
+    "tall": ks.crank_slider(0.1, 0.4, guide_angle=1.57),
+    "square": ks.four_bar(0.1, 0.3, 0.3, rocker_pivot=(0.3, 0.1), coupler=ks.Link(1.0)),
+    "wide": ks.crank_slider(0.1, 0.5),
+}
+
+
+@pytest.mark.parametrize("variants", [1, 2, 3])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_an_overview_has_mechanism_torque_and_hodographs_whatever_the_proportions(shape, variants):
+    solution = ks.Scene(SHAPES[shape], 10.0, loads=ks.Gravity()).solve(24)
+    figure = figures._overview({str(number): solution for number in range(variants)})
+    plt.close(figure)
+    titles = [ax.get_title() for ax in figure.axes]
+    assert len(titles) == 2 + min(variants, 2)
+    assert titles[1] == "torque the drive must give"
