@@ -45,6 +45,18 @@ def test_a_zero_is_printed_without_a_sign(capsys):
     assert [line.split()[1] for line in capsys.readouterr().out.splitlines()[2:]] == ["0", "-1e-20", "-2.5", "N"]
 
 
+def test_run_prints_0_for_what_is_rounding_and_groups_in_the_order_of_the_chain(capsys):
+    assert main(["run", "in_line_twin", "--variant", "throws-opposed"]) == 0
+    printed = capsys.readouterr().out.split("\n\npower balance")[0]
+    assert not re.search(r"e-\d", printed)
+    cells = {line[:29].strip(): line[29:].split() for line in printed.splitlines()}
+    assert cells["shaking moment"] == ["N", "m", "0", "0"]
+    assert cells["reaction guide1"][:2] == ["N", "0"]
+    names = list(cells)
+    assert names.index("guide force1") < names.index("guide force2")
+    assert names.index("reaction guide1") < names.index("reaction C2") < names.index("reaction O")
+
+
 def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):
     path = tmp_path / "new" / "saw.csv"
     assert main(["run", "sawframe_2r63", "--angles", "36", "--csv", str(path)]) == 0

@@ -56,7 +56,7 @@ def _declared(mechanism):
     def add(name, unit, read, vector=False, kind="force", label=None, owner=""):
         found[name] = Quantity(unit, label or name.replace("_", " "), read, vector, kind, owner)
 
-    outputs = mechanism.outputs
+    outputs = {name: output for part in (*mechanism.groups, mechanism.crank) for name, output in part.outputs.items()}
     for name in ("balancing_torque", *(name for name in outputs if name != "balancing_torque")):
         if not outputs[name].vector:
             add(name, outputs[name].unit, methodcaller("scalar", name))

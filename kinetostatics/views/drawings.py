@@ -67,7 +67,8 @@ def mass_centres(solutions, angle=60, ax=None):
 def mechanism(solution, angles=(40, 160, 280), ax=None):
     """The mechanism at given crank angles: links, fixed pivots, guides, cam (pitch curve), mass centres and loads.
 
-    Loads, counterweights, joint names and mass centres are drawn in the first pose, arrows the way of positive forces.
+    Loads, counterweights, joint names and mass centres are drawn in the first pose. Arrows point as the
+    force or torque acts there; where it is zero or not known, as at its largest, and as positive ones of functions.
 
     Parameters
     ----------
@@ -91,7 +92,8 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     solution, ax = single(solution), axes(ax)
     shape, poses = _frame(ax, solution), _posed(solution, angles)
     shades = np.linspace(1.0, 0.3, len(angles))
-    strokes, once = list(shape.strokes(poses)), [*shape.counterweights(poses), *shape.signs(solution.loads, poses)]
+    strokes, first = list(shape.strokes(poses)), _posed(solution, angles[:1])
+    once = [*shape.counterweights(first), *shape.signs(solution.loads, first)]
     moving = [name for name, point in shape.made.joints.items() if point.link != FRAME]
     for row, shade in enumerate(shades):
         for stroke in strokes + (once if row == 0 else []):
@@ -234,8 +236,9 @@ def _frame(ax, solution):
 
 
 def _posed(solution, degrees):
-    """The mechanism at other crank angles, whatever its speed and loads."""
-    return Motion(solution.mechanism, np.radians(degrees), 0.0, 0.0)
+    """The mechanism at other crank angles, whatever its loads; of its speed only which way the crank turns."""
+    ways = np.unique(np.sign(solution.crank_speed))
+    return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
 
 
 def _cut(solution, joint):

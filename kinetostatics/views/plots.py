@@ -63,7 +63,7 @@ def over_turn(solutions, quantity, ax=None):
     factor, shown = display(declared.unit, [value for _, value in curves.values()])
     for name, (angle, value), style in styled(curves):
         ax.plot(angle, factor * value, linestyle=style, label=name)
-    return _finished(ax, f"{declared.label} [{shown}]", len(curves) > 1)
+    return _finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named))
 
 
 def torque(solutions, ax=None):
@@ -98,7 +98,9 @@ def acceleration_error(solutions, ax=None, slider=None):
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
         ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
-    return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1)
+    return _finished(
+        ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named)
+    )
 
 
 def hodograph(solutions, joint="O", ax=None, marks=30):
@@ -229,13 +231,18 @@ def _degrees(solution):
     return np.degrees(solution.crank_angle)
 
 
-def _finished(ax, ylabel, legend):
+def _longest(named):
+    """Longest period of solutions, degrees."""
+    return round(np.degrees(max(solution.period for solution in named.values())))
+
+
+def _finished(ax, ylabel, legend, period=360):
     ax.set_xlabel("crank angle [deg]")
     ax.set_ylabel(ylabel)
     low, high = ax.dataLim.intervalx
-    if low >= 0 and high <= 360:
-        ax.set_xlim(0, 360)
-        ax.set_xticks(range(0, 361, 60))
+    if low >= 0 and high <= period:
+        ax.set_xlim(0, period)
+        ax.set_xticks(range(0, period + 1, period // 4))
     ax.axhline(0, color=INK, lw=0.5)
     ax.grid(alpha=0.3)
     if legend:

@@ -164,7 +164,7 @@ class Shape:
             yield Stroke("spring", symbols.spanned(symbols.SPRING, start, end, 0.5 * unit))
             yield Stroke("spring", symbols.spanned([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
         elif sign.kind == "force":
-            tip = sign.start + 5.0 * unit * sign.direction
+            tip = sign.start + 5.0 * unit * sign.sense * sign.direction
             yield Stroke("force", symbols.spanned(symbols.ARROW, sign.start, tip, unit))
         elif sign.end is not None:
             shape = {"spring": symbols.SPRING, "damper": symbols.DAMPER}.get(sign.kind, symbols.LINE)
@@ -173,7 +173,7 @@ class Shape:
             shape = {"spiral": symbols.SPIRAL, "ring": symbols.RING}.get(sign.kind, symbols.COUPLE)
             level = np.broadcast_to([[1.0], [0.0]], sign.start.shape)
             kind = "force" if sign.kind == "couple" else "spring"
-            yield Stroke(kind, symbols.placed(shape, sign.start, level, 1.6 * unit))
+            yield Stroke(kind, symbols.placed(shape, sign.start, level, 1.6 * unit, sign.sense))
 
     def grounds(self, loads):
         """Fixed points that something turns about or is fastened to, (2,) each."""

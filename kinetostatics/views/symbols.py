@@ -43,10 +43,10 @@ def left(direction):
     return np.array([-direction[1], direction[0]])
 
 
-def placed(shape, origin, direction, size=1.0):
-    """A shape (K, 2) in axes with origin and direction (2, N), as points (2, K, N)."""
+def placed(shape, origin, direction, size=1.0, sense=1.0):
+    """A shape (K, 2) in axes with origin and direction (2, N), as points (2, K, N); mirrored where the sense is -1."""
     along, across = size * np.asarray(shape, dtype=float).T[..., None]
-    return origin[:, None] + direction[:, None] * along + left(direction)[:, None] * across
+    return origin[:, None] + direction[:, None] * along + left(direction)[:, None] * (sense * across)
 
 
 def spanned(shape, start, end, width):

@@ -131,6 +131,7 @@ def test_an_indicator_diagram_is_read_with_its_units_and_multiplied_by_the_area(
     ("text", "options", "words"),
     [
         ("crank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
+        ("# bench 3, 12 May\ncrank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
         ("crank_angle [rad], torque [N mm]\n0, 1\n2, 2\n4, 3\n", {"unit": "N m"}, None),
         ("travel [mm], pressure [bar]\n0, 1\n1, 2\n", {}, "no column 'force'"),
         ("travel [mm], pressure [kN]\n0, 1\n1, 2\n", {"area": 1.0}, "pressure"),

@@ -203,6 +203,42 @@ def test_too_many_models_drop_what_changes_most(saw, monkeypatch):
     assert few.smallest.name == everything.smallest.name
 
 
+def test_a_six_bar_with_every_kind_of_load_runs_no_more_models_than_it_is_ready_to_and_says_so(monkeypatch):
+    """Its combinations would be tens of thousands."""
+    bar = MECHANISMS["four-bar"]
+    ram = ks.SliderGroup(1.5, ks.Guide.at(0.0, 0.2), on="B", pin="C", label="2", slider=ks.Link(2.0))
+    loads = (
+        ks.Gravity(),
+        ks.Spring(50.0, 2.0, on="slider2"),
+        ks.ProcessForce(-900.0, on="slider2"),
+        ks.Force(300.0, at="B"),
+        ks.Torque(20.0, on="rocker"),
+        ks.PointSpring(30.0, between=("B", (0.5, 1.0))),
+        ks.PointDamper(5.0, between=("A", (0.5, 1.0))),
+        ks.TorsionDamper(2.0, on="rocker"),
+    )
+    s = solved(ks.Mechanism("six-bar", bar.crank, (*bar.groups, ram)), loads, angle=TURN[::3])
+    assert ingredients.MOST_MODELS <= 2000
+    monkeypatch.setattr(ingredients, "MOST_MODELS", 40)
+    found = ks.needs(s, "balancing_torque")
+    assert found.tried <= 40
+    assert found.smallest.error <= 0.01
+    told = {name for name, why in found.left_out.items() if why.endswith("more than 40 models")}
+    kept = {name for model in found.ladder for name in model.simplifications}
+    assert told
+    assert not told & kept
+    assert min(made.error for made in found.alone if made.name in told) >= max(
+        (made.error for made in found.alone if made.name in kept), default=0.0
+    )
+
+
+@pytest.mark.parametrize("progress", [True, False])
+def test_a_bar_of_the_models_run_is_shown_unless_it_is_not_wanted(mower, monkeypatch, capsys, progress):
+    monkeypatch.setattr(ingredients, "SHOWN_AFTER", 0.0)
+    tried = ks.needs(mower, "balancing_torque", progress=progress).tried
+    assert (f"/{tried} " in capsys.readouterr().err) == progress
+
+
 # Simplified models
 
 

@@ -74,15 +74,75 @@ def test_springs_and_dampers_are_drawn_between_their_points_and_fixed_ends_stand
     assert {(0.6, 0.5), (0.35, 0.1), (0.0, 0.0)} == {tuple(place) for place in grounds}
 
 
-def test_arrows_of_forces_start_at_their_points_and_point_as_positive_forces(axes):
-    load = ks.Force(-3.0, at=("coupler", 0.1), direction=0.5, along="coupler")
+def arrow_of(ax):
+    return next(line.get_xydata() for line in ax.lines if line.get_color() == LOAD and len(line.get_xdata()) > 2)
+
+
+@pytest.mark.parametrize("value", [-3.0, 3.0])
+def test_arrows_of_forces_start_at_their_points_and_point_as_the_forces_act(axes, value):
+    load = ks.Force(value, at=("coupler", 0.1), direction=0.5, along="coupler")
     pose = drawn(FOUR_BAR, axes, load)
-    start = pose.position(("coupler", 0.1))[:, 0]
-    arrow = next(line.get_xydata() for line in axes.lines if line.get_color() == LOAD and len(line.get_xdata()) > 2)
-    x, y = arrow[1] - arrow[0]
-    axis = np.arctan2(*(pose.position("B") - pose.position("A"))[::-1, 0])
-    assert np.allclose(arrow[0], start)
-    assert np.arctan2(y, x) == pytest.approx(axis + 0.5)
+    arrow = arrow_of(axes)
+    axis = pose.position("B")[:, 0] - pose.position("A")[:, 0]
+    way = np.array([[np.cos(0.5), -np.sin(0.5)], [np.sin(0.5), np.cos(0.5)]]) @ axis
+    assert np.allclose(arrow[0], pose.position(("coupler", 0.1))[:, 0])
+    found = arrow[1] - arrow[0]
+    assert np.allclose(found / np.hypot(*found), np.sign(value) * way / np.hypot(*way))
+
+
+GAS = ks.Table([0.29, 0.4, 0.51], [-9.0, -5.0, -9.0], over="travel", back=[2.0, 2.0, 2.0])
+WAYS = {
+    "outward against gas": (GAS, 320.0, 10.0, -1),
+    "back by suction": (GAS, 40.0, 10.0, 1),
+    "outward as the crank turns the other way": (GAS, 40.0, -10.0, -1),
+    "zero where it is drawn, negative elsewhere": (
+        ks.Table(np.radians([0, 90, 180, 270]), [0, 0, -4, 0]),
+        40.0,
+        10,
+        -1,
+    ),
+    "a table of torques of the crank angle": (ks.Table(np.radians([0, 90, 180, 270]), [5, 5, -4, 5]), 40.0, 10, 1),
+    "nothing": (0.0, 40.0, 10.0, 1),
+    "a function": (lambda motion: -motion.crank_angle, 40.0, 10.0, 1),
+}
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_arrows_of_process_forces_point_as_they_act_in_the_pose(axes, name):
+    force, angle, speed, way = WAYS[name]
+    solution = ks.Scene(SAW, speed, loads=ks.ProcessForce(force)).solve(24)
+    ks.plots.mechanism(solution, angles=(angle, 100.0), ax=axes)
+    start, tip, *_ = arrow_of(axes)
+    assert np.sign(tip[0] - start[0]) == way
+
+
+def test_a_table_that_ends_short_of_the_pose_is_drawn_as_its_largest_value(axes):
+    load = ks.ProcessForce(ks.Table([0.45, 0.48], [-9.0, -1.0], over="travel"))
+    narrow = ks.solve(SAW, np.radians([40.0]), crank_speed=10.0, loads=load)
+    ks.plots.mechanism(narrow, angles=(180.0,), ax=axes)
+    start, tip, *_ = arrow_of(axes)
+    assert tip[0] < start[0]
+
+
+def test_values_over_the_crank_angles_turn_their_arrow_in_an_animation(axes):
+    turn = np.radians([40.0, 130.0, 220.0, 310.0])
+    solution = ks.solve(SAW, turn, crank_speed=10.0, loads=ks.ProcessForce(np.array([3.0, -3.0, -9.0, 3.0])))
+    film = ks.plots.animation(solution, joints=("O",), frames=4, ax=axes)
+    ways = []
+    for step in range(4):
+        film._draw_frame(step)
+        start, tip, *_ = arrow_of(axes)
+        ways.append(np.sign(tip[0] - start[0]))
+    film._draw_was_started = True
+    assert ways == [1, -1, -1, 1]
+
+
+def test_a_couple_that_is_negative_is_drawn_clockwise(axes):
+    drawn(FOUR_BAR, axes, ks.Torque(5.0, on="rocker"))
+    drawn(FOUR_BAR, axes, ks.Torque(-5.0, on="rocker"))
+    one, other = (line.get_xydata() for line in axes.lines if line.get_color() == LOAD)
+    assert np.allclose(one[:, 0], other[:, 0])
+    assert np.allclose(one[:, 1] - 0.1, 0.1 - other[:, 1])
 
 
 def test_a_spring_along_a_guide_is_drawn_from_the_slider_beyond_its_way(axes):

@@ -15,6 +15,9 @@ lengths and angles of the geometry. ``potential(motion)``, of loads that have on
 
 from typing import Any, ClassVar, NamedTuple
 
+import numpy as np
+
+from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.batched import Batched
 from .period import TURN
@@ -35,6 +38,8 @@ class Sign(NamedTuple):
         Of a force: unit vector of a positive one.
     slider : str
         That a spring is on.
+    sense : array (N,) or float
+        Of a force or couple: -1 where it acts against its positive sense.
     """
 
     kind: str
@@ -42,6 +47,7 @@ class Sign(NamedTuple):
     end: Any = None
     direction: Any = None
     slider: str = ""
+    sense: Any = 1.0
 
 
 class Load(checks.Checked, Batched):
@@ -89,6 +95,30 @@ class Load(checks.Checked, Batched):
     def signs(self, motion) -> Any:
         """How it is drawn, each as a `Sign`."""
         return ()
+
+    def sense(self, motion) -> Any:
+        """Sign of its value in the poses of a motion, 1 or -1.
+
+        Where it is zero or has none, as beyond a table, that of its largest; 1 for a function.
+        """
+        value = self.value_now
+        if isinstance(value, Table):
+            known, here = value.largest, _read(value, motion)
+        elif value is None or callable(value):
+            return 1.0
+        else:
+            known = np.asarray(value, dtype=float)
+            fits = known.ndim == 0 or any(item is self for item in motion.loads)
+            known, here = known.flat[np.argmax(np.abs(known))], known if fits else 0.0
+        return np.where(here == 0, -1.0 if known < 0 else 1.0, np.sign(here))
+
+
+def _read(table, motion):
+    """Values of a table in the poses of a motion; zero if it has none in one of them."""
+    try:
+        return table(motion)
+    except ParameterError:
+        return 0.0
 
 
 def is_given(item):

@@ -90,7 +90,8 @@ class Force(Load):
     def signs(self, motion):
         """An arrow."""
         axis = self._axis(motion)
-        yield Sign("force", motion.position(self.at), direction=motion.as_vector((1.0, 0.0) if axis is None else axis))
+        direction = motion.as_vector((1.0, 0.0) if axis is None else axis)
+        yield Sign("force", motion.position(self.at), direction=direction, sense=self.sense(motion))
 
 
 class PointLoad(Load):
@@ -193,14 +194,15 @@ class PointForce(PointLoad):
         return stretched(self.value / length(d), d)
 
     def signs(self, motion):
-        """A line between both points, and arrows that push them apart."""
+        """A line between both points, and arrows that push them apart or pull them together."""
         first, second = map(motion.position, self.between)
         apart = first - second
         with np.errstate(invalid="ignore"):
             unit = apart / np.hypot(*apart)
         yield Sign("line", first, second)
-        yield Sign("force", first, direction=unit)
-        yield Sign("force", second, direction=-unit)
+        sense = self.sense(motion)
+        yield Sign("force", first, direction=unit, sense=sense)
+        yield Sign("force", second, direction=-unit, sense=sense)
 
 
 @dataclass(frozen=True, eq=False)

@@ -135,7 +135,7 @@ class ProcessForce(OnSlider):
         return self.force
 
     def signs(self, motion):
-        """An arrow in the guide's direction."""
+        """An arrow along the guide."""
         mechanism = motion.mechanism
         along = motion.as_vector(mechanism.guides[self.on].direction)
-        yield Sign("force", motion.position(mechanism.references[self.on]), direction=along)
+        yield Sign("force", motion.position(mechanism.references[self.on]), direction=along, sense=self.sense(motion))

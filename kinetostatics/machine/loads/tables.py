@@ -116,7 +116,7 @@ class Table:
         path : path
             First column ``crank_angle [deg]`` or ``travel [mm]``; then ``force [kN]``, ``torque [N m]``, or with an
             `area` ``pressure [bar]``; over travel the same for the stroke back, if any, headed ``force_back [kN]``
-            and so on.
+            and so on. Before the heading there may be lines of comment that begin with ``#``.
         unit : "N" or "N m"
             Of the load.
         area : float, optional
@@ -169,6 +169,12 @@ class Table:
     def back(self):
         """Values of the stroke with negative velocity; None where there are no others."""
         return self.rows.back
+
+    @property
+    def largest(self):
+        """Value of largest magnitude, with its sign."""
+        values = self.y if self.back is None else np.concatenate([self.y, self.back])
+        return float(values[np.argmax(np.abs(values))])
 
     def of(self, slider):
         """The table read by the travel of a slider unless it names one itself."""

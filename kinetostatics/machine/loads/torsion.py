@@ -53,7 +53,7 @@ class Couple(Load):
 
     def signs(self, motion):
         """A sign at the link's reference joint."""
-        yield Sign(self.SIGN, motion.position(motion.mechanism.references[self.on]))
+        yield Sign(self.SIGN, motion.position(motion.mechanism.references[self.on]), sense=self.sense(motion))
 
     @property
     def _other(self):
