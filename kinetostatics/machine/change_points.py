@@ -13,6 +13,10 @@ image in the line A O2; where a = d and b = h A meets O2 ("meeting"), and sin(ps
 
 All vectors are taken in the frame that turns half as fast as the crank, in which A -> O2 is
 ((d-a) cos(psi/2), -(d+a) sin(psi/2)).
+
+A slotted lever with its slot at offset o left of O2 carries A at s = +-2 sqrt(a d) sin(psi/2) along it where
+|d - a| = |o|, with its sign through the change point; where a = d and o = 0 A meets O2, and the lever keeps to the left
+normal of that frame.
 """
 
 import math
@@ -24,7 +28,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt
-from ..numbers.planar import added, cross, dot, left, number, product, stretched, subtracted, turned, unturned
+from ..numbers.planar import added, cross, dot, left, minus, number, product, stretched, subtracted, turned, unturned
 from .links import Joint, LinkMotion, present
 
 SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
@@ -32,7 +36,9 @@ SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
 FAR, NEAR, MEETING, PARALLEL, KITE, RHOMBUS = "far", "near", "meeting", "parallel", "kite", "rhombus"
 BOTH = "both"
 """Slider group with a coupler as long as the crank, on a guide through O."""
-TWICE = (FAR, NEAR, MEETING)
+OPPOSITE = "opposite"
+"""Slotted lever like one of the kind "near", mirrored."""
+TWICE = (FAR, NEAR, MEETING, OPPOSITE)
 """Kinds of which a branch closes after two turns."""
 ULPS = 8
 """Units in the last place of the longest length by which lengths that are meant to be equal may differ."""
@@ -52,6 +58,8 @@ CALLED = {
 """Kinds of four-bars as messages call them: crank a, coupler b, rocker h, ground d."""
 SLIDING = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
 """Kinds of slider groups: crank a, coupler l, offset e of the guide."""
+SLOTTED = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
+"""Kinds of slotted levers: crank a, distance d from O to the pivot, offset o of the slot."""
 FACING = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 """Quadrants in which a direction (x, y) is halved, its angle counted from -pi to pi."""
 
@@ -101,6 +109,17 @@ def of_slider_group(group, crank):
     far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
     kind = np.select([far & near, far, near], [BOTH, FAR, NEAR], "")
     return _joined("slider group", kind, SLIDING, _facing(y, -x))
+
+
+def of_lever_group(group, crank):
+    """How a lever group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
+    a, o, x, y = _known("lever group", group, crank, group.offset, *group.pivot)
+    d = np.sqrt(x * x + y * y)
+    unit = _unit(a, abs(o), d)
+    near, opposite = abs(d - a - o) <= unit, abs(d - a + o) <= unit
+    near, opposite = near & (d > unit), opposite & (d > unit)
+    kind = np.select([near & opposite, near, opposite], [MEETING, NEAR, OPPOSITE], "")
+    return _joined("lever group", kind, SLOTTED, _facing(x, y))
 
 
 def _known(owner, group, crank, *lengths):
@@ -185,7 +204,7 @@ def angles(passage, start):
     several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
     checks.require("change points", several if any(map(np.ndim, start)) else None)
     kind, first = parted(passage)[0], math.atan2(start[1], start[0])
-    at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,)}.get(kind, (0.0, math.pi))
+    at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,), OPPOSITE: (0.0,)}.get(kind, (0.0, math.pi))
     return tuple(sorted((first + angle) % (2 * math.pi) for angle in at))
 
 
@@ -202,15 +221,26 @@ class _Half(NamedTuple):
 
 def _half(angle, pivot, ground, facing):
     half = 0.5 * angle
-    ray = cos(half), sin(half)
-    x, y = pivot
-    if not facing and present(y) is None:
-        return _Half(ray[0], ray[1], ray)
-    reach = ground - x if facing else ground + x
-    size = sqrt(2.0 * ground * reach)
-    start = (facing * y / size, facing * reach / size) if facing else (reach / size, y / size)
+    ray, start = (cos(half), sin(half)), _start(pivot, ground, facing)
     cosine, sine = unturned(ray, start)
     return _Half(cosine, sine, turned(ray, start))
+
+
+def _start(pivot, ground, facing):
+    """Unit vector at half the angle of O -> O2; None: at zero."""
+    x, y = pivot
+    if not facing and present(y) is None:
+        return None
+    reach = ground - x if facing else ground + x
+    size = sqrt(2.0 * ground * reach)
+    return (facing * y / size, facing * reach / size) if facing else (reach / size, y / size)
+
+
+def _quarter(angle, pivot, ground, facing):
+    """A quarter of the crank angle from O -> O2 as a unit vector."""
+    quarter = 0.25 * angle
+    ray, start = (cos(quarter), sin(quarter)), _start(pivot, ground, facing)
+    return unturned(ray, start and _start(start, 1.0, 0))
 
 
 def place(placement, joint, coupler_length, rocker_length, pivot, passage, side):
@@ -278,6 +308,34 @@ def slid(placement, coupler_length, guide, passage, side):
         (reach / b * divided, apart(passed, UNSEEN)),
         square / size,
     )
+
+
+def slotted(placement, pivot, offset, passage, side):
+    """Direction of a slotted lever, its ratio and the slope of that, reach, what to divide by, and closure (kernel).
+
+    The slot points to the block (+1) or away from it (-1) in the half turn behind O -> O2. What to divide by is the
+    reach: a factor and the distance from the change point.
+
+    With the pivot at the distance d the rates have one more divisor, (a+d)/2 +- sqrt(a d) cos(psi/2), a sum of squares
+    by a quarter of the angle: it is small where A passes close by the pivot.
+    """
+    kind, facing = parted(passage)
+    a, d = placement.crank_length, sqrt(dot(pivot, pivot))
+    half = _half(placement.angle, pivot, d, facing)
+    if kind == MEETING:
+        direction, lag, slope, factor, closure = (0.0, float(side)), None, None, 2.0 * side * a, 1.0
+    else:
+        way, mean, middle = 1.0 if kind == NEAR else -1.0, 0.5 * (a + d), sqrt(a * d)
+        cosine, sine = _quarter(placement.angle, pivot, d, facing)
+        passed = cosine if way * side > 0 else sine
+        square, least = 2.0 * passed * passed, 0.25 * offset * offset / (mean + middle)
+        near = least + middle * square
+        direction = (0.5 * offset * half.sine / near, side * (mean * square - least) / near)
+        lag = 0.25 * way * offset / near
+        slope = -0.5 * way * side * middle * half.sine / near * lag
+        factor, closure = 2.0 * side * middle, near / (a + d)
+    divided = factor, apart(half.sine, UNSEEN)
+    return turned(direction, half.frame), minus(0.5, lag), slope, factor * half.sine, divided, closure
 
 
 def _translated(ray, pivot, ground):
