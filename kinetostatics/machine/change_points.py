@@ -205,7 +205,10 @@ def angles(passage, start):
     checks.require("change points", several if any(map(np.ndim, start)) else None)
     kind, first = parted(passage)[0], math.atan2(start[1], start[0])
     at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,), OPPOSITE: (0.0,)}.get(kind, (0.0, math.pi))
-    return tuple(sorted((first + angle) % (2 * math.pi) for angle in at))
+    turn = 2 * math.pi
+    return tuple(
+        sorted((first + angle) % turn % turn for angle in at)
+    )  # what lies just below 0 is rounded up to a turn
 
 
 # Kernels
@@ -338,6 +341,15 @@ def slotted(placement, pivot, offset, passage, side):
     return turned(direction, half.frame), minus(0.5, lag), slope, factor * half.sine, divided, closure
 
 
+def grown(parts, divisor):
+    """Components of a force over a factor and the distance from a change point (kernel).
+
+    Each by itself: there the whole is infinite, but a component that vanishes stays zero.
+    """
+    factor, distance = divisor
+    return tuple(part / factor / distance for part in parts)
+
+
 def _translated(ray, pivot, ground):
     """Parallelogram: the coupler keeps the direction of the ground, the rocker that of the crank."""
     along = (pivot[0] / ground, pivot[1] / ground)
@@ -438,4 +450,4 @@ def pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     whole = added(*parts)
     if whole is None:
         return (0.0, 0.0)
-    return (whole[0] / motion.factor / motion.distance, whole[1] / motion.factor / motion.distance)
+    return grown(whole, (motion.factor, motion.distance))

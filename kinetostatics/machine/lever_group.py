@@ -89,10 +89,8 @@ def resolve(motion, lever_load, block_load):
     together about the pivot give the force across the slot.
     """
     moment, across = number(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
-    if isinstance(motion.divisor, tuple):  # each component by itself: one that vanishes stays zero at a change point
-        slot, *on_block = (
-            part / motion.divisor[0] / motion.divisor[1] for part in (moment, *stretched(moment, across))
-        )
+    if isinstance(motion.divisor, tuple):
+        slot, *on_block = change_points.grown((moment, *stretched(moment, across)), motion.divisor)
     else:
         slot = moment / motion.divisor
         on_block = stretched(slot, across)

@@ -56,10 +56,11 @@ class SliderMotion(NamedTuple):
 
 
 class SliderForces(NamedTuple):
-    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide_*`: ground on slider."""
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide*`: ground on slider."""
 
     inner: Any
     pin: Any
+    guide: Any
     guide_force: Any
     guide_moment: Any
 
@@ -126,12 +127,19 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     on_slider = unturned(vector(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
     across = number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
-    for factor in motion.divisor if isinstance(motion.divisor, tuple) else (motion.divisor,):
-        across = across / factor
-    pin = turned((along, across), guide.direction)
+    if isinstance(motion.divisor, tuple):
+        aside = change_points.grown(turned((0.0, across), guide.direction), motion.divisor)
+        (across,) = change_points.grown((across,), motion.divisor)
+        pin = added(turned((along, 0.0), guide.direction), aside)
+        carried = subtracted(turned((0.0, -on_slider[1]), guide.direction), aside)
+    else:
+        across = across / motion.divisor
+        pin = turned((along, across), guide.direction)
+        carried = turned((0.0, -(on_slider[1] + across)), guide.direction)
     return SliderForces(
         inner=subtracted(pin, coupler_load.force),
         pin=pin,
+        guide=carried,
         guide_force=-(on_slider[1] + across),
         guide_moment=number(minus(None, slider_load.moment)),
     )
@@ -301,9 +309,8 @@ class SliderGroup(checks.Checked, Group):
             loads[self._slider],
             along.get(self._slider),
         )
-        guide = turned((0.0, found.guide_force), self.guide.line.direction)
         return Resolved(
-            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: guide},
+            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: found.guide},
             {"guide_force" + self.label: found.guide_force, "guide_moment" + self.label: found.guide_moment},
             {self.on: Wrench(found.inner, None)},
         )

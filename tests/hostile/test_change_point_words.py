@@ -125,12 +125,12 @@ def test_programs_of_levers_refuse_every_length_that_leaves_the_kind(path, facto
     made = ks.slotted_lever(1.0, pivot=(2.0, 0.0), offset=1.0, assembly="crossed", lever=ks.Link(1.0, (0.2, 0.0), 0.1))
     program = ks.compile(ks.Scene(made, 1.0), "balancing_torque", engine="numpy")
     with pytest.raises(
-        ks.ParameterError, match="another kind|crank length must be greater|crank_length must be greater"
+        ks.ParameterError, match=r"another kind|crank length must be greater|crank_length must be greater"
     ):
         program(0.3, {path: factor * program.parameters[path]})
 
 
-@pytest.mark.parametrize("length", [1e-75, 1e-12, 1e12, 1e75])
+@pytest.mark.parametrize("length", [1e-74, 1e-12, 1e12, 1e74])
 def test_levers_of_any_size_pass_their_change_point(length):
     made = ks.slotted_lever(length, pivot=(0.0, -length), assembly="open")
     solution = ks.solve(made, np.array([0.0, 1.0, 4.0]), crank_speed=1.0)

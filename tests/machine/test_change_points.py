@@ -331,6 +331,22 @@ def test_slider_with_an_offset_passes_its_only_change_point_in_two_turns():
     assert np.ptp(np.sign(solution.slider_velocity)) == 0
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+def test_forces_of_an_upright_slider_at_the_exact_angle_are_infinite_across_the_guide_and_finite_along_it():
+    guide = ks.Guide.through((-0.25, 0.0), (-0.25, 1.0))
+    made = ks.crank_slider(0.5, 0.75, guide=guide, assembly="open", coupler=LINKS["coupler"], slider=ks.Link(3.0))
+    solution = solve(made, np.array([0.0, 1e-10]))
+    for name in ("A", "B", "O", "guide"):
+        (across, _), (at, near) = solution.reaction(name)
+        assert np.isinf(across)
+        assert at == pytest.approx(near, rel=1e-8, abs=1e-8)
+
+
+def test_change_points_just_below_zero_lie_in_the_turn():
+    made = ks.four_bar(1.0, 3.0, 2.0, rocker_pivot=(-4.0, 1e-20), assembly="open")
+    assert made.change_points == (0.0,)
+
+
 # What follows from it
 
 

@@ -1,4 +1,4 @@
-"""Slotted levers through their change points: motion, forces and torque equal a reference of 60 digits, however near."""
+"""Slotted levers through change points: motion, forces and torque equal a reference of 60 digits, however near."""
 
 from functools import cache
 from itertools import product
