@@ -75,11 +75,11 @@ def place(joint, pivot, offset, assembly):
     return LeverMotion(lever, lever._replace(joint=joint), reach, divided, closure)
 
 
-def passed(placement, joint, pivot, offset, passage, side):
-    """The same for a joint on a crank, on a branch through its change points (kernel)."""
-    direction, ratio, slope, *rest = change_points.slotted(placement, pivot, offset, passage, side)
+def passed(placement, on, pivot, offset, passage, side):
+    """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
+    direction, ratio, slope, *rest = change_points.slotted(placement, on, pivot, offset, passage, side)
     lever = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
-    return LeverMotion(lever, lever._replace(joint=joint), *rest)
+    return LeverMotion(lever, lever._replace(joint=placement.joints[on]), *rest)
 
 
 def resolve(motion, lever_load, block_load):
@@ -182,21 +182,20 @@ class LeverGroup(checks.Checked, Group):
         assembly=checks.Sign(tuple(change_points.SIDES)),
     )
 
-    def on_crank(self, crank):
+    def on_crank(self, throws):
         if not self.through:
             return self
-        return with_fields(self, passage=change_points.of_lever_group(self, crank))
+        return with_fields(self, passage=change_points.of_lever_group(self, throws))
 
-    def kink(self, crank):
-        return change_points.kink(self, crank)
+    def kink(self, throws):
+        return change_points.kink(self, throws)
 
     @property
     def turns(self):
         return change_points.turns(self.passage)
 
-    @property
-    def change_points(self):
-        return change_points.angles(self.passage, self.pivot)
+    def change_points(self, throws):
+        return change_points.angles(self, throws, self.pivot)
 
     @property
     def links(self):
@@ -246,9 +245,10 @@ class LeverGroup(checks.Checked, Group):
 
     def place(self, placement):
         """Add the pivot, lever and block."""
-        given = placement.joints[self.on], self.pivot, present(self.offset)
+        given = self.pivot, present(self.offset)
         side = change_points.SIDES.get(self.assembly, self.assembly)
-        motion = passed(placement, *given, self.passage, side) if self.passage else place(*given, side)
+        motion = self.passage and passed(placement, self.on, *given, self.passage, side)
+        motion = motion or place(placement.joints[self.on], *given, side)
         placement.joints[self.pivot_name] = motion.lever.joint
         placement.links[self._lever] = motion.lever
         placement.links[self._block] = motion.block

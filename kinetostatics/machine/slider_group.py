@@ -81,11 +81,12 @@ def place(joint, coupler_length, guide, assembly):
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
 
-def passed(placement, joint, coupler_length, guide, passage, side):
-    """The same for a joint on a crank, on a branch through its change points (kernel)."""
+def passed(placement, on, coupler_length, guide, passage, side):
+    """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
+    joint = placement.joints[on]
     position = unturned(joint.position, guide.direction)
     first, second = unturned(joint.first, guide.direction), unturned(joint.second, guide.direction)
-    reached = change_points.slid(placement, coupler_length, guide, passage, side)
+    reached = change_points.slid(placement, on, coupler_length, guide, passage, side)
     across = minus(guide.offset, position[1])
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
@@ -189,22 +190,21 @@ class SliderGroup(checks.Checked, Group):
         label=checks.Name(may_be_empty=True),
     )
 
-    def on_crank(self, crank):
+    def on_crank(self, throws):
         if not self.through:
             return self
-        return with_fields(self, passage=change_points.of_slider_group(self, crank))
+        return with_fields(self, passage=change_points.of_slider_group(self, throws))
 
-    def kink(self, crank):
-        return change_points.kink(self, crank)
+    def kink(self, throws):
+        return change_points.kink(self, throws)
 
     @property
     def turns(self):
         return change_points.turns(self.passage)
 
-    @property
-    def change_points(self):
+    def change_points(self, throws):
         x, y = self.guide.direction
-        return change_points.angles(self.passage, (y, -x))
+        return change_points.angles(self, throws, (y, -x))
 
     @property
     def _side(self):
@@ -258,9 +258,9 @@ class SliderGroup(checks.Checked, Group):
         }
 
     def place(self, placement):
-        given = placement.joints[self.on], self.coupler_length, self.guide.line
-        motion = self.passage and passed(placement, *given, self.passage, self._side)
-        self._set(placement, motion or place(*given, self._side))
+        given = self.coupler_length, self.guide.line
+        motion = self.passage and passed(placement, self.on, *given, self.passage, self._side)
+        self._set(placement, motion or place(placement.joints[self.on], *given, self._side))
 
     def follow(self, placement, joints):
         """Place coupler and slider at joints found in another way."""

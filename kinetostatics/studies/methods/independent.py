@@ -119,7 +119,8 @@ class Machine(Acting):
             return side
         (kind, _), slides = parted(group.passage), isinstance(group, SliderGroup)
         start = -1j * self.vector(group.guide.direction) if slides else self.vector(group.pivot)
-        psi = self._angle - self.mp.arg(start)
+        throw = self.mechanism.throws[group.on]
+        psi = self._angle - self.mp.arg(start if throw.ahead else start / self.vector(throw.at))
         half = self.mp.sin(psi / 2)
         passed = {FAR: self.mp.cos(psi / 2), NEAR: half, MEETING: half, OPPOSITE: half}
         return side * self.mp.sign(passed.get(kind, self.mp.sin(psi)))
