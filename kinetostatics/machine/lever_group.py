@@ -108,8 +108,8 @@ class LeverGroup(checks.Checked, Group):
     With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
     from pivot to pin must stay above the offset.
 
-    With the pivot on the circle of the pin A of a crank, or as far from it as the offset, the lever has a change point
-    where the block stands at the pivot, or at its foot on the slot.
+    With the pivot on the circle of the pin, or as far from it as the offset, the lever has a change point, where the
+    block stands at the foot of the pivot on the slot, or at the pivot.
 
     Parameters
     ----------
@@ -127,8 +127,8 @@ class LeverGroup(checks.Checked, Group):
         Put behind the names of links and forces of a second lever group in one mechanism.
     assembly : +1, -1, "open" or "crossed"
         +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
-        direction O -> O2; on the pin A of a crank they go on through change points, so that the lever of a crank as
-        long as the pivot's distance turns half as fast as that, and keep their side where there are none.
+        direction O -> O2; on A, or another pin of the crank, they go on through change points, so that the lever of a
+        crank as long as the pivot's distance turns half as fast as that, and keep their side where there are none.
 
     Raises
     ------

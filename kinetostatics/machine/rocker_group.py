@@ -116,8 +116,8 @@ class RockerGroup(checks.Checked, Group):
         Fixed pivot O2, m.
     assembly : +1, -1, "open" or "crossed"
         +1: the pin to the left of the direction from the inner joint to the pivot. "open" is so too in the half turn
-        behind the direction O -> O2, "crossed" is the other way round there; on the pin A of a crank they go on through
-        change points as inertia carries them, and keep their side where there are none.
+        behind the direction O -> O2, "crossed" is the other way round there; on A, or another pin of the crank, they go
+        on through change points as inertia carries them, and keep their side where there are none.
     coupler, rocker : Link
     on, pin, pivot_name : str
         Names of the joint it hangs on and of the joints it adds.

@@ -157,8 +157,8 @@ class SliderGroup(checks.Checked, Group):
     guide : Guide
     assembly : +1, -1, "open" or "crossed"
         +1: slider ahead of the inner joint along the guide. "open" is so, "crossed" the other way round, in the half
-        turn behind the guide's right normal; on the pin A of a crank they go on through change points, and keep their
-        side where there are none.
+        turn behind the guide's right normal; on A, or another pin of the crank, they go on through change points, and
+        keep their side where there are none.
     coupler, slider : Link
     on, pin : str
         Names of the joint it hangs on and of the joint it adds.

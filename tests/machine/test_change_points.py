@@ -410,7 +410,7 @@ def hung(kind, assembly, on):
     if kind == "lever":
         pivot = (-0.3, -0.4), (0.8, -0.6)
         return ks.LeverGroup(pivot[0], on, lever=LINKS["rocker"], block=LINKS["coupler"], assembly=assembly)
-    a, b, h, d = (0.5 * length for length in LINKAGES[kind])
+    _, b, h, d = (0.5 * length for length in LINKAGES[kind])
     return ks.RockerGroup(b, h, (-0.8 * d, 0.6 * d), assembly, LINKS["coupler"], LINKS["rocker"], on=on)
 
 
