@@ -408,8 +408,7 @@ def hung(kind, assembly, on):
     if kind == "slider":
         return ks.SliderGroup(0.75, ks.Guide.at(0.4, -0.25), assembly, LINKS["coupler"], LINKS["rocker"], on=on)
     if kind == "lever":
-        pivot = (-0.3, -0.4), (0.8, -0.6)
-        return ks.LeverGroup(pivot[0], on, lever=LINKS["rocker"], block=LINKS["coupler"], assembly=assembly)
+        return ks.LeverGroup((-0.3, -0.4), on, lever=LINKS["rocker"], block=LINKS["coupler"], assembly=assembly)
     _, b, h, d = (0.5 * length for length in LINKAGES[kind])
     return ks.RockerGroup(b, h, (-0.8 * d, 0.6 * d), assembly, LINKS["coupler"], LINKS["rocker"], on=on)
 
@@ -439,6 +438,22 @@ def test_group_on_a_second_throw_moves_and_bears_as_on_the_pin_of_a_crank_turned
         np.testing.assert_allclose(values, right, rtol=0, atol=1e-11 * (np.abs(right).max() + 1.0))
     both = np.sort((np.array(own.change_points) - turn) % (2 * np.pi))
     np.testing.assert_allclose(made.change_points, both, atol=1e-14)
+
+
+@pytest.mark.parametrize("assembly", SIDES)
+@pytest.mark.parametrize("name", ["parallelogram", "kite", "deltoid", "rhombus", "near"])
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+def test_second_throw_is_as_exact_as_the_first_however_near_a_change_point(name, assembly):
+    """The whole turned by a quarter: crank angles near the change point stay as fine as they can be."""
+    a, b, h, d = map(float, LINKAGES[name])
+    links = {link: LINKS[link] for link in ("coupler", "rocker")}
+    own = ks.Mechanism("own", ks.Crank(a), (ks.RockerGroup(b, h, (d, 0.0), assembly, **links),))
+    made = thrown(ks.RockerGroup(b, h, (0.0, d), assembly, on="C", **links), (0.0, a))
+    expected, found = (solve(item, np.array(NEAR), loads=()) for item in (own, made))
+    np.testing.assert_allclose(found.balancing_torque, expected.balancing_torque, rtol=1e-12)
+    np.testing.assert_allclose(found.angular_acceleration("coupler"), expected.angular_acceleration("coupler"), 1e-12)
+    (x, y), (along, across) = expected.reaction("O2"), found.reaction("O2")
+    assert np.all(np.maximum(abs(along + y), abs(across - x)) < 1e-12 * np.maximum(abs(x), abs(y)))
 
 
 def test_program_refuses_another_place_of_the_pin_and_takes_one_at_the_same_radius():
