@@ -82,10 +82,9 @@ def _mechanism(table, tabulated):
         return _cam_crank_slider(table, tabulated.get(("cam",)))
     crank = link_of(table.crank, table.crank_length)
     if isinstance(table, schema.SlottedLeverVariant):
-        links = {"lever": link_of(table.lever), "block": link_of(table.block)}
-        return slotted_lever(
-            table.crank_length, pivot=table.lever_pivot, offset=table.slot_offset, crank=crank, **links
-        )
+        links = {"crank": crank, "lever": link_of(table.lever), "block": link_of(table.block)}
+        line = {"pivot": table.lever_pivot, "offset": table.slot_offset}
+        return slotted_lever(table.crank_length, **line, assembly=table.assembly, **links)
     shared = {"guide": guide_of(table), "slider": link_of(table.slider), "crank": crank}
     if isinstance(table, schema.ScotchYokeVariant):
         return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, block=link_of(table.block), **shared)

@@ -13,6 +13,10 @@ image in the line A O2; where a = d and b = h A meets O2 ("meeting"), and sin(ps
 
 All vectors are taken in the frame that turns half as fast as the crank, in which A -> O2 is
 ((d-a) cos(psi/2), -(d+a) sin(psi/2)).
+
+A slotted lever with its slot at offset o left of O2 carries A at s = +-2 sqrt(a d) sin(psi/2) along it where
+|d - a| = |o|, with its sign through the change point; where a = d and o = 0 A meets O2, and the lever keeps to the left
+normal of that frame.
 """
 
 import math
@@ -24,7 +28,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt
-from ..numbers.planar import added, cross, dot, left, number, product, stretched, subtracted, turned, unturned
+from ..numbers.planar import added, cross, dot, left, minus, number, product, stretched, subtracted, turned, unturned
 from .links import Joint, LinkMotion, present
 
 SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
@@ -32,7 +36,9 @@ SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
 FAR, NEAR, MEETING, PARALLEL, KITE, RHOMBUS = "far", "near", "meeting", "parallel", "kite", "rhombus"
 BOTH = "both"
 """Slider group with a coupler as long as the crank, on a guide through O."""
-TWICE = (FAR, NEAR, MEETING)
+OPPOSITE = "opposite"
+"""Slotted lever like one of the kind "near", mirrored."""
+TWICE = (FAR, NEAR, MEETING, OPPOSITE)
 """Kinds of which a branch closes after two turns."""
 ULPS = 8
 """Units in the last place of the longest length by which lengths that are meant to be equal may differ."""
@@ -52,6 +58,8 @@ CALLED = {
 """Kinds of four-bars as messages call them: crank a, coupler b, rocker h, ground d."""
 SLIDING = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
 """Kinds of slider groups: crank a, coupler l, offset e of the guide."""
+SLOTTED = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
+"""Kinds of slotted levers: crank a, distance d from O to the pivot, offset o of the slot."""
 FACING = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 """Quadrants in which a direction (x, y) is halved, its angle counted from -pi to pi."""
 
@@ -73,15 +81,15 @@ class PassedMotion(NamedTuple):
 # How a linkage passes its change points: a text, which belongs to its structure
 
 
-def of_rocker_group(group, crank):
-    """How a rocker group on a crank passes its change points: its kind, and where O2 stands; "" without any.
+def of_rocker_group(group, throws):
+    """How a rocker group on a pin of a crank passes its change points: its kind, and where O2 stands; "" without any.
 
     Raises
     ------
     ParameterError
         It hangs on no crank pin, or the designs of a batch are not all of one kind.
     """
-    a, b, h, x, y = _known("rocker group", group, crank, group.coupler_length, group.rocker_length, *group.pivot)
+    a, x, y, b, h = _known("rocker group", group, throws, group.pivot, group.coupler_length, group.rocker_length)
     d = np.sqrt(x * x + y * y)
     unit = _unit(a, b, h, d)
     far, near = abs(a + d - b - h) <= unit, abs(abs(d - a) - abs(b - h)) <= unit
@@ -93,26 +101,43 @@ def of_rocker_group(group, crank):
     return _joined("rocker group", kind, CALLED, _facing(x, y))
 
 
-def of_slider_group(group, crank):
+def of_slider_group(group, throws):
     """How a slider group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
-    line = group.guide.guide_offset, *group.guide.direction
-    a, b, e, x, y = _known("slider group", group, crank, group.coupler_length, *line)
+    x, y = group.guide.direction
+    a, x, y, b, e = _known("slider group", group, throws, (y, -x), group.coupler_length, group.guide.guide_offset)
     unit = _unit(a, b, abs(e))
     far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
     kind = np.select([far & near, far, near], [BOTH, FAR, NEAR], "")
-    return _joined("slider group", kind, SLIDING, _facing(y, -x))
+    return _joined("slider group", kind, SLIDING, _facing(x, y))
 
 
-def _known(owner, group, crank, *lengths):
-    """Length of the crank, and other lengths, as arrays of more than double precision."""
-    problem, lengths = None, (crank.length, *lengths)
-    if group.on != "A" or crank.length is None:
+def of_lever_group(group, throws):
+    """How a lever group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
+    a, x, y, o = _known("lever group", group, throws, group.pivot, group.offset)
+    d = np.sqrt(x * x + y * y)
+    unit = _unit(a, abs(o), d)
+    near, opposite = abs(d - a - o) <= unit, abs(d - a + o) <= unit
+    near, opposite = near & (d > unit), opposite & (d > unit)
+    kind = np.select([near & opposite, near, opposite], [MEETING, NEAR, OPPOSITE], "")
+    return _joined("lever group", kind, SLOTTED, _facing(x, y))
+
+
+def _known(owner, group, throws, start, *lengths):
+    """Distance of the pin from O, a direction as the pin sees it at crank angle 0, and lengths, all beyond double."""
+    problem, throw = None, throws.get(group.on)
+    if throw is None:
         where = f"it hangs on {group.on!r}" if group.on != "A" else "the crank pin slides in its slot"
-        problem = f"assembly {group.assembly!r} is for a group on the pin A of a crank of constant length, but {where}"
-    elif not all(map(checks.known, lengths)):
+        problem = f"assembly {group.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
+    elif not all(map(checks.known, (*throw.at, *start, *lengths))):
         problem = f"assembly {group.assembly!r} needs lengths that are known when the mechanism is made"
     checks.require(owner, f"{problem}; give +1 or -1" if problem else None)
-    return np.broadcast_arrays(*(np.asarray(part, dtype=np.longdouble) for part in lengths))
+    parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *start, *lengths))
+    *at, x, y = np.broadcast_arrays(*parts)[:4]
+    radius, direction = throw._replace(at=at).polar
+    x, y = unturned((x, y), direction)
+    if direction is not None:
+        y = np.where(abs(y) <= _unit(x), 0.0, y)
+    return np.broadcast_arrays(radius, x, y, *(np.asarray(part, dtype=np.longdouble) for part in lengths))
 
 
 def _unit(*lengths):
@@ -145,26 +170,29 @@ def _several(found, what, called):
     )
 
 
-def kink(group, crank):
+def kink(group, throws):
     """What a chosen side makes of the motion at change points, in words; "" where there are none."""
-    if type(group.assembly) is not int or group.on != "A" or crank.length is None:
+    if type(group.assembly) is not int or group.on not in throws:
         return ""
     try:
-        passing = replace(group, assembly="open").on_crank(crank)
-        angles = passing.change_points
+        passing = replace(group, assembly="open").on_crank(throws)
+        angles = passing.change_points(throws)
     except ParameterError:  # a batch of several kinds, or of several change points
         return ""
     if not angles:
         return ""
     named = dict.fromkeys(angles, "a kink")
     if parted(passing.passage)[0] in (MEETING, RHOMBUS):
-        named[angles[0] if len(angles) == 1 else _meeting_angle(passing)] = "a jump, as A meets the pivot"
+        at = angles[0] if len(angles) == 1 else _first(throws[group.on], group.pivot) % (2 * math.pi)
+        named[at] = f"a jump, as {group.on} meets the pivot"
     texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
     return f'assembly {group.assembly:+d} keeps to its side at change points: {texts}; "open" or "crossed" passes them'
 
 
-def _meeting_angle(group):
-    return math.atan2(group.pivot[1], group.pivot[0]) % (2 * math.pi)
+def _first(throw, start):
+    """Crank angle at which a pin of the crank stands in a direction, rad."""
+    x, y = unturned(start, throw.polar[1])
+    return math.atan2(y, x)
 
 
 def parted(passage):
@@ -178,15 +206,19 @@ def turns(passage):
     return 2 if passage and parted(passage)[0] in TWICE else 1
 
 
-def angles(passage, start):
+def angles(group, throws, start):
     """Crank angles in [0, 2 pi) at which change points are passed, rad, from the direction that the kinds refer to."""
-    if not passage:
+    if not group.passage:
         return ()
+    throw = throws[group.on]
     several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
-    checks.require("change points", several if any(map(np.ndim, start)) else None)
-    kind, first = parted(passage)[0], math.atan2(start[1], start[0])
-    at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,)}.get(kind, (0.0, math.pi))
-    return tuple(sorted((first + angle) % (2 * math.pi) for angle in at))
+    checks.require("change points", several if any(map(np.ndim, (*start, *throw.at))) else None)
+    kind, first = parted(group.passage)[0], _first(throw, start)
+    at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,), OPPOSITE: (0.0,)}.get(kind, (0.0, math.pi))
+    turn = 2 * math.pi
+    return tuple(
+        sorted((first + angle) % turn % turn for angle in at)
+    )  # what lies just below 0 is rounded up to a turn
 
 
 # Kernels
@@ -202,20 +234,32 @@ class _Half(NamedTuple):
 
 def _half(angle, pivot, ground, facing):
     half = 0.5 * angle
-    ray = cos(half), sin(half)
-    x, y = pivot
-    if not facing and present(y) is None:
-        return _Half(ray[0], ray[1], ray)
-    reach = ground - x if facing else ground + x
-    size = sqrt(2.0 * ground * reach)
-    start = (facing * y / size, facing * reach / size) if facing else (reach / size, y / size)
+    ray, start = (cos(half), sin(half)), _start(pivot, ground, facing)
     cosine, sine = unturned(ray, start)
     return _Half(cosine, sine, turned(ray, start))
 
 
-def place(placement, joint, coupler_length, rocker_length, pivot, passage, side):
-    """Coupler and rocker for a joint on the crank, on the branch that is open (+1) or crossed (-1) (kernel)."""
-    a, b, h = placement.crank_length, coupler_length, rocker_length
+def _start(pivot, ground, facing):
+    """Unit vector at half the angle of O -> O2; None: at zero."""
+    x, y = pivot
+    if not facing and present(y) is None:
+        return None
+    reach = ground - x if facing else ground + x
+    size = sqrt(2.0 * ground * reach)
+    return (facing * y / size, facing * reach / size) if facing else (reach / size, y / size)
+
+
+def _quarter(angle, pivot, ground, facing):
+    """A quarter of the crank angle from O -> O2 as a unit vector."""
+    quarter = 0.25 * angle
+    ray, start = (cos(quarter), sin(quarter)), _start(pivot, ground, facing)
+    return unturned(ray, start and _start(start, 1.0, 0))
+
+
+def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
+    """Coupler and rocker for the pin `on` of the crank, on the branch that is open (+1) or crossed (-1) (kernel)."""
+    a, direction = placement.throws[on].polar
+    b, h, fixed, pivot = coupler_length, rocker_length, pivot, unturned(pivot, direction)
     d = sqrt(dot(pivot, pivot))
     kind, facing = parted(passage)
     if kind in TWICE:
@@ -227,7 +271,9 @@ def place(placement, joint, coupler_length, rocker_length, pivot, passage, side)
         found = _folded(placement.ray, pivot, d)
     else:
         found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, side)
-    return _placed(joint, pivot, h, *found)
+    coupler, rocker, *rest = found
+    coupler, rocker = ((turned(link[0], direction), *link[1:]) for link in (coupler, rocker))
+    return _placed(placement.joints[on], fixed, h, coupler, rocker, *rest)
 
 
 def _placed(joint, pivot, rocker_length, coupler, rocker, closure, factor, distance):
@@ -250,15 +296,16 @@ def _placed(joint, pivot, rocker_length, coupler, rocker, closure, factor, dista
     )
 
 
-def slid(placement, coupler_length, guide, passage, side):
+def slid(placement, on, coupler_length, guide, passage, side):
     """Reach of a coupler along the guide, rate of the coupler and its slope, what to divide by, and closure (kernel).
 
     With psi from the right normal of the guide the coupler stands at right angles to it where cos(psi/2) ("far") or
     sin(psi/2) ("near") vanishes. What to divide by is a factor and the distance from the change points.
     """
     kind, facing = parted(passage)
-    a, b, e = placement.crank_length, coupler_length, number(guide.offset)
-    x, y = (1.0, 0.0) if guide.direction is None else guide.direction
+    a, direction = placement.throws[on].polar
+    b, e = coupler_length, number(guide.offset)
+    x, y = unturned((1.0, 0.0) if guide.direction is None else guide.direction, direction)
     if kind == BOTH:
         along = dot((x, y), placement.ray)
         ratio = -1.0 if side > 0 else 1.0
@@ -278,6 +325,44 @@ def slid(placement, coupler_length, guide, passage, side):
         (reach / b * divided, apart(passed, UNSEEN)),
         square / size,
     )
+
+
+def slotted(placement, on, pivot, offset, passage, side):
+    """Direction of a slotted lever, its ratio and the slope of that, reach, what to divide by, and closure (kernel).
+
+    The slot points to the block (+1) or away from it (-1) in the half turn behind O -> O2. What to divide by is the
+    reach: a factor and the distance from the change point.
+
+    With the pivot at the distance d the rates have one more divisor, (a+d)/2 +- sqrt(a d) cos(psi/2), a sum of squares
+    by a quarter of the angle: it is small where A passes close by the pivot.
+    """
+    kind, facing = parted(passage)
+    a, ahead = placement.throws[on].polar
+    d, pivot = sqrt(dot(pivot, pivot)), unturned(pivot, ahead)
+    half = _half(placement.angle, pivot, d, facing)
+    if kind == MEETING:
+        direction, lag, slope, factor, closure = (0.0, float(side)), None, None, 2.0 * side * a, 1.0
+    else:
+        way, mean, middle = 1.0 if kind == NEAR else -1.0, 0.5 * (a + d), sqrt(a * d)
+        cosine, sine = _quarter(placement.angle, pivot, d, facing)
+        passed = cosine if way * side > 0 else sine
+        square, least = 2.0 * passed * passed, 0.25 * offset * offset / (mean + middle)
+        near = least + middle * square
+        direction = (0.5 * offset * half.sine / near, side * (mean * square - least) / near)
+        lag = 0.25 * way * offset / near
+        slope = -0.5 * way * side * middle * half.sine / near * lag
+        factor, closure = 2.0 * side * middle, near / (a + d)
+    divided = factor, apart(half.sine, UNSEEN)
+    return turned(turned(direction, half.frame), ahead), minus(0.5, lag), slope, factor * half.sine, divided, closure
+
+
+def grown(parts, divisor):
+    """Components of a force over a factor and the distance from a change point (kernel).
+
+    Each by itself: there the whole is infinite, but a component that vanishes stays zero.
+    """
+    factor, distance = divisor
+    return tuple(part / factor / distance for part in parts)
 
 
 def _translated(ray, pivot, ground):
@@ -380,4 +465,4 @@ def pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load):
     whole = added(*parts)
     if whole is None:
         return (0.0, 0.0)
-    return (whole[0] / motion.factor / motion.distance, whole[1] / motion.factor / motion.distance)
+    return grown(whole, (motion.factor, motion.distance))

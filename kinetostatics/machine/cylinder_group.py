@@ -119,7 +119,7 @@ class CylinderGroup(checks.Checked, Group):
 
     def place(self, placement):
         """Add the pivot, rod and cylinder."""
-        motion = lever_group.place(placement.joints[self.on], self.pivot, None)
+        motion = lever_group.place(placement.joints[self.on], self.pivot, None, 1)
         placement.joints[self.pivot_name] = motion.lever.joint
         placement.links[self._rod] = motion.block._replace(direction=stretched(-1.0, motion.block.direction))
         placement.links[self._cylinder] = motion.lever

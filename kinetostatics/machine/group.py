@@ -64,6 +64,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..numbers.planar import length
 from .links import Wrench
 
 FRAME = "frame"
@@ -138,12 +139,27 @@ class Resolved(NamedTuple):
     demands: dict[str, Wrench]
 
 
+class Throw(NamedTuple):
+    """A pin of the crank by its place on it, along and across; `ahead`: on the crank ray itself, like A."""
+
+    at: Any
+    ahead: bool = False
+
+    @property
+    def polar(self):
+        """Distance from O, and direction at the crank angle 0 as a unit vector; None: that of the crank ray."""
+        if self.ahead:
+            return self.at[0], None
+        radius = length(self.at)
+        return radius, (self.at[0] / radius, self.at[1] / radius)
+
+
 @dataclass
 class Placement:
     """The mechanism at its crank angles: motion flows outward from the crank into these tables.
 
     `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
-    to find again; `crank_length` is None of a crank whose pin slides in its slot.
+    to find again; `throws` by joint the pins of the crank, each a `Throw`.
     """
 
     angle: Any
@@ -152,7 +168,7 @@ class Placement:
     links: dict = field(default_factory=dict)
     travels: dict = field(default_factory=dict)
     details: dict = field(default_factory=dict)
-    crank_length: Any = None
+    throws: dict = field(default_factory=dict)
 
 
 class Group:
@@ -223,8 +239,13 @@ class Group:
         """Guide by name of each link that slides along one."""
         return {}
 
-    def on_crank(self, crank):
-        """The group as it is on a crank: what its structure owes to lengths that are not its own."""
+    @property
+    def throws(self) -> dict[str, Throw]:
+        """Pins of the crank that it adds."""
+        return {}
+
+    def on_crank(self, throws):
+        """The group as it is on the pins of a crank: what its structure owes to lengths that are not its own."""
         return self
 
     passage = ""
@@ -240,7 +261,7 @@ class Group:
         """Whether it is to pass change points, had it any."""
         return type(getattr(self, "assembly", 1)) is str
 
-    def kink(self, crank):
+    def kink(self, throws):
         """What becomes of its motion at change points that it does not pass, in words; "" without any."""
         return ""
 
@@ -249,9 +270,8 @@ class Group:
         """Turns of the crank after which its branch closes."""
         return 1
 
-    @property
-    def change_points(self):
-        """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
+    def change_points(self, throws):
+        """Crank angles in [0, 2 pi) of the change points that it passes on the pins of a crank, rad."""
         return ()
 
     @property

@@ -1,18 +1,23 @@
 """Lever group (RPR): block on a pin, sliding in a straight slot of a lever that turns about a fixed pivot.
 
 With d the vector from the pivot to the pin, the slot at offset e left of the pivot carries the pin at s along it,
-s = sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers: no angle is formed,
+s = +-sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers: no angle is formed,
 and s is a product, so no digit is lost where it vanishes, which divides rates and forces.
+
+Where the crank is as long as the pivot's distance, A meets the pivot: on a chosen side the lever turns about there at
+once, the words "open" and "crossed" carry the block on to the other side of the pivot (`change_points`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
+from ..numbers.leaves import with_fields
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
+from . import change_points
 from .group import FRAME, Group, Output, Point, Resolved, Slot
 from .links import Joint, Link, LinkMotion, Wrench, present
 
@@ -24,6 +29,8 @@ class LeverMotion(NamedTuple):
     """A placed lever: `reach` is the pin's coordinate along the slot, `divisor` the same to divide by, never zero.
 
     `closure` is the reach squared over the squares of distance and speed of the pin: small where the lever spins fast.
+    On a branch through a change point `divisor` is two factors, of which the second is smallest there, and `closure`
+    leaves that out.
     """
 
     lever: LinkMotion
@@ -43,18 +50,19 @@ class LeverForces(NamedTuple):
     pivot: Any
 
 
-def place(joint, pivot, offset):
+def place(joint, pivot, offset, assembly):
     """Lever and block for a given joint (kernel); an offset of None is zero."""
     d = (apart(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
     square = dot(d, d)
     distance = sqrt(square)
     if offset is None:
-        reach, divided, reach_square = distance, distance, square
-        direction = (d[0] / distance, d[1] / distance)
+        reach = divided = assembly * distance
+        reach_square = square
+        direction = (d[0] / reach, d[1] / reach)
     else:
         reach_square = (distance - offset) * (distance + offset)
-        reach = root(reach_square, square)
-        divided = divisor(reach, SMALLEST * distance)
+        size = root(reach_square, square)
+        reach, divided = assembly * size, assembly * divisor(size, SMALLEST * distance)
         direction = unturned((d[0] / distance, d[1] / distance), (reach / distance, offset / distance))
     first, second = vector(joint.first), vector(joint.second)
     along, across = unturned(first, direction)
@@ -67,14 +75,25 @@ def place(joint, pivot, offset):
     return LeverMotion(lever, lever._replace(joint=joint), reach, divided, closure)
 
 
+def passed(placement, on, pivot, offset, passage, side):
+    """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
+    direction, ratio, slope, *rest = change_points.slotted(placement, on, pivot, offset, passage, side)
+    lever = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
+    return LeverMotion(lever, lever._replace(joint=placement.joints[on]), *rest)
+
+
 def resolve(motion, lever_load, block_load):
     """Forces on lever and block (kernel).
 
     Loads are wrenches about the links' reference joints, those of further groups among them. Moments of both links
     together about the pivot give the force across the slot.
     """
-    slot = number(plus(lever_load.moment, block_load.moment)) / motion.divisor
-    on_block = stretched(slot, left(motion.lever.direction))
+    moment, across = number(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
+    if isinstance(motion.divisor, tuple):
+        slot, *on_block = change_points.grown((moment, *stretched(moment, across)), motion.divisor)
+    else:
+        slot = moment / motion.divisor
+        on_block = stretched(slot, across)
     return LeverForces(
         inner=subtracted(subtracted(None, on_block), block_load.force),
         slot=slot,
@@ -89,6 +108,9 @@ class LeverGroup(checks.Checked, Group):
     With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
     from pivot to pin must stay above the offset.
 
+    With the pivot on the circle of the pin, or as far from it as the offset, the lever has a change point, where the
+    block stands at the foot of the pivot on the slot, or at the pivot.
+
     Parameters
     ----------
     pivot : (x, y)
@@ -98,11 +120,15 @@ class LeverGroup(checks.Checked, Group):
     offset : float or array
         Of the slot's axis to the left of the pivot, m; 0: the slot points at the pivot.
     lever : Link
-        Reference joint `pivot_name`, along the slot toward the block.
+        Reference joint `pivot_name`, along the slot toward the block (of assembly +1).
     block : Link
         Reference joint `on`, along the slot as the lever; it turns with it.
     label : str
         Put behind the names of links and forces of a second lever group in one mechanism.
+    assembly : +1, -1, "open" or "crossed"
+        +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
+        direction O -> O2; on A, or another pin of the crank, they go on through change points, so that the lever of a
+        crank as long as the pivot's distance turns half as fast as that, and keep their side where there are none.
 
     Raises
     ------
@@ -113,7 +139,7 @@ class LeverGroup(checks.Checked, Group):
     -----
     Reactions: `on` (N) on the block, from what carries the joint; `pivot_name` (N), ground on lever; "slot_force" (N),
     lever on block along the lever's left normal, and "slot_moment" (N m) about `on`. "block_position" (m) is the
-    coordinate of the block along the slot, from the foot of the pivot.
+    coordinate of the block along the slot, from the foot of the pivot; negative where the slot points away from it.
 
     Further groups hang on a `Pin` of the lever: ``ks.Pin(on="lever", at=(0.9, 0.0))``.
 
@@ -139,6 +165,8 @@ class LeverGroup(checks.Checked, Group):
     block: Link = Link()
     pivot_name: str = "O2"
     label: str = ""
+    assembly: int = 1
+    passage: str = field(default="", init=False, repr=False)
 
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
@@ -151,7 +179,23 @@ class LeverGroup(checks.Checked, Group):
         block=checks.Made(Link, "a Link"),
         pivot_name=checks.Name(),
         label=checks.Name(may_be_empty=True),
+        assembly=checks.Sign(tuple(change_points.SIDES)),
     )
+
+    def on_crank(self, throws):
+        if not self.through:
+            return self
+        return with_fields(self, passage=change_points.of_lever_group(self, throws))
+
+    def kink(self, throws):
+        return change_points.kink(self, throws)
+
+    @property
+    def turns(self):
+        return change_points.turns(self.passage)
+
+    def change_points(self, throws):
+        return change_points.angles(self, throws, self.pivot)
 
     @property
     def links(self):
@@ -201,7 +245,10 @@ class LeverGroup(checks.Checked, Group):
 
     def place(self, placement):
         """Add the pivot, lever and block."""
-        motion = place(placement.joints[self.on], self.pivot, present(self.offset))
+        given = self.pivot, present(self.offset)
+        side = change_points.SIDES.get(self.assembly, self.assembly)
+        motion = self.passage and passed(placement, self.on, *given, self.passage, side)
+        motion = motion or place(placement.joints[self.on], *given, side)
         placement.joints[self.pivot_name] = motion.lever.joint
         placement.links[self._lever] = motion.lever
         placement.links[self._block] = motion.block

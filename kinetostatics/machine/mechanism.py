@@ -73,7 +73,8 @@ class Mechanism(Batched):
 
     def __post_init__(self):
         self.RULES.admit(self)
-        object.__setattr__(self, "groups", tuple(group.on_crank(self.crank) for group in self.groups))
+        if any(group.through or group.passes for group in self.groups):
+            object.__setattr__(self, "groups", tuple(group.on_crank(self.throws) for group in self.groups))
         trusted = tuple((type(part), *part.names) for part in self.parts) if self.trusted else None
         if trusted is None or trusted not in _NAMED_WELL:
             checks.require(self.name, *_name_problems(self.parts))
@@ -89,6 +90,11 @@ class Mechanism(Batched):
     def trusted(self):
         """Whether crank and groups are the library's own, whose forces are known to balance."""
         return all(part.trusted for part in self.parts)
+
+    @property
+    def throws(self):
+        """Pins of the crank by joint, each a `Throw`."""
+        return self._collected("throws")
 
     @cached_property
     def turns(self):
@@ -113,7 +119,7 @@ class Mechanism(Batched):
     @cached_property
     def change_points(self):
         """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
-        return tuple(sorted({angle for group in self.groups for angle in group.change_points}))
+        return tuple(sorted({angle for group in self.groups for angle in group.change_points(self.throws)}))
 
     @cached_property
     def links(self):

@@ -116,8 +116,8 @@ class RockerGroup(checks.Checked, Group):
         Fixed pivot O2, m.
     assembly : +1, -1, "open" or "crossed"
         +1: the pin to the left of the direction from the inner joint to the pivot. "open" is so too in the half turn
-        behind the direction O -> O2, "crossed" is the other way round there; on the pin A of a crank they go on through
-        change points as inertia carries them, and keep their side where there are none.
+        behind the direction O -> O2, "crossed" is the other way round there; on A, or another pin of the crank, they go
+        on through change points as inertia carries them, and keep their side where there are none.
     coupler, rocker : Link
     on, pin, pivot_name : str
         Names of the joint it hangs on and of the joints it adds.
@@ -153,21 +153,20 @@ class RockerGroup(checks.Checked, Group):
         label=checks.Name(may_be_empty=True),
     )
 
-    def on_crank(self, crank):
+    def on_crank(self, throws):
         if not self.through:
             return self
-        return with_fields(self, passage=change_points.of_rocker_group(self, crank))
+        return with_fields(self, passage=change_points.of_rocker_group(self, throws))
 
-    def kink(self, crank):
-        return change_points.kink(self, crank)
+    def kink(self, throws):
+        return change_points.kink(self, throws)
 
     @property
     def turns(self):
         return change_points.turns(self.passage)
 
-    @property
-    def change_points(self):
-        return change_points.angles(self.passage, self.pivot)
+    def change_points(self, throws):
+        return change_points.angles(self, throws, self.pivot)
 
     @property
     def links(self):
@@ -214,10 +213,10 @@ class RockerGroup(checks.Checked, Group):
 
     def place(self, placement):
         """Add joints B and O2, coupler and rocker."""
-        given = placement.joints[self.on], self.coupler_length, self.rocker_length, self.pivot
+        given = self.coupler_length, self.rocker_length, self.pivot
         side = change_points.SIDES.get(self.assembly, self.assembly)
-        passed = self.passage and change_points.place(placement, *given, self.passage, side)
-        self._set(placement, passed or place(*given, side))
+        passed = self.passage and change_points.place(placement, self.on, *given, self.passage, side)
+        self._set(placement, passed or place(placement.joints[self.on], *given, side))
 
     def follow(self, placement, joints):
         """Place coupler and rocker at joints found in another way."""

@@ -56,10 +56,11 @@ class SliderMotion(NamedTuple):
 
 
 class SliderForces(NamedTuple):
-    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide_*`: ground on slider."""
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide*`: ground on slider."""
 
     inner: Any
     pin: Any
+    guide: Any
     guide_force: Any
     guide_moment: Any
 
@@ -80,11 +81,12 @@ def place(joint, coupler_length, guide, assembly):
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
 
-def passed(placement, joint, coupler_length, guide, passage, side):
-    """The same for a joint on a crank, on a branch through its change points (kernel)."""
+def passed(placement, on, coupler_length, guide, passage, side):
+    """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
+    joint = placement.joints[on]
     position = unturned(joint.position, guide.direction)
     first, second = unturned(joint.first, guide.direction), unturned(joint.second, guide.direction)
-    reached = change_points.slid(placement, coupler_length, guide, passage, side)
+    reached = change_points.slid(placement, on, coupler_length, guide, passage, side)
     across = minus(guide.offset, position[1])
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
@@ -126,12 +128,19 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     on_slider = unturned(vector(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
     across = number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
-    for factor in motion.divisor if isinstance(motion.divisor, tuple) else (motion.divisor,):
-        across = across / factor
-    pin = turned((along, across), guide.direction)
+    if isinstance(motion.divisor, tuple):
+        aside = change_points.grown(turned((0.0, across), guide.direction), motion.divisor)
+        (across,) = change_points.grown((across,), motion.divisor)
+        pin = added(turned((along, 0.0), guide.direction), aside)
+        carried = subtracted(turned((0.0, -on_slider[1]), guide.direction), aside)
+    else:
+        across = across / motion.divisor
+        pin = turned((along, across), guide.direction)
+        carried = turned((0.0, -(on_slider[1] + across)), guide.direction)
     return SliderForces(
         inner=subtracted(pin, coupler_load.force),
         pin=pin,
+        guide=carried,
         guide_force=-(on_slider[1] + across),
         guide_moment=number(minus(None, slider_load.moment)),
     )
@@ -148,8 +157,8 @@ class SliderGroup(checks.Checked, Group):
     guide : Guide
     assembly : +1, -1, "open" or "crossed"
         +1: slider ahead of the inner joint along the guide. "open" is so, "crossed" the other way round, in the half
-        turn behind the guide's right normal; on the pin A of a crank they go on through change points, and keep their
-        side where there are none.
+        turn behind the guide's right normal; on A, or another pin of the crank, they go on through change points, and
+        keep their side where there are none.
     coupler, slider : Link
     on, pin : str
         Names of the joint it hangs on and of the joint it adds.
@@ -181,22 +190,21 @@ class SliderGroup(checks.Checked, Group):
         label=checks.Name(may_be_empty=True),
     )
 
-    def on_crank(self, crank):
+    def on_crank(self, throws):
         if not self.through:
             return self
-        return with_fields(self, passage=change_points.of_slider_group(self, crank))
+        return with_fields(self, passage=change_points.of_slider_group(self, throws))
 
-    def kink(self, crank):
-        return change_points.kink(self, crank)
+    def kink(self, throws):
+        return change_points.kink(self, throws)
 
     @property
     def turns(self):
         return change_points.turns(self.passage)
 
-    @property
-    def change_points(self):
+    def change_points(self, throws):
         x, y = self.guide.direction
-        return change_points.angles(self.passage, (y, -x))
+        return change_points.angles(self, throws, (y, -x))
 
     @property
     def _side(self):
@@ -250,9 +258,9 @@ class SliderGroup(checks.Checked, Group):
         }
 
     def place(self, placement):
-        given = placement.joints[self.on], self.coupler_length, self.guide.line
-        motion = self.passage and passed(placement, *given, self.passage, self._side)
-        self._set(placement, motion or place(*given, self._side))
+        given = self.coupler_length, self.guide.line
+        motion = self.passage and passed(placement, self.on, *given, self.passage, self._side)
+        self._set(placement, motion or place(placement.joints[self.on], *given, self._side))
 
     def follow(self, placement, joints):
         """Place coupler and slider at joints found in another way."""
@@ -301,9 +309,8 @@ class SliderGroup(checks.Checked, Group):
             loads[self._slider],
             along.get(self._slider),
         )
-        guide = turned((0.0, found.guide_force), self.guide.line.direction)
         return Resolved(
-            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: guide},
+            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: found.guide},
             {"guide_force" + self.label: found.guide_force, "guide_moment" + self.label: found.guide_moment},
             {self.on: Wrench(found.inner, None)},
         )

@@ -150,7 +150,7 @@ def growth(solution, name, values):
 
 
 def _kinks(mechanism):
-    texts = [text for group in mechanism.groups if (text := group.kink(mechanism.crank))]
+    texts = [text for group in mechanism.groups if (text := group.kink(mechanism.throws))]
     return "".join(f"; {text}" for text in texts)
 
 

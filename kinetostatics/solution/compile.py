@@ -258,14 +258,16 @@ _FIXED = (
 
 
 def _shaping(places, mechanism, groups):
-    """Paths of what decides which change points some groups pass: crank length, and their own lengths and lines."""
+    """Paths of what decides which change points some groups pass: pins of the crank, their own lengths and lines."""
     numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
+    pins = {group.on for group in groups}
+    numbers += [number for number, group in enumerate(mechanism.groups) if pins.intersection(group.throws)]
     owners = [("mechanism", "groups", number) for number in numbers] + [("mechanism", "crank")] * bool(numbers)
+    links = {"link"}.union(*(group.own_names.values() for group in groups))
     return {
         path
         for path, place in places.items()
-        if any(place.steps[: len(owner)] == owner for owner in owners)
-        and not {"link", "coupler", "rocker", "slider"} & set(place.steps)
+        if any(place.steps[: len(owner)] == owner for owner in owners) and not links & set(place.steps)
     }
 
 

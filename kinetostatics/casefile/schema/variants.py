@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from ...machine.lever_group import LeverGroup
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
@@ -25,6 +26,7 @@ from .texts import (
 
 SliderAssembly = Annotated[Any, BeforeValidator(by(SliderGroup.RULES.rules["assembly"]))]
 RockerAssembly = Annotated[Any, BeforeValidator(by(RockerGroup.RULES.rules["assembly"]))]
+LeverAssembly = Annotated[Any, BeforeValidator(by(LeverGroup.RULES.rules["assembly"]))]
 Name = Annotated[Any, BeforeValidator(by(checks.Name()))]
 
 
@@ -124,6 +126,7 @@ class SlottedLeverVariant(MechanismVariant):
     crank_length: Length
     lever_pivot: Point
     slot_offset: Coordinate = 0.0
+    assembly: LeverAssembly = 1
     lever: LinkTable = LinkTable()
     block: LinkTable = LinkTable()
 

@@ -12,7 +12,7 @@ import numpy as np
 from ...errors import NotGivenError
 from ...machine.cam_roller import CamRoller
 from ...machine.cams import Circle, CosineLaw
-from ...machine.change_points import FAR, MEETING, NEAR, SIDES, parted
+from ...machine.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parted
 from ...machine.cylinder_group import CylinderGroup
 from ...machine.dyad import Dyad
 from ...machine.group import FRAME, TRAVELS
@@ -119,8 +119,10 @@ class Machine(Acting):
             return side
         (kind, _), slides = parted(group.passage), isinstance(group, SliderGroup)
         start = -1j * self.vector(group.guide.direction) if slides else self.vector(group.pivot)
-        psi = self._angle - self.mp.arg(start)
-        passed = {FAR: self.mp.cos(psi / 2), NEAR: self.mp.sin(psi / 2), MEETING: self.mp.sin(psi / 2)}
+        throw = self.mechanism.throws[group.on]
+        psi = self._angle - self.mp.arg(start if throw.ahead else start / self.vector(throw.at))
+        half = self.mp.sin(psi / 2)
+        passed = {FAR: self.mp.cos(psi / 2), NEAR: half, MEETING: half, OPPOSITE: half}
         return side * self.mp.sign(passed.get(kind, self.mp.sin(psi)))
 
     def add_slider(self, group, joints, links):
@@ -159,11 +161,12 @@ class Machine(Acting):
         joints[group.name] = joints[joint] + self.vector(group.at) * direction
 
     def add_lever(self, group, joints, links):
-        mp = self.mp
+        mp, side = self.mp, self.side(group)
         lever, block = group.links
         joints[group.pivot_name] = pivot = self.vector(group.pivot)
         to_pin = joints[group.on] - pivot
-        direction = mp.expj(mp.arg(to_pin) - mp.asin(self.number(group.offset) / abs(to_pin)))
+        lean = mp.asin(self.number(group.offset) / abs(to_pin))
+        direction = mp.expj(mp.arg(to_pin) - (lean if side > 0 else mp.pi - lean))
         links[lever], links[block] = (group.pivot_name, direction), (group.on, direction)
 
     def add_cylinder(self, group, joints, links):
