@@ -26,6 +26,17 @@ def test_a_damper_between_points_that_meet_takes_the_whole_velocity_as_its_limit
     assert largest(pushed(damper, angles) + 20.0 * s.slider_velocity) < 1e-12 * largest(20.0 * s.slider_velocity)
 
 
+@pytest.mark.parametrize("ulps", [(0, 0), (1, -1), (-3, 2), (0, 4)])
+def test_a_damper_between_points_that_meet_but_for_rounding_takes_the_whole_velocity(ulps):
+    """The line between them is rounding then, and must not be taken for a direction."""
+    angles = np.linspace(0.1, 6.2, 23)
+    for angle in angles:
+        place = CRANK * np.array([np.cos(angle), np.sin(angle)])
+        item = ks.PointDamper(20.0, between=("A", tuple(place + ulps * np.spacing(place))))
+        torque = ks.solve(PUMP, angle, crank_speed=9.0, loads=item).balancing_torque
+        assert abs(torque - 20.0 * 9.0 * CRANK**2) < 1e-8
+
+
 @pytest.mark.parametrize("end", [0.5, 0.3])
 def test_a_damper_at_the_dead_centre_where_its_points_meet_and_stand_still_gives_nothing(end):
     angle = 0.0 if end == 0.5 else np.pi
