@@ -16,7 +16,7 @@ from .load import Load, Sign, valued
 from .places import Between, Place, acting, carrier
 
 NEAR = 2.0**-50
-"""Distance of two points, relative to their coordinates, that is rounding and has no direction."""
+"""Distance of two points, relative to coordinates and lengths, that is rounding and has no direction."""
 MEETING, AHEAD = (8.0 * NEAR) ** 2, 2.0**23
 """Square of the distance of two points, relative to their coordinates, at which they begin to meet; and how many times
 that distance their motion is followed there."""
@@ -143,7 +143,8 @@ class PointLoad(Load):
         if not isinstance(first, np.ndarray) or first.dtype != float:
             return
         with np.errstate(invalid="ignore"):
-            meet = np.hypot(*(first - second)) <= NEAR * np.maximum(np.hypot(*first), np.hypot(*second))
+            size = motion.mechanism.extent + np.maximum(np.hypot(*first), np.hypot(*second))
+            meet = np.hypot(*(first - second)) <= NEAR * size
         if meet.any():
             angle = np.broadcast_to(motion.crank_angle, meet.shape)[meet]
             many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))

@@ -1,5 +1,6 @@
 """Tables of values for loads: by crank angle, or by the travel of a slider."""
 
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +18,8 @@ SAMPLES = 720
 """Crank angles a turn between which the kinks of a table over travel are found."""
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
+BACKWARDS = re.compile("back|return", re.IGNORECASE)
+"""What a heading has that is meant for a stroke back."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,6 +151,14 @@ class Table:
         of = unit.replace(" ", "*") if area is None else "Pa"
         value = VALUES[of]
         back = over == "travel" and f"{value}_back" in names
+        read = [f"{value}_back"] if back else []
+        others = [f"{name}_back" for name in names if name != value]
+        unread = [name for name in names if BACKWARDS.search(name) and name not in (*read, *others)]
+        if unread:
+            wanted = (
+                f"the stroke back is headed {value}_back" if over == "travel" else "a stroke back stands over travel"
+            )
+            raise CaseError(path, [f"column {unread[0]!r} would not be read: {wanted}; rename it, or leave it out"])
         x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
         y, back, *_ = *(part if area is None else area * part for part in values), None
         try:
