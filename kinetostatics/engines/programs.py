@@ -126,6 +126,7 @@ class Program:
 
     def _by_numbers(self, angle, numbers, shape):
         angle = angle.ravel()
+        numbers = [number.item() if type(number) is np.ndarray else number for number in numbers]
         given = zip(angle.tolist(), np.sin(angle).tolist(), np.cos(angle).tolist(), strict=True)
         try:
             found = [self._plain(*one, numbers, ()) for one in given]

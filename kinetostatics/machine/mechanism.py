@@ -270,6 +270,7 @@ def _spelled(part, table):
 def _name_problems(parts):
     """What is wrong with the names in a chain of parts: unknown ones, and ones that two things would have."""
     points: dict[str, str] = {}
+    joints: set[str] = set()
     links = [FRAME]
     forces = dict.fromkeys(("closure", *RESERVED), "result of every mechanism")
     problems = []
@@ -282,7 +283,12 @@ def _name_problems(parts):
 
     for part in parts:
         kind = type(part).__name__
-        for name in (name for name in part.hangs_on if name not in points):
+        for name in (name for name in part.hangs_on if name not in joints):
+            if name in links:
+                problems.append(
+                    f"{kind} hangs on {name!r}, which is a link; put a Pin on that link, and name its joint"
+                )
+                continue
             remedy = "; give the crank a length, or put a CamRoller before it" if name == "A" else ""
             problems.append(f"{kind} hangs on joint {name!r}, which no part before it places{remedy}")
         links += part.links
@@ -290,6 +296,7 @@ def _name_problems(parts):
             if point.link not in links:
                 found = checks.choice(f"{kind}: link that carries joint {name!r}", point.link, links)
                 problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
+        joints.update(part.joints)
         add(points, "joint", kind, _spelled(part, "joints"))
         add(points, "link", kind, part.links)
         outputs = _spelled(part, "outputs")

@@ -1,5 +1,6 @@
 """Names in chains: whatever groups, pins and labels are called, each thing has its own, or the chain is refused."""
 
+import dataclasses
 import random
 
 import pytest
@@ -84,3 +85,11 @@ def test_no_name_is_lost_in_silence(seed):
 def test_what_two_things_would_be_called_is_refused(parts, words):
     with pytest.raises(ks.ParameterError, match=words):
         ks.Mechanism("chain", ks.Crank(0.1), parts)
+
+
+@pytest.mark.parametrize("kind", sorted({*COUNTS} - {"pin"}))
+def test_a_group_on_a_link_is_told_to_hang_on_a_pin_of_it(kind):
+    made = group(kind, random.Random(1).choice)
+    on = ("crank", "A") if kind == "dyad" else "crank"
+    with pytest.raises(ks.ParameterError, match="hangs on 'crank', which is a link; put a Pin on that link"):
+        ks.Mechanism("chain", ks.Crank(0.1), (dataclasses.replace(made, on=on),))

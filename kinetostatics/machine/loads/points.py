@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.elementary import apart, divisor
-from ...numbers.planar import dot, length, stretched, subtracted, turned, vector
+from ...numbers.elementary import divisor, sqrt
+from ...numbers.planar import added, dot, length, stretched, subtracted, turned, vector
 from ..crank import ray
 from ..group import FRAME
 from ..links import present
@@ -16,7 +16,10 @@ from .load import Load, Sign, valued
 from .places import Between, Place, acting, carrier
 
 NEAR = 2.0**-50
-"""Distance of two points, relative to their coordinates, that is rounding and has no direction."""
+"""Distance of two points, relative to coordinates and lengths, that is rounding and has no direction."""
+MEETING, AHEAD = (8.0 * NEAR) ** 2, 2.0**23
+"""Square of the distance of two points, relative to their coordinates, at which they begin to meet; and how many times
+that distance their motion is followed there."""
 TINY = 1e-280
 """Square of a distance, m2, below which there is only zero."""
 
@@ -141,7 +144,8 @@ class PointLoad(Load):
         if not isinstance(first, np.ndarray) or first.dtype != float:
             return
         with np.errstate(invalid="ignore"):
-            meet = np.hypot(*(first - second)) <= NEAR * np.maximum(np.hypot(*first), np.hypot(*second))
+            size = motion.mechanism.extent + np.maximum(np.hypot(*first), np.hypot(*second))
+            meet = np.hypot(*(first - second)) <= NEAR * size
         if meet.any():
             angle = np.broadcast_to(motion.crank_angle, meet.shape)[meet]
             many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))
@@ -301,9 +305,21 @@ class PointDamper(PointLoad):
     RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
 
     def pull(self, motion):
-        """Force on the first point, N; moved off zero along the velocity, the vector between them keeps a direction."""
-        first, second = (motion.spot(place).first for place in self.between)
-        slope = vector(subtracted(first, second))
-        d = tuple(apart(part, change) for part, change in zip(self._apart(motion), slope, strict=True))
+        """Force on the first point, N."""
+        d, slope = self._directed(motion)
         shortening = dot(d, slope) / divisor(dot(d, d), TINY)
         return stretched(-self.coefficient * motion.crank_speed * shortening, d)
+
+    def _directed(self, motion):
+        """Vector from the second point to the first, and its derivative by crank angle.
+
+        Where the points meet, and rounding is all that is left of the vector, it is moved along its derivative: that is
+        the direction in which they pass each other. The move fades with the fourth power of the distance.
+        """
+        first, second = (motion.spot(place) for place in self.between)
+        positions = [vector(spot.position) for spot in (first, second)]
+        slope, d = vector(subtracted(first.first, second.first)), vector(subtracted(*positions))
+        square = dot(slope, slope)
+        near = MEETING * (sum(dot(part, part) for part in positions) + square)
+        share = near / (near + dot(d, d) + TINY)
+        return added(d, stretched(AHEAD * sqrt(near / (square + TINY)) * share * share, slope)), slope

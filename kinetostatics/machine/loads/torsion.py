@@ -181,7 +181,7 @@ class TorsionSpring(Couple):
         return known[key]
 
     def _passing(self, mechanism):
-        grid = np.linspace(0.0, TURN, SAMPLES + 1)
+        grid = np.linspace(0.0, TURN * mechanism.turns, SAMPLES * mechanism.turns + 1)
         parts = self._leaning(mechanism.place(grid))
         if not all(isinstance(part, float | np.ndarray) and checks.known(part) for part in parts):
             return
@@ -189,9 +189,10 @@ class TorsionSpring(Couple):
         step = np.diff(angle, axis=-1)
         with np.errstate(invalid="ignore"):
             passing = np.abs(step) > np.pi
+            turns = np.round(np.sum(step - TURN * np.round(step / TURN), axis=-1) / TURN)
+        passing[..., -1] |= (np.abs(turns) > 0) & ~passing.any(axis=-1)  # at the very end of the period
         if not passing.any():
             return
-        turns = np.round(np.sum(step - TURN * np.round(step / TURN), axis=-1) / TURN)
         full = "it makes full turns" if np.any(turns) else "give a free angle nearer to it"
         places = np.unique(np.nonzero(passing)[-1])
         many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
