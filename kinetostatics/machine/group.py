@@ -251,6 +251,18 @@ class Group:
         return {}
 
 
+def joint_reaction(link, joint):
+    """Output of the reaction on a link at a joint that it hangs on."""
+    return Output("N", True, f"on the {link}, from what carries {joint}", joint)
+
+
+def separation(placement, first, second):
+    """What messages on closure begin with: how far two joints are from each other at the crank angles."""
+    start, end = (placement.joints[name].position for name in (first, second))
+    apart = np.hypot(end[0] - start[0], end[1] - start[1])
+    return f"the distance from {first} to {second}, {apart.min():.6g} to {apart.max():.6g} m here, must"
+
+
 def smaller(*lengths):
     """Smallest of lengths, numbers or arrays of designs; infinite of none."""
     if all(type(length) is float for length in lengths):

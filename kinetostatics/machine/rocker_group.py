@@ -18,7 +18,7 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
 from . import change_points
-from .group import FRAME, Bar, Group, Output, Point, Resolved, smaller
+from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation, smaller
 from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-53
@@ -207,7 +207,7 @@ class RockerGroup(checks.Checked, Group):
     @property
     def outputs(self):
         return {
-            self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
+            self.on + self.label: joint_reaction(self._coupler, self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
             self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
         }
@@ -239,13 +239,10 @@ class RockerGroup(checks.Checked, Group):
 
     def requirement(self, placement):
         """Say what distances must hold for B to be reached, with their numbers."""
-        x, y = (end - start for end, start in zip(self.pivot, placement.joints[self.on].position, strict=True))
-        distance = np.hypot(x, y)
         low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
         return (
-            f"the distance from {self.on} to {self.pivot_name}, {distance.min():.6g} to {distance.max():.6g} m here, "
-            f"must lie between the difference and the sum of coupler and rocker lengths, {np.min(low):.6g} and "
-            f"{np.max(high):.6g} m"
+            f"{separation(placement, self.on, self.pivot_name)} lie between the difference and the sum of coupler and "
+            f"rocker lengths, {np.min(low):.6g} and {np.max(high):.6g} m"
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
