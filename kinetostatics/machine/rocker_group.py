@@ -123,6 +123,25 @@ class RockerGroup(checks.Checked, Group):
         Names of the joint it hangs on and of the joints it adds.
     label : str
         Put behind the names of links and forces of a second rocker group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+
+    Notes
+    -----
+    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on rocker; `pivot_name`,
+    ground on rocker.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> bars = ks.Mechanism("four-bar", ks.Crank(0.1), (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)),))
+    >>> s = ks.solve(bars, 0.7, crank_speed=10.0)
+    >>> round(float(np.hypot(*(s.position("B") - s.position("A")))), 12)
+    0.4
     """
 
     coupler_length: Any

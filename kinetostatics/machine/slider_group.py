@@ -142,6 +142,24 @@ class SliderGroup(checks.Checked, Group):
         Names of the joint it hangs on and of the joint it adds.
     label : str
         Put behind the names of links and forces of a second slider group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+
+    Notes
+    -----
+    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on slider; "guide", ground
+    on slider. "guide_force" (N) is that along the guide's left normal, "guide_moment" (N m) about `pin`.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> rod = ks.SliderGroup(0.2, ks.Guide.at(0.0, 0.01), slider=ks.Link(mass=1.0))
+    >>> pump = ks.Mechanism("pump", ks.Crank(0.05), (rod,))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=10.0).slider_position), 6)
+    0.24975
     """
 
     coupler_length: Any
