@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, Table, is_given, refusals, value_of
+from ..machine.loads import TURN, Table, is_given, period_of, refusals, value_of
 from ..mechanics import assembly
 from ..mechanics.pushes import given, title_of
 from ..numbers import checks
@@ -220,7 +220,7 @@ def _kinks(solution):
     found: list[Any] = [(np.empty(0), np.empty(0))]
     for table in map(value_of, solution.loads):
         if isinstance(table, Table):
-            again = np.arange(0.0, solution.period - SAME, table.period)[:, None]
+            again = np.arange(0.0, solution.period - SAME, table.repeats(solution.mechanism))[:, None]
             found.append(tuple(np.ravel(angles + again) for angles in table.kinks(solution)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
 
@@ -259,7 +259,7 @@ def repeating_problem(solution):
     for item in solution.loads:
         if is_given(item):
             continue
-        period = getattr(item, "period", TURN)
+        period = period_of((item,), solution.mechanism.turns)
         angle = np.linspace(0.0, period, round(SAMPLES * period / TURN), endpoint=False) + 1e-3
 
         def push(turns, item=item, angle=angle, period=period):

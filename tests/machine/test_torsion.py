@@ -24,6 +24,13 @@ def test_a_spring_on_a_link_that_passes_half_a_turn_is_refused_at_any_crank_angl
         ks.solve(BAR, 0.7, crank_speed=1.0, loads=item)
 
 
+def test_a_spring_is_looked_at_in_both_turns_of_a_branch_through_a_change_point():
+    """The rocker leans farther over in the second turn than in the first."""
+    folding = ks.four_bar(0.1, 0.3, 0.25, rocker_pivot=(0.45, 0.0), assembly="crossed")
+    with pytest.raises(ks.ParameterError, match=r"passes half a turn .* 377.8, 409.3 deg"):
+        ks.solve(folding, 0.7, crank_speed=1.0, loads=ks.TorsionSpring(4.0, -7.3485, on="rocker"))
+
+
 def test_a_coupler_that_turns_with_the_crank_takes_no_spring():
     double_crank = ks.four_bar(0.4, 0.35, 0.45, rocker_pivot=(0.1, 0.0))
     with pytest.raises(ks.ParameterError, match=r"TorsionSpring on 'rocker'.*it makes full turns"):

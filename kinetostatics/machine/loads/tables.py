@@ -227,20 +227,24 @@ class Table:
         forward = np.where(np.asarray(motion.crank_speed) < 0, -1.0, 1.0)
         return forward * motion.placement.travels[self._slider(motion)].first < 0
 
+    def repeats(self, mechanism):
+        """Crank angle after which its values repeat, rad: its period, or that of the motion that it is read by."""
+        return self.period if self.over == "angle" else TURN * mechanism.turns
+
     def kinks(self, motion):
-        """Crank angles (K,) in a turn, or its period, at which it has kinks, and (J,) at which it may jump.
+        """Crank angles (K,), until it `repeats`, at which it has kinks, and (J,) at which it may jump.
 
         Those over travel lie where the slider passes a row, and at the ends of its strokes.
         """
         if self.over == "angle":
             return np.mod(self.x, self.period), np.empty(0)
-        name = self._slider(motion)
+        name, turns = self._slider(motion), motion.mechanism.turns
 
         def travel(angle):
             return motion.mechanism.place(angle).travels[name]
 
-        ends = _passed(lambda angle: travel(angle).first, np.zeros(1))
-        passed = _passed(lambda angle: travel(angle).position, self.x)
+        ends = _passed(lambda angle: travel(angle).first, np.zeros(1), turns)
+        passed = _passed(lambda angle: travel(angle).position, self.x, turns)
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
     @property
@@ -264,11 +268,11 @@ def _piece(x, place):
     return np.clip(np.searchsorted(x, place, side="right") - 1, 0, x.size - 2)
 
 
-def _passed(function, levels):
-    """Crank angles at which a function of it passes some levels."""
+def _passed(function, levels, turns):
+    """Crank angles, in so many turns, at which a function of it passes some levels."""
     from scipy.optimize import elementwise
 
-    grid = np.linspace(0.0, TURN, SAMPLES + 1)
+    grid = np.linspace(0.0, TURN * turns, SAMPLES * turns + 1)
     above = np.broadcast_to(function(grid), grid.shape) - levels[:, None]
     _, exact = np.nonzero(above[:, :-1] == 0)
     with np.errstate(invalid="ignore"):
@@ -277,7 +281,7 @@ def _passed(function, levels):
         return grid[exact]
     bracket, given = (grid[before], grid[before + 1]), (levels[level],)
     found = elementwise.find_root(lambda angle, level: function(angle) - level, bracket, args=given).x
-    return np.mod(np.concatenate([grid[exact], found]), TURN)
+    return np.mod(np.concatenate([grid[exact], found]), TURN * turns)
 
 
 def _area(value):

@@ -172,7 +172,7 @@ class TorsionSpring(Couple):
         return known[key]
 
     def _passing(self, mechanism):
-        grid = np.linspace(0.0, TURN, SAMPLES + 1)
+        grid = np.linspace(0.0, TURN * mechanism.turns, SAMPLES * mechanism.turns + 1)
         parts = self._leaning(mechanism.place(grid))
         if not all(isinstance(part, float | np.ndarray) and checks.known(part) for part in parts):
             return
@@ -186,12 +186,11 @@ class TorsionSpring(Couple):
         full = "it makes full turns" if np.any(turns) else "give a free angle nearer to it"
         places = np.unique(np.nonzero(passing)[-1])
         many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
-        wrong = checks.Problem(
+        yield checks.Problem(
             f"{self.title}: the link passes half a turn from the free angle at crank angle "
             f"{many}{' ...' if places.size > 4 else ''} deg, where the couple would jump; {full}",
+            passing,
         )
-        wrong.designs = passing.any(axis=-1) if passing.ndim > 1 else None
-        yield wrong
 
 
 _LOOKED_AT: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
