@@ -100,6 +100,13 @@ def cam_crank_slider(
     ------
     ParameterError
         A value no machine can have, or both ways of giving the guide.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.cam_crank_slider(ks.cams.Circle(0.2, (-0.05, 0.0)), 0.8)
+    >>> round(float(ks.solve(saw, 0.0, crank_speed=10.0).slider_position), 12)
+    0.95
     """
     group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
     if isinstance(cam, CosineLaw):
@@ -142,6 +149,13 @@ def four_bar(
     ------
     ParameterError
         A value no machine can have.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bars = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(2.0, 0.15, 0.02))
+    >>> bool(ks.solve(bars, 0.7, crank_speed=10.0).power_residual < 1e-13)
+    True
     """
     group = RockerGroup(coupler_length, rocker_length, rocker_pivot, assembly, coupler, rocker)
     return Mechanism("four-bar", Crank(crank_length, crank), (group,))

@@ -50,6 +50,9 @@ the unknown forces *on* them; what the group needs from others goes into ``deman
 group: the mechanism sees to the reaction on the link that carries the joint. No joint outside `hangs_on` and no link
 but the crank can be asked.
 
+*Change points.* Most groups have none to pass. One that does says in `on_crank(crank)` how, by a text `passage` that
+belongs to its structure, and gives `turns` and `change_points`; `kink(crank)` says what becomes of a chosen side there.
+
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
 forces and power; tests/machine/test_a_group_of_ones_own.py has a whole example.
@@ -201,6 +204,7 @@ class Group:
 
     @property
     def hangs_on(self: Any):
+        """Joints it hangs on; unless told, the one named `on`."""
         return (self.on,)
 
     @property
@@ -215,14 +219,17 @@ class Group:
 
     @property
     def bars(self):
+        """Links that keep two joints at a distance, each a `Bar`."""
         return ()
 
     @property
     def slots(self):
+        """Links in which a joint slides, each a `Slot`."""
         return ()
 
     @property
     def curves(self):
+        """Joints that run on a curve, with what drawings call it."""
         return {}
 
     @property
@@ -278,6 +285,18 @@ class Group:
     def motions(self):
         """Quantities of its motion besides those of joints and links, each an `Output`; ``motion(name, placement)``."""
         return {}
+
+
+def joint_reaction(link, joint):
+    """Output of the reaction on a link at a joint that it hangs on."""
+    return Output("N", True, f"on the {link}, from what carries {joint}", joint)
+
+
+def separation(placement, first, second):
+    """What messages on closure begin with: how far two joints are from each other at the crank angles."""
+    start, end = (placement.joints[name].position for name in (first, second))
+    apart = np.hypot(end[0] - start[0], end[1] - start[1])
+    return f"the distance from {first} to {second}, {apart.min():.6g} to {apart.max():.6g} m here, must"
 
 
 def smaller(*lengths):

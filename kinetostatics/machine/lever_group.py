@@ -18,7 +18,7 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
 from . import change_points
-from .group import FRAME, Group, Output, Point, Resolved, Slot
+from .group import FRAME, Group, Output, Point, Resolved, Slot, joint_reaction, separation
 from .links import Joint, Link, LinkMotion, Wrench, present
 
 SMALLEST = 2.0**-53
@@ -229,7 +229,7 @@ class LeverGroup(checks.Checked, Group):
     def outputs(self):
         label, lever, block = self.label, self._lever, self._block
         return {
-            self.on + label: Output("N", True, f"on the {block}, from what carries {self.on}", self.on),
+            self.on + label: joint_reaction(block, self.on),
             self.pivot_name: Output("N", True, f"ground on {lever}"),
             "slot_force" + label: Output("N", False, f"{lever} on {block} along the left normal of the {lever}"),
             "slot_moment" + label: Output("N m", False, f"{lever} on {block} about {self.on}"),
@@ -263,7 +263,8 @@ class LeverGroup(checks.Checked, Group):
 
     def requirement(self, placement):
         """Say what distance must hold for the block to be in the slot, with its numbers."""
-        return spaced(self.on, self.pivot_name, self.pivot, placement, "the slot's offset", self.offset)
+        offset = np.max(np.abs(self.offset))
+        return f"{separation(placement, self.on, self.pivot_name)} be greater than the slot's offset, {offset:.6g} m"
 
     def resolve(self, placement, loads, along) -> Resolved:
         found = resolve(placement.details[self._lever], loads[self._lever], loads[self._block])
@@ -275,13 +276,3 @@ class LeverGroup(checks.Checked, Group):
             },
             {self.on: Wrench(found.inner, None)},
         )
-
-
-def spaced(joint, pivot_name, pivot, placement, least, offset=0.0):
-    """What distance from a joint to a pivot must hold, with its numbers."""
-    x, y = (end - start for end, start in zip(placement.joints[joint].position, pivot, strict=True))
-    distance = np.hypot(x, y)
-    return (
-        f"the distance from {joint} to {pivot_name}, {distance.min():.6g} to {distance.max():.6g} m here, must be "
-        f"greater than {least}, {np.max(np.abs(offset)):.6g} m"
-    )

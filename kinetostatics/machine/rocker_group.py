@@ -18,7 +18,7 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
 from . import change_points
-from .group import FRAME, Bar, Group, Output, Point, Resolved, smaller
+from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation, smaller
 from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-53
@@ -123,6 +123,25 @@ class RockerGroup(checks.Checked, Group):
         Names of the joint it hangs on and of the joints it adds.
     label : str
         Put behind the names of links and forces of a second rocker group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+
+    Notes
+    -----
+    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on rocker; `pivot_name`,
+    ground on rocker.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> bars = ks.Mechanism("four-bar", ks.Crank(0.1), (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)),))
+    >>> s = ks.solve(bars, 0.7, crank_speed=10.0)
+    >>> round(float(np.hypot(*(s.position("B") - s.position("A")))), 12)
+    0.4
     """
 
     coupler_length: Any
@@ -206,7 +225,7 @@ class RockerGroup(checks.Checked, Group):
     @property
     def outputs(self):
         return {
-            self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
+            self.on + self.label: joint_reaction(self._coupler, self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
             self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
         }
@@ -238,13 +257,10 @@ class RockerGroup(checks.Checked, Group):
 
     def requirement(self, placement):
         """Say what distances must hold for B to be reached, with their numbers."""
-        x, y = (end - start for end, start in zip(self.pivot, placement.joints[self.on].position, strict=True))
-        distance = np.hypot(x, y)
         low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
         return (
-            f"the distance from {self.on} to {self.pivot_name}, {distance.min():.6g} to {distance.max():.6g} m here, "
-            f"must lie between the difference and the sum of coupler and rocker lengths, {np.min(low):.6g} and "
-            f"{np.max(high):.6g} m"
+            f"{separation(placement, self.on, self.pivot_name)} lie between the difference and the sum of coupler and "
+            f"rocker lengths, {np.min(low):.6g} and {np.max(high):.6g} m"
         )
 
     def resolve(self, placement, loads, along) -> Resolved:

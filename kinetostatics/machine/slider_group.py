@@ -17,7 +17,6 @@ from ..numbers import checks
 from ..numbers.elementary import divisor, root
 from ..numbers.leaves import with_fields
 from ..numbers.planar import (
-    added,
     cross,
     dot,
     minus,
@@ -31,8 +30,8 @@ from ..numbers.planar import (
     vector,
 )
 from . import change_points
-from .group import Bar, Group, Output, Point, Resolved
-from .guide import Guide
+from .group import Bar, Group, Output, Point, Resolved, joint_reaction
+from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-27
@@ -101,21 +100,9 @@ def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, rat
         first[0] - ratio * across,
         minus(second[0], product(ratio_slope, across)) - lag * along,
     )
-    pin = Joint(
-        _on_guide(joint.position, travel.position, (along, across), guide),
-        turned((travel.first, 0.0), guide.direction),
-        turned((travel.second, 0.0), guide.direction),
-    )
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
-    slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
+    slider = slid(joint.position, (along, across), travel, guide)
     return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel)
-
-
-def _on_guide(position, travel, reach, guide):
-    """Slider pin, by the shorter sum: along a level guide from O, else from the inner joint."""
-    if guide.direction is None:
-        return (travel, number(guide.offset))
-    return added(position, turned(reach, guide.direction))
 
 
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
@@ -164,6 +151,24 @@ class SliderGroup(checks.Checked, Group):
         Names of the joint it hangs on and of the joint it adds.
     label : str
         Put behind the names of links and forces of a second slider group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+
+    Notes
+    -----
+    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on slider; "guide", ground
+    on slider. "guide_force" (N) is that along the guide's left normal, "guide_moment" (N m) about `pin`.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> rod = ks.SliderGroup(0.2, ks.Guide.at(0.0, 0.01), slider=ks.Link(mass=1.0))
+    >>> pump = ks.Mechanism("pump", ks.Crank(0.05), (rod,))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=10.0).slider_position), 6)
+    0.24975
     """
 
     coupler_length: Any
@@ -248,13 +253,10 @@ class SliderGroup(checks.Checked, Group):
 
     @property
     def outputs(self):
-        label = self.label
         return {
-            self.on + label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
+            self.on + self.label: joint_reaction(self._coupler, self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._slider}"),
-            "guide" + label: Output("N", True, f"ground on {self._slider}", self.pin),
-            "guide_force" + label: Output("N", False, f"ground on {self._slider} along the guide's left normal"),
-            "guide_moment" + label: Output("N m", False, f"ground on {self._slider} about {self.pin}"),
+            **guide_outputs(self._slider, self.pin, self.label),
         }
 
     def place(self, placement):

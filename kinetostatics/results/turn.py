@@ -60,7 +60,7 @@ class Turn:
     kinks : array
         Crank angles at which a table has a kink, or may jump.
     passed : array
-        Those of them that are change points passed, where forces grow; empty where no forces are asked for.
+        Those of `limits` that are change points passed, where forces grow; empty where no forces are asked for.
     """
 
     at: Any

@@ -33,6 +33,11 @@ PLATES: dict[str, dict[str, Any]] = {
     "block": {"fc": STEEL, "ec": "none", "zorder": 3},
 }
 """How each kind of stroke is drawn as a filled shape."""
+PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
+MASS_CENTRE: tuple[dict[str, Any], ...] = (
+    {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
+    {"marker": symbols.MASS_CENTRE, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
+)
 MOST = 0.9
 """Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
 
@@ -190,13 +195,6 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     return FuncAnimation(ax.figure, draw, frames=steps, interval=interval)
 
 
-PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
-MASS_CENTRE: tuple[dict[str, Any], ...] = (
-    {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
-    {"marker": symbols.MASS_CENTRE, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
-)
-
-
 def _whole(solution, frames):
     """The solution over its whole period, at its own crank angles if they are enough of it."""
     angle, period = np.sort(solution.crank_angle), solution.period
@@ -280,9 +278,10 @@ def _artist(ax, stroke, shade):
 
 def _set(artist, points):
     """Give what a stroke is drawn by its points (2, K)."""
-    (artist.set_data if isinstance(artist, Line2D) else artist.set_xy)(
-        points if isinstance(artist, Line2D) else points.T
-    )
+    if isinstance(artist, Line2D):
+        artist.set_data(points)
+    else:
+        artist.set_xy(points.T)
 
 
 def _equal(ax, moving=()):

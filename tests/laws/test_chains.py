@@ -73,8 +73,7 @@ def test_each_group_passes_the_check_of_groups(kind):
         assert report.ok, report
 
 
-def test_engines_find_the_same():
-    pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+def test_engines_find_the_same(interpreted):
     parts = (
         *mechanism("dyad").groups,
         ks.YokeGroup(ks.Guide.at(0.4, 0.03), 1.2, "D", "F", **links("slider", "block"), label="Y"),

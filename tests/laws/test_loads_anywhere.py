@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies.methods import newton
+from kinetostatics.studies.methods import configurations, newton
 from support.loads import KINDS, between, load
 from support.machines import largest, planar
 from support.scenes import six_bar
@@ -74,7 +74,7 @@ def by_newton_euler(s, names):
     x, y = (np.array([np.broadcast_to(m.joint.position[k], shape) for m in links]) for k in (0, 1))
     theta = np.array([np.broadcast_to(np.arctan2(m.direction[1], m.direction[0]), shape) for m in links])
     q = np.concatenate([x, y, theta]).T
-    return {name: np.array(model.components(s, name, q)) for name in names}
+    return {name: np.array(configurations.components(model, s, name, q)) for name in names}
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -244,7 +244,7 @@ def test_condition_is_small_where_nothing_is_lost(solution):
 
 
 def test_needs_offers_what_it_is_made_of_and_a_series_follows_it():
-    s = ks.solve(mechanism(), np.linspace(0, 2 * np.pi, 24, endpoint=False), crank_speed=30.0, loads=LOADS)
+    s = ks.solve(mechanism(), np.linspace(0, 2 * np.pi, 24, endpoint=False), crank_speed=30.0)
     found = ks.needs(s, "balancing_torque", 0.01)
     names = {made.name for made in found.alone}
     assert {"massless slider", "massless block", "massless crank", "guide through O", "one harmonic"} <= names

@@ -22,7 +22,7 @@ from ...machine.yoke_group import YokeGroup
 from ...numbers import checks
 from ...numbers.units import shown, to_si
 from .tables import Cam, LinkTable, Table, list_of, one_of, value_in
-from .texts import Angle, Coordinate, GuidePoints, Stiffness, reader
+from .texts import Angle, Coordinate, GuidePoints, Stiffness, pair_of, reader
 
 GUIDE = {
     "guide_angle": (Angle | None, None),
@@ -72,16 +72,7 @@ def _numbers(rule):
     """Function that takes a pair, a point or two of them, numbers as text."""
     if isinstance(rule, Between):
         return _two_places
-    return _place if isinstance(rule, Place) else _pair(_spelled(rule.unit))
-
-
-def _pair(unit):
-    def read(value):
-        if not isinstance(value, list) or len(value) != 2:
-            raise ValueError(f'must be a pair such as ["0.1 {unit}", "0 {unit}"], found {shown(value)}')
-        return tuple(to_si(part, unit) for part in value)
-
-    return read
+    return _place if isinstance(rule, Place) else pair_of(_spelled(rule.unit))
 
 
 _NUMBER = re.compile(r"\s*[-+−–]?[.,]?\d")

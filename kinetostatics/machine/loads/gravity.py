@@ -22,6 +22,18 @@ class Gravity(Load):
         m/s2.
     direction : float
         Angle of the direction it pulls in, from +x, rad; straight down (-pi/2) unless told.
+
+    Raises
+    ------
+    ParameterError
+        The acceleration is negative, or a value is no number or not finite.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=0.0, loads=ks.Gravity()).guide_force), 12)
+    9.81
     """
 
     acceleration: Any = 9.81

@@ -149,14 +149,12 @@ class PointLoad(Load):
         if meet.any():
             angle = np.broadcast_to(motion.crank_angle, meet.shape)[meet]
             many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))
-            wrong = checks.Problem(
+            yield checks.Problem(
                 f"{self.title}: the points meet at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} "
                 f"deg, so its force has no direction there; leave them out, or move a point off the line"
                 f"{self._remedy}",
-                None,
+                meet,
             )
-            wrong.designs = meet.any(axis=-1) if meet.ndim > 1 else None
-            yield wrong
 
     _remedy = ""
 

@@ -41,6 +41,19 @@ class Spring(OnSlider):
         The slider it acts on.
     cubic : float or array
         N/m3: the force grows by so much times the cube of the elongation; negative for a spring that grows softer.
+
+    Raises
+    ------
+    ParameterError
+        The stiffness is negative, or a value no number or not finite; when a scene is made: there is no such slider.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2)
+    >>> pushed = ks.solve(pump, 1.5, crank_speed=0.0, loads=ks.Spring(1e3, 0.25))  # B is nearer to O: outwards
+    >>> bool(pushed.balancing_torque > 0)
+    True
     """
 
     stiffness: Any
@@ -103,6 +116,21 @@ class ProcessForce(OnSlider):
         The slider it acts on.
     period : float
         Crank angle after which the force repeats, rad: 2 pi unless told, 4 pi for a four-stroke engine.
+
+    Raises
+    ------
+    ParameterError
+        A value is no number or not finite, or the period no whole number of turns; when a scene is made: there is no
+        such slider.
+
+    Examples
+    --------
+    >>> import math
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2)
+    >>> s = ks.solve(pump, math.pi / 2, crank_speed=10.0, loads=ks.ProcessForce(-200.0))
+    >>> round(float(s.balancing_torque), 12)  # B moves by -0.05 m/rad: the force drives
+    -10.0
     """
 
     force: Any

@@ -196,12 +196,11 @@ class TorsionSpring(Couple):
         full = "it makes full turns" if np.any(turns) else "give a free angle nearer to it"
         places = np.unique(np.nonzero(passing)[-1])
         many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
-        wrong = checks.Problem(
+        yield checks.Problem(
             f"{self.title}: the link passes half a turn from the free angle at crank angle "
             f"{many}{' ...' if places.size > 4 else ''} deg, where the couple would jump; {full}",
+            passing,
         )
-        wrong.designs = passing.any(axis=-1) if passing.ndim > 1 else None
-        yield wrong
 
 
 _LOOKED_AT: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()

@@ -9,13 +9,16 @@ from ...errors import ParameterError
 
 
 class Problem(str):
-    """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all."""
+    """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all.
+
+    `wrong` tells it of each value of an array (designs, N).
+    """
 
     designs: Any
 
     def __new__(cls, text, wrong=None):
         made = super().__new__(cls, text)
-        made.designs = wrong[..., 0] if np.ndim(wrong) > 1 else None
+        made.designs = np.any(wrong, axis=-1) if np.ndim(wrong) > 1 else None
         return made
 
 

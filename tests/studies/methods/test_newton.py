@@ -9,7 +9,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS, Group
 from kinetostatics.mechanics import quantities
-from kinetostatics.studies.methods import integration, newton
+from kinetostatics.studies.methods import configurations, constraints, integration, newton
 from kinetostatics.studies.methods.method import NotGivenError
 from support.machines import CLOSE, KINDS, LINKS, Machine, largest
 
@@ -68,10 +68,10 @@ every_mechanism = pytest.mark.parametrize("name", [*KINDS, *CHAINS])
 def test_global_system_gives_every_quantity_of_the_closed_forms(name):
     """At the table's own positions, which continuation finds from one position of the library."""
     s = solved(name)
-    model = newton.Model(s.mechanism)
+    model = constraints.Model(s.mechanism)
     angle, positions, _ = newton.table(model, TURN)
     s = solved(name, angle)
-    errors = {wanted: error(s, wanted, model.components(s, wanted, positions)) for wanted in names(s)}
+    errors = {wanted: error(s, wanted, configurations.components(model, s, wanted, positions)) for wanted in names(s)}
     assert {wanted: value for wanted, value in errors.items() if not value < CLOSE} == {}
 
 
