@@ -4,6 +4,7 @@ import re
 import typing
 import warnings
 from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from ..design import balancing, linkage
 from ..design.balancing_table import balancing_table
+from ..drive.motor import Motor
 from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
@@ -60,9 +62,22 @@ class Variant:
     def loads(self):
         return self.scene.loads
 
+    @cached_property
+    def motor(self) -> Motor | None:
+        """Motor of its drive, None if the file gives none."""
+        return None if self.table.drive is None else self.table.drive.motor.motor
+
+    @property
+    def flywheel(self):
+        """Flywheel of its drive, on the crank, kg m2; 0 if the file gives none."""
+        return 0.0 if self.table.drive is None else self.table.drive.flywheel
+
     @property
     def units(self):
-        """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x"."""
+        """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x".
+
+        Those of the drive are left out: solutions of a variant are at its crank speed, whatever drives it.
+        """
         return {path: place.unit for path, place in parameters.paths(self.table).items()}
 
     @property
@@ -72,8 +87,13 @@ class Variant:
 
     @property
     def content(self):
-        """What a case's variant is made of as bytes, the same in every session: its table, and what files held."""
-        return self.table.model_dump_json().encode() + b"".join(_bytes(part) for part in self.tabulated.values())
+        """What a case's variant is made of as bytes, the same in every session: its table, and what files held.
+
+        Without its drive, which no solution depends on.
+        """
+        return self.table.model_dump_json(exclude={"drive"}).encode() + b"".join(
+            _bytes(part) for part in self.tabulated.values()
+        )
 
     def varied(self, values) -> "Variant":
         """The variant with other values at some paths of its file, in SI, as if they stood there.

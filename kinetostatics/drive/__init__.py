@@ -11,6 +11,7 @@ newton      Newton's iteration on the energy of running
 following   running found by following a machine from above
 running     a machine in periodic running, and its solution, for all that looks at solutions
 periodic    exact periodic running, by all of these
+summary     what running comes to, in one table
 sizing      flywheels for a coefficient of fluctuation
 trajectory  motion over time
 transient   starting and coasting

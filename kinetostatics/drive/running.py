@@ -72,11 +72,16 @@ class Running:
         """Mean over time of the crank speed, rad/s: 2 pi turns by the time of the period."""
         return math.copysign(self.period / self.duration, self._driven.direction)
 
-    @cached_property
+    @property
     def speed_range(self):
         """Smallest and largest speed of the crank, without sign, rad/s."""
-        size = np.abs(self._speed)
-        return -self._pieces.largest(-size)[0], self._pieces.largest(size)[0]
+        (low, _), (high, _) = self._slowest_and_fastest
+        return -low, high
+
+    @property
+    def speed_range_angles(self):
+        """Crank angles of the smallest and largest speed, rad."""
+        return tuple(angle % self.period for _, angle in self._slowest_and_fastest)
 
     @property
     def fluctuation(self):
@@ -225,6 +230,11 @@ class Running:
         return max(high, low, key=abs)
 
     # on the points of the pieces
+
+    @cached_property
+    def _slowest_and_fastest(self):
+        size = np.abs(self._speed)
+        return self._pieces.largest(-size), self._pieces.largest(size)
 
     @cached_property
     def _state(self):
