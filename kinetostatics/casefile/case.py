@@ -17,20 +17,16 @@ from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, Ki
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
-from ..numbers.headings import si_columns
-from ..numbers.units import base_factor
 from ..results.comparison import Comparison
 from ..solution.scene import Scene
 from ..solution.solution import Solution
-from ..sweeps import designs
 from . import build, parameters, reading, schema
 from .pieces import PartsError
 from .reading import shipped_cases
+from .spreads import far_off, spread_problems
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
 
-FAR_OFF = 300.0
-"""How many times a tolerance may be above or below its parameter before its unit is doubted."""
 CAM_FORCE = ("smallest cam force", "largest cam force")
 """Rows of the comparison that variants without a cam lack."""
 
@@ -266,10 +262,10 @@ def load_case(path) -> Case:
     if isinstance(reference, str) and variants and reference not in variants:
         problems.append(checks.choice("reference", reference, tuple(variants)))
     if head is not None:
-        problems += _spread_problems(head.tolerances, variants)
+        problems += spread_problems(head.tolerances, variants)
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
-    for doubt in _far_off(head.tolerances, variants):
+    for doubt in far_off(head.tolerances, variants):
         warnings.warn(f"{path}: {doubt}", HintWarning, stacklevel=2)
     for name, item in variants.items():
         for hint in item.mechanism.hints:
@@ -277,40 +273,6 @@ def load_case(path) -> Case:
     return Case(
         head.title, head.source, path, head.reference, MappingProxyType(variants), head.published, head.tolerances
     )
-
-
-def _spread_problems(spreads, variants):
-    """What is wrong with the tolerances: texts that cannot be read, parameters and units that no variant has."""
-    known = {path: unit for item in variants.values() if item for path, unit in item.units.items()}
-    for name, text in spreads.items():
-        columns = [name]
-        try:
-            columns = designs.columns(designs.distributions({name: text}))
-        except KinetostaticsError as error:
-            yield f"tolerances: {str(error).removeprefix('designs: ')}"
-        if all(variants.values()):
-            yield from (f"tolerances: {problem}" for problem in si_columns(columns, known)[1])
-
-
-def _far_off(spreads, variants):
-    """Tolerances whose size is far from that of their parameter in every variant that has it, as a sentence each."""
-    for name, text in spreads.items():
-        distribution, unit = designs.distributions({name: text})[name]
-        size = max(abs(float(distribution.median())), float(distribution.std())) * base_factor(unit)
-        nominal = [abs(value) for item in variants.values() if (value := _nominal(item, name))]
-        if nominal and all(not 1 / FAR_OFF < size / value < FAR_OFF for value in nominal):
-            si = next(paths[name] for item in variants.values() if name in (paths := item.units))
-            yield (
-                f"tolerances: {name} = {text!r} is of the size {size:.6g} {si}, but the parameter of "
-                f"{nominal[0]:.6g} {si}; is the unit right?"
-            )
-
-
-def _nominal(variant, path):
-    """Value of a parameter, also where the file has a word for it; None if the variant has none."""
-    value = variant.parameters.get(path)
-    value = variant.scene.parameters.get(path) if isinstance(value, str) else value
-    return value if isinstance(value, float) else None
 
 
 def _variant(name, own, common, folder, problems):

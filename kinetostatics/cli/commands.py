@@ -3,6 +3,7 @@
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
@@ -112,7 +113,9 @@ def drive(options):
     driven = {name: variant for name in names if (variant := case.variant(name)).motor is not None}
     if not driven:
         raise CaseError(case.path, [f"has no drive for {', '.join(names)}; give one as [common.drive]"])
-    runs, starts, reasons = {}, {}, []
+    runs: dict[str, Any] = {}
+    starts: dict[str, Any] = {}
+    reasons = []
     for name, variant in driven.items():
         machine = variant.scene, variant.motor, variant.flywheel
         try:
@@ -123,8 +126,9 @@ def drive(options):
     if not runs:
         raise DriveError("\n".join(reasons))
     print(f"{case.title}\n\nin periodic running under the motor of the case\n")
-    print_table(summary(runs, starts))
-    print(*(f"\n{reason}" for reason in reasons), sep="")
+    print_table(summary(runs, starts).rename_axis("over the period"))
+    for reason in reasons:
+        print(f"\n{reason}")
     if options.out:
         _write_runs(case, runs, options.out)
 

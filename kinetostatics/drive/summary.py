@@ -28,12 +28,12 @@ def _rows(run, start):
     low_angle, high_angle = map(math.degrees, run.speed_range_angles)
     rows = {
         ("mean speed of the crank", "rad/s"): run.mean_speed,
-        ("smallest", "rad/s"): low,
-        ("at crank angle", "deg"): low_angle,
-        ("largest", "rad/s"): high,
-        ("at crank angle ", "deg"): high_angle,
+        ("smallest speed", "rad/s"): low,
+        ("crank angle of the smallest", "deg"): low_angle,
+        ("largest speed", "rad/s"): high,
+        ("crank angle of the largest", "deg"): high_angle,
         ("fluctuation, by the mean over time", ""): run.fluctuation,
-        ("fluctuation, by the mean of both", ""): run.fluctuation_arithmetic,
+        ("fluctuation, by the mean of the extremes", ""): run.fluctuation_arithmetic,
         ("mean motor power", "W"): run.mean_power,
         ("rms motor power", "W"): run.rms_power,
         ("peak motor power", "W"): run.peak_power,

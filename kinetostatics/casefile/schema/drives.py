@@ -3,7 +3,7 @@
 Their numbers carry no unit by which `parameters` would find them: what designs vary is looked at at constant speed.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -78,7 +78,7 @@ class TorqueTable(MotorTable):
     torque: _row("N m")  # type: ignore[valid-type]
 
 
-MotorOfKind = one_of(
+MotorOfKind: Any = one_of(
     "motor", {"kloss": KlossTable, "linear": LinearTable, "constant": ConstantTable, "table": TorqueTable}
 )
 
@@ -86,5 +86,5 @@ MotorOfKind = one_of(
 class DriveTable(Table):
     """A motor, and a flywheel on the crank."""
 
-    motor: MotorOfKind  # type: ignore[valid-type]
+    motor: MotorOfKind
     flywheel: Turning = 0.0
