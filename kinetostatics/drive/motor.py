@@ -113,7 +113,9 @@ class Motor:
         >>> float(ks.drive.Motor.constant(10.0).torque(50.0))
         10.0
         """
-        found = _numbers("Motor.constant", own_torque=(torque, {"name": "torque"}), **_shared(transmission, inertia))
+        found = _numbers(
+            "Motor.constant", own_torque=(torque, {"name": "torque", "unequal": 0.0}), **_shared(transmission, inertia)
+        )
         return Constant(**found)
 
     @staticmethod

@@ -11,6 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+TAIL = 2e-14
+"""Size of the last coefficients of a series, relative to its largest value, that is rounding."""
+LEVELS = 60
+"""How often pieces are halved."""
+MOST_PIECES = 20_000
 DENSE = 8
 """Places beside each point of a series at which its extremes are looked for."""
 SMALLEST = 1e-13

@@ -10,7 +10,9 @@ from ..errors import DriveError
 from ..numbers import checks
 from .driven import Driven
 from .motor import single
-from .periodic import Running, resolved, steady
+from .periodic import steady
+from .resolution import resolved
+from .running import Running
 
 LARGEST = 60
 """How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""

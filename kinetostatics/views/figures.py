@@ -13,7 +13,7 @@ from ..errors import ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
-from . import plots
+from . import drives, plots
 
 
 def draw_case(case, folder, file_format="png", only=None):
@@ -47,6 +47,14 @@ def draw_case(case, folder, file_format="png", only=None):
     names = [case.reference, *(name for name in case.variants if name != case.reference)]
     solutions = {name: case.solve(name) for name in names}
     return [_saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]
+
+
+def draw_drive(case, runs, folder):
+    """Draw speed and torques of a case's variants in periodic running into a folder; returns the paths."""
+    figures = {"speed": _single(drives.speed), "torque": _one_each(drives.torques, 6.4, 3.2, stacked=True)}
+    paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}
+    checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
+    return [_saved(figures[name], runs, path, case, "png") for name, path in paths.items()]
 
 
 def _saved(draw, solutions, path, case, file_format):

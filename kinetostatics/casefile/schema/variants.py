@@ -9,6 +9,7 @@ from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
 from ...numbers import checks
+from .drives import DriveTable
 from .parts import Groups, Loads, by
 from .tables import BalancingTable, Cam, GravityTable, LinkTable, Table, value_in
 from .texts import (
@@ -57,6 +58,7 @@ class MechanismVariant(Table):
     crank: LinkTable = LinkTable()
     gravity: GravityTable | None = None
     balancing: BalancingTable | None = None
+    drive: DriveTable | None = None
     loads: Loads = ()
 
 
