@@ -17,7 +17,7 @@ from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
-from . import change_points
+from . import change_points, passing
 from .group import FRAME, Group, Output, Point, Resolved, Slot, joint_reaction, separation
 from .links import Joint, Link, LinkMotion, Wrench, present
 
@@ -77,7 +77,7 @@ def place(joint, pivot, offset, assembly):
 
 def passed(placement, on, pivot, offset, passage, side):
     """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
-    direction, ratio, slope, *rest = change_points.slotted(placement, on, pivot, offset, passage, side)
+    direction, ratio, slope, *rest = passing.slotted(placement, on, pivot, offset, passage, side)
     lever = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
     return LeverMotion(lever, lever._replace(joint=placement.joints[on]), *rest)
 
@@ -90,7 +90,7 @@ def resolve(motion, lever_load, block_load):
     """
     moment, across = number(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
     if isinstance(motion.divisor, tuple):
-        slot, *on_block = change_points.grown((moment, *stretched(moment, across)), motion.divisor)
+        slot, *on_block = passing.grown((moment, *stretched(moment, across)), motion.divisor)
     else:
         slot = moment / motion.divisor
         on_block = stretched(slot, across)

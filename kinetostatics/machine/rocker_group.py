@@ -17,7 +17,7 @@ from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
-from . import change_points
+from . import change_points, passing
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation, smaller
 from .links import Joint, Link, LinkMotion, Wrench, between
 
@@ -234,7 +234,7 @@ class RockerGroup(checks.Checked, Group):
         """Add joints B and O2, coupler and rocker."""
         given = self.coupler_length, self.rocker_length, self.pivot
         side = change_points.SIDES.get(self.assembly, self.assembly)
-        passed = self.passage and change_points.place(placement, self.on, *given, self.passage, side)
+        passed = self.passage and passing.place(placement, self.on, *given, self.passage, side)
         self._set(placement, passed or place(placement.joints[self.on], *given, side))
 
     def follow(self, placement, joints):
@@ -266,8 +266,8 @@ class RockerGroup(checks.Checked, Group):
     def resolve(self, placement, loads, along) -> Resolved:
         motion, lengths = placement.details[self._rocker], (self.coupler_length, self.rocker_length)
         acting = loads[self._coupler], loads[self._rocker]
-        if isinstance(motion, change_points.PassedMotion):
-            found = balanced(change_points.pin_force(motion, *lengths, *acting), *acting)
+        if isinstance(motion, passing.PassedMotion):
+            found = balanced(passing.pin_force(motion, *lengths, *acting), *acting)
         else:
             found = resolve(motion, *lengths, *acting)
         return Resolved(

@@ -17,6 +17,7 @@ from ..numbers import checks
 from ..numbers.elementary import divisor, root
 from ..numbers.leaves import with_fields
 from ..numbers.planar import (
+    added,
     cross,
     dot,
     minus,
@@ -29,7 +30,7 @@ from ..numbers.planar import (
     unturned,
     vector,
 )
-from . import change_points
+from . import change_points, passing
 from .group import Bar, Group, Output, Point, Resolved, joint_reaction
 from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench, between
@@ -85,7 +86,7 @@ def passed(placement, on, coupler_length, guide, passage, side):
     joint = placement.joints[on]
     position = unturned(joint.position, guide.direction)
     first, second = unturned(joint.first, guide.direction), unturned(joint.second, guide.direction)
-    reached = change_points.slid(placement, on, coupler_length, guide, passage, side)
+    reached = passing.slid(placement, on, coupler_length, guide, passage, side)
     across = minus(guide.offset, position[1])
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
@@ -116,8 +117,8 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     along = -plus(on_slider[0], push)
     across = number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
     if isinstance(motion.divisor, tuple):
-        aside = change_points.grown(turned((0.0, across), guide.direction), motion.divisor)
-        (across,) = change_points.grown((across,), motion.divisor)
+        aside = passing.grown(turned((0.0, across), guide.direction), motion.divisor)
+        (across,) = passing.grown((across,), motion.divisor)
         pin = added(turned((along, 0.0), guide.direction), aside)
         carried = subtracted(turned((0.0, -on_slider[1]), guide.direction), aside)
     else:
