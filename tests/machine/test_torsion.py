@@ -39,6 +39,11 @@ def test_a_link_that_turns_round_where_change_points_are_passed_takes_no_spring(
             ks.solve(passing, 0.7, crank_speed=1.0, loads=ks.TorsionSpring(4.0, free, on=on))
 
 
+def test_a_link_that_never_turns_takes_a_spring_of_a_constant_couple():
+    pump, spring = ks.crank_slider(0.1, 0.3, guide_angle=0.4), ks.TorsionSpring(4.0, 0.1, on="slider")
+    assert ks.solve(pump, [0.7, 2.0], crank_speed=1.0, loads=spring).guide_moment == pytest.approx([1.2, 1.2])
+
+
 def test_a_coupler_that_turns_with_the_crank_takes_no_spring():
     double_crank = ks.four_bar(0.4, 0.35, 0.45, rocker_pivot=(0.1, 0.0))
     with pytest.raises(ks.ParameterError, match=r"TorsionSpring on 'rocker'.*it makes full turns"):

@@ -185,7 +185,7 @@ class TorsionSpring(Couple):
         parts = self._leaning(mechanism.place(grid))
         if not all(isinstance(part, float | np.ndarray) and checks.known(part) for part in parts):
             return
-        angle = np.atleast_1d(np.arctan2(*np.broadcast_arrays(*parts)[::-1]))
+        angle = np.arctan2(*np.broadcast_arrays(*parts, grid)[1::-1])
         step = np.diff(angle, axis=-1)
         with np.errstate(invalid="ignore"):
             passing = np.abs(step) > np.pi
