@@ -8,7 +8,7 @@ import numpy as np
 
 from ..engines import compiled
 from ..numbers.elementary import ROUNDING
-from .reductions import INNER, KINK, MEAN, PEAK, REACH, THROUGH, TINY
+from .reductions import INNER, MEAN, PEAK, REACH, THROUGH, TINY
 from .turn import NEAR
 
 KINDS = (
@@ -116,8 +116,6 @@ def between(values, at, side, work):
         if abs(top - found) < 0.05 * abs(bend) and abs(place) < 1.0:
             found, shift = top, place
             other = top - polyval(place, INNER) * (series[{2 * REACH - 1}] + series[{2 * REACH}] * place)
-        if bend < {KINK!r} * max(first, last):
-            found, shift, other = here, 0.0, here - 0.25 * (before - after) * (0.5 * (before - after) / bend)
     error = abs(found - other)
     if sign == 0.0:
         return found, shift, error

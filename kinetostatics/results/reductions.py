@@ -19,8 +19,6 @@ from ..numbers.headings import heading
 
 REACH = 4
 """Samples on either side of a peak that tell how high it is between them."""
-KINK = 2.0
-"""Bend at a sample, beside that at one of its neighbours, from which it is a kink, as a table has at its rows."""
 PEAK = 1e-4
 """Error of a peak, relative to it, from which so many samples do not tell it; or a hundredth of that of the range."""
 MEAN = 1e-2
@@ -90,9 +88,8 @@ def _between(near):
     """Height of each peak, and how far from its highest sample, from the samples around it (places, peaks).
 
     By the polynomial through all of them, by the parabola through three if others spoil it, as beyond a jump, and that
-    of the sample if not even three go together, or it stands at a kink, which a parabola would rise above. What does
-    not change its sign may be a magnitude, which has a corner at zero, but its square has none. About how much the
-    height may be wrong is what two samples less make of it.
+    of the sample if not even three go together. What does not change its sign may be a magnitude, which has a corner at
+    zero, but its square has none. About how much the height may be wrong is what two samples less make of it.
     """
     sign = np.where((near >= 0).all(axis=0), 1.0, np.where((near <= 0).all(axis=0), -1.0, 0.0))
     curve = np.where(sign == 0, near, near * abs(near))
@@ -111,9 +108,7 @@ def _between(near):
         fits = (abs(top - height) < 0.05 * abs(bend)) & (abs(place) < 1)
         fewer = top - INNER(place) * (series[-2] + series[-1] * place)
     smooth = (bends < 0).all(axis=0)
-    kink = smooth & (bend < KINK * np.maximum(bends[0], bends[2]))
     other = np.where(smooth, np.where(fits, fewer, top), here + abs(bend))
-    other, smooth = np.where(kink, height, other), smooth & ~kink
     found = np.where(smooth, np.where(fits, top, height), here)
     height = np.where(sign == 0, found, sign * np.sqrt(np.maximum(sign * found, 0.0)))
     error = abs(found - other)

@@ -40,7 +40,6 @@ def signals(count):
         np.full(count, np.nan),
         np.where(np.arange(count) == 0, np.nan, np.sin(turn)),
         np.where(np.arange(count) == count - 1, np.nan, 2.0),
-        5.0 - np.abs(turn - turn[count // 2]) * np.where(turn < turn[count // 2], 3.0, 1.0) - 0.1 * turn**2,
     ]
     return np.array(made)
 

@@ -101,16 +101,3 @@ def test_outputs_are_read_with_any_name_of_a_quantity():
             parsed(text)
     with pytest.raises(ks.ParameterError, match="did you mean 'largest'"):
         parsed("larges O")
-
-
-@pytest.mark.parametrize("slopes", [(1.0, -5.0), (3.0, -3.0), (8.0, -0.5)])
-@pytest.mark.parametrize("count", [90, 720])
-def test_a_peak_at_a_kink_is_its_sample(slopes, count):
-    """A table with a row at a sample: a parabola through it would rise above."""
-    angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
-    away = angle - np.pi
-    values = 1e-3 + np.where(away < 0, slopes[0] * away, slopes[1] * away) - 0.1 * away * away
-    for sign in (1.0, -1.0):
-        name = "largest" if sign > 0 else "smallest"
-        assert parsed(f"{name} O").reduced(sign * values[None])[0] == sign * 1e-3
-        assert parsed(f"{name}_at O").reduced(sign * values[None])[0] == pytest.approx(np.pi)
