@@ -51,7 +51,10 @@ def draw_case(case, folder, file_format="png", only=None):
 
 def draw_drive(case, runs, folder):
     """Draw speed and torques of a case's variants in periodic running into a folder; returns the paths."""
-    figures = {"speed": _single(drives.speed), "torque": _one_each(drives.torques, 6.4, 3.2, columns=1)}
+    figures = {
+        "speed": _single(drives.speed),
+        "torque": partial(_one_each, drives.torques, width=6.4, height=3.2, columns=1),
+    }
     paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}
     checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
     return [_saved(figures[name], runs, path, case, "png") for name, path in paths.items()]

@@ -6,6 +6,7 @@ import random
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.machine.group import RESERVED
 from kinetostatics.mechanics.quantities import of_mechanism
 
 NAMES = (
@@ -63,7 +64,7 @@ def test_no_name_is_lost_in_silence(seed):
         links, joints, outputs = (sum(counts) for counts in zip((1, 2, 2), *map(COUNTS.get, kinds), strict=True))
         assert (len(chain.links), len(chain.joints), len(chain.outputs)) == (links, joints, outputs)
         travels, measured = 3 * len(chain.guides), sum(kind in ("lever", "cylinder") for kind in kinds)
-        assert len(of_mechanism(chain)) == outputs + 3 + travels + measured + 2 * links
+        assert len(of_mechanism(chain)) == outputs + len(RESERVED) + travels + measured + 2 * links
     assert made
     assert refused
 
