@@ -2,6 +2,8 @@
 
 Call first
     crank_slider, cam_crank_slider, four_bar    a mechanism; Link its masses, Gravity, Spring, ProcessForce its loads
+    slotted_lever, scotch_yoke                  more of them; Pin, Dyad, LeverGroup ... for chains of one's own
+    Force, Torque, PointForce, PointSpring ...  loads on any link; Table of their values by angle or travel
     solve(mechanism, angles, crank_speed=...)   its Solution: motion, every reaction, the torque of the drive
     Scene(mechanism, crank_speed, ...)          all that together; .solve(angles), .varied({"slider.mass": 620.0})
     load_case("sawframe_2r63")                  the same from a file; shipped cases by name
@@ -18,6 +20,7 @@ Rooms, in the order in which they build on each other
     engines     how fast, how sure: kernels recorded once a structure, NumPy lines, compiled loops, derivatives
     results     extremes, means, reductions, comparison, tables
     solution    what users hold: scene, solution, solve, compile
+    drive       motors, periodic running, flywheels, starting and coasting
     design      static balancing, four-bar classes
     sweeps      designs, sweep, workers, datasets, tolerances
     studies     needs, precision, stability, the methods under study
@@ -32,6 +35,7 @@ from .errors import (
     AssemblyError,
     CaseError,
     ConditionWarning,
+    DriveError,
     HintWarning,
     JammingError,
     KinetostaticsError,
@@ -40,6 +44,7 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
+    from . import drive
     from .casefile.case import load_case
     from .design import balancing, linkage
     from .machine import cams
@@ -93,6 +98,7 @@ __all__ = [
     "ConditionWarning",
     "Crank",
     "CylinderGroup",
+    "DriveError",
     "Dyad",
     "Force",
     "Gravity",
@@ -132,6 +138,7 @@ __all__ = [
     "compile",
     "crank_slider",
     "designs",
+    "drive",
     "extremes",
     "four_bar",
     "linkage",
@@ -185,6 +192,7 @@ _WHERE = {
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],
     "solution.solution": ["Solution"],
+    "": ["drive"],
     "design": ["balancing", "linkage"],
     "sweeps": ["designs"],
     "sweeps.sweeps": ["sweep"],
@@ -201,8 +209,8 @@ def __getattr__(name):
     place = next((place for place, names in _WHERE.items() if name in names), None)
     if place is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    path = f"{__name__}.{place}"
-    found = getattr(import_module(path), name, None) or import_module(f"{path}.{name}")
+    path = f"{__name__}.{place}".rstrip(".")
+    found = (getattr(import_module(path), name, None) if place else None) or import_module(f"{path}.{name}")
     globals()[name] = found
     return found
 

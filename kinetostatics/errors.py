@@ -61,6 +61,23 @@ class JammingError(KinetostaticsError, ValueError):
         self.angles = tuple(angles)
 
 
+class DriveError(KinetostaticsError, ValueError):
+    """The machine cannot run as asked: its motor is too weak, it does not start, nothing sets its speed ...
+
+    Attributes
+    ----------
+    missing : float
+        Torque on the crank that is missing, N m; NaN where that is not what is wrong.
+    crank_angle : float
+        Where, rad; NaN where it has no place.
+    """
+
+    def __init__(self, message, missing=float("nan"), crank_angle=float("nan")):
+        super().__init__(message)
+        self.missing = missing
+        self.crank_angle = crank_angle
+
+
 class QuantityError(KinetostaticsError, AttributeError):
     """The mechanism has no such joint, link or quantity; the message lists those it has."""
 

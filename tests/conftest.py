@@ -11,10 +11,15 @@ import pytest
 
 @pytest.fixture(scope="session", autouse=True)
 def programs(tmp_path_factory):
-    """A folder for compiled programs that goes with pytest's others, unless the environment names one."""
+    """A folder for compiled programs that goes with pytest's others, unless the environment names one.
+
+    Processes of one run share it, so that each program is compiled once.
+    """
+    own = tmp_path_factory.getbasetemp()
+    run = own.parent if os.environ.get("PYTEST_XDIST_WORKER") else own
     with pytest.MonkeyPatch.context() as patch:
         if not os.environ.get("KINETOSTATICS_CACHE"):
-            patch.setenv("KINETOSTATICS_CACHE", str(tmp_path_factory.mktemp("compiled")))
+            patch.setenv("KINETOSTATICS_CACHE", str(run / "compiled"))
         yield
 
 

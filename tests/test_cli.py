@@ -3,13 +3,16 @@
 import re
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pandas as pd
 import pytest
 
+import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
+from kinetostatics.cli.commands import STARTERS
 from kinetostatics.cli.printed import print_table
 
 
@@ -40,6 +43,18 @@ def test_run_prints_extremes_and_the_power_check(capsys):
 def test_a_zero_is_printed_without_a_sign(capsys):
     print_table(pd.DataFrame({"smallest": [-0.0, -1e-20, -2.5, np.nan], "unit": "N"}, index=list("abcd")))
     assert [line.split()[1] for line in capsys.readouterr().out.splitlines()[2:]] == ["0", "-1e-20", "-2.5", "N"]
+
+
+def test_run_prints_0_for_what_is_rounding_and_groups_in_the_order_of_the_chain(capsys):
+    assert main(["run", "in_line_twin", "--variant", "throws-opposed"]) == 0
+    printed = capsys.readouterr().out.split("\n\npower balance")[0]
+    assert not re.search(r"e-\d", printed)
+    cells = {line[:29].strip(): line[29:].split() for line in printed.splitlines()}
+    assert cells["shaking moment"] == ["N", "m", "0", "0"]
+    assert cells["reaction guide1"][:2] == ["N", "0"]
+    names = list(cells)
+    assert names.index("guide force1") < names.index("guide force2")
+    assert names.index("reaction guide1") < names.index("reaction C2") < names.index("reaction O")
 
 
 def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):
@@ -174,3 +189,163 @@ def test_a_published_figure_without_a_place_in_the_balancing_table_is_refused(tm
     path.write_text(f'{text}[published.balancing.{table}]\n"ful crank" = "1"\n', encoding="utf-8")
     assert main(["compare", str(path), "--variant", "full"]) == 2
     assert re.search(message.replace("[mm]", ".mm."), capsys.readouterr().err)
+
+
+# Cases that are there, and new ones
+
+
+def test_list_has_a_line_for_each_shipped_case_with_title_and_variants(capsys):
+    assert main(["list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(shipped_cases())
+    mower = next(line for line in lines if line.startswith("mower_drive "))
+    assert "Mower drive: static balancing of an offset crank-slider (unbalanced, full, partial-1" in mower
+
+
+def test_version_is_that_of_the_library(capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    assert capsys.readouterr().out == f"kinetostatics {ks.__version__}\n"
+
+
+@pytest.mark.parametrize("kind", STARTERS)
+def test_a_new_case_compares_its_variants_as_it_is_written(tmp_path, monkeypatch, capsys, kind):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "my pump", "--kind", kind]) == 0
+    assert capsys.readouterr().out == 'wrote my pump.toml; kinetostatics run "my pump.toml"\n'
+    assert main(["compare", "my pump.toml"]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("my pump\n")
+    assert " / " in printed
+
+
+def test_a_new_case_is_a_crank_slider_unless_told(tmp_path, capsys):
+    assert main(["new", str(tmp_path / "mine")]) == 0
+    assert main(["run", str(tmp_path / "mine.toml"), "--variant", "plain", "--angles", "24"]) == 0
+    assert "plain: crank-slider" in capsys.readouterr().out
+
+
+def test_a_new_case_never_takes_the_place_of_a_file(tmp_path, capsys):
+    path = tmp_path / "pump.toml"
+    path.write_text("old", encoding="utf-8")
+    for name in (path, path.with_suffix("")):
+        assert main(["new", str(name)]) == 2
+        assert f"{path} is there already; give another name" in capsys.readouterr().err
+    assert path.read_text(encoding="utf-8") == "old"
+
+
+@pytest.mark.parametrize("name", ["new\nline", 'say "when"', "b\\c", "\N{GREEK SMALL LETTER OMEGA}.toml"])
+def test_a_new_case_of_an_odd_name_is_read_again(tmp_path, name):
+    assert main(["new", str(tmp_path / name)]) == 0
+    (path,) = tmp_path.iterdir()
+    assert ks.load_case(path).title == path.stem
+
+
+@pytest.mark.parametrize(
+    ("own", "turns"),
+    [
+        ('rocker_length = "2 m"\nrocker_pivot = ["4 m", "0 m"]\nassembly = "open"\n', 2),
+        (
+            'rocker_length = "3 m"\nrocker_pivot = ["3.5 m", "1 m"]\n[[variants.a.loads]]\nkind = "torque"\n'
+            'on = "rocker"\nvalue = { file = "t.csv", period = "720 deg" }\n',
+            2,
+        ),
+    ],
+)
+def test_run_goes_over_the_turns_after_which_a_mechanism_or_its_loads_repeat(tmp_path, own, turns):
+    """A crank 1, coupler 3, rocker 2, ground 4 closes after two; so does a load with a period of two."""
+    (tmp_path / "t.csv").write_text("crank_angle [deg], torque [N m]\n0, 0\n240, 3\n480, 1\n", encoding="utf-8")
+    text = 'title = "turns"\nreference = "a"\n[variants.a]\nmechanism = "four-bar"\ncrank_speed = "60 rpm"\n'
+    text += f'crank_length = "1 m"\ncoupler_length = "{5 - turns if "open" in own else 4} m"\n{own}'
+    path = tmp_path / "turns.toml"
+    path.write_text(text, encoding="utf-8")
+    table = tmp_path / "out.csv"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ks.ConditionWarning)  # of the reactions that are infinite at change points
+        assert main(["run", str(path), "--angles", "30", "--csv", str(table)]) == 0
+    angles = pd.read_csv(table)["crank_angle [deg]"]
+    assert angles.iloc[-1] == pytest.approx(29 / 30 * turns * 360)
+
+
+def test_double_cranks_are_compared_without_the_table_of_swings(tmp_path, capsys):
+    text = 'title = "double crank"\nreference = "a"\n[common]\nmechanism = "four-bar"\ncrank_speed = "60 rpm"\n'
+    text += 'crank_length = "0.35 m"\ncoupler_length = "0.4 m"\nrocker_length = "0.3 m"\n'
+    text += 'rocker_pivot = ["0.1 m", "0 m"]\ncoupler = { mass = "2 kg" }\n'
+    text += (
+        '[[common.loads]]\nkind = "torque"\nvalue = "9 N m"\non = "rocker"\n[variants.a]\n[variants.b]\nassembly = -1\n'
+    )
+    path = tmp_path / "drag.toml"
+    path.write_text(text, encoding="utf-8")
+    assert main(["compare", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert "a / b" in printed
+    assert "swing" not in printed
+
+
+PUMP = """
+title = "Pump"
+reference = "pump"
+[common]
+mechanism = "crank-slider"
+crank_speed = "100 rad/s"
+crank_length = "5 cm"
+coupler_length = "20 cm"
+slider = { mass = "1 kg" }
+[common.drive]
+motor = { kind = "kloss", power = "750 W", speed = "99 rad/s", synchronous_speed = "104.7 rad/s", overload = 2.5 }
+flywheel = "0.05 kg m^2"
+[variants.pump]
+[variants.sprung.spring]
+stiffness = "20 kN/m"
+free_position = "25 cm"
+[variants.overloaded]
+loads = [{ kind = "torque", value = "-50 N m", on = "crank" }]
+"""
+
+
+@pytest.fixture
+def pump(tmp_path):
+    path = tmp_path / "pump.toml"
+    path.write_text(PUMP)
+    return path
+
+
+def test_drive_prints_running_and_start_up_or_why_there_is_none(pump, capsys):
+    assert main(["drive", str(pump)]) == 0
+    printed = capsys.readouterr().out
+    rows = {line.split("  ")[0]: line.split() for line in printed.splitlines()}
+    variant = ks.load_case(pump).variants["pump"]
+    run = ks.drive.steady(variant.scene, variant.motor, variant.flywheel)
+    begun = ks.drive.start(variant.scene, variant.motor, variant.flywheel)
+    assert rows["mean speed of the crank"][-2] == f"{run.mean_speed:.6g}"
+    assert rows["smallest speed"][-2] == f"{run.speed_range[0]:.6g}"
+    at = np.radians(float(rows["crank angle of the smallest"][-2]))
+    assert run.motion(np.array([at]))[0][0] == pytest.approx(run.speed_range[0], rel=1e-9)
+    assert rows["start-up time from crank angle 0"][-1] == f"{begun.time[-1]:.6g}"  # the other does not start
+    assert "sprung: crank-slider: it starts and stops after" in printed
+    assert "overloaded: crank-slider: the motor is too weak" in printed
+
+
+def test_drive_writes_a_table_and_figures_with_units(pump, tmp_path, capsys):
+    folder = tmp_path / "drive"
+    assert main(["drive", str(pump), "--variant", "pump", "--out", str(folder)]) == 0
+    names = ["pump_drive.csv", "pump_drive_speed.png", "pump_drive_torque.png"]
+    assert sorted(path.name for path in folder.iterdir()) == names
+    table = pd.read_csv(folder / "pump_drive.csv")
+    assert len(table) == 720
+    assert {"variant", "crank_speed [rad/s]", "motor_torque [N m]", "motor_power [W]"} <= set(table.columns)
+    printed = capsys.readouterr().out
+    assert all(str(folder / name) in printed for name in names)
+
+
+def test_drive_says_why_nothing_runs_and_where_there_is_no_drive(pump, capsys):
+    for case, variant, message in (
+        (str(pump), "overloaded", "N m are missing"),
+        (str(pump), "pomp", "did you mean 'pump'?"),
+        ("shaper", None, "has no drive for "),
+    ):
+        assert main(["drive", case, *(["--variant", variant] if variant else [])]) == 2
+        printed = capsys.readouterr()
+        assert message in printed.err
+        assert not printed.out

@@ -29,8 +29,15 @@ def test_readme_example_gives_its_numbers_in_at_most_ten_lines(capsys):
     assert residual < 1e-14
 
 
+def test_readme_shaper_runs_and_balances_its_powers(capsys):
+    names: dict = {"np": np, "ks": ks, "turn": np.linspace(0, 2 * np.pi, 720, endpoint=False)}
+    exec(compile(python_blocks()[1], "README", "exec"), names)
+    assert float(capsys.readouterr().out.rsplit(":", 1)[1]) > 800.0
+    assert names["s"].power_residual < 1e-14
+
+
 def test_readme_shows_what_needs_says():
-    code, shown = python_blocks()[1].removeprefix(">>> ").split("\n", 1)
+    code, shown = python_blocks()[2].removeprefix(">>> ").split("\n", 1)
     said = str(eval(code, {"ks": ks}))
     number = r"error [-+.e\d]+"
     assert re.sub(number, "", said) == re.sub(number, "", shown.strip())
@@ -38,7 +45,7 @@ def test_readme_shows_what_needs_says():
 
 def test_readme_sweep_runs():
     names: dict = {"ks": ks}
-    code = python_blocks()[2].replace(":40", ":3").replace(":30", ":2")
+    code = python_blocks()[3].replace(":40", ":3").replace(":30", ":2")
     exec(compile(code.replace('"cam-circle")', '"cam-circle", progress=False)'), "README", "exec"), names)
     assert len(names["table"]) == 6
     assert (names["table"]["failed"] == "").all()
@@ -47,7 +54,7 @@ def test_readme_sweep_runs():
 def test_readme_program_gives_torque_and_slope_which_is_constant_in_a_mass():
     turn = np.linspace(0, 2 * np.pi, 360, endpoint=False)
     names: dict = {"ks": ks, "turn": turn}
-    exec(compile(python_blocks()[3], "README", "exec"), names)
+    exec(compile(python_blocks()[4], "README", "exec"), names)
     before = names["scene"].solve(turn).balancing_torque
     assert np.abs(names["slope"]).max() > 0.1
     np.testing.assert_allclose(names["torque"] - before, 0.5 * names["slope"], rtol=1e-9, atol=1e-12)

@@ -6,7 +6,7 @@ from ..design import balancing, linkage
 from ..errors import CaseError, KinetostaticsError, ParameterError
 from ..machine import cams
 from ..machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
-from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table
+from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, value_of
 from ..numbers.files import read_columns
 from ..solution.scene import Scene
 from . import chain, parameters, schema
@@ -56,6 +56,17 @@ def built(table, tabulated):
     return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads, friction), balanced
 
 
+def require_values(table, solution):
+    """Raise an error where a table over travel does not reach as far as its slider."""
+    own = len(solution.loads) - len(table.loads)
+    read = [(number - own, value_of(item)) for number, item in enumerate(solution.loads)]
+    all_of(
+        (("loads", number) if number >= 0 else ("process_force",), lambda value=value: value(solution))
+        for number, value in read
+        if isinstance(value, Table)
+    )
+
+
 def _mechanism(table, tabulated):
     if isinstance(table, schema.ChainVariant):
         return chain.chain(table, tabulated)
@@ -72,10 +83,9 @@ def _mechanism(table, tabulated):
         return _cam_crank_slider(table, tabulated.get(("cam",)))
     crank = link_of(table.crank, table.crank_length)
     if isinstance(table, schema.SlottedLeverVariant):
-        links = {"lever": link_of(table.lever), "block": link_of(table.block)}
-        return slotted_lever(
-            table.crank_length, pivot=table.lever_pivot, offset=table.slot_offset, crank=crank, **links
-        )
+        links = {"crank": crank, "lever": link_of(table.lever), "block": link_of(table.block)}
+        line = {"pivot": table.lever_pivot, "offset": table.slot_offset}
+        return slotted_lever(table.crank_length, **line, assembly=table.assembly, **links)
     shared = {"guide": guide_of(table), "slider": link_of(table.slider), "crank": crank}
     if isinstance(table, schema.ScotchYokeVariant):
         return scotch_yoke(table.crank_length, slot_angle=table.slot_angle, block=link_of(table.block), **shared)

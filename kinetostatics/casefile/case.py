@@ -4,31 +4,29 @@ import re
 import typing
 import warnings
 from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 
-from ..design import balancing, linkage, shapes
+from ..design import balancing, linkage
 from ..design.balancing_table import balancing_table
-from ..errors import AssemblyError, CaseError, HintWarning, KinetostaticsError
+from ..drive.motor import Motor
+from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
-from ..numbers.headings import si_columns
-from ..numbers.units import base_factor
 from ..results.comparison import Comparison
 from ..solution.scene import Scene
 from ..solution.solution import Solution
-from ..sweeps import designs
 from . import build, parameters, reading, schema
 from .pieces import PartsError
 from .reading import shipped_cases
+from .spreads import far_off, spread_problems
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
 
-FAR_OFF = 300.0
-"""How many times a tolerance may be above or below its parameter before its unit is doubted."""
 CAM_FORCE = ("smallest cam force", "largest cam force")
 """Rows of the comparison that variants without a cam lack."""
 
@@ -60,9 +58,22 @@ class Variant:
     def loads(self):
         return self.scene.loads
 
+    @cached_property
+    def motor(self) -> Motor | None:
+        """Motor of its drive, None if the file gives none."""
+        return None if self.table.drive is None else self.table.drive.motor.motor
+
+    @property
+    def flywheel(self):
+        """Flywheel of its drive, on the crank, kg m2; 0 if the file gives none."""
+        return 0.0 if self.table.drive is None else self.table.drive.flywheel
+
     @property
     def units(self):
-        """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x"."""
+        """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x".
+
+        Those of the drive are left out: solutions of a variant are at its crank speed, whatever drives it.
+        """
         return {path: place.unit for path, place in parameters.paths(self.table).items()}
 
     @property
@@ -72,8 +83,13 @@ class Variant:
 
     @property
     def content(self):
-        """What a case's variant is made of as bytes, the same in every session: its table, and what files held."""
-        return self.table.model_dump_json().encode() + b"".join(_bytes(part) for part in self.tabulated.values())
+        """What a case's variant is made of as bytes, the same in every session: its table, and what files held.
+
+        Without its drive, which no solution depends on.
+        """
+        return self.table.model_dump_json(exclude={"drive"}).encode() + b"".join(
+            _bytes(part) for part in self.tabulated.values()
+        )
 
     def varied(self, values) -> "Variant":
         """The variant with other values at some paths of its file, in SI, as if they stood there.
@@ -201,8 +217,8 @@ class Case:
         return balancing_table(self.solve(self.reference), found, self.published.sampling) if found else None
 
     def linkage_table(self):
-        """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are four-bars."""
-        if not all(shapes.four_bar(variant.mechanism) for variant in self.variants.values()):
+        """Table of swing and transmission of the variants, a pandas DataFrame; None unless all are crank-rockers."""
+        if not all(linkage.swings(variant.mechanism) for variant in self.variants.values()):
             return None
         return linkage.characteristics({name: self.solve(name) for name in self.variants}, self.reference)
 
@@ -246,10 +262,10 @@ def load_case(path) -> Case:
     if isinstance(reference, str) and variants and reference not in variants:
         problems.append(checks.choice("reference", reference, tuple(variants)))
     if head is not None:
-        problems += _spread_problems(head.tolerances, variants)
+        problems += spread_problems(head.tolerances, variants)
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
-    for doubt in _far_off(head.tolerances, variants):
+    for doubt in far_off(head.tolerances, variants):
         warnings.warn(f"{path}: {doubt}", HintWarning, stacklevel=2)
     for name, item in variants.items():
         for hint in item.mechanism.hints:
@@ -257,40 +273,6 @@ def load_case(path) -> Case:
     return Case(
         head.title, head.source, path, head.reference, MappingProxyType(variants), head.published, head.tolerances
     )
-
-
-def _spread_problems(spreads, variants):
-    """What is wrong with the tolerances: texts that cannot be read, parameters and units that no variant has."""
-    known = {path: unit for item in variants.values() if item for path, unit in item.units.items()}
-    for name, text in spreads.items():
-        columns = [name]
-        try:
-            columns = designs.columns(designs.distributions({name: text}))
-        except KinetostaticsError as error:
-            yield f"tolerances: {str(error).removeprefix('designs: ')}"
-        if all(variants.values()):
-            yield from (f"tolerances: {problem}" for problem in si_columns(columns, known)[1])
-
-
-def _far_off(spreads, variants):
-    """Tolerances whose size is far from that of their parameter in every variant that has it, as a sentence each."""
-    for name, text in spreads.items():
-        distribution, unit = designs.distributions({name: text})[name]
-        size = max(abs(float(distribution.median())), float(distribution.std())) * base_factor(unit)
-        nominal = [abs(value) for item in variants.values() if (value := _nominal(item, name))]
-        if nominal and all(not 1 / FAR_OFF < size / value < FAR_OFF for value in nominal):
-            si = next(paths[name] for item in variants.values() if name in (paths := item.units))
-            yield (
-                f"tolerances: {name} = {text!r} is of the size {size:.6g} {si}, but the parameter of "
-                f"{nominal[0]:.6g} {si}; is the unit right?"
-            )
-
-
-def _nominal(variant, path):
-    """Value of a parameter, also where the file has a word for it; None if the variant has none."""
-    value = variant.parameters.get(path)
-    value = variant.scene.parameters.get(path) if isinstance(value, str) else value
-    return value if isinstance(value, float) else None
 
 
 def _variant(name, own, common, folder, problems):
@@ -329,7 +311,8 @@ def _variant(name, own, common, folder, problems):
         variant = _made(table, folder, read)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", HintWarning)  # `load_case` gives them, with the file and the variant
-            variant.solve(angles=720)
+            warnings.simplefilter("ignore", ConditionWarning)  # whoever solves it gets them
+            build.require_values(table, variant.solve(angles=720))
         assembly.require_turn(variant.mechanism)
     except PartsError as error:
         tell(error)

@@ -114,6 +114,6 @@ def files(table, keys=()):
             yield from files(part, (*keys, number))
     elif isinstance(table, Table):
         if _is_in_file(table):
-            yield keys, table, table.file if isinstance(table, ValuesTable) else table.table
+            yield keys, table, getattr(table, "file" if isinstance(table, ValuesTable) else "table")
         for name in type(table).model_fields:
             yield from files(getattr(table, name), (*keys, name))

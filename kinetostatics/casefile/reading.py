@@ -118,7 +118,7 @@ def _sentence(model, item, place):
         allowed = _allowed(model, item["loc"][:-1])
         return f"{path} is not a key here{checks.hint(keys[-1], allowed)} (allowed: {', '.join(allowed)})"
     if item["type"] == "kind":
-        allowed = item["ctx"]["kinds"]
+        allowed = schema.kinds(item["msg"])
         if not isinstance(found, dict):
             return f"{path} must be a table with a kind, of {', '.join(map(repr, allowed))}, found {shown(found)}"
         if "kind" not in found:

@@ -1,4 +1,4 @@
-"""The command line: ``kinetostatics run | compare | plot | precision | sweep CASE``, ``kinetostatics stability``.
+"""The command line: ``kinetostatics run | compare | drive | plot | precision | sweep CASE``, ``... stability``.
 
 options
     What may be written on the line.

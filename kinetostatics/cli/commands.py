@@ -3,8 +3,9 @@
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
-from ..errors import CaseError, ParameterError
+from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
 from .printed import print_table, tell, with_published, write_table
 
@@ -19,12 +20,13 @@ STARTERS = ("crank-slider", "four-bar", "chain")
 
 
 def list_cases(options):
-    from ..casefile.case import load_case, shipped_cases
+    from ..casefile.reading import read, shipped_cases
 
-    cases = {name: load_case(name) for name in shipped_cases()}
+    cases = shipped_cases()
     width = max(map(len, cases))
-    for name, case in cases.items():
-        print(f"{name:{width}}  {case.title} ({', '.join(case.variants)})")
+    for name, path in cases.items():
+        _, raw = read(path)
+        print(f"{name:{width}}  {raw['title']} ({', '.join(raw['variants'])})")
 
 
 def new(options):
@@ -35,7 +37,8 @@ def new(options):
     checks.require("new", files.unwritable(path))
     with files.written_whole(path) as temporary:
         Path(temporary).write_text(starter(options.kind, path.stem), encoding="utf-8")
-    print(f"wrote {path}; kinetostatics run {path}")
+    name = f'"{path}"' if " " in str(path) else path
+    print(f"wrote {path}; kinetostatics run {name}")
 
 
 def run(options):
@@ -96,6 +99,49 @@ def plot(options):
 
     for path in draw_case(load_case(options.case), options.out, options.format, options.only):
         print(path)
+
+
+def drive(options):
+    from ..casefile.case import load_case
+    from ..drive.periodic import steady
+    from ..drive.summary import summary
+    from ..drive.transient import start
+
+    case = load_case(options.case)
+    checks.require("--out", files.unwritable_folder(options.out) if options.out else None)
+    names = list(case.variants) if options.variant is None else [options.variant]
+    driven = {name: variant for name in names if (variant := case.variant(name)).motor is not None}
+    if not driven:
+        raise CaseError(case.path, [f"has no drive for {', '.join(names)}; give one as [common.drive]"])
+    runs: dict[str, Any] = {}
+    starts: dict[str, Any] = {}
+    reasons = []
+    for name, variant in driven.items():
+        machine = variant.scene, variant.motor, variant.flywheel
+        try:
+            runs[name], starts[name] = steady(*machine), None
+            starts[name] = start(*machine)
+        except DriveError as error:
+            reasons.append(f"{name}: {error}")
+    if not runs:
+        raise DriveError("\n".join(reasons))
+    print(f"{case.title}\n\nin periodic running under the motor of the case\n")
+    print_table(summary(runs, starts).rename_axis("over the period"))
+    for reason in reasons:
+        print(f"\n{reason}")
+    if options.out:
+        _write_runs(case, runs, options.out)
+
+
+def _write_runs(case, runs, folder):
+    import pandas as pd
+
+    from ..views.figures import draw_drive
+
+    table = pd.concat([run.frame().assign(variant=name) for name, run in runs.items()])
+    table.insert(0, "variant", table.pop("variant"))
+    write_table(table, str(Path(folder) / f"{case.path.stem}_drive.csv"))
+    print(*draw_drive(case, runs, folder), sep="\n")
 
 
 def precision(options):

@@ -32,6 +32,10 @@ def parser():
     compare = _command(group, "compare", commands.compare, "dynamic coefficients against the reference variant")
     compare.add_argument("--variant", type=_text, metavar="NAME", help="only this variant against the reference")
 
+    drive = _command(group, "drive", commands.drive, "speed, power and start-up under the motor of the case")
+    drive.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
+    drive.add_argument("--out", type=_text, metavar="DIR", help="folder for the CSV and the figures")
+
     plot = _command(group, "plot", commands.plot, "draw the figures of the case")
     plot.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the figures")
     plot.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")

@@ -141,7 +141,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     )
     if norm in ("along", "across"):
         guide_direction(mechanism)
-    turn = np.linspace(0, 2 * np.pi, angles, endpoint=False)
+    turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
     size = 2 if phase else 1
 
     def balanced(unknowns):

@@ -17,7 +17,7 @@ from ..numbers.planar import cross, dot
 from ..results.extremes import extremes
 from . import shapes
 
-QUARTER = pi / 2
+QUARTER, WHOLE = pi / 2, ((0.0, 2 * pi),)
 CHANGE_POINT = 1e-12
 """Difference of the sums of lengths, relative to them, below which a four-bar can reach a change point."""
 
@@ -111,6 +111,16 @@ class Swing:
         return abs(self.smallest) / self.largest
 
 
+def swings(mechanism):
+    """Whether it is a four-bar whose crank turns fully and whose rocker does not."""
+    bars = shapes.four_bar(mechanism)
+    return bars is not None and _swings(bars, grashof(mechanism))
+
+
+def _swings(bars, found_class):
+    return found_class.intervals == WHOLE and bars.rocker.start not in found_class.turning_joints
+
+
 def swing(solution, start=QUARTER):
     """Swing of the rocker, from the true extremes of its angle.
 
@@ -127,11 +137,10 @@ def swing(solution, start=QUARTER):
     """
     bars = _bars_of(solution)
     found_class = grashof(solution.mechanism)
-    whole = found_class.intervals == ((0.0, 2 * pi),)
-    if not whole or bars.rocker.start in found_class.turning_joints:
+    if not _swings(bars, found_class):
         raise ParameterError(
             "swing is for four-bars whose crank turns fully and whose rocker does not; this one is a "
-            f"{found_class.kind}{'' if whole else ' that does not close all round'}"
+            f"{found_class.kind}{'' if found_class.intervals == WHOLE else ' that does not close all round'}"
         )
     found = extremes(solution, lambda at: rocker_angle(at, start))
     high, low = int(np.argmax(found.value)), int(np.argmin(found.value))

@@ -55,15 +55,20 @@ class Program:
         """
         if places not in self._slopes:
             recording = self.recording
-            moved = [table.moved_by for table in recording.tables if not self._rows_needed.isdisjoint(table.rows)]
-            if any(moved):
+            if self.unrecorded:
                 raise NotGivenError(
-                    f"derivatives cannot be given: {', '.join(filter(None, moved))} does more than arithmetic with "
+                    f"derivatives cannot be given: {', '.join(self.unrecorded)} does more than arithmetic with "
                     "sin, cos and sqrt of `elementary`, so how its values hang on the parameters is not recorded"
                 )
             rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
             self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
         return self._slopes[places]
+
+    @cached_property
+    def unrecorded(self):
+        """Names of code of the user's behind the outputs that could not be recorded."""
+        tables = (table for table in self.recording.tables if not self._rows_needed.isdisjoint(table.rows))
+        return tuple(table.moved_by for table in tables if table.moved_by)
 
     @cached_property
     def _plain(self):
@@ -116,12 +121,12 @@ class Program:
                     own = results[:, part]
                     single(angle[part], sine[part], cosine[part], numbers, given, _buffers(count, own.shape[1:]), own)
             else:
-                line = batch if shape else single
-                line(angle, sine, cosine, numbers, rows, np.empty((count, *shape)), results)
+                batch(angle, sine, cosine, numbers, rows, np.empty((count, *shape)), results)
         return results
 
     def _by_numbers(self, angle, numbers, shape):
         angle = angle.ravel()
+        numbers = [number.item() if type(number) is np.ndarray else number for number in numbers]
         given = zip(angle.tolist(), np.sin(angle).tolist(), np.cos(angle).tolist(), strict=True)
         try:
             found = [self._plain(*one, numbers, ()) for one in given]

@@ -15,7 +15,7 @@ from ..machine.crank import ray
 from ..machine.friction import NONE
 from ..machine.loads import Load, ProcessForce
 from ..mechanics.dynamics import Dynamics
-from ..mechanics.pushes import amount, moving, pushed, title_of
+from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.leaves import put_together, with_fields
@@ -169,28 +169,26 @@ class _Recorder:
 
     def _load(self, load, place, idle):
         """The load, with values from a table if it takes plain numbers only."""
-
-        def compute(motion, arrays):
-            return [of_item(motion.loads[place], motion)]
-
-        if isinstance(load, Load):
-            of_item, value = amount, load.value_now
-            if isinstance(value, loads.Table):
-                return with_fields(load, **{load.VALUE: self._read(value, place, idle)})
-            if not callable(value):
+        if not isinstance(load, Load):
+            if self._is_elementwise(load, lambda angle: [load.push(moving(replace(idle, crank_angle=angle)))]):
                 return load
-            if self._is_elementwise(value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]):
-                return load
-            (values,) = self._tabled(1, compute, load.title)
-            return with_fields(load, **{load.VALUE: values})
-        of_item = pushed
-        if self._is_elementwise(load, lambda angle: [load.push(moving(replace(idle, crank_angle=angle)))]):
+            return ProcessForce(self._given(load, place), load.on)
+        value = load.value_now
+        if isinstance(value, loads.Table):
+            return with_fields(load, **{load.VALUE: self._read(value, place, idle)})
+        if not callable(value) or self._is_elementwise(
+            value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]
+        ):
             return load
-        (values,) = self._tabled(1, compute, title_of(load))
-        return ProcessForce(values, load.on)
+        return with_fields(load, **{load.VALUE: self._given(load, place)})
+
+    def _given(self, load, place):
+        """What code of the user's gives for a load, from a table."""
+        (values,) = self._tabled(1, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load))
+        return values
 
     def _read(self, table, place, idle):
-        """Values of a table over travel by recorded arithmetic on its pieces, which are found beforehand."""
+        """Values of a table; over travel by recorded arithmetic on its pieces, which are found beforehand."""
 
         def item(motion):
             return motion.loads[place].value_now

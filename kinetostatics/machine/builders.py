@@ -100,6 +100,13 @@ def cam_crank_slider(
     ------
     ParameterError
         A value no machine can have, or both ways of giving the guide.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.cam_crank_slider(ks.cams.Circle(0.2, (-0.05, 0.0)), 0.8)
+    >>> round(float(ks.solve(saw, 0.0, crank_speed=10.0).slider_position), 12)
+    0.95
     """
     group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
     if isinstance(cam, CosineLaw):
@@ -142,12 +149,19 @@ def four_bar(
     ------
     ParameterError
         A value no machine can have.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bars = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(2.0, 0.15, 0.02))
+    >>> bool(ks.solve(bars, 0.7, crank_speed=10.0).power_residual < 1e-13)
+    True
     """
     group = RockerGroup(coupler_length, rocker_length, rocker_pivot, assembly, coupler, rocker)
     return Mechanism("four-bar", Crank(crank_length, crank), (group,))
 
 
-def slotted_lever(crank_length, *, pivot, offset=0.0, crank=Link(), lever=Link(), block=Link()):
+def slotted_lever(crank_length, *, pivot, offset=0.0, assembly=+1, crank=Link(), lever=Link(), block=Link()):
     """Slotted lever: crank O-A, block at A sliding in a lever about a fixed pivot (crank shaper, Whitworth).
 
     Parameters
@@ -158,6 +172,10 @@ def slotted_lever(crank_length, *, pivot, offset=0.0, crank=Link(), lever=Link()
         Fixed pivot O2 of the lever, m: farther from O than A the lever rocks, nearer it makes full turns.
     offset : float or array
         Of the slot's axis to the left of the pivot, m.
+    assembly : +1, -1, "open" or "crossed"
+        +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
+        direction O -> O2 and go on through change points: of a crank as long as the pivot's distance the block passes
+        the pivot, the lever turns half as fast as the crank, and the motion closes after two turns.
     crank, lever, block : Link
         Mass properties; a link left out has no mass and costs nothing.
 
@@ -177,7 +195,7 @@ def slotted_lever(crank_length, *, pivot, offset=0.0, crank=Link(), lever=Link()
     >>> round(float(ks.solve(shaper, 0.0, crank_speed=6.0).rate("lever")), 12)
     1.2
     """
-    group = LeverGroup(pivot, offset=offset, lever=lever, block=block)
+    group = LeverGroup(pivot, offset=offset, lever=lever, block=block, assembly=assembly)
     return Mechanism("slotted lever", Crank(crank_length, crank), (group,))
 
 

@@ -13,33 +13,33 @@ image in the line A O2; where a = d and b = h A meets O2 ("meeting"), and sin(ps
 
 All vectors are taken in the frame that turns half as fast as the crank, in which A -> O2 is
 ((d-a) cos(psi/2), -(d+a) sin(psi/2)).
+
+A slotted lever with its slot at offset o left of O2 carries A at s = +-2 sqrt(a d) sin(psi/2) along it where
+|d - a| = |o|, with its sign through the change point; where a = d and o = 0 A meets O2, and the lever keeps to the left
+normal of that frame.
 """
 
 import math
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..errors import ParameterError
 from ..numbers import checks
-from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt
-from ..numbers.planar import added, cross, dot, left, number, product, stretched, subtracted, turned, unturned
-from .links import Joint, LinkMotion, present
+from ..numbers.planar import unturned
 
 SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
 """Words for an assembly that passes change points, and the side that it has where there is none."""
 FAR, NEAR, MEETING, PARALLEL, KITE, RHOMBUS = "far", "near", "meeting", "parallel", "kite", "rhombus"
 BOTH = "both"
 """Slider group with a coupler as long as the crank, on a guide through O."""
-TWICE = (FAR, NEAR, MEETING)
+OPPOSITE = "opposite"
+"""Slotted lever like one of the kind "near", mirrored."""
+TWICE = (FAR, NEAR, MEETING, OPPOSITE)
 """Kinds of which a branch closes after two turns."""
 ULPS = 8
 """Units in the last place of the longest length by which lengths that are meant to be equal may differ."""
-SMALLEST = 2.0**-27
-"""Root of a margin that is not divided by less."""
-UNSEEN = 2.0**-984
-"""Distance that makes the smallest number there is of a zero, and changes no other."""
 CALLED = {
     "": "none",
     FAR: "a + d = b + h",
@@ -52,36 +52,21 @@ CALLED = {
 """Kinds of four-bars as messages call them: crank a, coupler b, rocker h, ground d."""
 SLIDING = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
 """Kinds of slider groups: crank a, coupler l, offset e of the guide."""
+SLOTTED = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
+"""Kinds of slotted levers: crank a, distance d from O to the pivot, offset o of the slot."""
 FACING = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 """Quadrants in which a direction (x, y) is halved, its angle counted from -pi to pi."""
 
 
-class PassedMotion(NamedTuple):
-    """A rocker group placed on a branch through its change points.
-
-    The sine of the transmission angle is `factor` times `distance`, which vanishes at the change points alone.
-    """
-
-    coupler: LinkMotion
-    rocker: LinkMotion
-    pin: Joint
-    closure: Any
-    factor: Any
-    distance: Any
-
-
-# How a linkage passes its change points: a text, which belongs to its structure
-
-
-def of_rocker_group(group, crank):
-    """How a rocker group on a crank passes its change points: its kind, and where O2 stands; "" without any.
+def of_rocker_group(group, throws):
+    """How a rocker group on a pin of a crank passes its change points: its kind, and where O2 stands; "" without any.
 
     Raises
     ------
     ParameterError
         It hangs on no crank pin, or the designs of a batch are not all of one kind.
     """
-    a, b, h, x, y = _known("rocker group", group, crank, group.coupler_length, group.rocker_length, *group.pivot)
+    a, x, y, b, h = _known("rocker group", group, throws, group.pivot, group.coupler_length, group.rocker_length)
     d = np.sqrt(x * x + y * y)
     unit = _unit(a, b, h, d)
     far, near = abs(a + d - b - h) <= unit, abs(abs(d - a) - abs(b - h)) <= unit
@@ -93,26 +78,43 @@ def of_rocker_group(group, crank):
     return _joined("rocker group", kind, CALLED, _facing(x, y))
 
 
-def of_slider_group(group, crank):
+def of_slider_group(group, throws):
     """How a slider group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
-    line = group.guide.guide_offset, *group.guide.direction
-    a, b, e, x, y = _known("slider group", group, crank, group.coupler_length, *line)
+    x, y = group.guide.direction
+    a, x, y, b, e = _known("slider group", group, throws, (y, -x), group.coupler_length, group.guide.guide_offset)
     unit = _unit(a, b, abs(e))
     far, near = abs(b + e - a) <= unit, abs(b - e - a) <= unit
     kind = np.select([far & near, far, near], [BOTH, FAR, NEAR], "")
-    return _joined("slider group", kind, SLIDING, _facing(y, -x))
+    return _joined("slider group", kind, SLIDING, _facing(x, y))
 
 
-def _known(owner, group, crank, *lengths):
-    """Length of the crank, and other lengths, as arrays of more than double precision."""
-    problem, lengths = None, (crank.length, *lengths)
-    if group.on != "A" or crank.length is None:
+def of_lever_group(group, throws):
+    """How a lever group on a crank passes its change points, as `of_rocker_group` tells of a rocker group."""
+    a, x, y, o = _known("lever group", group, throws, group.pivot, group.offset)
+    d = np.sqrt(x * x + y * y)
+    unit = _unit(a, abs(o), d)
+    near, opposite = abs(d - a - o) <= unit, abs(d - a + o) <= unit
+    near, opposite = near & (d > unit), opposite & (d > unit)
+    kind = np.select([near & opposite, near, opposite], [MEETING, NEAR, OPPOSITE], "")
+    return _joined("lever group", kind, SLOTTED, _facing(x, y))
+
+
+def _known(owner, group, throws, start, *lengths):
+    """Distance of the pin from O, a direction as the pin sees it at crank angle 0, and lengths, all beyond double."""
+    problem, throw = None, throws.get(group.on)
+    if throw is None:
         where = f"it hangs on {group.on!r}" if group.on != "A" else "the crank pin slides in its slot"
-        problem = f"assembly {group.assembly!r} is for a group on the pin A of a crank of constant length, but {where}"
-    elif not all(map(checks.known, lengths)):
+        problem = f"assembly {group.assembly!r} is for a group on a pin of the crank at a constant radius, but {where}"
+    elif not all(map(checks.known, (*throw.at, *start, *lengths))):
         problem = f"assembly {group.assembly!r} needs lengths that are known when the mechanism is made"
     checks.require(owner, f"{problem}; give +1 or -1" if problem else None)
-    return np.broadcast_arrays(*(np.asarray(part, dtype=np.longdouble) for part in lengths))
+    parts = (np.asarray(part, dtype=np.longdouble) for part in (*throw.at, *start, *lengths))
+    *at, x, y = np.broadcast_arrays(*parts)[:4]
+    radius, direction = throw._replace(at=at).polar
+    x, y = unturned((x, y), direction)
+    if direction is not None:
+        y = np.where(abs(y) <= _unit(x), 0.0, y)
+    return np.broadcast_arrays(radius, x, y, *(np.asarray(part, dtype=np.longdouble) for part in lengths))
 
 
 def _unit(*lengths):
@@ -134,37 +136,40 @@ def _joined(owner, kind, called, facing):
 
 def _several(found, what, called):
     """What is wrong with designs that are not of one kind, or None."""
-    kinds = np.unique(found).tolist()
-    if len(kinds) == 1:
+    kinds, counts = np.unique(found, return_counts=True)
+    if kinds.size == 1:
         return None
+    texts = "; ".join(called[kind] for kind in kinds.tolist())
     return checks.Problem(
-        f"designs that pass change points must be of one kind, but these have {what} "
-        f"{'; '.join(called[kind] for kind in kinds)} (equal within {ULPS} ulp of the longest length); make a batch of "
-        "each",
-        found != found.flat[0],
+        f"designs that pass change points must be of one kind, but these have {what} {texts} (equal within {ULPS} ulp "
+        "of the longest length); make a batch of each",
+        found != kinds[counts.argmax()],
     )
 
 
-def kink(group, crank):
+def kink(group, throws):
     """What a chosen side makes of the motion at change points, in words; "" where there are none."""
-    if type(group.assembly) is not int or group.on != "A" or crank.length is None:
+    if type(group.assembly) is not int or group.on not in throws:
         return ""
     try:
-        passing = replace(group, assembly="open").on_crank(crank)
-        angles = passing.change_points
-    except (ParameterError, TypeError):  # a batch of several kinds, or of several change points
+        passing = replace(group, assembly="open").on_crank(throws)
+        angles = passing.change_points(throws)
+    except ParameterError:  # a batch of several kinds, or of several change points
         return ""
     if not angles:
         return ""
     named = dict.fromkeys(angles, "a kink")
     if parted(passing.passage)[0] in (MEETING, RHOMBUS):
-        named[angles[0] if len(angles) == 1 else _meeting_angle(passing)] = "a jump, as A meets the pivot"
+        at = angles[0] if len(angles) == 1 else _first(throws[group.on], group.pivot) % (2 * math.pi)
+        named[at] = f"a jump, as {group.on} meets the pivot"
     texts = " and ".join(f"{what} at {math.degrees(angle):.6g} deg" for angle, what in named.items())
     return f'assembly {group.assembly:+d} keeps to its side at change points: {texts}; "open" or "crossed" passes them'
 
 
-def _meeting_angle(group):
-    return math.atan2(group.pivot[1], group.pivot[0]) % (2 * math.pi)
+def _first(throw, start):
+    """Crank angle at which a pin of the crank stands in a direction, rad."""
+    x, y = unturned(start, throw.polar[1])
+    return math.atan2(y, x)
 
 
 def parted(passage):
@@ -178,202 +183,16 @@ def turns(passage):
     return 2 if passage and parted(passage)[0] in TWICE else 1
 
 
-def angles(passage, start):
+def angles(group, throws, start):
     """Crank angles in [0, 2 pi) at which change points are passed, rad, from the direction that the kinds refer to."""
-    if not passage:
+    if not group.passage:
         return ()
-    kind, first = parted(passage)[0], math.atan2(start[1], start[0])
-    at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,)}.get(kind, (0.0, math.pi))
-    return tuple(sorted((first + angle) % (2 * math.pi) for angle in at))
-
-
-# Kernels
-
-
-class _Half(NamedTuple):
-    """Half of the crank angle from O -> O2 as a unit vector, and the frame that it has turned: another unit vector."""
-
-    cosine: Any
-    sine: Any
-    frame: Any
-
-
-def _half(angle, pivot, ground, facing):
-    half = 0.5 * angle
-    ray = cos(half), sin(half)
-    x, y = pivot
-    if not facing and present(y) is None:
-        return _Half(ray[0], ray[1], ray)
-    reach = ground - x if facing else ground + x
-    size = sqrt(2.0 * ground * reach)
-    start = (facing * y / size, facing * reach / size) if facing else (reach / size, y / size)
-    cosine, sine = unturned(ray, start)
-    return _Half(cosine, sine, turned(ray, start))
-
-
-def place(placement, joint, coupler_length, rocker_length, pivot, passage, side):
-    """Coupler and rocker for a joint on the crank, on the branch that is open (+1) or crossed (-1) (kernel)."""
-    a, b, h = placement.crank_length, coupler_length, rocker_length
-    d = sqrt(dot(pivot, pivot))
-    kind, facing = parted(passage)
-    if kind in TWICE:
-        half = _half(placement.angle, pivot, d, facing)
-        found = _meeting(half, a, b, h, d, side) if kind == MEETING else _single(half, kind, a, b, h, d, side)
-    elif side > 0 and kind != KITE:
-        found = _translated(placement.ray, pivot, d)
-    elif side < 0 and kind != PARALLEL:
-        found = _folded(placement.ray, pivot, d)
-    else:
-        found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, side)
-    return _placed(joint, pivot, h, *found)
-
-
-def _placed(joint, pivot, rocker_length, coupler, rocker, closure, factor, distance):
-    """Joint B and both links, from direction, ratio and its slope of each."""
-    p, swing, slope = rocker
-    arm = stretched(rocker_length, p)
-    aside = left(arm)
-    pin = Joint(
-        added(pivot, arm),
-        stretched(swing, aside),
-        subtracted(stretched(slope, aside), stretched(product(swing, swing), arm)),
-    )
-    return PassedMotion(
-        LinkMotion(joint, *coupler),
-        LinkMotion(Joint(pivot, None, None), *rocker),
-        pin,
-        closure,
-        factor,
-        apart(distance, UNSEEN),
-    )
-
-
-def slid(placement, coupler_length, guide, passage, side):
-    """Reach of a coupler along the guide, rate of the coupler and its slope, what to divide by, and closure (kernel).
-
-    With psi from the right normal of the guide the coupler stands at right angles to it where cos(psi/2) ("far") or
-    sin(psi/2) ("near") vanishes. What to divide by is a factor and the distance from the change points.
-    """
-    kind, facing = parted(passage)
-    a, b, e = placement.crank_length, coupler_length, number(guide.offset)
-    x, y = (1.0, 0.0) if guide.direction is None else guide.direction
-    if kind == BOTH:
-        along = dot((x, y), placement.ray)
-        ratio = -1.0 if side > 0 else 1.0
-        return side * a * along, ratio, None, (float(side), apart(along, UNSEEN)), 1.0
-    half = _half(placement.angle, (y, -x), 1.0, facing)
-    constant = b + e - a if kind == NEAR else b - e - a
-    passed, other = (half.cosine, half.sine) if kind == FAR else (half.sine, half.cosine)
-    square, size = constant + 2.0 * a * other * other, 2.0 * b
-    height = root(square, size)
-    divided = divisor(height, SMALLEST * sqrt(size))
-    reach = side * sqrt(2.0 * a)
-    bend = 0.5 * reach * constant / (divided * divided * divided) * passed
-    return (
-        reach * passed * height,
-        -reach * other / divided,
-        -bend if kind == FAR else bend,
-        (reach / b * divided, apart(passed, UNSEEN)),
-        square / size,
-    )
-
-
-def _translated(ray, pivot, ground):
-    """Parallelogram: the coupler keeps the direction of the ground, the rocker that of the crank."""
-    along = (pivot[0] / ground, pivot[1] / ground)
-    return (along, None, None), (ray, 1.0, None), 1.0, 1.0, cross(along, ray)
-
-
-def _folded(ray, pivot, ground):
-    """Folded kite: B stays on O, the coupler on the crank, the rocker on the ground."""
-    back = (-pivot[0] / ground, -pivot[1] / ground)
-    return ((-ray[0], -ray[1]), 1.0, None), (back, None, None), 1.0, 1.0, cross(back, ray)
-
-
-def _mirrored(half, kind, a, d, side):
-    """Antiparallelogram or open kite: the folded kite, or the parallelogram, mirrored in the line A O2."""
-    cosine, sine, frame = half
-    m, n = d - a, d + a
-    x, y = m * cosine, n * sine
-    square = x * x + y * y
-    mirror = ((x * x - y * y) / square, -2.0 * x * y / square)
-    ground, crank = turned(turned(mirror, (cosine, sine)), frame), turned(turned(mirror, (cosine, -sine)), frame)
-    turning = -m * n / square
-    slope = -4.0 * a * d * sine * cosine / square * turning
-    as_ground, as_crank = (1.0 + turning, slope), (turning, slope)
-    if kind == PARALLEL:
-        coupler, rocker = (ground, *as_ground), (crank, *as_crank)
-    else:
-        coupler, rocker = (subtracted(None, crank), *as_crank), (subtracted(None, ground), *as_ground)
-    return coupler, rocker, 1.0, 2.0 * side, sine * cosine
-
-
-def _swung(kind, half, a, d, size, constant, side):
-    """Root of the factor that is no whole square, and what follows from it.
-
-    That is the closure, the rate at which the links turn besides A -> O2, its slope, and `factor` and `distance` of
-    `PassedMotion`.
-    """
-    cosine, sine, _ = half
-    passed, other = (cosine, sine) if kind == FAR else (sine, cosine)
-    square = constant + 4.0 * a * d * other * other
-    height = root(square, size)
-    divided = divisor(height, SMALLEST * sqrt(size))
-    reach = sqrt(a * d)
-    rate = side * reach * other / divided
-    bend = 0.5 * side * reach * constant / (divided * divided * divided) * passed
-    return height, square / size, rate, bend if kind == FAR else -bend, side * reach / (0.25 * size) * divided, passed
-
-
-def _single(half, kind, a, b, h, d, side):
-    """One change point, with A clear of O2."""
-    cosine, sine, frame = half
-    m, n, gap, both = d - a, d + a, b - h, b + h
-    constant = (m - gap) * (m + gap) if kind == FAR else (both - n) * (both + n)
-    height, closure, rate, bend, factor, passed = _swung(kind, half, a, d, 4.0 * b * h, constant, side)
-    x, y = m * cosine, n * sine
-    square = x * x + y * y
-    share = gap * both / square
-    aside = 2.0 * side * sqrt(a * d) * passed * height / square
-    reach = ((1.0 + share) * x + aside * y, aside * x - (1.0 + share) * y)
-    arm = ((share - 1.0) * x + aside * y, aside * x - (share - 1.0) * y)
-    turning, change = -0.5 * m * n / square, 4.0 * a * d * sine * cosine / square
-    lost = change * share * rate
-    coupler = (
-        turned((reach[0] / (2.0 * b), reach[1] / (2.0 * b)), frame),
-        0.5 + turning - (1.0 - share) * rate,
-        -change * turning - (1.0 - share) * bend - lost,
-    )
-    rocker = (
-        turned((arm[0] / (2.0 * h), arm[1] / (2.0 * h)), frame),
-        0.5 + turning + (1.0 + share) * rate,
-        -change * turning + (1.0 + share) * bend - lost,
-    )
-    return coupler, rocker, closure, factor, passed
-
-
-def _meeting(half, a, b, h, d, side):
-    """Deltoid of equal crank and ground: A meets O2, but B goes on."""
-    n, both = d + a, b + h
-    height, closure, rate, bend, factor, passed = _swung(NEAR, half, a, d, 4.0 * b * h, (both - n) * (both + n), side)
-    x, y = side * height, n * half.sine
-    coupler = turned((x / (2.0 * b), -y / (2.0 * b)), half.frame), 0.5 - rate, -bend
-    rocker = turned((x / (2.0 * h), y / (2.0 * h)), half.frame), 0.5 + rate, bend
-    return coupler, rocker, closure, factor, passed
-
-
-def pin_force(motion, coupler_length, rocker_length, coupler_load, rocker_load):
-    """Force of the coupler on the rocker, by moments of both (kernel); infinite at a change point.
-
-    Their sum is divided as a whole, so that what does not grow there is not lost in what does.
-    """
-    q, p = motion.coupler.direction, motion.rocker.direction
-    along = rocker_load.moment, coupler_load.moment
-    parts = (
-        stretched(None if moment is None else moment / length, direction)
-        for moment, length, direction in zip(along, (rocker_length, coupler_length), (q, p), strict=True)
-    )
-    whole = added(*parts)
-    if whole is None:
-        return (0.0, 0.0)
-    return (whole[0] / motion.factor / motion.distance, whole[1] / motion.factor / motion.distance)
+    throw = throws[group.on]
+    several = "the designs of a batch pass change points at crank angles of their own: ask a single design"
+    checks.require("change points", several if any(map(np.ndim, (*start, *throw.at))) else None)
+    kind, first = parted(group.passage)[0], _first(throw, start)
+    at = {FAR: (math.pi,), NEAR: (0.0,), MEETING: (0.0,), OPPOSITE: (0.0,)}.get(kind, (0.0, math.pi))
+    turn = 2 * math.pi
+    return tuple(
+        sorted((first + angle) % turn % turn for angle in at)
+    )  # what lies just below 0 is rounded up to a turn

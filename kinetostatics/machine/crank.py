@@ -9,7 +9,7 @@ from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.planar import minus, number, subtracted, vector
 from .friction import Turning
-from .group import FRAME, Bar, Output, Placement, Point, Resolved
+from .group import FRAME, Bar, Output, Placement, Point, Resolved, Throw
 from .links import Joint, Link, LinkMotion
 
 ORIGIN = Joint((0.0, 0.0), None, None)
@@ -93,6 +93,11 @@ class Crank(checks.Checked):
         return {"O": Point(FRAME), **pins}
 
     @property
+    def throws(self):
+        """Its pin, if that does not slide."""
+        return {} if self.length is None else {"A": Throw((self.length, 0.0), True)}
+
+    @property
     def bars(self):
         return () if self.length is None else (Bar("O", "A", "crank", self.length),)
 
@@ -107,7 +112,7 @@ class Crank(checks.Checked):
         direction = ray(angle)
         placement = Placement(angle, direction, {"O": ORIGIN}, {"crank": LinkMotion(ORIGIN, direction, 1.0, None)})
         if self.length is not None:
-            placement.joints["A"], placement.crank_length = pin(direction, self.length), self.length
+            placement.joints["A"], placement.throws = pin(direction, self.length), self.throws
         return placement
 
     def resolve(self, placement, loads, along) -> Resolved:

@@ -11,7 +11,7 @@ from ..numbers import checks
 from ..numbers.planar import number, stretched
 from . import lever_group
 from .friction import Slide, Sliding, Turning
-from .group import FRAME, Group, Output, Point, Resolved, Slot
+from .group import FRAME, Group, Output, Point, Resolved, Slot, joint_reaction, separation
 from .links import Link, Wrench
 
 
@@ -82,7 +82,7 @@ class CylinderGroup(checks.Checked, Group):
 
     @property
     def slots(self):
-        return (Slot(self._cylinder, self.on),)
+        return (Slot(self._cylinder, self.on, self._rod),)
 
     @property
     def lengths(self):
@@ -105,7 +105,7 @@ class CylinderGroup(checks.Checked, Group):
         label, rod, cylinder = self.label, self._rod, self._cylinder
         across = f"{cylinder} on {rod} along the left normal of the {cylinder}"
         return {
-            self.on + label: Output("N", True, f"on the {rod}, from what carries {self.on}", self.on),
+            self.on + label: joint_reaction(rod, self.on),
             self.pivot_name: Output("N", True, f"ground on {cylinder}"),
             "cylinder_force" + label: Output("N", False, across),
             "cylinder_moment" + label: Output("N m", False, f"{cylinder} on {rod} about {self.pivot_name}"),
@@ -134,7 +134,7 @@ class CylinderGroup(checks.Checked, Group):
 
     def place(self, placement):
         """Add the pivot, rod and cylinder."""
-        motion = lever_group.place(placement.joints[self.on], self.pivot, None)
+        motion = lever_group.place(placement.joints[self.on], self.pivot, None, 1)
         placement.joints[self.pivot_name] = motion.lever.joint
         placement.links[self._rod] = motion.block._replace(direction=stretched(-1.0, motion.block.direction))
         placement.links[self._cylinder] = motion.lever
@@ -148,7 +148,7 @@ class CylinderGroup(checks.Checked, Group):
         return placement.details[self._cylinder].closure
 
     def requirement(self, placement):
-        return lever_group.spaced(self.on, self.pivot_name, self.pivot, placement, "zero")
+        return f"{separation(placement, self.on, self.pivot_name)} be greater than zero"
 
     def resolve(self, placement, loads, along) -> Resolved:
         on_cylinder = loads[self._cylinder]

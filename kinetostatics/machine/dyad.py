@@ -4,7 +4,7 @@ Seen from the second joint it is a rocker group whose pivot stands still: the in
 both links and all forces are those of `rocker_group`, of the motion of the first joint relative to the second.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..numbers import checks
 from ..numbers.planar import added, cross, dot, subtracted
 from . import rocker_group
 from .friction import Turning
-from .group import Bar, Group, Output, Point, Resolved, smaller
+from .group import Bar, Group, Output, Point, Resolved, joint_reaction, separation, smaller
 from .links import Joint, Link, Wrench, between
 from .rocker_group import RockerMotion
 
@@ -87,7 +87,7 @@ class Dyad(checks.Checked, Group):
 
     length1: Any
     length2: Any
-    on: Any = field(default=("B", "C"), metadata={"structural": True})
+    on: Any = ("B", "C")
     pin: str = "D"
     assembly: int = 1
     dyad1: Link = Link()
@@ -156,11 +156,9 @@ class Dyad(checks.Checked, Group):
 
     @property
     def outputs(self):
-        inner = {
-            name: Output("N", True, f"on the {link}, from what carries {joint}", joint)
-            for name, (link, joint) in zip(self._inner, self.references.items(), strict=True)
-        }
-        return {**inner, self.pin: Output("N", True, f"{self._link1} on {self._link2}")}
+        inner = (joint_reaction(link, joint) for link, joint in self.references.items())
+        pin = Output("N", True, f"{self._link1} on {self._link2}")
+        return {**dict(zip(self._inner, inner, strict=True)), self.pin: pin}
 
     @property
     def pairs(self):
@@ -195,13 +193,10 @@ class Dyad(checks.Checked, Group):
         return placement.details[self._link1].closure
 
     def requirement(self, placement):
-        first, second = (placement.joints[name].position for name in self.on)
-        distance = np.hypot(second[0] - first[0], second[1] - first[1])
         low, high = abs(self.length1 - self.length2), self.length1 + self.length2
         return (
-            f"the distance from {self.on[0]} to {self.on[1]}, {distance.min():.6g} to {distance.max():.6g} m here, "
-            f"must lie between the difference and the sum of the lengths of {self._link1} and {self._link2}, "
-            f"{np.min(low):.6g} and {np.max(high):.6g} m"
+            f"{separation(placement, *self.on)} lie between the difference and the sum of the lengths of "
+            f"{self._link1} and {self._link2}, {np.min(low):.6g} and {np.max(high):.6g} m"
         )
 
     def resolve(self, placement, loads, along) -> Resolved:

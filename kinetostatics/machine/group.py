@@ -52,7 +52,10 @@ the unknown forces *on* them; what the group needs from others goes into ``deman
 group: the mechanism sees to the reaction on the link that carries the joint. No joint outside `hangs_on` and no link
 but the crank can be asked.
 
-Where links rub, `resolve` is asked several times: what it finds must be linear in the loads.
+*Change points.* Most groups have none to pass. One that does says in `on_crank(crank)` how, by a text `passage` that
+belongs to its structure, and gives `turns` and `change_points`; `kink(crank)` says what becomes of a chosen side there.
+
+*Friction.* Where links rub, `resolve` is asked several times: what it finds must be linear in the loads.
 
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
@@ -68,6 +71,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..numbers.planar import length
 from .links import Wrench
 
 FRAME = "frame"
@@ -77,7 +81,16 @@ RATES = ("_rate", "_angular_acceleration")
 """Endings that make quantities of a link's name."""
 TRAVELS = ("_position", "_velocity", "_acceleration")
 """Endings that make quantities of a slider's name."""
-RESERVED = ("balancing_torque_by_power", "shaking_force", "shaking_moment")
+RESERVED = (
+    "balancing_torque_by_power",
+    "shaking_force",
+    "shaking_moment",
+    "reduced_inertia",
+    "reduced_inertia_slope",
+    "kinetic_energy",
+    "potential_energy",
+    "load_torque",
+)
 """Quantities that every mechanism has besides those that its parts declare."""
 
 
@@ -99,10 +112,14 @@ class Bar(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A link with a straight slot, from its reference joint through `joint` and beyond."""
+    """A link along which `joint` slides in a straight line, in a slot; `rod` is the link that slides in it as a piston.
+
+    Without a rod what slides is a block at the joint.
+    """
 
     link: str
     joint: str
+    rod: str = ""
 
 
 class Output(NamedTuple):
@@ -129,12 +146,27 @@ class Resolved(NamedTuple):
     demands: dict[str, Wrench]
 
 
+class Throw(NamedTuple):
+    """A pin of the crank by its place on it, along and across; `ahead`: on the crank ray itself, like A."""
+
+    at: Any
+    ahead: bool = False
+
+    @property
+    def polar(self):
+        """Distance from O, and direction at the crank angle 0 as a unit vector; None: that of the crank ray."""
+        if self.ahead:
+            return self.at[0], None
+        radius = length(self.at)
+        return radius, (self.at[0] / radius, self.at[1] / radius)
+
+
 @dataclass
 class Placement:
     """The mechanism at its crank angles: motion flows outward from the crank into these tables.
 
     `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
-    to find again; `crank_length` is None of a crank whose pin slides in its slot.
+    to find again; `throws` by joint the pins of the crank, each a `Throw`.
     """
 
     angle: Any
@@ -143,7 +175,7 @@ class Placement:
     links: dict = field(default_factory=dict)
     travels: dict = field(default_factory=dict)
     details: dict = field(default_factory=dict)
-    crank_length: Any = None
+    throws: dict = field(default_factory=dict)
 
 
 class Group:
@@ -176,6 +208,7 @@ class Group:
 
     @property
     def hangs_on(self: Any):
+        """Joints it hangs on; unless told, the one named `on`."""
         return (self.on,)
 
     @property
@@ -195,14 +228,17 @@ class Group:
 
     @property
     def bars(self):
+        """Links that keep two joints at a distance, each a `Bar`."""
         return ()
 
     @property
     def slots(self):
+        """Links in which a joint slides, each a `Slot`."""
         return ()
 
     @property
     def curves(self):
+        """Joints that run on a curve, with what drawings call it."""
         return {}
 
     @property
@@ -219,8 +255,13 @@ class Group:
         """Guide by name of each link that slides along one."""
         return {}
 
-    def on_crank(self, crank):
-        """The group as it is on a crank: what its structure owes to lengths that are not its own."""
+    @property
+    def throws(self) -> dict[str, Throw]:
+        """Pins of the crank that it adds."""
+        return {}
+
+    def on_crank(self, throws):
+        """The group as it is on the pins of a crank: what its structure owes to lengths that are not its own."""
         return self
 
     passage = ""
@@ -236,7 +277,7 @@ class Group:
         """Whether it is to pass change points, had it any."""
         return type(getattr(self, "assembly", 1)) is str
 
-    def kink(self, crank):
+    def kink(self, throws):
         """What becomes of its motion at change points that it does not pass, in words; "" without any."""
         return ""
 
@@ -245,15 +286,26 @@ class Group:
         """Turns of the crank after which its branch closes."""
         return 1
 
-    @property
-    def change_points(self):
-        """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
+    def change_points(self, throws):
+        """Crank angles in [0, 2 pi) of the change points that it passes on the pins of a crank, rad."""
         return ()
 
     @property
     def motions(self):
         """Quantities of its motion besides those of joints and links, each an `Output`; ``motion(name, placement)``."""
         return {}
+
+
+def joint_reaction(link, joint):
+    """Output of the reaction on a link at a joint that it hangs on."""
+    return Output("N", True, f"on the {link}, from what carries {joint}", joint)
+
+
+def separation(placement, first, second):
+    """What messages on closure begin with: how far two joints are from each other at the crank angles."""
+    start, end = (placement.joints[name].position for name in (first, second))
+    apart = np.hypot(end[0] - start[0], end[1] - start[1])
+    return f"the distance from {first} to {second}, {apart.min():.6g} to {apart.max():.6g} m here, must"
 
 
 def smaller(*lengths):

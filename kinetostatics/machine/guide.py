@@ -1,4 +1,4 @@
-"""The straight guide of a slider: a line of any inclination and offset."""
+"""The straight guide of a slider: a line of any inclination and offset, and what a slider on it has from it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,7 +8,9 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
-from .links import present
+from ..numbers.planar import added, number, turned
+from .group import Output
+from .links import Joint, LinkMotion, present
 
 POINT = checks.Pair("m")
 
@@ -110,6 +112,26 @@ class Guide(checks.Checked):
     @cached_property
     def line(self):
         return Line(None if self.is_level else self.direction, present(self.guide_offset))
+
+
+def slid(position, reach, travel, line):
+    """Slider at its coordinate along a guide, in reach of a joint at `position` (kernel).
+
+    Its pin is found by the shorter sum: along a level guide from O, else from that joint.
+    """
+    level = line.direction is None
+    pin = (travel.position, number(line.offset)) if level else added(position, turned(reach, line.direction))
+    first, second = (turned((part, 0.0), line.direction) for part in (travel.first, travel.second))
+    return LinkMotion(Joint(pin, first, second), turned((1.0, 0.0), line.direction), None, None)
+
+
+def guide_outputs(slider, pin, label):
+    """Forces of the ground on a slider, through its guide."""
+    return {
+        "guide" + label: Output("N", True, f"ground on {slider}", pin),
+        "guide_force" + label: Output("N", False, f"ground on {slider} along the guide's left normal"),
+        "guide_moment" + label: Output("N m", False, f"ground on {slider} about {pin}"),
+    }
 
 
 def _direction(angle):

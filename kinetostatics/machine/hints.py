@@ -1,8 +1,12 @@
-"""What looks like a slip of units, though a machine could have it: a warning, and computed all the same."""
+"""What looks like a slip, though a machine could have it: a warning, and computed all the same."""
+
+import math
+from itertools import pairwise
 
 import numpy as np
 
 from ..numbers import checks
+from .group import FRAME
 from .links import Link
 
 FAR = 20.0
@@ -12,7 +16,12 @@ THIN = 1000.0
 
 
 def of_mechanism(mechanism):
-    """Sentences on mass centres and inertias that look like those of another unit."""
+    """Sentences on sliders that stand still, and on mass centres and inertias that look like those of another unit."""
+    units = _of_units(mechanism)
+    return (*_still(mechanism), *units) if _may_stand_still(mechanism) else units
+
+
+def _of_units(mechanism):
     if _surely_none(mechanism):
         return ()
     bars = [bar for bar in mechanism.bars if checks.known(bar.length)]
@@ -27,6 +36,43 @@ def of_mechanism(mechanism):
                 f"the longest link ({longest:.4g} m); is it in mm?"
             )
     return (*found, *(text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link)))))
+
+
+def _may_stand_still(mechanism):
+    """Whether a quick look at plain numbers leaves it open: several groups, or two bars of one length."""
+    lengths = [bar.length for bar in mechanism.bars]
+    if len(mechanism.groups) > 1 or not all(type(length) is float for length in lengths):
+        return True
+    return any(abs(one - other) <= 1e-9 * one for one, other in pairwise(sorted(lengths)))
+
+
+def _still(mechanism):
+    """Say which sliders stand still all over the turn.
+
+    That takes a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
+    """
+    for bar in mechanism.bars:
+        slider = mechanism.joints[bar.end].link
+        if slider in mechanism.guides and _as_long_as_its_arm(mechanism, bar):
+            angle = np.linspace(0.0, 2.0 * np.pi * mechanism.turns, 60 * mechanism.turns, endpoint=False) + 1e-3
+            rate = np.abs(mechanism.place(angle).travels[slider].first)
+            if np.any(np.max(rate, axis=-1) <= 1e-9 * _most(bar.length)):
+                yield (
+                    f"the {slider} stands still all over the turn: the {bar.link} is as long as the arm of {bar.start} "
+                    f"about the point where {bar.end} rests; another assembly lets it move"
+                )
+
+
+def _as_long_as_its_arm(mechanism, bar):
+    """Whether a bar is as long as its inner joint is far from the fixed pivot that its link turns about, if any."""
+    link, along, across = mechanism.joints[bar.start]
+    if link == FRAME or mechanism.joints[mechanism.references[link]].link != FRAME:
+        return False
+    if not (type(along) is type(across) is type(bar.length) is float):
+        if not all(map(checks.known, (along, across, bar.length))):
+            return False
+        return bool(np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length))
+    return abs(math.hypot(along, across) - bar.length) <= 1e-9 * bar.length
 
 
 def _surely_none(mechanism):

@@ -1,20 +1,25 @@
 """Lever group (RPR): block on a pin, sliding in a straight slot of a lever that turns about a fixed pivot.
 
 With d the vector from the pivot to the pin, the slot at offset e left of the pivot carries the pin at s along it,
-s = sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers: no angle is formed,
+s = +-sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers: no angle is formed,
 and s is a product, so no digit is lost where it vanishes, which divides rates and forces.
+
+Where the crank is as long as the pivot's distance, A meets the pivot: on a chosen side the lever turns about there at
+once, the words "open" and "crossed" carry the block on to the other side of the pivot (`change_points`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
+from ..numbers.leaves import with_fields
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
+from . import change_points, passing
 from .friction import Slide, Sliding, Turning
-from .group import FRAME, Group, Output, Point, Resolved, Slot
+from .group import FRAME, Group, Output, Point, Resolved, Slot, joint_reaction, separation
 from .links import Joint, Link, LinkMotion, Wrench, present
 
 SMALLEST = 2.0**-53
@@ -25,6 +30,8 @@ class LeverMotion(NamedTuple):
     """A placed lever: `reach` is the pin's coordinate along the slot, `divisor` the same to divide by, never zero.
 
     `closure` is the reach squared over the squares of distance and speed of the pin: small where the lever spins fast.
+    On a branch through a change point `divisor` is two factors, of which the second is smallest there, and `closure`
+    leaves that out.
     """
 
     lever: LinkMotion
@@ -44,18 +51,19 @@ class LeverForces(NamedTuple):
     pivot: Any
 
 
-def place(joint, pivot, offset):
+def place(joint, pivot, offset, assembly):
     """Lever and block for a given joint (kernel); an offset of None is zero."""
     d = (apart(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
     square = dot(d, d)
     distance = sqrt(square)
     if offset is None:
-        reach, divided, reach_square = distance, distance, square
-        direction = (d[0] / distance, d[1] / distance)
+        reach = divided = assembly * distance
+        reach_square = square
+        direction = (d[0] / reach, d[1] / reach)
     else:
         reach_square = (distance - offset) * (distance + offset)
-        reach = root(reach_square, square)
-        divided = divisor(reach, SMALLEST * distance)
+        size = root(reach_square, square)
+        reach, divided = assembly * size, assembly * divisor(size, SMALLEST * distance)
         direction = unturned((d[0] / distance, d[1] / distance), (reach / distance, offset / distance))
     first, second = vector(joint.first), vector(joint.second)
     along, across = unturned(first, direction)
@@ -68,14 +76,25 @@ def place(joint, pivot, offset):
     return LeverMotion(lever, lever._replace(joint=joint), reach, divided, closure)
 
 
+def passed(placement, on, pivot, offset, passage, side):
+    """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
+    direction, ratio, slope, *rest = passing.slotted(placement, on, pivot, offset, passage, side)
+    lever = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
+    return LeverMotion(lever, lever._replace(joint=placement.joints[on]), *rest)
+
+
 def resolve(motion, lever_load, block_load):
     """Forces on lever and block (kernel).
 
     Loads are wrenches about the links' reference joints, those of further groups among them. Moments of both links
     together about the pivot give the force across the slot.
     """
-    slot = number(plus(lever_load.moment, block_load.moment)) / motion.divisor
-    on_block = stretched(slot, left(motion.lever.direction))
+    moment, across = number(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
+    if isinstance(motion.divisor, tuple):
+        slot, *on_block = passing.grown((moment, *stretched(moment, across)), motion.divisor)
+    else:
+        slot = moment / motion.divisor
+        on_block = stretched(slot, across)
     return LeverForces(
         inner=subtracted(subtracted(None, on_block), block_load.force),
         slot=slot,
@@ -90,6 +109,9 @@ class LeverGroup(checks.Checked, Group):
     With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
     from pivot to pin must stay above the offset.
 
+    With the pivot on the circle of the pin, or as far from it as the offset, the lever has a change point, where the
+    block stands at the foot of the pivot on the slot, or at the pivot.
+
     Parameters
     ----------
     pivot : (x, y)
@@ -99,11 +121,15 @@ class LeverGroup(checks.Checked, Group):
     offset : float or array
         Of the slot's axis to the left of the pivot, m; 0: the slot points at the pivot.
     lever : Link
-        Reference joint `pivot_name`, along the slot toward the block.
+        Reference joint `pivot_name`, along the slot toward the block (of assembly +1).
     block : Link
         Reference joint `on`, along the slot as the lever; it turns with it.
     label : str
         Put behind the names of links and forces of a second lever group in one mechanism.
+    assembly : +1, -1, "open" or "crossed"
+        +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
+        direction O -> O2; on A, or another pin of the crank, they go on through change points, so that the lever of a
+        crank as long as the pivot's distance turns half as fast as that, and keep their side where there are none.
 
     Raises
     ------
@@ -114,7 +140,7 @@ class LeverGroup(checks.Checked, Group):
     -----
     Reactions: `on` (N) on the block, from what carries the joint; `pivot_name` (N), ground on lever; "slot_force" (N),
     lever on block along the lever's left normal, and "slot_moment" (N m) about `on`. "block_position" (m) is the
-    coordinate of the block along the slot, from the foot of the pivot.
+    coordinate of the block along the slot, from the foot of the pivot; negative where the slot points away from it.
 
     Further groups hang on a `Pin` of the lever: ``ks.Pin(on="lever", at=(0.9, 0.0))``.
 
@@ -140,6 +166,8 @@ class LeverGroup(checks.Checked, Group):
     block: Link = Link()
     pivot_name: str = "O2"
     label: str = ""
+    assembly: int = 1
+    passage: str = field(default="", init=False, repr=False)
 
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
@@ -152,7 +180,23 @@ class LeverGroup(checks.Checked, Group):
         block=checks.Made(Link, "a Link"),
         pivot_name=checks.Name(),
         label=checks.Name(may_be_empty=True),
+        assembly=checks.Sign(tuple(change_points.SIDES)),
     )
+
+    def on_crank(self, throws):
+        if not self.through:
+            return self
+        return with_fields(self, passage=change_points.of_lever_group(self, throws))
+
+    def kink(self, throws):
+        return change_points.kink(self, throws)
+
+    @property
+    def turns(self):
+        return change_points.turns(self.passage)
+
+    def change_points(self, throws):
+        return change_points.angles(self, throws, self.pivot)
 
     @property
     def links(self):
@@ -186,7 +230,7 @@ class LeverGroup(checks.Checked, Group):
     def outputs(self):
         label, lever, block = self.label, self._lever, self._block
         return {
-            self.on + label: Output("N", True, f"on the {block}, from what carries {self.on}", self.on),
+            self.on + label: joint_reaction(block, self.on),
             self.pivot_name: Output("N", True, f"ground on {lever}"),
             "slot_force" + label: Output("N", False, f"{lever} on {block} along the left normal of the {lever}"),
             "slot_moment" + label: Output("N m", False, f"{lever} on {block} about {self.on}"),
@@ -216,7 +260,10 @@ class LeverGroup(checks.Checked, Group):
 
     def place(self, placement):
         """Add the pivot, lever and block."""
-        motion = place(placement.joints[self.on], self.pivot, present(self.offset))
+        given = self.pivot, present(self.offset)
+        side = change_points.SIDES.get(self.assembly, self.assembly)
+        motion = self.passage and passed(placement, self.on, *given, self.passage, side)
+        motion = motion or place(placement.joints[self.on], *given, side)
         placement.joints[self.pivot_name] = motion.lever.joint
         placement.links[self._lever] = motion.lever
         placement.links[self._block] = motion.block
@@ -231,7 +278,8 @@ class LeverGroup(checks.Checked, Group):
 
     def requirement(self, placement):
         """Say what distance must hold for the block to be in the slot, with its numbers."""
-        return spaced(self.on, self.pivot_name, self.pivot, placement, "the slot's offset", self.offset)
+        offset = np.max(np.abs(self.offset))
+        return f"{separation(placement, self.on, self.pivot_name)} be greater than the slot's offset, {offset:.6g} m"
 
     def resolve(self, placement, loads, along) -> Resolved:
         found = resolve(placement.details[self._lever], loads[self._lever], loads[self._block])
@@ -248,13 +296,3 @@ class LeverGroup(checks.Checked, Group):
 def slid(motion):
     """Rate of the pin along the lever."""
     return dot(vector(motion.block.joint.first), motion.lever.direction)
-
-
-def spaced(joint, pivot_name, pivot, placement, least, offset=0.0):
-    """What distance from a joint to a pivot must hold, with its numbers."""
-    x, y = (end - start for end, start in zip(placement.joints[joint].position, pivot, strict=True))
-    distance = np.hypot(x, y)
-    return (
-        f"the distance from {joint} to {pivot_name}, {distance.min():.6g} to {distance.max():.6g} m here, must be "
-        f"greater than {least}, {np.max(np.abs(offset)):.6g} m"
-    )

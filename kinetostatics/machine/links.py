@@ -65,7 +65,7 @@ class Link(checks.Checked):
         Mass centre in m from the link's reference joint (O for the crank, A for block and coupler, B for the slider,
         O2 for the rocker). `along` runs along the crank ray for crank and block, A -> B for the coupler, O2 -> B for
         the rocker, the guide direction for the slider; `across` a quarter turn counter-clockwise from it. A number
-        means (number, 0).
+        means (number, 0). Levers, rods and others: see the group that adds them.
     inertia : float or array
         Moment of inertia about the mass centre, kg m2.
 

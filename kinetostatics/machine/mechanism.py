@@ -73,7 +73,8 @@ class Mechanism(Batched):
 
     def __post_init__(self):
         self.RULES.admit(self)
-        object.__setattr__(self, "groups", tuple(group.on_crank(self.crank) for group in self.groups))
+        if any(group.through or group.passes for group in self.groups):
+            object.__setattr__(self, "groups", tuple(group.on_crank(self.throws) for group in self.groups))
         trusted = tuple((type(part), *part.names) for part in self.parts) if self.trusted else None
         if trusted is None or trusted not in _NAMED_WELL:
             checks.require(self.name, *_name_problems(self.parts))
@@ -85,10 +86,15 @@ class Mechanism(Batched):
         """Crank and groups."""
         return (self.crank, *self.groups)
 
-    @property
+    @cached_property
     def trusted(self):
         """Whether crank and groups are the library's own, whose forces are known to balance."""
         return all(part.trusted for part in self.parts)
+
+    @property
+    def throws(self):
+        """Pins of the crank by joint, each a `Throw`."""
+        return self._collected("throws")
 
     @cached_property
     def turns(self):
@@ -113,7 +119,7 @@ class Mechanism(Batched):
     @cached_property
     def change_points(self):
         """Crank angles in [0, 2 pi) of the change points that it passes, rad."""
-        return tuple(sorted({angle for group in self.groups for angle in group.change_points}))
+        return tuple(sorted({angle for group in self.groups for angle in group.change_points(self.throws)}))
 
     @cached_property
     def links(self):
@@ -148,6 +154,13 @@ class Mechanism(Batched):
     def guides(self):
         """Guide by slider."""
         return {name: guide for group in self.groups for name, guide in group.guides.items()}
+
+    @cached_property
+    def slider(self):
+        """The slider that is meant where none is named: the only one, or that without a label; None: there is none."""
+        bare = [name for name in self.guides if name == self.own_names[name]]
+        found = bare if len(bare) == 1 else list(self.guides)
+        return found[0] if len(found) == 1 else None
 
     @cached_property
     def own_names(self):
@@ -269,6 +282,7 @@ def _spelled(part, table):
 def _name_problems(parts):
     """What is wrong with the names in a chain of parts: unknown ones, and ones that two things would have."""
     points: dict[str, str] = {}
+    joints: set[str] = set()
     links = [FRAME]
     forces = dict.fromkeys(("closure", *RESERVED), "result of every mechanism")
     problems = []
@@ -281,7 +295,12 @@ def _name_problems(parts):
 
     for part in parts:
         kind = type(part).__name__
-        for name in (name for name in part.hangs_on if name not in points):
+        for name in (name for name in part.hangs_on if name not in joints):
+            if name in links:
+                problems.append(
+                    f"{kind} hangs on {name!r}, which is a link; put a Pin on that link, and name its joint"
+                )
+                continue
             remedy = "; give the crank a length, or put a CamRoller before it" if name == "A" else ""
             problems.append(f"{kind} hangs on joint {name!r}, which no part before it places{remedy}")
         links += part.links
@@ -289,6 +308,7 @@ def _name_problems(parts):
             if point.link not in links:
                 found = checks.choice(f"{kind}: link that carries joint {name!r}", point.link, links)
                 problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
+        joints.update(part.joints)
         add(points, "joint", kind, _spelled(part, "joints"))
         add(points, "link", kind, part.links)
         outputs = _spelled(part, "outputs")

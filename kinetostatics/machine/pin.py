@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from ..numbers import checks
 from ..numbers.planar import added
-from .group import FRAME, Group, Point, Resolved
+from .group import FRAME, Group, Point, Resolved, Throw
 from .links import Joint, Link, LinkMotion, arm, first_at, present, second_at
 
 
@@ -88,6 +88,12 @@ class Pin(checks.Checked, Group):
         return {self.name: Point(self.on, *self.at)}
 
     @property
+    def throws(self):
+        """Itself, if it is on the crank and not at O."""
+        away = self.on == "crank" and any(present(part) is not None for part in self.at)
+        return {self.name: Throw(self.at)} if away else {}
+
+    @property
     def lengths(self):
         return self.at
 
@@ -95,6 +101,7 @@ class Pin(checks.Checked, Group):
         fixed = self.on == FRAME
         at = Joint(self.at, None, None) if fixed else place(placement.links[self.on], *map(present, self.at))
         placement.joints[self.name] = at
+        placement.throws.update(self.throws)
 
     def follow(self, placement, joints):
         """Keep a joint that moves as it was found in another way."""

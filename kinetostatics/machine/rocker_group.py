@@ -17,9 +17,9 @@ from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
-from . import change_points
+from . import change_points, passing
 from .friction import Turning
-from .group import FRAME, Bar, Group, Output, Point, Resolved, smaller
+from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation, smaller
 from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-53
@@ -117,13 +117,32 @@ class RockerGroup(checks.Checked, Group):
         Fixed pivot O2, m.
     assembly : +1, -1, "open" or "crossed"
         +1: the pin to the left of the direction from the inner joint to the pivot. "open" is so too in the half turn
-        behind the direction O -> O2, "crossed" is the other way round there; on the pin A of a crank they go on through
-        change points as inertia carries them, and keep their side where there are none.
+        behind the direction O -> O2, "crossed" is the other way round there; on A, or another pin of the crank, they go
+        on through change points as inertia carries them, and keep their side where there are none.
     coupler, rocker : Link
     on, pin, pivot_name : str
         Names of the joint it hangs on and of the joints it adds.
     label : str
         Put behind the names of links and forces of a second rocker group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+
+    Notes
+    -----
+    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on rocker; `pivot_name`,
+    ground on rocker.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> bars = ks.Mechanism("four-bar", ks.Crank(0.1), (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)),))
+    >>> s = ks.solve(bars, 0.7, crank_speed=10.0)
+    >>> round(float(np.hypot(*(s.position("B") - s.position("A")))), 12)
+    0.4
     """
 
     coupler_length: Any
@@ -154,21 +173,20 @@ class RockerGroup(checks.Checked, Group):
         label=checks.Name(may_be_empty=True),
     )
 
-    def on_crank(self, crank):
+    def on_crank(self, throws):
         if not self.through:
             return self
-        return with_fields(self, passage=change_points.of_rocker_group(self, crank))
+        return with_fields(self, passage=change_points.of_rocker_group(self, throws))
 
-    def kink(self, crank):
-        return change_points.kink(self, crank)
+    def kink(self, throws):
+        return change_points.kink(self, throws)
 
     @property
     def turns(self):
         return change_points.turns(self.passage)
 
-    @property
-    def change_points(self):
-        return change_points.angles(self.passage, self.pivot)
+    def change_points(self, throws):
+        return change_points.angles(self, throws, self.pivot)
 
     @property
     def links(self):
@@ -208,7 +226,7 @@ class RockerGroup(checks.Checked, Group):
     @property
     def outputs(self):
         return {
-            self.on + self.label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
+            self.on + self.label: joint_reaction(self._coupler, self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._rocker}"),
             self.pivot_name: Output("N", True, f"ground on {self._rocker}"),
         }
@@ -223,10 +241,10 @@ class RockerGroup(checks.Checked, Group):
 
     def place(self, placement):
         """Add joints B and O2, coupler and rocker."""
-        given = placement.joints[self.on], self.coupler_length, self.rocker_length, self.pivot
+        given = self.coupler_length, self.rocker_length, self.pivot
         side = change_points.SIDES.get(self.assembly, self.assembly)
-        passed = self.passage and change_points.place(placement, *given, self.passage, side)
-        self._set(placement, passed or place(*given, side))
+        passed = self.passage and passing.place(placement, self.on, *given, self.passage, side)
+        self._set(placement, passed or place(placement.joints[self.on], *given, side))
 
     def follow(self, placement, joints):
         """Place coupler and rocker at joints found in another way."""
@@ -248,20 +266,17 @@ class RockerGroup(checks.Checked, Group):
 
     def requirement(self, placement):
         """Say what distances must hold for B to be reached, with their numbers."""
-        x, y = (end - start for end, start in zip(self.pivot, placement.joints[self.on].position, strict=True))
-        distance = np.hypot(x, y)
         low, high = abs(self.coupler_length - self.rocker_length), self.coupler_length + self.rocker_length
         return (
-            f"the distance from {self.on} to {self.pivot_name}, {distance.min():.6g} to {distance.max():.6g} m here, "
-            f"must lie between the difference and the sum of coupler and rocker lengths, {np.min(low):.6g} and "
-            f"{np.max(high):.6g} m"
+            f"{separation(placement, self.on, self.pivot_name)} lie between the difference and the sum of coupler and "
+            f"rocker lengths, {np.min(low):.6g} and {np.max(high):.6g} m"
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
         motion, lengths = placement.details[self._rocker], (self.coupler_length, self.rocker_length)
         acting = loads[self._coupler], loads[self._rocker]
-        if isinstance(motion, change_points.PassedMotion):
-            found = balanced(change_points.pin_force(motion, *lengths, *acting), *acting)
+        if isinstance(motion, passing.PassedMotion):
+            found = balanced(passing.pin_force(motion, *lengths, *acting), *acting)
         else:
             found = resolve(motion, *lengths, *acting)
         return Resolved(

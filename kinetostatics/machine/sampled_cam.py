@@ -80,7 +80,10 @@ class Sampled(Cam):
 
     @classmethod
     def from_csv(cls, path):
-        """Read a table with two columns headed like ``angle [deg], radius [mm]``; any unit of angle and length."""
+        """Read a table with two columns headed like ``angle [deg], radius [mm]``; any unit of angle and length.
+
+        Before the heading there may be lines of comment that begin with ``#``.
+        """
         from ..numbers.files import read_columns
 
         return cls(*read_columns(path, {"angle": "rad", "radius": "m"}))

@@ -30,10 +30,10 @@ from ..numbers.planar import (
     unturned,
     vector,
 )
-from . import change_points
+from . import change_points, passing
 from .friction import Slide, Sliding, Turning
-from .group import FRAME, Bar, Group, Output, Point, Resolved
-from .guide import Guide
+from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction
+from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-27
@@ -57,10 +57,11 @@ class SliderMotion(NamedTuple):
 
 
 class SliderForces(NamedTuple):
-    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide_*`: ground on slider."""
+    """`inner`: on the coupler at its inner joint; `pin`: of the coupler on the slider; `guide*`: ground on slider."""
 
     inner: Any
     pin: Any
+    guide: Any
     guide_force: Any
     guide_moment: Any
 
@@ -81,11 +82,12 @@ def place(joint, coupler_length, guide, assembly):
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
 
-def passed(placement, joint, coupler_length, guide, passage, side):
-    """The same for a joint on a crank, on a branch through its change points (kernel)."""
+def passed(placement, on, coupler_length, guide, passage, side):
+    """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
+    joint = placement.joints[on]
     position = unturned(joint.position, guide.direction)
     first, second = unturned(joint.first, guide.direction), unturned(joint.second, guide.direction)
-    reached = change_points.slid(placement, coupler_length, guide, passage, side)
+    reached = passing.slid(placement, on, coupler_length, guide, passage, side)
     across = minus(guide.offset, position[1])
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
@@ -100,21 +102,9 @@ def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, rat
         first[0] - ratio * across,
         minus(second[0], product(ratio_slope, across)) - lag * along,
     )
-    pin = Joint(
-        _on_guide(joint.position, travel.position, (along, across), guide),
-        turned((travel.first, 0.0), guide.direction),
-        turned((travel.second, 0.0), guide.direction),
-    )
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
-    slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
+    slider = slid(joint.position, (along, across), travel, guide)
     return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel)
-
-
-def _on_guide(position, travel, reach, guide):
-    """Slider pin, by the shorter sum: along a level guide from O, else from the inner joint."""
-    if guide.direction is None:
-        return (travel, number(guide.offset))
-    return added(position, turned(reach, guide.direction))
 
 
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
@@ -127,12 +117,19 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
     on_slider = unturned(vector(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
     across = number(quotient(coupler_load.moment, coupler_length)) + motion.sine * along
-    for factor in motion.divisor if isinstance(motion.divisor, tuple) else (motion.divisor,):
-        across = across / factor
-    pin = turned((along, across), guide.direction)
+    if isinstance(motion.divisor, tuple):
+        aside = passing.grown(turned((0.0, across), guide.direction), motion.divisor)
+        (across,) = passing.grown((across,), motion.divisor)
+        pin = added(turned((along, 0.0), guide.direction), aside)
+        carried = subtracted(turned((0.0, -on_slider[1]), guide.direction), aside)
+    else:
+        across = across / motion.divisor
+        pin = turned((along, across), guide.direction)
+        carried = turned((0.0, -(on_slider[1] + across)), guide.direction)
     return SliderForces(
         inner=subtracted(pin, coupler_load.force),
         pin=pin,
+        guide=carried,
         guide_force=-(on_slider[1] + across),
         guide_moment=number(minus(None, slider_load.moment)),
     )
@@ -149,13 +146,31 @@ class SliderGroup(checks.Checked, Group):
     guide : Guide
     assembly : +1, -1, "open" or "crossed"
         +1: slider ahead of the inner joint along the guide. "open" is so, "crossed" the other way round, in the half
-        turn behind the guide's right normal; on the pin A of a crank they go on through change points, and keep their
-        side where there are none.
+        turn behind the guide's right normal; on A, or another pin of the crank, they go on through change points, and
+        keep their side where there are none.
     coupler, slider : Link
     on, pin : str
         Names of the joint it hangs on and of the joint it adds.
     label : str
         Put behind the names of links and forces of a second slider group in one mechanism.
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have; the mechanism raises it where the group cannot pass change points as told.
+
+    Notes
+    -----
+    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on slider; "guide", ground
+    on slider. "guide_force" (N) is that along the guide's left normal, "guide_moment" (N m) about `pin`.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> rod = ks.SliderGroup(0.2, ks.Guide.at(0.0, 0.01), slider=ks.Link(mass=1.0))
+    >>> pump = ks.Mechanism("pump", ks.Crank(0.05), (rod,))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=10.0).slider_position), 6)
+    0.24975
     """
 
     coupler_length: Any
@@ -182,22 +197,21 @@ class SliderGroup(checks.Checked, Group):
         label=checks.Name(may_be_empty=True),
     )
 
-    def on_crank(self, crank):
+    def on_crank(self, throws):
         if not self.through:
             return self
-        return with_fields(self, passage=change_points.of_slider_group(self, crank))
+        return with_fields(self, passage=change_points.of_slider_group(self, throws))
 
-    def kink(self, crank):
-        return change_points.kink(self, crank)
+    def kink(self, throws):
+        return change_points.kink(self, throws)
 
     @property
     def turns(self):
         return change_points.turns(self.passage)
 
-    @property
-    def change_points(self):
+    def change_points(self, throws):
         x, y = self.guide.direction
-        return change_points.angles(self.passage, (y, -x))
+        return change_points.angles(self, throws, (y, -x))
 
     @property
     def _side(self):
@@ -241,13 +255,10 @@ class SliderGroup(checks.Checked, Group):
 
     @property
     def outputs(self):
-        label = self.label
         return {
-            self.on + label: Output("N", True, f"on the {self._coupler}, from what carries {self.on}", self.on),
+            self.on + self.label: joint_reaction(self._coupler, self.on),
             self.pin: Output("N", True, f"{self._coupler} on {self._slider}"),
-            "guide" + label: Output("N", True, f"ground on {self._slider}", self.pin),
-            "guide_force" + label: Output("N", False, f"ground on {self._slider} along the guide's left normal"),
-            "guide_moment" + label: Output("N m", False, f"ground on {self._slider} about {self.pin}"),
+            **guide_outputs(self._slider, self.pin, self.label),
         }
 
     @property
@@ -263,9 +274,9 @@ class SliderGroup(checks.Checked, Group):
         return Slide(self.guide.line.direction, placement.travels[self._slider].first)
 
     def place(self, placement):
-        given = placement.joints[self.on], self.coupler_length, self.guide.line
-        motion = self.passage and passed(placement, *given, self.passage, self._side)
-        self._set(placement, motion or place(*given, self._side))
+        given = self.coupler_length, self.guide.line
+        motion = self.passage and passed(placement, self.on, *given, self.passage, self._side)
+        self._set(placement, motion or place(placement.joints[self.on], *given, self._side))
 
     def follow(self, placement, joints):
         """Place coupler and slider at joints found in another way."""
@@ -314,9 +325,8 @@ class SliderGroup(checks.Checked, Group):
             loads[self._slider],
             along.get(self._slider),
         )
-        guide = turned((0.0, found.guide_force), self.guide.line.direction)
         return Resolved(
-            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: guide},
+            {self.on + self.label: found.inner, self.pin: found.pin, "guide" + self.label: found.guide},
             {"guide_force" + self.label: found.guide_force, "guide_moment" + self.label: found.guide_moment},
             {self.on: Wrench(found.inner, None)},
         )

@@ -11,10 +11,10 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
-from ..numbers.planar import added, minus, number, plus, stretched, subtracted, turned, unturned, vector
+from ..numbers.planar import minus, number, plus, stretched, subtracted, turned, unturned, vector
 from .friction import Slide, Sliding, Turning
-from .group import FRAME, Group, Output, Point, Resolved, Slot
-from .guide import Guide
+from .group import FRAME, Group, Output, Point, Resolved, Slot, joint_reaction
+from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench
 
 PARALLEL = 1e-9
@@ -49,17 +49,12 @@ def place(joint, guide, slot_angle):
     rise = minus(y, guide.offset)
     back = -lean * rise
     travel = Joint(x + back, first[0] - lean * first[1], second[0] - lean * second[1])
-    on_guide = (travel.position, number(guide.offset))
-    if guide.direction is not None:
-        on_guide = added(joint.position, turned((back, -rise), guide.direction))
-    pin = Joint(on_guide, turned((travel.first, 0.0), guide.direction), turned((travel.second, 0.0), guide.direction))
-    return _moved(joint, pin, travel, rise, slot, guide)
+    slider = slid(joint.position, (back, -rise), travel, guide)
+    return YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot)
 
 
-def _moved(joint, pin, travel, rise, slot, guide):
-    block = LinkMotion(joint, turned(slot, guide.direction), None, None)
-    slider = LinkMotion(pin, turned((1.0, 0.0), guide.direction), None, None)
-    return YokeMotion(block, slider, travel, rise, slot)
+def _block(joint, slot, guide):
+    return LinkMotion(joint, turned(slot, guide.direction), None, None)
 
 
 def resolve(motion, guide, block_load, slider_load, push):
@@ -192,12 +187,10 @@ class YokeGroup(checks.Checked, Group):
     def outputs(self):
         label, block, slider = self.label, self._block, self._slider
         return {
-            self.on + label: Output("N", True, f"on the {block}, from what carries {self.on}", self.on),
-            "guide" + label: Output("N", True, f"ground on {slider}", self.pin),
+            self.on + label: joint_reaction(block, self.on),
             "slot_force" + label: Output("N", False, f"{slider} on {block} along the slot's left normal"),
             "slot_moment" + label: Output("N m", False, f"{slider} on {block} about {self.on}"),
-            "guide_force" + label: Output("N", False, f"ground on {slider} along the guide's left normal"),
-            "guide_moment" + label: Output("N m", False, f"ground on {slider} about {self.pin}"),
+            **guide_outputs(slider, self.pin, label),
         }
 
     @property
@@ -225,7 +218,8 @@ class YokeGroup(checks.Checked, Group):
         travel = Joint(*(unturned(vector(part), guide.direction)[0] for part in pin))
         rise = minus(unturned(joint.position, guide.direction)[1], guide.offset)
         slot = cos(self.slot_angle), sin(self.slot_angle)
-        self._set(placement, _moved(joint, pin, travel, rise, slot, guide))
+        slider = LinkMotion(pin, self.guide.direction, None, None)
+        self._set(placement, YokeMotion(_block(joint, slot, guide), slider, travel, rise, slot))
 
     def _set(self, placement, motion):
         placement.joints[self.pin] = motion.slider.joint

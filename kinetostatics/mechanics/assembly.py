@@ -7,10 +7,10 @@ from functools import reduce
 import numpy as np
 
 from ..errors import AssemblyError, ConditionWarning, ParameterError
+from ..machine.loads import TURN
 from ..numbers.elementary import ROUNDING
 from . import quantities
 
-TURN = 2 * np.pi
 STEPS = 720
 """Crank angles a turn at which margins are looked at first."""
 HALF = 1e8
@@ -150,7 +150,7 @@ def growth(solution, name, values):
 
 
 def _kinks(mechanism):
-    texts = [text for group in mechanism.groups if (text := group.kink(mechanism.crank))]
+    texts = [text for group in mechanism.groups if (text := group.kink(mechanism.throws))]
     return "".join(f"; {text}" for text in texts)
 
 
@@ -163,10 +163,14 @@ def _error(mechanism, group, placement, margin):
         where = tuple(int(i) for i in np.argwhere(open_.any(axis=-1))[0])
         design = f" (first in design {where[0] if len(where) == 1 else where})"
     gaps = intervals(mechanism, group, where, np.ravel(placement.angle))
-    text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(end):.6g} deg" for start, end in gaps)
+    return _open(mechanism, group, placement, f"at {count} of {margin.size} crank angles{design}", gaps)
+
+
+def _open(mechanism, group, placement, where, gaps):
+    text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in gaps)
     return AssemblyError(
-        f"{mechanism.name} cannot be assembled at {count} of {margin.size} crank angles{design}: "
-        f"{group.requirement(placement)}. It does not close for crank angles {text}",
+        f"{mechanism.name} cannot be assembled {where}: {group.requirement(placement)}. It does not close for crank "
+        f"angles {text}",
         gaps,
     )
 
@@ -197,9 +201,8 @@ def intervals(mechanism, group, design=(), angles=()):
         stops = np.roll(stops, -1)
         stops[-1] += whole
     with np.errstate(invalid="ignore"):
-        real = (
-            margin((starts + stops) / 2) < -ROUNDING
-        )  # the others are change points, where it closes but for rounding
+        # the others are change points, where it closes but for rounding
+        real = margin((starts + stops) / 2) < -ROUNDING
     kept = real if real.any() else ~real
     return tuple((float(start), float(stop)) for start, stop in zip(starts[kept], stops[kept], strict=True))
 
@@ -217,29 +220,29 @@ def gaps(mechanism):
     """Crank-angle intervals where some group does not close, in order, as `near_limits`; they do not overlap."""
     found = []
     for group in mechanism.groups:
-        margin = _margin(mechanism, group)
-        with np.errstate(invalid="ignore"):
-            angle = np.concatenate([_grid(mechanism), _lowest(margin, mechanism, 0.0)])
-            if (margin(angle) < -ROUNDING).any():
-                found += intervals(mechanism, group)
+        if _is_open(mechanism, group, _dense(mechanism, group)):
+            found += intervals(mechanism, group)
     return _united(found, TURN * mechanism.turns)
 
 
 def require_turn(mechanism):
     """Raise `AssemblyError` if the mechanism does not close somewhere in the turn, be it between any samples."""
     for group in mechanism.groups:
-        margin = _margin(mechanism, group)
-        with np.errstate(invalid="ignore"):
-            angle = np.concatenate([_grid(mechanism), _lowest(margin, mechanism, 0.0)])
-            found = margin(angle)
-        if (found < -ROUNDING).any():
-            where = intervals(mechanism, group)
-            text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in where)
-            raise AssemblyError(
-                f"{mechanism.name} cannot be assembled all round the turn: "
-                f"{group.requirement(mechanism.place(angle))}. It does not close for crank angles {text}",
-                where,
-            )
+        angle = _dense(mechanism, group)
+        if _is_open(mechanism, group, angle):
+            placement, where = mechanism.place(angle), intervals(mechanism, group)
+            raise _open(mechanism, group, placement, "all round the turn", where)
+
+
+def _dense(mechanism, group):
+    """Crank angles half a degree apart, and those between them where the margin is smallest."""
+    with np.errstate(invalid="ignore"):
+        return np.concatenate([_grid(mechanism), _lowest(_margin(mechanism, group), mechanism, 0.0)])
+
+
+def _is_open(mechanism, group, angle):
+    with np.errstate(invalid="ignore"):
+        return (_margin(mechanism, group)(angle) < -ROUNDING).any()
 
 
 def _margin(mechanism, group, design=()):

@@ -15,6 +15,7 @@ from ..machine.group import FRAME
 from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.planar import added, minus, moment, number, plus, product
+from . import energy
 from .friction import Rubbing, driving, larger, smaller
 from .motion import Motion
 from .principal_points import principal_points
@@ -158,6 +159,31 @@ class Dynamics(Motion):
         )
         return self._scalar(reduce(plus, moments))
 
+    @property
+    def reduced_inertia(self):
+        """Inertia of all links as the crank feels it, (..., N), kg m2."""
+        return self._scalar(energy.reduced_inertia(self))
+
+    @property
+    def reduced_inertia_slope(self):
+        """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
+        return self._scalar(energy.reduced_inertia_slope(self))
+
+    @property
+    def kinetic_energy(self):
+        """Kinetic energy of all links, (..., N), J."""
+        return self._scalar(energy.kinetic_energy(self))
+
+    @property
+    def potential_energy(self):
+        """Potential energy of weight, springs and other loads that have one, (..., N), J."""
+        return self._scalar(energy.potential_energy(self))
+
+    @property
+    def load_torque(self):
+        """Torque on the crank that holds weight and loads, without any inertia, (..., N), N m."""
+        return self._scalar(energy.load_torque(self))
+
     def inertia_force(self, link):
         """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""
         return self.as_vector(self._look_up("link", link, self.inertia).force)
@@ -228,7 +254,17 @@ class Dynamics(Motion):
         links = self.placement.links
         wrenches = [*self.mass_loads.items(), *self.wrenches]
         works = [virtual_work(links[name], wrench) for name, wrench in wrenches]
-        return works + [product(push, self._travel(name).first) for name, push in self.pushes.items()]
+        return works + self._push_works
+
+    @property
+    def load_work(self):
+        """Work of all loads but weight per unit of crank angle; None without loads."""
+        works = [virtual_work(self.placement.links[name], wrench) for name, wrench in self.wrenches]
+        return reduce(plus, works + self._push_works, None)
+
+    @property
+    def _push_works(self):
+        return [product(push, self._travel(name).first) for name, push in self.pushes.items()]
 
     @cached_property
     def closed(self):

@@ -94,22 +94,26 @@ class Motion:
         found = self._link(link)
         return self._scalar(angular_acceleration(found.ratio, found.ratio_slope, *self.accelerating))
 
-    def travel(self, slider="slider"):
-        """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m."""
+    def travel(self, slider=None):
+        """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m.
+
+        The only slider unless told, or that without a label.
+        """
         return self._scalar(self._travel(slider).position)
 
-    def travel_velocity(self, slider="slider"):
+    def travel_velocity(self, slider=None):
         """Velocity of a slider along its guide, (..., N), m/s."""
         return self._scalar(self.crank_speed * self._travel(slider).first)
 
-    def travel_acceleration(self, slider="slider"):
+    def travel_acceleration(self, slider=None):
         """Acceleration of a slider along its guide, (..., N), m/s2."""
         travel = self._travel(slider)
         square, alpha = self.accelerating
         return self._scalar(plus(square * travel.second, product(alpha, travel.first)))
 
-    def elongation(self, free_position, slider="slider"):
+    def elongation(self, free_position, slider=None):
         """Coordinate of a slider's pin along its guide less a free position (m), free of cancellation, (..., N), m."""
+        slider = self._slider(slider)
         travel = self._travel(slider)
         group = next(group for group in self.mechanism.groups if slider in group.links)
         if not hasattr(group, "elongation"):
@@ -118,17 +122,17 @@ class Motion:
 
     @property
     def slider_position(self):
-        """Coordinate of B along the guide, m."""
+        """Coordinate of the slider's pin along its guide, m; of the only slider, or that without a label."""
         return self.travel()
 
     @property
     def slider_velocity(self):
-        """Velocity of the slider along the guide, m/s."""
+        """Velocity of the slider along the guide, m/s, as for `slider_position`."""
         return self.travel_velocity()
 
     @property
     def slider_acceleration(self):
-        """Acceleration of the slider along the guide, m/s2."""
+        """Acceleration of the slider along the guide, m/s2, as for `slider_position`."""
         return self.travel_acceleration()
 
     def measure(self, name):
@@ -154,7 +158,17 @@ class Motion:
         return self._look_up("link", name, self.placement.links)
 
     def _travel(self, slider):
-        return self._look_up("slider", slider, self.placement.travels)
+        return self._look_up("slider", self._slider(slider), self.placement.travels)
+
+    def _slider(self, name):
+        """The slider of that name; None stands for the one that needs none."""
+        found = self.mechanism.slider if name is None else name
+        if found is None:
+            names = tuple(self.mechanism.guides)
+            has = f"{len(names)} sliders, {', '.join(names)}" if names else "no slider"
+            remedy = f'; say which, as by travel("{names[0]}") or "{names[0]}_position"' if names else ""
+            raise QuantityError(f"{self.mechanism.name} has {has}{remedy}")
+        return found
 
     def _asked(self, point):
         """A point as the user names it, looked at closely if it is no name."""

@@ -28,7 +28,8 @@ class Quantity(NamedTuple):
     vector : bool
     kind : str
         "reaction", "force" (a force, moment or torque by name), "slider", "motion", "whole" (of the whole mechanism),
-        "rate", "friction", or "check" of its solution.
+        "energy" (of the whole mechanism too, in no table unless asked for), "rate", "friction", or "check" of its
+        solution.
     owner : str
         Link that a rate is of.
     """
@@ -59,13 +60,15 @@ def _declared(mechanism):
     def add(name, unit, read, vector=False, kind="force", label=None, owner=""):
         found[name] = Quantity(unit, label or name.replace("_", " "), read, vector, kind, owner)
 
-    outputs = mechanism.outputs
+    outputs = {name: output for part in (*mechanism.groups, mechanism.crank) for name, output in part.outputs.items()}
     for name in ("balancing_torque", *(name for name in outputs if name != "balancing_torque")):
         if not outputs[name].vector:
             add(name, outputs[name].unit, methodcaller("scalar", name))
     add("balancing_torque_by_power", "N m", attrgetter("balancing_torque_by_power"), kind="whole")
     add("shaking_force", "N", attrgetter("shaking_force"), True, "whole")
     add("shaking_moment", "N m", attrgetter("shaking_moment"), kind="whole")
+    for name, unit in ENERGIES.items():
+        add(name, unit, attrgetter(name), kind="energy")
     for slider in mechanism.guides:
         add(f"{slider}_position", "m", methodcaller("travel", slider), kind="slider")
         add(f"{slider}_velocity", "m/s", methodcaller("travel_velocity", slider), kind="slider")
@@ -182,5 +185,13 @@ def magnitude(vector):
     return sqrt(vector[0] * vector[0] + vector[1] * vector[1])
 
 
+ENERGIES = {
+    "reduced_inertia": "kg m2",
+    "reduced_inertia_slope": "kg m2",
+    "kinetic_energy": "J",
+    "potential_energy": "J",
+    "load_torque": "N m",
+}
+"""Units of inertia and energies of the whole mechanism, and of what its loads ask of the crank."""
 RATES = {"_rate": "rad/s", "_angular_acceleration": "rad/s2"}
 """Units of the quantities whose names these endings make of a link's."""

@@ -59,7 +59,8 @@ def read_columns(path, wanted):
     ----------
     path : path
         Its first line names each column with its unit: ``angle [deg], radius [mm]``. Commas stand between the columns,
-        numbers have a decimal point, and every row has as many fields as the heading; empty lines are left out.
+        numbers have a decimal point, and every row has as many fields as the heading; empty lines are left out. Before
+        the heading there may be comments, lines that begin with ``#``.
     wanted : dict
         Column name to SI unit.
 
@@ -70,8 +71,8 @@ def read_columns(path, wanted):
     Raises
     ------
     CaseError
-        The file cannot be read, a column is missing, there twice, has no unit or one that does not convert, a row is of
-        another length, or holds no number.
+        The file cannot be read, a comment follows the heading, a column is missing, there twice, has no unit or one
+        that does not convert, a row is of another length, or holds no number.
     """
     headings, rows = _rows(path)
     for line, cells in rows:
@@ -90,7 +91,7 @@ def read_columns(path, wanted):
 
 
 def headings(path):
-    """Name and unit of each column of a CSV file, from its first line."""
+    """Name and unit of each column of a CSV file, from its first line that is no comment."""
     return [parted(heading) for heading in _rows(path)[0]]
 
 
@@ -123,7 +124,7 @@ def _is_number(cell):
 def _rows(path):
     """Headings, and each row that is not empty with the number of its line."""
     text = read_text(path, LARGEST_TABLE)
-    lines = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
+    lines = csv.reader(_without_comments(text), skipinitialspace=True, strict=True)
     try:
         rows = [(lines.line_num, [cell.strip() for cell in cells]) for cells in lines if any(map(str.strip, cells))]
     except csv.Error as error:
@@ -136,7 +137,20 @@ def _rows(path):
         raise CaseError(path, [f"has {name} between its columns; write commas there, and decimal points in numbers"])
     if not rows:
         raise CaseError(path, [f"has a heading, {', '.join(headings)[:80]!r}, but no rows"])
+    late = [line for line, cells in rows if cells[0].startswith("#")]
+    if late:
+        raise CaseError(path, [f"line {late[0]} begins with '#'; comments stand before the heading, so leave it out"])
+    if text.lstrip().startswith("#") and all(map(_is_number, headings)):
+        raise CaseError(path, ["has no heading after its comments; take the '#' off the line that names the columns"])
     return headings, rows
+
+
+def _without_comments(text):
+    """Lines of a text, those before the heading emptied, so that all keep their numbers."""
+    before = True
+    for line in io.StringIO(text, newline=""):
+        before = before and line.lstrip()[:1] in ("", "#")
+        yield "\n" if before else line
 
 
 @contextmanager

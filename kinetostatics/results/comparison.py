@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ConditionWarning, ParameterError, QuantityError
+from ..machine.loads import TURN
 from ..mechanics.quantities import label_of, magnitude, unit_of
 from ..numbers import checks
 from ..numbers.elementary import UNIT
@@ -153,11 +154,7 @@ def mean_absolute_torque(solution):
         The torque grows without bound at a limit position, so the mean is infinite; values around it that have no
         correct digit do not count; or the load is so uneven that fewer digits of the mean are right.
     """
-    require_single(solution, "mean torque", "balancing_torque")
-    turn = solution.sampled
-    if turn.gaps:
-        where = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g}" for start, stop in turn.gaps)
-        raise ParameterError(f"mean torque: {solution.mechanism.name} does not close for crank angles {where} deg")
+    turn = _closed_turn(solution, "mean torque")
     peaks = extrema(solution, "balancing_torque")
     words = [warning(solution, [peaks])]
     mean = np.inf
@@ -169,6 +166,34 @@ def mean_absolute_torque(solution):
     for text in filter(None, words):
         warnings.warn(text, ConditionWarning, stacklevel=2)
     return mean
+
+
+def energy_per_turn(solution):
+    """Work of the balancing torque in a turn of the crank, J: what the loads take of the drive, negative if they give.
+
+    The integral over the period of the solution, as of `mean_absolute_torque`, by its turns.
+
+    Raises
+    ------
+    ParameterError
+        The solution is a batch of designs, or does not close all round.
+    """
+    turn = _closed_turn(solution, "energy per turn")
+    at = turn.at.at(turn.angle[turn.usable])
+    lift = 2.0 * np.abs(at.balancing_torque).max()  # a torque of one sign has no corners where it changes
+    floor = 1e-14 * at.largest_torque_term
+    mean, _ = _mean_absolute(lambda angle: turn.at.at(turn.clear(angle)).balancing_torque + lift, turn, floor)
+    return TURN * (mean - lift) * (-1.0 if np.any(np.asarray(at.crank_speed) < 0) else 1.0)
+
+
+def _closed_turn(solution, owner):
+    """Turn of a single design that closes all round."""
+    require_single(solution, owner, "balancing_torque")
+    turn = solution.sampled
+    if turn.gaps:
+        where = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g}" for start, stop in turn.gaps)
+        raise ParameterError(f"{owner}: {solution.mechanism.name} does not close for crank angles {where} deg")
+    return turn
 
 
 def _mean_absolute(function, turn, floor):

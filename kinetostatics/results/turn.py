@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, Table, is_given, refusals, value_of
+from ..machine.loads import TURN, Table, is_given, period_of, refusals, value_of
 from ..mechanics import assembly
 from ..mechanics.pushes import given, title_of
 from ..numbers import checks
@@ -62,7 +62,7 @@ class Turn:
     kinks : array
         Crank angles at which a table has a kink, or may jump.
     passed : array
-        Those of them that are change points passed, where forces grow; empty where no forces are asked for.
+        Those of `limits` that are change points passed, where forces grow; empty where no forces are asked for.
     """
 
     at: Any
@@ -223,7 +223,7 @@ def _kinks(solution):
     found: list[Any] = [(rubbing, rubbing)]
     for table in map(value_of, solution.loads):
         if isinstance(table, Table):
-            again = np.arange(0.0, solution.period - SAME, table.period)[:, None]
+            again = np.arange(0.0, solution.period - SAME, table.period_on(solution.mechanism))[:, None]
             found.append(tuple(np.ravel(angles + again) for angles in table.kinks(solution)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
 
@@ -289,7 +289,7 @@ def repeating_problem(solution):
     for item in solution.loads:
         if is_given(item):
             continue
-        period = getattr(item, "period", TURN)
+        period = period_of([item], solution.mechanism.turns)
         angle = np.linspace(0.0, period, round(SAMPLES * period / TURN), endpoint=False) + 1e-3
 
         def push(turns, item=item, angle=angle, period=period):
@@ -312,7 +312,10 @@ def repeating_problem(solution):
                 "np.mod(motion.crank_angle, period), or give the period it has"
             )
         whole = turns * period / TURN
-        return f"{found}, and repeats after {whole:.6g} turns only: give period={2 * whole:.6g}*pi"
+        remedy = f"period={2 * whole:.6g}*pi"
+        if "period" not in vars(item):
+            remedy = f"a Table with {remedy}, or a function with an attribute {remedy}"
+        return f"{found}, and repeats after {whole:.6g} turns only: give {remedy}"
     return None
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..engines import programs
 from ..engines.compiled import available, require
+from ..engines.trace import needed
 from ..errors import ParameterError
 from ..machine.friction import PASSES
 from ..machine.loads import may_refuse, refusals
@@ -187,6 +188,17 @@ class Program:
             for quantity, found in self._program.recording.named(rows).items()
         }
 
+    @property
+    def unrecorded(self):
+        """What messages call the code of the user's behind the quantities whose dependence is not recorded."""
+        return self._program.unrecorded
+
+    def depends_on(self, path):
+        """Whether any of the quantities depends on a parameter, as far as is recorded; see `unrecorded`."""
+        self._require_known((path,))
+        place, _ = self._numbers[path]
+        return self._program.recording.parameters[place] in set(needed(self._program.outputs))
+
     def _at(self, angle, values):
         """The scene at crank angles, with its leaves."""
         angle = np.array(angle) if type(angle) is float else crank_angles(angle, "program")
@@ -266,14 +278,16 @@ _FIXED = (
 
 
 def _shaping(places, mechanism, groups):
-    """Paths of what decides which change points some groups pass: crank length, and their own lengths and lines."""
+    """Paths of what decides which change points some groups pass: pins of the crank, their own lengths and lines."""
     numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
+    pins = {group.on for group in groups}
+    numbers += [number for number, group in enumerate(mechanism.groups) if pins.intersection(group.throws)]
     owners = [("mechanism", "groups", number) for number in numbers] + [("mechanism", "crank")] * bool(numbers)
+    links = {"link"}.union(*(group.own_names.values() for group in groups))
     return {
         path
         for path, place in places.items()
-        if any(place.steps[: len(owner)] == owner for owner in owners)
-        and not {"link", "coupler", "rocker", "slider"} & set(place.steps)
+        if any(place.steps[: len(owner)] == owner for owner in owners) and not links & set(place.steps)
     }
 
 

@@ -9,8 +9,8 @@ from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import of_scene, still
 from ..results.turn import NEAR
 
-ORDER = ("rate", "reaction", "force", "friction", "whole", "slider", "motion", "check")
-"""Kinds of quantities as they stand in the table, after the positions of joints."""
+ORDER = ("rate", "reaction", "force", "friction", "whole", "slider", "motion")
+"""Kinds of quantities as they stand in the table, after the positions of joints; energies are left out."""
 
 
 def solution_frame(solution):
@@ -27,10 +27,8 @@ def solution_frame(solution):
     columns = {"crank_angle [deg]": np.degrees(solution.crank_angle)}
     for joint in solution.placement.joints:
         columns |= _components(joint, "m", solution.position(joint))
-    quantities = of_scene(solution).items()
+    quantities = ((name, item) for name, item in of_scene(solution).items() if item.kind in ORDER)
     for name, quantity in sorted(quantities, key=lambda pair: ORDER.index(pair[1].kind)):
-        if quantity.kind == "check":
-            continue
         if quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio):
             continue
         values = quantity.read(solution)

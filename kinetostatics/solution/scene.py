@@ -38,14 +38,14 @@ class Scene:
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive; an array has a value for each crank angle, or is (designs, 1).
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`, or one of them.
+        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them.
     friction : dict of str to friction, optional
         By joint, as for `solve`.
 
     Raises
     ------
     ParameterError
-        A value is not finite, or a load acts on a link that is not there.
+        A value is not finite, or a load acts on a link or joint that is not there.
 
     Examples
     --------
@@ -141,6 +141,10 @@ class Scene:
         """
         return _solved(self, self.turn(angles), on_gap, engine)
 
+    def unsolved(self, angle):
+        """Motion and forces at crank angles, an array, nothing checked."""
+        return Solution(self.mechanism, angle, self.crank_speed, self.crank_acceleration, self.loads)
+
     def turn(self, angles):
         """Crank angles of so many over one period from 0, its end excluded; what is no whole number stays as it is."""
         if not isinstance(angles, int | np.integer) or isinstance(angles, bool):
@@ -163,8 +167,8 @@ def solve(
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
-        `Gravity`, `Spring`, `ProcessForce`, or one of them; what is left out costs nothing. Loads of your own, as all
-        arrays, are taken as they are now: what is changed of them later is not seen.
+        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them; what is left out costs
+        nothing. Loads of your own, as all arrays, are taken as they are now: what is changed of them later is not seen.
     friction : dict of str to friction, optional
         By joint, named as its reaction ("O", "A", "guide"), "slot" or "cam", each with the label of its group: a
         `PinFriction`, `GuideFriction`, `SlotFriction` or `RollerFriction`. At crank speed 0 it acts against the motion
@@ -187,7 +191,8 @@ def solve(
     AssemblyError
         The mechanism does not close at some of the angles and ``on_gap="raise"``.
     ParameterError
-        A value is not finite, or a load acts on a link that is not there.
+        A value is not finite, a load acts on a link or joint that is not there, or has no value at a crank angle, as a
+        force between points that meet.
     MissingLibraryError
         ``engine="compiled"`` without numba.
     NotGivenError
@@ -291,6 +296,6 @@ def _load_problems(mechanism, item):
     if isinstance(item, Load):
         return item.problems(mechanism)
     if isinstance(item, type) or not (hasattr(item, "push") and hasattr(item, "on")):
-        names = ", ".join(kind.__name__ for kind in KINDS)
-        return (f"loads must be of {names}, got {checks.shown(item)}",)
+        *names, last = (kind.__name__ for kind in KINDS)
+        return (f"loads must be {', '.join(names)} or {last}, got {checks.shown(item)}",)
     return (checks.choice(f"{type(item).__name__}: on", item.on, tuple(mechanism.guides)),)

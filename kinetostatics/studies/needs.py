@@ -1,7 +1,8 @@
 """What a scene is made of, and how much of it a quantity needs: the smallest model within a tolerance.
 
 An ingredient can be left out or put more simply. `needs` tries every combination by running it, counts the operations
-each one takes at a crank angle, and names the cheapest that keeps the quantity.
+each one takes at a crank angle, and names the cheapest that keeps the quantity. A simplification that alone changes too
+much may still be allowed beside another, as errors may cancel; so none is skipped unless there are too many models.
 """
 
 import itertools
@@ -18,8 +19,10 @@ from ..numbers import checks
 from ..solution.solution import Solution
 from .simplifications import ingredients
 
-MOST_MODELS = 20_000
-"""Combinations that `needs` is ready to run."""
+MOST_MODELS = 2_000
+"""Combinations that `needs` is ready to run: a minute of work."""
+SHOWN_AFTER = 10.0
+"""Seconds after which a bar shows how far it has come."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +66,8 @@ class Needs:
     ladder : tuple of Model
         From the full scene down, each the cheapest of all combinations with so small an error.
     smallest : Model
-        The cheapest of all combinations within the tolerance; of equally cheap ones, that with the least in it.
+        The cheapest of the combinations run that are within the tolerance; of equally cheap ones, that with the least
+        in it. All were run but those with what is told in `left_out`.
     tried : int
         Number of combinations run.
     left_out : dict of str to str
@@ -106,16 +110,17 @@ class Needs:
         return _frame(self.ladder, self.quantity, self.full)
 
 
-def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
+def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs:
     """How much model a quantity needs: every combination of simplifications run, the cheapest one named.
 
     Left out or put more simply: gravity, springs, process forces, crank acceleration, guide offset, mass-centre offsets
     across the links, masses of links, inertia of those that keep two joints apart, such as coupler and rocker, about
     their centres, the coupler as two masses at its joints, and kinematics as Fourier series of one or two harmonics.
     Links of one kind, such as coupler and coupler2, are simplified together. Where
-    that makes more than `MOST_MODELS` combinations, the simplifications that alone change most are left out; so are
-    those that the scene does not allow, such as two masses for a coupler whose mass centre lies beyond its joints. The
-    result tells them by name, with the reason.
+    that makes more than 2000 combinations, the simplifications that alone change most are left out of them; a cheaper
+    model in which their errors cancel would be missed. So are those that the scene does not allow, such as two masses
+    for a coupler whose mass centre lies beyond its joints, or harmonics that take a slider beyond the table of its
+    load. The result tells them by name, with the reason.
 
     Parameters
     ----------
@@ -127,6 +132,8 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
         Allowed change relative to the quantity's largest value.
     variant : str, optional
         Of a case; its reference unless told.
+    progress : bool
+        Whether a bar is shown where it takes longer than ten seconds.
 
     Returns
     -------
@@ -168,26 +175,39 @@ def needs(scene, quantity, within=0.01, *, variant=None) -> Needs:
             try:
                 made = choice.simplified(simplified)
             except NotGivenError as why:
-                left_out[choice.name] = str(why)
+                if len(choices) == 1:
+                    left_out[choice.name] = str(why)
                 return None
             if made is None:
                 return None
             simplified = made
-        with np.errstate(all="ignore"):
-            change = np.linalg.norm(np.array(components(simplified, quantity)) - exact, axis=0).max() / largest
-        error = float(change) if math.isfinite(change) else math.inf
         names = tuple(choice.name for choice in choices)
+        try:
+            with np.errstate(all="ignore"):
+                change = np.linalg.norm(np.array(components(simplified, quantity)) - exact, axis=0).max() / largest
+        except ParameterError as why:  # a load has no value where the model goes, as a table over travel
+            left_out[" with ".join(names)] = str(why)
+            return None
+        error = float(change) if math.isfinite(change) else math.inf
         return Model(names, error, programs.of(simplified.dynamics, (quantity,))[0].recording.operations, simplified)
 
     parts = ingredients(solution.mechanism).values()
     alone = {choice: made for choices in parts for choice in choices if (made := model((choice,)))}
     options = _options(parts, alone, left_out)
     combinations = (tuple(filter(None, picked)) for picked in itertools.product(*options))
-    models = [made for choices in combinations if (made := model(choices))]
+    models = [made for choices in _shown(combinations, options, progress) if (made := model(choices))]
     ladder = _front(models)
     allowed = [made for made in models if made.error <= within]
     smallest = min(allowed, key=lambda made: (made.operations, -len(made.simplifications), made.error))
     return Needs(quantity, within, models[0], tuple(alone.values()), tuple(ladder), smallest, len(models), left_out)
+
+
+def _shown(combinations, options, progress):
+    """The combinations, with a bar of how many of them have been taken."""
+    from tqdm import tqdm
+
+    total = math.prod(map(len, options))
+    return tqdm(combinations, total=total, unit=" models", delay=SHOWN_AFTER, leave=False, disable=not progress)
 
 
 def _options(parts, alone, left_out):

@@ -24,7 +24,7 @@ WAITING = 256
 class Workers:
     """Where chunks run: processes of its own, which are replaced when one dies, an executor, or this process.
 
-    Processes of its own leave Ctrl-C to this one, and end with it however it ends.
+    Processes of its own leave Ctrl-C and SIGTERM to this one, and end with it however it ends.
     """
 
     def __init__(self, executor=None, count=None):
@@ -103,8 +103,12 @@ def _pool(count):
 
 
 def _serve(parent):
-    """Start of a worker: Ctrl-C is left to the parent, and nothing is done that nobody waits for."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Start of a worker: signals to all processes are left to the parent, and nothing is done that nobody waits for.
+
+    A worker that ends while it hands over a result leaves half of it, for whose rest the parent waits for ever.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
 
 

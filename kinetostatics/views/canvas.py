@@ -9,7 +9,7 @@ from ..errors import ParameterError
 from ..mechanics.quantities import label_of
 from ..numbers import checks
 
-INK, STEEL, ACCENT = "0.15", "slategray", "tab:red"
+INK, STEEL, ACCENT, LOAD = "0.15", "slategray", "tab:red", "tab:green"
 STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 """Line styles, so that curves differ in print too."""
 

@@ -2,17 +2,18 @@
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from ..design import shapes
 from ..errors import ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
-from . import plots
+from . import drives, plots
 
 
 def draw_case(case, folder, file_format="png", only=None):
@@ -48,6 +49,17 @@ def draw_case(case, folder, file_format="png", only=None):
     return [_saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]
 
 
+def draw_drive(case, runs, folder):
+    """Draw speed and torques of a case's variants in periodic running into a folder; returns the paths."""
+    figures = {
+        "speed": _single(drives.speed),
+        "torque": partial(_one_each, drives.torques, width=6.4, height=3.2, columns=1),
+    }
+    paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}
+    checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
+    return [_saved(figures[name], runs, path, case, "png") for name, path in paths.items()]
+
+
 def _saved(draw, solutions, path, case, file_format):
     with rc_context({"svg.hashsalt": case.path.stem, "font.size": 9}):
         figure = draw(solutions)
@@ -70,12 +82,12 @@ def _has(quantity):
     return lambda case: bool(_that_have(quantity, case.variants))
 
 
-def _all_have(quantity):
-    return lambda case: len(_that_have(quantity, case.variants)) == len(case.variants)
+def _all_have_one_slider(case):
+    return all(item.mechanism.slider is not None for item in case.variants.values())
 
 
-def _is_four_bar(case):
-    return all(shapes.four_bar(item.mechanism) for item in case.variants.values())
+def _is_chain_unit(case):
+    return all(item.table.mechanism == "chain-unit" for item in case.variants.values())
 
 
 def _is_balanced(case):
@@ -96,35 +108,60 @@ def _of_those_that_have(quantity):
     return lambda solutions: single(_that_have(quantity, solutions))
 
 
-def _one_each(plot, width, height, stacked=False):
-    """Axes for each variant, three in a row or stacked."""
+def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
+    """Axes for each variant, so many in a row."""
+    columns = min(columns, len(solutions))
+    rows = -(-len(solutions) // columns)
+    figure, axes = plt.subplots(
+        rows, columns, figsize=(width * columns, height * rows), layout="constrained", squeeze=False
+    )
+    for ax, (name, solution) in zip(axes.flat, solutions.items(), strict=False):
+        plot(solution, ax=ax)
+        ax.set_title(name)
+    for ax in axes.flat[len(solutions) :]:
+        ax.remove()
+    return figure
 
-    def draw(solutions) -> Figure:
-        columns = 1 if stacked else min(3, len(solutions))
-        rows = -(-len(solutions) // columns)
-        figure, axes = plt.subplots(
-            rows, columns, figsize=(width * columns, height * rows), layout="constrained", squeeze=False
-        )
-        for ax, (name, solution) in zip(axes.flat, solutions.items(), strict=False):
-            plot(solution, ax=ax)
-            ax.set_title(name)
-        for ax in axes.flat[len(solutions) :]:
-            ax.remove()
-        return figure
 
-    return draw
+def _proportion(solution):
+    """Width of the drawing of a mechanism over its height."""
+    size = plots.mechanism(solution, ax=Figure().subplots()).dataLim
+    return float(np.clip(size.width / size.height, 0.4, 4.0)) if size.height > 0 else 4.0
+
+
+def _mechanisms(solutions) -> Figure:
+    """The mechanisms of all variants: wide ones stacked, others side by side."""
+    wide = max(map(_proportion, solutions.values()))
+    width = 8.0 if wide > WIDE else max(3.2, min(4.4, 5.5 * wide))
+    return _one_each(plots.mechanism, solutions, width, width / wide + LETTERING, 1 if wide > WIDE else 3)
+
+
+WIDE = 1.7
+"""Width over height of a mechanism from which on it is drawn across a page."""
+LETTERING = 0.8
+"""Height of title and labels of axes, inches."""
 
 
 def _overview(solutions) -> Figure:
-    """The last variant, its torque against all others, and the support reaction of the first and the last."""
+    """The last variant, its torque against all others, and the support reaction of the first and the last.
+
+    A wide mechanism is drawn across the page, others beside the torque, tall ones over the whole height.
+    """
     shown = list(dict.fromkeys([next(iter(solutions)), next(reversed(solutions))]))
-    figure, axes = plt.subplot_mosaic(
-        [["mechanism"] * (1 + len(shown)), ["torque", *shown]],
-        figsize=(11, 6.4),
-        height_ratios=[0.8, 1],
-        layout="constrained",
-    )
     last = solutions[shown[-1]]
+    wide = _proportion(last)
+    many = len(shown)
+    rows: list[Any] = [["mechanism", "torque"], shown]
+    widths = heights = None
+    if wide > 1.5 * WIDE:
+        rows, heights = [["mechanism"] * (1 + many), ["torque", *shown]], [0.8, 1.0]
+    elif wide < 1 / WIDE or many == 1:
+        left = float(np.clip(5.4 * wide + LETTERING, 2.0, 4.0))
+        rows = [["mechanism", *["torque"] * many], ["mechanism", *shown]]
+        widths = [left, *[(11.0 - left) / many] * many]
+    figure, axes = plt.subplot_mosaic(
+        rows, figsize=(11, 6.4), layout="constrained", width_ratios=widths, height_ratios=heights
+    )
     plots.mechanism(last, ax=axes["mechanism"])
     axes["mechanism"].set_title(f"{shown[-1]}: {last.mechanism.name}")
     plots.torque(solutions, ax=axes["torque"])
@@ -137,10 +174,10 @@ def _overview(solutions) -> Figure:
 
 FIGURES = {
     "overview": (_overview, _always),
-    "mechanism": (_one_each(plots.mechanism, 8, 2.6, stacked=True), _always),
+    "mechanism": (_mechanisms, _always),
     "torque": (_single(plots.torque), _always),
-    "acceleration_error": (_single(plots.acceleration_error), _all_have("slider_acceleration")),
-    "hodograph": (_one_each(plots.hodograph, 4.4, 4.2), _always),
+    "acceleration_error": (_single(plots.acceleration_error), _all_have_one_slider),
+    "hodograph": (partial(_one_each, plots.hodograph), _always),
     "pressure_angle": (_of_those_that_have("pressure_angle"), _has("pressure_angle")),
     "cam_force": (_of_those_that_have("cam_force"), _has("cam_force")),
     "mass_centres": (_single(plots.mass_centres, 9.0, 3.6), _is_balanced),
@@ -150,7 +187,7 @@ FIGURES = {
         _is_balanced,
     ),
     **{
-        f"{link}_{kind}": (_single(partial(plots.chain_unit_motion, link=link, order=order)), _is_four_bar)
+        f"{link}_{kind}": (_single(partial(plots.chain_unit_motion, link=link, order=order)), _is_chain_unit)
         for link in ("coupler", "rocker")
         for order, kind in enumerate(("velocity", "acceleration"), 1)
     },

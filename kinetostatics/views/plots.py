@@ -18,6 +18,7 @@ from ..results.extremes import extremes
 from .canvas import INK, axes, closed, display, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
+from .labels import label
 
 __all__ = [
     "acceleration_error",
@@ -62,7 +63,7 @@ def over_turn(solutions, quantity, ax=None):
     factor, shown = display(declared.unit, [value for _, value in curves.values()])
     for name, (angle, value), style in styled(curves):
         ax.plot(angle, factor * value, linestyle=style, label=name)
-    return _finished(ax, f"{declared.label} [{shown}]", len(curves) > 1)
+    return _finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named))
 
 
 def torque(solutions, ax=None):
@@ -80,23 +81,26 @@ def pressure_angle(solutions, ax=None):
     return over_turn(solutions, "pressure_angle", ax)
 
 
-def acceleration_error(solutions, ax=None, slider="slider"):
+def acceleration_error(solutions, ax=None, slider=None):
     """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
 
     With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
-    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2.
+    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. The only slider, or that without a
+    label, is meant unless told.
     """
     ax = axes(ax)
-    named = labelled(solutions, f"{slider}_acceleration")
+    named = labelled(solutions, "slider acceleration")
     _require_turning(named)
     for name, solution, style in styled(named):
-        half_stroke = np.ptp(extremes(solution, f"{slider}_position").value) / 2
+        half_stroke = np.ptp(extremes(solution, lambda motion: motion.travel(slider)).value) / 2
         square, alpha = solution.crank_speed**2, solution.crank_acceleration
-        psi = solution.crank_angle - solution.mechanism.guides[slider].guide_angle
+        psi = solution.crank_angle - solution.mechanism.guides[slider or solution.mechanism.slider].guide_angle
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
         ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
-    return _finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1)
+    return _finished(
+        ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named)
+    )
 
 
 def hodograph(solutions, joint="O", ax=None, marks=30):
@@ -122,9 +126,15 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
     declared = _declared(named, joint)
     factor, shown = display(declared.unit, curves.values())
+    extents = {name: factor * np.max(np.ptp(curve, axis=1)) for name, curve in curves.items()}
     for name, solution, style in styled(named):
         (line,) = ax.plot(*closed(factor * curves[name]), linestyle=style, label=name)
-        _mark_angles(ax, solution, joint, factor, np.arange(0, 360, marks), line.get_color())
+        rows = _marked(solution, marks)
+        ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
+        near = max(0.06 * extents[name], 0.025 * max(extents.values()))
+        texts = _shared(_degrees(solution)[rows] % np.degrees(solution.period), factor * curves[name][:, rows], near)
+        for text, point in texts:
+            label(ax, text, point, color=line.get_color() if len(named) > 1 else INK)
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
     ax.set_aspect("equal", adjustable="datalim")
@@ -221,13 +231,18 @@ def _degrees(solution):
     return np.degrees(solution.crank_angle)
 
 
-def _finished(ax, ylabel, legend):
+def _longest(named):
+    """Longest period of solutions, degrees."""
+    return round(np.degrees(max(solution.period for solution in named.values())))
+
+
+def _finished(ax, ylabel, legend, period=360):
     ax.set_xlabel("crank angle [deg]")
     ax.set_ylabel(ylabel)
     low, high = ax.dataLim.intervalx
-    if low >= 0 and high <= 360:
-        ax.set_xlim(0, 360)
-        ax.set_xticks(range(0, 361, 60))
+    if low >= 0 and high <= period:
+        ax.set_xlim(0, period)
+        ax.set_xticks(range(0, period + 1, period // 4))
     ax.axhline(0, color=INK, lw=0.5)
     ax.grid(alpha=0.3)
     if legend:
@@ -249,20 +264,18 @@ def _declared(named, name):
     return of_mechanism(next(iter(named.values())).mechanism)[name]
 
 
-def _mark_angles(ax, solution, joint, factor, angles, color):
-    """Marks at the crank angles that the solution has; marks that fall together share one label."""
-    apart = np.abs(np.mod(_degrees(solution) - angles[:, None] + 180, 360) - 180)
-    rows = np.argmin(apart, axis=1)
-    met = apart.min(axis=1) < 0.5
-    angles, points = angles[met], factor * _vector(solution, joint)[:, rows[met]]
-    if not angles.size:
-        return
-    ax.plot(*points, "o", ms=3, color=color)
-    near = 0.06 * np.max(np.ptp(points, axis=1))
+def _marked(solution, step):
+    """Rows of the solution whose crank angles are multiples of a step in degrees, to half a degree."""
+    period = np.degrees(solution.period)
+    apart = np.mod(_degrees(solution) - np.arange(0, period, step)[:, None] + period / 2, period) - period / 2
+    return np.argmin(np.abs(apart), axis=1)[np.abs(apart).min(axis=1) < 0.5]
+
+
+def _shared(degrees, points, near):
+    """Labels of points (2, M) by their crank angles, with their places: one for points nearer to each other than so."""
     labels: dict[int, list[str]] = {}
     for row, point in enumerate(points.T):
         first = next((other for other in labels if np.hypot(*(points[:, other] - point)) < near), row)
-        labels.setdefault(first, []).append(f"{angles[row]:g}°")
+        labels.setdefault(first, []).append(f"{degrees[row]:.4g}°")
     for row, names in labels.items():
-        text = ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}"
-        ax.annotate(text, points[:, row], xytext=(3, 3), textcoords="offset points", fontsize="x-small", color=INK)
+        yield ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}", points[:, row]

@@ -441,3 +441,21 @@ def test_what_is_no_counterweight_or_no_single_design_is_refused():
     ):
         with pytest.raises(ks.ParameterError):
             ask()
+
+
+@pytest.mark.parametrize("norm", ["mean", "weighted"])
+def test_the_norm_is_taken_over_both_turns_of_a_branch_that_closes_after_two(norm):
+    links = {name: ks.Link(2.0, (0.1, side)) for name, side in [("crank", 0.03), ("coupler", 0.08), ("rocker", -0.05)]}
+    passing = ks.four_bar(0.1, 0.3, 0.2, rocker_pivot=(0.4, 0.0), assembly="open", **links)
+    found = optimal(passing, norm, crank=Counterweight(arm=0.1)).mechanism.links["crank"]
+    before, after = (link.mass * np.array(link.centre) for link in (links["crank"], found))
+
+    def size(share):
+        """Of the shaking force over both turns, with so much of the counterweight found."""
+        unbalance = before + share * (after - before)
+        weighted = passing.with_link("crank", ks.Link(1.0, tuple(unbalance)))
+        force = np.hypot(*ks.Scene(weighted, 1.0).solve(720).shaking_force)
+        return np.mean(force if norm == "mean" else force**2)
+
+    assert passing.turns == 2
+    assert size(1.0) < min(size(0.99), size(1.01))

@@ -1,10 +1,12 @@
 """Names in chains: whatever groups, pins and labels are called, each thing has its own, or the chain is refused."""
 
+import dataclasses
 import random
 
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.machine.group import RESERVED
 from kinetostatics.mechanics.quantities import of_mechanism
 
 NAMES = (
@@ -62,7 +64,7 @@ def test_no_name_is_lost_in_silence(seed):
         links, joints, outputs = (sum(counts) for counts in zip((1, 2, 2), *map(COUNTS.get, kinds), strict=True))
         assert (len(chain.links), len(chain.joints), len(chain.outputs)) == (links, joints, outputs)
         travels, measured = 3 * len(chain.guides), sum(kind in ("lever", "cylinder") for kind in kinds)
-        assert len(of_mechanism(chain)) == outputs + 3 + travels + measured + 2 * links
+        assert len(of_mechanism(chain)) == outputs + len(RESERVED) + travels + measured + 2 * links
     assert made
     assert refused
 
@@ -84,3 +86,11 @@ def test_no_name_is_lost_in_silence(seed):
 def test_what_two_things_would_be_called_is_refused(parts, words):
     with pytest.raises(ks.ParameterError, match=words):
         ks.Mechanism("chain", ks.Crank(0.1), parts)
+
+
+@pytest.mark.parametrize("kind", sorted({*COUNTS} - {"pin"}))
+def test_a_group_on_a_link_is_told_to_hang_on_a_pin_of_it(kind):
+    made = group(kind, random.Random(1).choice)
+    on = ("crank", "A") if kind == "dyad" else "crank"
+    with pytest.raises(ks.ParameterError, match="hangs on 'crank', which is a link; put a Pin on that link"):
+        ks.Mechanism("chain", ks.Crank(0.1), (dataclasses.replace(made, on=on),))

@@ -243,6 +243,14 @@ BAD_TABLES = {
     "with a unit": (GOOD.replace("1030", "1030 N"), "line 5: not a number: '1030 N'"),
     "after blank lines": (GOOD.replace("\n10,", "\n\n\n\n10,").replace("1030", "x"), "line 8: not a number: 'x'"),
     "after blank Windows lines": (GOOD.replace("\n", "\r\n\r\n").replace("1030", "x"), "line 9: not a number: 'x'"),
+    "a comment after the heading": (
+        GOOD.replace("\n10,", "\n# measured\n10,"),
+        "line 3 begins with '#'; comments stand",
+    ),
+    "a comment at the end": (GOOD + "\n# a, b\n", f"line {len(ROWS) + 2} begins with '#'"),
+    "comments only": ("# measured\n# on Monday\n", "is empty"),
+    "a heading as a comment": ("# " + GOOD, "has no heading after its comments; take the '#' off the line"),
+    "words after comments": ("# one\n\n" + GOOD.replace("1060", "high"), "line 10: not a number: 'high'"),
     "open quote": (GOOD.replace("1030", '"1030'), "cannot be read as CSV: line|not a number"),
     "a field without end": (HEADING + "\n" + "1" * 200_000, "cannot be read as CSV: line 2"),
 }
@@ -260,6 +268,9 @@ def test_a_table_that_is_none_is_refused_with_its_line(tmp_path, name):
     "content",
     [
         "\ufeff" + GOOD,
+        "\ufeff# measured on Monday, in the open\n" + GOOD,
+        '# an "open quote, and ; a semicolon\n\n  # and more\u2028\n' + GOOD,
+        "# after Windows\r\n" + GOOD.replace("\n", "\r\n"),
         GOOD.replace("\n", "\r\n"),
         GOOD.replace("\n", "\n\n"),
         GOOD + "\n\n \n",

@@ -1,10 +1,11 @@
 """Loads on any link of any chain: against the full Newton-Euler system, and by laws that every load keeps."""
 
+import mpmath as mp
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies.methods import newton
+from kinetostatics.studies.methods import configurations, newton
 from support.loads import KINDS, between, load
 from support.machines import largest, planar
 from support.scenes import six_bar
@@ -73,7 +74,7 @@ def by_newton_euler(s, names):
     x, y = (np.array([np.broadcast_to(m.joint.position[k], shape) for m in links]) for k in (0, 1))
     theta = np.array([np.broadcast_to(np.arctan2(m.direction[1], m.direction[0]), shape) for m in links])
     q = np.concatenate([x, y, theta]).T
-    return {name: np.array(model.components(s, name, q)) for name in names}
+    return {name: np.array(configurations.components(model, s, name, q)) for name in names}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -176,6 +177,24 @@ def test_derivatives_by_every_number_of_loads_are_those_of_differences():
             found, slope = exact[quantity][path], (above[quantity] - below[quantity]) / (2 * step)
             size = largest(above[quantity]) / max(abs(value), 1e-2)
             assert largest(found - slope) < 1e-6 * max(largest(found), 1e-3 * size), (path, quantity)
+
+
+def test_the_independent_path_in_mpmath_agrees_under_all_loads_together():
+    pytest.importorskip("mpmath")
+    pytest.importorskip("flint")
+    from kinetostatics.studies.methods.enclosures import enclosure
+    from kinetostatics.studies.methods.independent import independent
+
+    table = ks.Table([0.2, 0.5, 0.9], [3.0, -2.0, 8.0], over="travel", back=[1.0, 2.0, 3.0])
+    s = ks.solve(
+        six_bar(), [0.7, 4.0], crank_speed=9.0, crank_acceleration=-4.0, loads=(*loaded(), ks.Force(table, at="B"))
+    )
+    for quantity in ("balancing_torque", "B2"):
+        exact = enclosure(s, quantity).exact
+        for found, expected in zip(independent(s, quantity, range(2)), exact, strict=True):
+            for one, other in zip(found, expected, strict=True):
+                with mp.workdps(40):
+                    assert abs(one - mp.mpf(other.str(40, radius=False))) < 1e-25 * abs(one)
 
 
 def test_a_second_load_of_a_kind_has_a_path_of_its_own():

@@ -65,7 +65,7 @@ def test_requirement_tells_the_distances():
     placement = ks.Mechanism("engine", ks.Crank(R), (group,)).place(ANGLES)
     words = group.requirement(placement)
     assert words.startswith("the distance from A to O2, 0.2")
-    assert words.endswith("must be greater than zero, 0 m")
+    assert words.endswith("must be greater than zero")
 
 
 @pytest.mark.parametrize(

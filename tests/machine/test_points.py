@@ -26,6 +26,28 @@ def test_a_damper_between_points_that_meet_takes_the_whole_velocity_as_its_limit
     assert largest(pushed(damper, angles) + 20.0 * s.slider_velocity) < 1e-12 * largest(20.0 * s.slider_velocity)
 
 
+@pytest.mark.parametrize("angle", np.linspace(0.2, 6.0, 7))
+def test_points_that_meet_but_for_the_rounding_of_a_whole_chain_are_refused(angle):
+    """Near O coordinates are small, and what rounding leaves between the points is not."""
+    ram = ks.SliderGroup(0.3, ks.Guide.at(np.pi), on="B", pin="C", label="2")
+    mechanism = ks.Mechanism("chain", ks.Crank(CRANK), (ks.SliderGroup(COUPLER), ram))
+    x = float(mechanism.place(np.array([angle])).joints["C"].position[0][0])
+    for off in (0.0, 3e-16, -5e-16):
+        with pytest.raises(ks.ParameterError, match="the points meet"):
+            ks.solve(mechanism, angle, crank_speed=1.0, loads=ks.PointForce(1.0, between=("C", (x + off, 0.0))))
+
+
+@pytest.mark.parametrize("ulps", [(0, 0), (1, -1), (-3, 2), (0, 4)])
+def test_a_damper_between_points_that_meet_but_for_rounding_takes_the_whole_velocity(ulps):
+    """The line between them is rounding then, and must not be taken for a direction."""
+    angles = np.linspace(0.1, 6.2, 23)
+    for angle in angles:
+        place = CRANK * np.array([np.cos(angle), np.sin(angle)])
+        item = ks.PointDamper(20.0, between=("A", tuple(place + ulps * np.spacing(place))))
+        torque = ks.solve(PUMP, angle, crank_speed=9.0, loads=item).balancing_torque
+        assert abs(torque - 20.0 * 9.0 * CRANK**2) < 1e-8
+
+
 @pytest.mark.parametrize("end", [0.5, 0.3])
 def test_a_damper_at_the_dead_centre_where_its_points_meet_and_stand_still_gives_nothing(end):
     angle = 0.0 if end == 0.5 else np.pi

@@ -84,6 +84,19 @@ def test_any_load_takes_a_table(over):
         assert len(ks.extremes(s, "balancing_torque"))
 
 
+def test_kinks_of_a_table_over_travel_are_found_in_both_turns_of_a_branch_through_a_change_point():
+    """The slider is ahead of O in one turn and behind it in the other, where the coupler stands across the guide."""
+    made = ks.crank_slider(0.1, 0.15, guide_offset=0.05, assembly="open")
+    table = ks.Table([-0.3, 0.01, 0.3], [0.0, 50.0, 0.0], over="travel")
+    s = ks.solve(made, 0.3, crank_speed=1.0, loads=ks.ProcessForce(table))
+    fine = np.linspace(0.0, 4 * np.pi, 40001)
+    passed = fine[1:][np.diff(np.sign(s.at(fine).slider_position - 0.01)) != 0]
+    assert made.turns == 2
+    assert passed[-1] > 2 * np.pi
+    for angle in passed:
+        assert np.abs(s.sampled.kinks - angle).min() < 1e-3
+
+
 def test_a_four_stroke_table_gives_a_force_its_period():
     table = ks.Table(np.radians([0, 180, 360, 540]), [0.0, 5.0, 0.0, 0.0], period=4 * np.pi)
     s = ks.solve(six_bar(), [1.0], crank_speed=9.0, loads=ks.Force(table, at="B"))
@@ -131,6 +144,7 @@ def test_an_indicator_diagram_is_read_with_its_units_and_multiplied_by_the_area(
     ("text", "options", "words"),
     [
         ("crank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
+        ("# bench 3, 12 May\ncrank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
         ("crank_angle [rad], torque [N mm]\n0, 1\n2, 2\n4, 3\n", {"unit": "N m"}, None),
         ("travel [mm], pressure [bar]\n0, 1\n1, 2\n", {}, "no column 'force'"),
         ("travel [mm], pressure [kN]\n0, 1\n1, 2\n", {"area": 1.0}, "pressure"),
@@ -138,6 +152,12 @@ def test_an_indicator_diagram_is_read_with_its_units_and_multiplied_by_the_area(
         ("angle [deg], force [kN]\n0, 1\n1, 2\n", {}, "no column 'crank_angle'"),
         ("travel [mm], force [kN]\n1, 1\n1, 2\n", {}, "travel must rise"),
         ("travel [mm], force [kN]\n1, 1\n", {}, "at least 2 rows"),
+        ("travel [mm], force [kN], back [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'back' would not be read.*force_back"),
+        ("travel [mm], force [kN], Force back [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'Force back' would not be read"),
+        ("travel [mm], force [kN], force_return [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'force_return' would not be read"),
+        ("travel [mm], pressure [bar], force_back [kN]\n1, 1, 5\n2, 1, 5\n", {"area": 1.0}, "pressure_back"),
+        ("crank_angle [deg], force [N], force_back [N]\n0, 1, 5\n120, 2, 5\n240, 3, 5\n", {}, "over travel"),
+        ("travel [m], force [N], pressure [Pa], pressure_back [Pa]\n1, 1, 5, 5\n2, 1, 5, 5\n3, 1, 5, 5\n", {}, None),
     ],
 )
 def test_tables_from_files_are_read_or_refused_with_the_file_and_the_reason(tmp_path, text, options, words):
@@ -148,3 +168,40 @@ def test_tables_from_files_are_read_or_refused_with_the_file_and_the_reason(tmp_
     with pytest.raises(ks.CaseError, match=words) as caught:
         ks.Table.from_csv(path, **options)
     assert "table.csv" in str(caught.value)
+
+
+def two_turns(back):
+    """A slider on a rocker whose branch closes after two turns, under a table over its travel; and the table."""
+    bars = ks.RockerGroup(0.3, 0.2, (0.4, 0.0), "open")
+    ram = ks.SliderGroup(0.7, ks.Guide.at(0.3, 0.05), on="B", pin="C", label="2")
+    mechanism = ks.Mechanism("two turns", ks.Crank(0.1), (bars, ram))
+    travel = ks.Scene(mechanism, 1.0).solve(720).travel("slider2")
+    rows = np.linspace(travel.min() - 0.01, travel.max() + 0.01, 9)
+    force = np.array([0.0, 50, -20, 80, 10, 0, 90, -60, 30])
+    table = ks.Table(rows, force, over="travel", back=force[::-1] if back else None)
+    return ks.Scene(mechanism, 1.0, 0.0, ks.ProcessForce(table, "slider2")), table
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_table_over_travel_knows_the_second_turn_of_a_branch(back):
+    """Work and peaks of both turns, beside values at many crank angles by hand."""
+    scene, table = two_turns(back)
+    s = scene.solve(40_000)
+    x, v = s.travel("slider2"), s.travel_velocity("slider2")
+    torque = -v * np.where(
+        v < 0, np.interp(x, table.x, table.y[::-1] if back else table.y), np.interp(x, table.x, table.y)
+    )
+    assert largest(s.balancing_torque - torque) < 1e-13
+    assert np.allclose(ks.extremes(s, "balancing_torque").range, (torque.min(), torque.max()), rtol=1e-3)
+    mean, _ = ks.compare(s, s).mean_torques
+    assert mean == pytest.approx(np.abs(torque).mean(), rel=1e-6)
+
+
+def test_kinks_of_a_table_over_travel_lie_in_both_turns_of_a_branch():
+    scene, table = two_turns(back=True)
+    kinks, jumps = table.kinks(scene.solve(4))
+    x = scene.mechanism.place(kinks).travels["slider2"].position
+    assert largest(np.min(np.abs(x[jumps.size :, None] - table.x), axis=1)) < 1e-12
+    assert (kinks < 2 * np.pi).any()
+    assert (kinks > 2 * np.pi).any()
+    assert jumps.size == 4

@@ -24,6 +24,26 @@ def test_a_spring_on_a_link_that_passes_half_a_turn_is_refused_at_any_crank_angl
         ks.solve(BAR, 0.7, crank_speed=1.0, loads=item)
 
 
+@pytest.mark.parametrize(
+    ("lengths", "on"),
+    [
+        ((0.1, 0.2, 0.2, 0.1), "rocker"),  # turns once in two turns of the crank
+        ((0.2, 0.2, 0.1, 0.1), "coupler"),  # passes half a turn at crank angle 0
+    ],
+)
+def test_a_link_that_turns_round_where_change_points_are_passed_takes_no_spring(lengths, on):
+    *bars, ground = lengths
+    passing = ks.four_bar(*bars, rocker_pivot=(ground, 0.0), assembly="open")
+    for free in (0.0, 1.5, -1.5, 3.0):
+        with pytest.raises(ks.ParameterError, match="it makes full turns"):
+            ks.solve(passing, 0.7, crank_speed=1.0, loads=ks.TorsionSpring(4.0, free, on=on))
+
+
+def test_a_link_that_never_turns_takes_a_spring_of_a_constant_couple():
+    pump, spring = ks.crank_slider(0.1, 0.3, guide_angle=0.4), ks.TorsionSpring(4.0, 0.1, on="slider")
+    assert ks.solve(pump, [0.7, 2.0], crank_speed=1.0, loads=spring).guide_moment == pytest.approx([1.2, 1.2])
+
+
 def test_a_coupler_that_turns_with_the_crank_takes_no_spring():
     double_crank = ks.four_bar(0.4, 0.35, 0.45, rocker_pivot=(0.1, 0.0))
     with pytest.raises(ks.ParameterError, match=r"TorsionSpring on 'rocker'.*it makes full turns"):

@@ -8,6 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import kinetostatics as ks
+from kinetostatics.mechanics.principal_points import principal_points
+from kinetostatics.numbers.planar import moment
+from support.chains import chain
 from support.strategies import cases, either_sign, number, planar, reproducible
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
@@ -312,3 +315,24 @@ def test_mass_centre_at_rest_on_the_crank_pivot_shakes_nothing():
     points = ks.principal_points(s.mechanism)
     for found in (points.mass_centre(s), points.mass_centre_velocity(s), points.shaking_force(s)):
         np.testing.assert_array_equal(found, np.zeros((2, TURN.size)))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_momentum_sums_over_all_links_of_random_chains_give_shaking_force_and_moment(seed):
+    scene, angles = chain(seed)
+    s = scene.solve(angles)
+    links = s.mechanism.links
+    forces = {name: -link.mass * s.acceleration(name) for name, link in links.items()}
+    moments = {
+        name: moment(s.position(name), force) - links[name].inertia * s.angular_acceleration(name)
+        for name, force in forces.items()
+    }
+    points, mass = principal_points(s.mechanism), sum(link.mass for link in links.values())
+    for found, parts in [
+        (s.shaking_force, forces),
+        (s.shaking_moment, moments),
+        (mass * points.mass_centre(s), {name: link.mass * s.position(name) for name, link in links.items()}),
+        (mass * points.mass_centre_velocity(s), {name: link.mass * s.velocity(name) for name, link in links.items()}),
+    ]:
+        largest = max(np.abs(part).max() for part in parts.values())
+        assert np.abs(found - sum(parts.values())).max() < CLOSE * largest

@@ -68,7 +68,7 @@ def test_comparison_and_needs_call_quantities_as_they_are_declared():
 
 def test_needs_of_a_six_bar_simplifies_links_of_one_kind_together_whatever_their_labels():
     parts = ingredients(chain("2"))
-    assert list(parts)[6:-1] == ["crank", "rocker", "slider", "coupler"]
+    assert list(parts)[-5:-1] == ["crank", "rocker", "slider", "coupler"]
     assert [choice.name for choice in parts["coupler"]] == [
         "no coupler inertia",
         "two-mass coupler",

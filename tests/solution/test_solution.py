@@ -141,3 +141,67 @@ def test_scene_and_solution_show_themselves_in_a_line_however_long_their_tables(
     assert repr(scene) == f"<Scene: crank-slider, {drive}"
     assert repr(scene.solve(TURN)) == f"<Solution: crank-slider, shape (24,), {drive}"
     assert repr(ks.Scene(SAW, 33.5)) == "<Scene: crank-slider, crank_speed=33.5, crank_acceleration=0.0, no loads>"
+
+
+def two_sliders(*labels):
+    """A crank that drives a slider of each label."""
+    sliders = (ks.SliderGroup(0.4, ks.Guide.at(turn), pin=f"B{turn}", label=label) for turn, label in enumerate(labels))
+    return ks.solve(ks.Mechanism("engine", ks.Crank(0.1), tuple(sliders)), ANGLES_OF_SLIDERS, crank_speed=5.0)
+
+
+ANGLES_OF_SLIDERS = np.linspace(0.1, 6.0, 5)
+
+
+@pytest.mark.parametrize(("labels", "meant"), [(("2",), "slider2"), (("", "2"), "slider"), (("2", ""), "slider")])
+def test_the_only_slider_and_the_one_without_a_label_need_no_name(labels, meant):
+    s = two_sliders(*labels)
+    assert np.array_equal(s.slider_position, s.travel(meant))
+    assert np.array_equal(s.slider_velocity, s.travel_velocity(meant))
+    assert np.array_equal(s.slider_acceleration, s.travel_acceleration(meant))
+    assert np.array_equal(s.elongation(0.2), s.elongation(0.2, meant))
+
+
+def test_which_of_several_sliders_is_meant_must_be_said():
+    with pytest.raises(
+        ks.QuantityError, match=r'engine has 2 sliders, slider1, slider2; say which, .*travel\("slider1"\)'
+    ):
+        two_sliders("1", "2").slider_position  # noqa: B018
+    with pytest.raises(ks.QuantityError, match="four-bar has no slider"):
+        ks.solve(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), 0.1, crank_speed=1.0).slider_velocity  # noqa: B018
+
+
+def test_the_frame_holds_travel_velocity_and_acceleration_of_every_slider_with_units():
+    s = two_sliders("1", "2")
+    table = s.frame()
+    for slider in ("slider1", "slider2"):
+        assert np.array_equal(table[f"{slider}_position [m]"], s.travel(slider))
+        assert np.array_equal(table[f"{slider}_velocity [m/s]"], s.travel_velocity(slider))
+        assert np.array_equal(table[f"{slider}_acceleration [m/s2]"], s.travel_acceleration(slider))
+
+
+def rockers_slider(length, assembly=1):
+    """A slider hung on a rocker whose pivot its guide runs through."""
+    ram = ks.SliderGroup(length, ks.Guide.at(0.0, 0.1), assembly, on="B", pin="C", label="2")
+    return ks.Mechanism("press", ks.Crank(0.1), (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ram))
+
+
+@pytest.mark.parametrize("mechanism", [ks.crank_slider(0.1, 0.1, assembly="crossed"), rockers_slider(0.3)])
+def test_a_slider_that_stands_still_all_over_the_turn_is_warned_of(mechanism):
+    with pytest.warns(
+        ks.HintWarning, match=r"the slider2? stands still all over the turn: the coupler2? is as long as"
+    ):
+        ks.solve(mechanism, 0.3, crank_speed=1.0)
+
+
+@pytest.mark.parametrize(
+    "mechanism",
+    [
+        ks.crank_slider(0.1, 0.1, assembly="open"),
+        ks.crank_slider(0.1, 0.1, guide_offset=0.01, assembly=-1),
+        ks.crank_slider(0.1, 0.1),
+        rockers_slider(0.3, -1),
+        rockers_slider(0.31),
+    ],
+)
+def test_sliders_that_move_are_not_warned_of(mechanism):
+    assert mechanism.hints == ()

@@ -122,7 +122,9 @@ def test_ingredient_of_no_effect_is_dropped_but_the_full_scene_stays_the_measure
 
 def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_models):
     mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
-    loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0)]
+    loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0), ks.Force(5.0, at="B")]
+    loads += [kind(5.0, on="coupler") for kind in (ks.Torque, ks.TorsionSpring, ks.TorsionDamper)]
+    loads += [kind(5.0, between=("A", (3.0, 3.0))) for kind in (ks.PointForce, ks.PointSpring, ks.PointDamper)]
     everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0), "O"))
     offered = simplifications.ingredients(mechanism).values()
     assert set(everything) == {choice.name for choices in offered for choice in choices}
@@ -199,6 +201,42 @@ def test_too_many_models_drop_what_changes_most(saw, monkeypatch):
     worst = max(everything.alone, key=lambda made: made.error).name
     assert not any(worst in made.simplifications for made in few.ladder)
     assert few.smallest.name == everything.smallest.name
+
+
+def test_a_six_bar_with_every_kind_of_load_runs_no_more_models_than_it_is_ready_to_and_says_so(monkeypatch):
+    """Its combinations would be tens of thousands."""
+    bar = MECHANISMS["four-bar"]
+    ram = ks.SliderGroup(1.5, ks.Guide.at(0.0, 0.2), on="B", pin="C", label="2", slider=ks.Link(2.0))
+    loads = (
+        ks.Gravity(),
+        ks.Spring(50.0, 2.0, on="slider2"),
+        ks.ProcessForce(-900.0, on="slider2"),
+        ks.Force(300.0, at="B"),
+        ks.Torque(20.0, on="rocker"),
+        ks.PointSpring(30.0, between=("B", (0.5, 1.0))),
+        ks.PointDamper(5.0, between=("A", (0.5, 1.0))),
+        ks.TorsionDamper(2.0, on="rocker"),
+    )
+    s = solved(ks.Mechanism("six-bar", bar.crank, (*bar.groups, ram)), loads, angle=TURN[::3])
+    assert ingredients.MOST_MODELS <= 2000
+    monkeypatch.setattr(ingredients, "MOST_MODELS", 40)
+    found = ks.needs(s, "balancing_torque")
+    assert found.tried <= 40
+    assert found.smallest.error <= 0.01
+    told = {name for name, why in found.left_out.items() if why.endswith("more than 40 models")}
+    kept = {name for model in found.ladder for name in model.simplifications}
+    assert told
+    assert not told & kept
+    assert min(made.error for made in found.alone if made.name in told) >= max(
+        (made.error for made in found.alone if made.name in kept), default=0.0
+    )
+
+
+@pytest.mark.parametrize("progress", [True, False])
+def test_a_bar_of_the_models_run_is_shown_unless_it_is_not_wanted(mower, monkeypatch, capsys, progress):
+    monkeypatch.setattr(ingredients, "SHOWN_AFTER", 0.0)
+    tried = ks.needs(mower, "balancing_torque", progress=progress).tried
+    assert (f"/{tried} " in capsys.readouterr().err) == progress
 
 
 # Simplified models
@@ -379,3 +417,30 @@ def test_harmonics_of_what_does_not_close_are_told_as_left_out():
     gapping = ks.crank_slider(1.0, 0.8, slider=ks.Link(1.0))
     found = ks.needs(solved(gapping, angle=np.linspace(-0.5, 0.5, 12)), "O")
     assert "does not close all around the turn" in found.left_out["one harmonic"]
+
+
+def test_needs_of_new_groups_and_loads_names_what_fails_alone_only():
+    """The guide through O would be out of reach of the ram: no reason to leave out harmonics."""
+    groups = (
+        ks.LeverGroup((0.0, -0.2), lever=ks.Link(8.0, 0.3, 0.4)),
+        ks.Pin(on="lever", at=(0.55, 0.0), name="C"),
+        ks.SliderGroup(0.3, ks.Guide.at(0.0, 0.33), on="C", slider=ks.Link(10.0)),
+    )
+    spring = ks.PointSpring(1e-6, 0.1, between=("C", (0.3, 0.0)))
+    s = ks.solve(ks.Mechanism("shaper", ks.Crank(0.1), groups), TURN, crank_speed=6.0, loads=spring)
+    found = ks.needs(s, "balancing_torque", within=1e-6)
+    assert found.smallest.name == "no point spring"
+    assert found.left_out == {}
+    assert "two harmonics" in {made.name for made in found.alone}
+
+
+def test_a_simplification_that_takes_a_slider_beyond_the_table_of_its_load_is_told_as_left_out():
+    """Harmonics miss the dead centres by microns, a guide moved to O by much more; the table ends there."""
+    machine = cranked(guide_offset=0.05)
+    ends = np.sort(ks.extremes(ks.solve(machine, TURN, crank_speed=SPEED), "slider_position").value)
+    table = ks.Table([*ends], [-90.0, -50.0], over="travel")
+    found = ks.needs(ks.solve(machine, TURN, crank_speed=SPEED, loads=ks.ProcessForce(table)), "balancing_torque")
+    for name in ("guide through O", "one harmonic"):
+        assert "but the table from" in found.left_out[name]
+        assert all(name not in model.simplifications for model in (*found.alone, *found.ladder))
+    assert found.smallest.error <= 0.01

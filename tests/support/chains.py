@@ -6,8 +6,9 @@ import numpy as np
 import kinetostatics as ks
 from kinetostatics.machine.group import FRAME
 from kinetostatics.mechanics.quantities import components, of_mechanism
+from kinetostatics.studies.methods import configurations
+from kinetostatics.studies.methods.constraints import Model
 from kinetostatics.studies.methods.independent import Machine, working_digits
-from kinetostatics.studies.methods.newton import Model
 
 KINDS = ("pin", "slider", "rocker", "dyad", "lever", "cylinder", "yoke")
 MARGIN = 0.05
@@ -130,7 +131,8 @@ def error_beside_constraints(solution):
     missing = set(outputs) - set(model.readings)
     assert not missing, missing
     pairs = {
-        name: [np.array(model.components(solution, name, q)), np.array(components(solution, name))] for name in outputs
+        name: [np.array(configurations.components(model, solution, name, q)), np.array(components(solution, name))]
+        for name in outputs
     }
     unit = max(np.abs(own).max() for _, own in pairs.values())
     return max(np.abs(found - own).max() for found, own in pairs.values()) / unit

@@ -32,7 +32,35 @@ def six_bar(mass=3.0):
     return ks.Scene(mechanism, 20.0, 0.0, ks.Gravity())
 
 
+def shaper(mass=8.0, stiffness=300.0, reach=0.55):
+    """A slotted lever, a ram on a pin of it, and a spring from the frame to that pin."""
+    groups = (
+        ks.LeverGroup((0.0, -0.2), lever=ks.Link(mass, 0.3, 0.4)),
+        ks.Pin(on="lever", at=(reach, 0.0), name="C"),
+        ks.SliderGroup(0.3, ks.Guide.at(0.0, 0.33), on="C", pin="D", slider=ks.Link(10.0)),
+    )
+    loads = ks.Gravity(), ks.PointSpring(stiffness, 0.1, between=("C", (0.3, 0.0)))
+    return ks.Scene(ks.Mechanism("shaper", ks.Crank(0.1), groups), 6.0, 0.0, loads)
+
+
+def engine(mass=2.0, force=500.0):
+    """A swinging cylinder and a yoke on one crank pin, under pressure, a torque and a damper."""
+    cylinder = ks.CylinderGroup((0.1, -0.4), rod=ks.Link(mass, 0.1, 0.02), cylinder=ks.Link(3.0, 0.1, 0.03))
+    yoke = ks.YokeGroup(ks.Guide.at(0.0), 1.2, label="2", slider=ks.Link(2.0))
+    loads = (
+        ks.PointForce(force, between=("A", "O2")),
+        ks.Torque(3.0, on="cylinder"),
+        ks.PointDamper(9.0, between=("B", (1, 1))),
+    )
+    return ks.Scene(ks.Mechanism("engine", ks.Crank(0.1), (cylinder, yoke)), 20.0, 0.0, loads)
+
+
 ROWS = [
+    (shaper(), "lever.mass [kg]", [7.0, 9.0], shaper),
+    (shaper(), "point_spring.stiffness", [200.0, 400.0], lambda stiffness: shaper(stiffness=stiffness)),
+    (shaper(), "pin_C.along", [0.54, 0.56], lambda reach: shaper(reach=reach)),
+    (engine(), "point_force.value", [-100.0, 900.0], lambda force: engine(force=force)),
+    (engine(), "rod.mass", [1.0, 3.0], engine),
     (six_bar(), "slider2.mass [kg]", [1.0, 3.0, 9.0], six_bar),
     (four_bar(), "coupler.mass [g]", [500.0, 4000.0], lambda mass: four_bar(1e-3 * mass)),
     (four_bar(), "crank_length", [0.05, 0.08], lambda length: four_bar(crank=length)),
@@ -153,3 +181,13 @@ def test_what_a_jump_of_a_load_does_to_a_peak_is_told_with_its_remedy(rise, reso
     table = sweep(scene, pd.DataFrame({"coupler_length": [0.3, 0.5]}), ["largest balancing_torque"], angles=360)
     assert table[FAILED].str.contains("if a load jumps, let it rise over a degree").tolist() == [not resolved] * 2
     assert table.iloc[:, 1].notna().tolist() == [resolved] * 2
+
+
+def test_spreads_and_data_sets_of_new_groups_and_loads(tmp_path):
+    spreads = {"point_spring.stiffness": "normal 300 N/m +- 3 N/m", "lever_pivot.y": "-0.201..-0.199 m"}
+    found = ks.tolerances(shaper(), "rms O2", spreads, count=16, progress=False, angles=24)
+    assert found.table["rms O2 [N]"].std() > 0
+    designs = pd.DataFrame({"lever.mass": np.linspace(7.0, 9.0, 5)})
+    first, again = (sweep(shaper(), designs, "rms O2", folder=tmp_path) for _ in range(2))
+    assert first.equals(again)
+    assert first.iloc[:, 1].is_monotonic_increasing

@@ -199,6 +199,13 @@ def test_workers_end_with_their_parent_however_it_ends(tmp_path, monkeypatch):
     assert waited(lambda: list(filter(alive, processes)), lambda found: not found) == []
 
 
+def test_workers_leave_signals_to_all_processes_to_their_parent(tidy):
+    """One that ended while it handed over a result would leave half of it, for whose rest the parent waits."""
+    with dispatch.Workers(count=1) as workers:
+        found = [workers.submit(signal.getsignal, number).result() for number in (signal.SIGINT, signal.SIGTERM)]
+    assert found == [signal.SIG_IGN, signal.SIG_IGN]
+
+
 def waited(look, enough, seconds=60):
     """What a look tells as soon as it is enough, or at last."""
     end = time.monotonic() + seconds

@@ -6,6 +6,8 @@ import pytest
 from matplotlib.animation import FuncAnimation, PillowWriter
 
 import kinetostatics as ks
+from kinetostatics.casefile.starters import starter
+from kinetostatics.views import figures
 
 PLOTS = {
     "torque": ks.plots.torque,
@@ -150,3 +152,60 @@ def test_hodograph_marks_that_fall_together_share_a_short_label(axes):
     )
     ks.plots.hodograph(solution, "O", ax=axes)
     assert {text.get_text() for text in axes.texts} == {"0°, 30° … 330°", "180°"}
+
+
+@pytest.mark.parametrize(("turns", "ticks"), [(1, [0, 90, 180, 270, 360]), (2, [0, 180, 360, 540, 720])])
+def test_curves_over_the_crank_angle_have_the_limits_of_the_period_and_ticks_at_its_quarters(axes, turns, ticks):
+    load = ks.ProcessForce(-100.0, period=2 * np.pi * turns)
+    machine = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
+    ks.plots.torque(ks.Scene(machine, 10.0, loads=load).solve(48 * turns), ax=axes)
+    assert list(axes.get_xticks()) == ticks
+    assert axes.get_xlim() == (0, ticks[-1])
+
+
+@pytest.mark.parametrize(("case", "relative"), [("chain_unit", True), ("four-bar", False)])
+def test_only_a_chain_unit_has_figures_of_its_study(tmp_path, monkeypatch, case, relative):
+    monkeypatch.setitem(figures.FIGURES, "overview", (None, lambda case: False))
+    if case == "four-bar":
+        path = tmp_path / "bars.toml"
+        path.write_text(starter("four-bar", "bars"))
+        case = path
+    drawn = {name for name, (_, applies) in figures.FIGURES.items() if applies(ks.load_case(case))}
+    assert ("rocker_velocity" in drawn) == relative
+    assert "mechanism" in drawn
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.5707963267948966])
+def test_mechanisms_fill_most_of_their_panels_in_one_direction_wide_or_tall(angle):
+    machine = ks.crank_slider(0.1, 0.4, guide_angle=angle, slider=ks.Link(1.0))
+    solution = ks.Scene(machine, 10.0).solve(24)
+    for figure, axes in (
+        (figures._overview({"a": solution, "b": solution}), 0),
+        (figures._mechanisms({"a": solution, "b": solution}), 0),
+    ):
+        figure.canvas.draw()
+        ax = figure.axes[axes]
+        shares = [
+            np.ptp(data) / np.ptp(seen)
+            for data, seen in ((ax.dataLim.intervalx, ax.get_xlim()), (ax.dataLim.intervaly, ax.get_ylim()))
+        ]
+        plt.close(figure)
+        assert min(shares) > 0.6
+
+
+SHAPES = {
+    "tall": ks.crank_slider(0.1, 0.4, guide_angle=1.57),
+    "square": ks.four_bar(0.1, 0.3, 0.3, rocker_pivot=(0.3, 0.1), coupler=ks.Link(1.0)),
+    "wide": ks.crank_slider(0.1, 0.5),
+}
+
+
+@pytest.mark.parametrize("variants", [1, 2, 3])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_an_overview_has_mechanism_torque_and_hodographs_whatever_the_proportions(shape, variants):
+    solution = ks.Scene(SHAPES[shape], 10.0, loads=ks.Gravity()).solve(24)
+    figure = figures._overview({str(number): solution for number in range(variants)})
+    plt.close(figure)
+    titles = [ax.get_title() for ax in figure.axes]
+    assert len(titles) == 2 + min(variants, 2)
+    assert titles[1] == "torque the drive must give"

@@ -3,6 +3,7 @@
 texts       numbers with units, and words in their place
 tables      links, cams, counterweights, files of values
 parts       groups and loads, by the rules of their classes
+drives      motors and flywheels
 variants    mechanisms, and the head of a file
 """
 

@@ -22,7 +22,7 @@ from ...machine.yoke_group import YokeGroup
 from ...numbers import checks
 from ...numbers.units import shown, to_si
 from .tables import Cam, LinkTable, Table, list_of, one_of, value_in
-from .texts import Angle, Coordinate, GuidePoints, Stiffness, reader
+from .texts import Angle, Coordinate, GuidePoints, Stiffness, pair_of, reader
 
 GUIDE = {
     "guide_angle": (Angle | None, None),
@@ -45,7 +45,7 @@ def field_of(rule) -> Any:
         return Annotated[float, BeforeValidator(reader(unit, low=rule.low, strict=rule.strict)), unit]
     if isinstance(rule, checks.Pair | Place | Between):
         return Annotated[Any, BeforeValidator(_numbers(rule)), rule]
-    return Annotated[Any, BeforeValidator(_by(rule))]
+    return Annotated[Any, BeforeValidator(by(rule))]
 
 
 def _spelled(unit):
@@ -53,11 +53,14 @@ def _spelled(unit):
     return unit.replace("**", "^").replace("*", " ")
 
 
-def _by(rule):
+def by(rule):
     """Function that takes a value by a rule."""
 
     def take(value):
         found, problem = rule.taken(value)
+        if problem and isinstance(rule, checks.Sign):
+            others = f", or one of {', '.join(map(repr, rule.words))}" if rule.words else ""
+            raise ValueError(f"must be 1 or -1{others}, found {shown(value)}")
         if problem:
             raise ValueError(problem.strip())
         return found
@@ -69,16 +72,7 @@ def _numbers(rule):
     """Function that takes a pair, a point or two of them, numbers as text."""
     if isinstance(rule, Between):
         return _two_places
-    return _place if isinstance(rule, Place) else _pair(_spelled(rule.unit))
-
-
-def _pair(unit):
-    def read(value):
-        if not isinstance(value, list) or len(value) != 2:
-            raise ValueError(f'must be a pair such as ["0.1 {unit}", "0 {unit}"], found {shown(value)}')
-        return tuple(to_si(part, unit) for part in value)
-
-    return read
+    return _place if isinstance(rule, Place) else pair_of(_spelled(rule.unit))
 
 
 _NUMBER = re.compile(r"\s*[-+−–]?[.,]?\d")
@@ -92,7 +86,7 @@ def _place(value):
         value = [*named, *(to_si(part, "m") for part in value[len(named) :])]
     elif not isinstance(value, str):
         raise ValueError(f"must be {POINT}, found {shown(value)}")
-    return _by(Place())(value)
+    return by(Place())(value)
 
 
 def _two_places(value):
@@ -115,8 +109,9 @@ def _table(word, kind, **other) -> Any:
         else:
             default = ... if defaults[name] is MISSING else defaults[name]
             found[name] = (other.get(name) or field_of(rule), default)
-    made = pydantic.create_model(f"{kind.__name__}Table", __base__=Table, **found)
+    made = pydantic.create_model(f"{kind.__name__}Table", __base__=Table, __module__=__name__, **found)
     MADE_OF[made] = kind
+    globals()[made.__name__] = made  # where pickle, on its way to workers, looks for it
     return made
 
 
@@ -143,5 +138,5 @@ def _tables(kinds):
     return {word: _table(word, kind, **OTHERS.get(kind, {})) for word, kind in kinds.items()}
 
 
-Groups = list_of(one_of("group", _tables(GROUPS)), "groups")
+Groups = list_of(one_of("group", _tables(GROUPS)), "groups", 1)
 Loads = list_of(one_of("load", _tables(LOADS)), "loads")

@@ -7,6 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Fiel
 
 from ...design.balancing import RATIOS
 from ...numbers.checks import choice, nearest
+from ...numbers.units import shown
 from .texts import (
     Angle,
     Centre,
@@ -50,19 +51,18 @@ def one_of(family, models: dict[str, Any]) -> Any:
 
     choices: Any = None
     for word, model in models.items():
-        tagged = Annotated[model, Tag(f"{family}:{word}")]
+        tagged: Any = Annotated[model, Tag(f"{family}:{word}")]
         choices = tagged if choices is None else choices | tagged
-    allowed = {"kinds": tuple(models)}
-    wrong = {"custom_error_type": "kind", "custom_error_message": "no such kind", "custom_error_context": allowed}
+    wrong: Any = {"custom_error_type": "kind", "custom_error_message": f"{family}:"}
     return Annotated[choices, Discriminator(tag, **wrong)]
 
 
-def list_of(kind, name) -> Any:
-    """Type of a list of tables."""
+def list_of(kind, name, least=0) -> Any:
+    """Type of a list of so many tables or more."""
 
     def read(value):
-        if not isinstance(value, list):
-            raise ValueError(f"must be a list of tables, each under [[{name}]]")
+        if not isinstance(value, list) or len(value) < least:
+            raise ValueError(f"must be a list of tables, each under [[{name}]], {least} at least, found {shown(value)}")
         return value
 
     return Annotated[tuple[kind, ...], BeforeValidator(read)]

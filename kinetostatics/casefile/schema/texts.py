@@ -54,11 +54,18 @@ def _stiffness(text):
     return text if text == BALANCE_THE_SLIDER else or_else(_STIFFNESS, f'"{BALANCE_THE_SLIDER}"')(text)
 
 
-def point(value):
-    """A pair of coordinates."""
-    if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f'must be a pair such as ["10 mm", "0 mm"], found {shown(value)}')
-    return tuple(to_si(part, "m") for part in value)
+def pair_of(unit):
+    """Function that reads a pair of texts with units."""
+
+    def read(value):
+        if not isinstance(value, list) or len(value) != 2:
+            raise ValueError(f'must be a pair such as ["0.1 {unit}", "0 {unit}"], found {shown(value)}')
+        return tuple(to_si(part, unit) for part in value)
+
+    return read
+
+
+point = pair_of("m")
 
 
 def _centre(value):

@@ -1,6 +1,6 @@
 """Variants by their mechanism, and the head of a case file."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -11,7 +11,8 @@ from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
 from ...numbers import checks
 from ...numbers.units import shown
-from .parts import Groups, Loads, field_of
+from .drives import DriveTable
+from .parts import Groups, Loads, by
 from .tables import BalancingTable, Cam, GravityTable, LinkTable, Table, value_in
 from .texts import (
     Angle,
@@ -26,11 +27,10 @@ from .texts import (
     Stiffness,
 )
 
-SliderAssembly = field_of(SliderGroup.RULES.rules["assembly"])
-RockerAssembly = field_of(RockerGroup.RULES.rules["assembly"])
-SlotOffset = field_of(LeverGroup.RULES.rules["offset"])
-ChainName = field_of(checks.Name())
-SlotAngle = field_of(YokeGroup.RULES.rules["slot_angle"])
+SliderAssembly = Annotated[Any, BeforeValidator(by(SliderGroup.RULES.rules["assembly"]))]
+RockerAssembly = Annotated[Any, BeforeValidator(by(RockerGroup.RULES.rules["assembly"]))]
+LeverAssembly = Annotated[Any, BeforeValidator(by(LeverGroup.RULES.rules["assembly"]))]
+Name = Annotated[Any, BeforeValidator(by(checks.Name()))]
 
 
 class SpringTable(Table):
@@ -78,7 +78,8 @@ class MechanismVariant(Table):
     crank: LinkTable = LinkTable()
     gravity: GravityTable | None = None
     balancing: BalancingTable | None = None
-    loads: Loads = ()  # type: ignore[valid-type]
+    drive: DriveTable | None = None
+    loads: Loads = ()
     friction: dict[str, FrictionTable] = Field(default_factory=dict)
 
 
@@ -86,9 +87,9 @@ class ChainVariant(MechanismVariant):
     """A crank and whatever groups hang on it."""
 
     mechanism: Literal["chain"] = "chain"
-    name: ChainName = "chain"
+    name: Name = "chain"
     crank_length: Length | None = None
-    groups: Annotated[Groups, Field(min_length=1)]  # type: ignore[valid-type]
+    groups: Groups
 
 
 class GuideVariant(MechanismVariant):
@@ -147,7 +148,8 @@ class SlottedLeverVariant(MechanismVariant):
     mechanism: Literal["slotted-lever"]
     crank_length: Length
     lever_pivot: Point
-    slot_offset: SlotOffset = 0.0
+    slot_offset: Coordinate = 0.0
+    assembly: LeverAssembly = 1
     lever: LinkTable = LinkTable()
     block: LinkTable = LinkTable()
 
@@ -155,7 +157,7 @@ class SlottedLeverVariant(MechanismVariant):
 class ScotchYokeVariant(GuideVariant):
     mechanism: Literal["scotch-yoke"]
     crank_length: Length
-    slot_angle: SlotAngle = YokeGroup.slot_angle
+    slot_angle: Angle = YokeGroup.slot_angle
     block: LinkTable = LinkTable()
 
 

@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any
 
 from ...numbers import checks
+from ...numbers.planar import added, dot, plus, product
 from ..crank import ray
+from ..links import arm
 from .load import Load
 
 
@@ -20,6 +22,18 @@ class Gravity(Load):
         m/s2.
     direction : float
         Angle of the direction it pulls in, from +x, rad; straight down (-pi/2) unless told.
+
+    Raises
+    ------
+    ParameterError
+        The acceleration is negative, or a value is no number or not finite.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+    >>> round(float(ks.solve(pump, 0.0, crank_speed=0.0, loads=ks.Gravity()).guide_force), 12)
+    9.81
     """
 
     acceleration: Any = 9.81
@@ -33,3 +47,12 @@ class Gravity(Load):
         """Components (x, y), m/s2."""
         x, y = ray(self.direction)
         return self.acceleration * x, self.acceleration * y
+
+    def potential(self, motion):
+        """Energy of all weights, J; zero at the height of O."""
+        links = motion.placement.links
+        return reduce(plus, (self._of_link(links[name], link.body) for name, link in motion.mechanism.links.items()))
+
+    def _of_link(self, motion, body):
+        centre = added(motion.joint.position, arm(motion.direction, body.along, body.across))
+        return product(body.mass, -dot(self.vector, centre))

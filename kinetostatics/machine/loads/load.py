@@ -8,16 +8,46 @@ A load is a frozen dataclass derived from `Load`. It acts in one of two ways:
 from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` names the field that may hold an array over
 the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what
 such a function gives in its place before (`settled` in mechanics/pushes.py). ``LENGTHS`` names the fields that hold
-lengths and angles of the geometry. ``misplaced(mechanism)`` says what of a mechanism it names wrongly,
-``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion.
+lengths and angles of the geometry. ``potential(motion)``, of loads that have one, is their potential energy, J.
+``misplaced(mechanism)`` says what of a mechanism it names wrongly,
+``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion; ``signs(motion)`` how it is drawn.
 """
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
+import numpy as np
+
+from ...errors import ParameterError
 from ...numbers import checks
 from ...numbers.batched import Batched
 from .period import TURN
 from .tables import Table
+
+
+class Sign(NamedTuple):
+    """How a load is drawn, in the poses of a motion.
+
+    Attributes
+    ----------
+    kind : "spring", "damper", "line", "force", "couple", "spiral" or "ring"
+        A spring, damper or line is drawn between two places, all else at the first.
+    start : array (2, N)
+    end : array (2, N), optional
+        Of a spring on a slider None: beside its guide, from the end of its way.
+    direction : array (2, N), optional
+        Of a force: unit vector of a positive one.
+    slider : str
+        That a spring is on.
+    sense : array (N,) or float
+        Of a force or couple: -1 where it acts against its positive sense.
+    """
+
+    kind: str
+    start: Any
+    end: Any = None
+    direction: Any = None
+    slider: str = ""
+    sense: Any = 1.0
 
 
 class Load(checks.Checked, Batched):
@@ -61,6 +91,34 @@ class Load(checks.Checked, Batched):
     def refusals(self, motion) -> Any:
         """Where it has no value, as sentences."""
         return ()
+
+    def signs(self, motion) -> Any:
+        """How it is drawn, each as a `Sign`."""
+        return ()
+
+    def sense(self, motion) -> Any:
+        """Sign of its value in the poses of a motion, 1 or -1.
+
+        Where it is zero or has none, as beyond a table, that of its largest; 1 for a function.
+        """
+        value = self.value_now
+        if isinstance(value, Table):
+            known, here = value.largest, _read(value, motion)
+        elif value is None or callable(value):
+            return 1.0
+        else:
+            known = np.asarray(value, dtype=float)
+            fits = known.ndim == 0 or any(item is self for item in motion.loads)
+            known, here = known.flat[np.argmax(np.abs(known))], known if fits else 0.0
+        return np.where(here == 0, -1.0 if known < 0 else 1.0, np.sign(here))
+
+
+def _read(table, motion):
+    """Values of a table in the poses of a motion; zero if it has none in one of them."""
+    try:
+        return table(motion)
+    except ParameterError:
+        return 0.0
 
 
 def is_given(item):

@@ -16,7 +16,7 @@ class WholeTurns:
         return value if value is TURN else checks.UNSURE
 
     def taken(self, value, field=""):
-        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+        number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
         turns = value / TURN if number else 0.0
         if round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns:
             many = f"{field} must be at most {MOST_TURNS} turns, got {round(turns):.6g}"

@@ -6,17 +6,20 @@ from typing import Any
 import numpy as np
 
 from ...numbers import checks
-from ...numbers.elementary import apart, divisor
-from ...numbers.planar import dot, length, stretched, subtracted, turned, vector
+from ...numbers.elementary import divisor, sqrt
+from ...numbers.planar import added, dot, length, stretched, subtracted, turned, vector
 from ..crank import ray
 from ..group import FRAME
 from ..links import present
 from . import places
-from .load import Load, valued
+from .load import Load, Sign, valued
 from .places import Between, Place, acting, carrier
 
 NEAR = 2.0**-50
-"""Distance of two points, relative to their coordinates, that is rounding and has no direction."""
+"""Distance of two points, relative to coordinates and lengths, that is rounding and has no direction."""
+MEETING, AHEAD = (8.0 * NEAR) ** 2, 2.0**23
+"""Square of the distance of two points, relative to their coordinates, at which they begin to meet; and how many times
+that distance their motion is followed there."""
 TINY = 1e-280
 """Square of a distance, m2, below which there is only zero."""
 
@@ -78,11 +81,20 @@ class Force(Load):
 
     def wrenches(self, motion):
         """Wrench on the link of its point."""
-        axis = None if self.along is None else motion.placement.links[self.along].direction
-        if present(self.direction) is not None:
-            axis = turned(ray(self.direction), axis)
+        axis = self._axis(motion)
         force = (self.value, 0.0) if axis is None else stretched(self.value, axis)
         yield acting(motion, self.at, force)
+
+    def _axis(self, motion):
+        """Unit vector of a positive force; None for +x."""
+        axis = None if self.along is None else motion.placement.links[self.along].direction
+        return axis if present(self.direction) is None else turned(ray(self.direction), axis)
+
+    def signs(self, motion):
+        """An arrow."""
+        axis = self._axis(motion)
+        direction = motion.as_vector((1.0, 0.0) if axis is None else axis)
+        yield Sign("force", motion.position(self.at), direction=direction, sense=self.sense(motion))
 
 
 class PointLoad(Load):
@@ -90,7 +102,7 @@ class PointLoad(Load):
 
     between: Any
 
-    REFUSES = True
+    REFUSES, SIGN = True, "line"
 
     def pull(self, motion) -> Any:
         """Force on the first point, N."""
@@ -117,6 +129,10 @@ class PointLoad(Load):
         for place, part in zip(self.between, (force, subtracted(None, force)), strict=True):
             yield acting(motion, place, part)
 
+    def signs(self, motion):
+        """Its sign between both points."""
+        yield Sign(self.SIGN, *map(motion.position, self.between))
+
     def _apart(self, motion):
         """Vector from the second point to the first."""
         first, second = (motion.spot(place).position for place in self.between)
@@ -128,18 +144,17 @@ class PointLoad(Load):
         if not isinstance(first, np.ndarray) or first.dtype != float:
             return
         with np.errstate(invalid="ignore"):
-            meet = np.hypot(*(first - second)) <= NEAR * np.maximum(np.hypot(*first), np.hypot(*second))
+            size = motion.mechanism.extent + np.maximum(np.hypot(*first), np.hypot(*second))
+            meet = np.hypot(*(first - second)) <= NEAR * size
         if meet.any():
             angle = np.broadcast_to(motion.crank_angle, meet.shape)[meet]
             many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))
-            wrong = checks.Problem(
+            yield checks.Problem(
                 f"{self.title}: the points meet at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} "
                 f"deg, so its force has no direction there; leave them out, or move a point off the line"
                 f"{self._remedy}",
-                None,
+                meet,
             )
-            wrong.designs = meet.any(axis=-1) if meet.ndim > 1 else None
-            yield wrong
 
     _remedy = ""
 
@@ -180,6 +195,17 @@ class PointForce(PointLoad):
         d = self._apart(motion)
         return stretched(self.value / length(d), d)
 
+    def signs(self, motion):
+        """A line between both points, and arrows that push them apart or pull them together."""
+        first, second = map(motion.position, self.between)
+        apart = first - second
+        with np.errstate(invalid="ignore"):
+            unit = apart / np.hypot(*apart)
+        yield Sign("line", first, second)
+        sense = self.sense(motion)
+        yield Sign("force", first, direction=unit, sense=sense)
+        yield Sign("force", second, direction=-unit, sense=sense)
+
 
 @dataclass(frozen=True, eq=False)
 class PointSpring(PointLoad):
@@ -212,7 +238,7 @@ class PointSpring(PointLoad):
     free_length: Any = 0.0
     between: Any = field(kw_only=True)
 
-    PATH, LENGTHS = "point_spring", ("free_length", "between")
+    PATH, LENGTHS, SIGN = "point_spring", ("free_length", "between"), "spring"
     RULES = checks.Rules(
         "point spring",
         stiffness=checks.Number("N/m", low=0.0),
@@ -228,6 +254,15 @@ class PointSpring(PointLoad):
             return stretched(-self.stiffness, d)
         distance = length(d)
         return stretched(-self.stiffness * ((distance - self.free_length) / distance), d)
+
+    def potential(self, motion):
+        """Energy stored, J."""
+        d = self._apart(motion)
+        square = dot(d, d)
+        if present(self.free_length) is not None:
+            elongation = length(d) - self.free_length
+            square = elongation * elongation
+        return 0.5 * self.stiffness * square
 
     def refusals(self, motion):
         """As for `PointForce`; nothing for a spring without free length."""
@@ -264,13 +299,25 @@ class PointDamper(PointLoad):
     coefficient: Any
     between: Any = field(kw_only=True)
 
-    PATH, LENGTHS, REFUSES = "point_damper", ("between",), False
+    PATH, LENGTHS, REFUSES, SIGN = "point_damper", ("between",), False, "damper"
     RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
 
     def pull(self, motion):
-        """Force on the first point, N; moved off zero along the velocity, the vector between them keeps a direction."""
-        first, second = (motion.spot(place).first for place in self.between)
-        slope = vector(subtracted(first, second))
-        d = tuple(apart(part, change) for part, change in zip(self._apart(motion), slope, strict=True))
+        """Force on the first point, N."""
+        d, slope = self._directed(motion)
         shortening = dot(d, slope) / divisor(dot(d, d), TINY)
         return stretched(-self.coefficient * motion.crank_speed * shortening, d)
+
+    def _directed(self, motion):
+        """Vector from the second point to the first, and its derivative by crank angle.
+
+        Where the points meet, and rounding is all that is left of the vector, it is moved along its derivative: that is
+        the direction in which they pass each other. The move fades with the fourth power of the distance.
+        """
+        first, second = (motion.spot(place) for place in self.between)
+        positions = [vector(spot.position) for spot in (first, second)]
+        slope, d = vector(subtracted(first.first, second.first)), vector(subtracted(*positions))
+        square = dot(slope, slope)
+        near = MEETING * (sum(dot(part, part) for part in positions) + square)
+        share = near / (near + dot(d, d) + TINY)
+        return added(d, stretched(AHEAD * sqrt(near / (square + TINY)) * share * share, slope)), slope

@@ -5,7 +5,7 @@ from typing import Any
 
 from ...numbers import checks
 from ..links import present
-from .load import Load, valued
+from .load import Load, Sign, valued
 from .period import TURN, WholeTurns
 from .tables import Table
 
@@ -21,7 +21,10 @@ class OnSlider(Load):
 
     def misplaced(self, mechanism):
         """Say if there is no such slider."""
-        yield checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+        problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
+        if problem and not mechanism.guides:
+            problem += f"; {mechanism.name} has no slider, a Force or PointSpring acts at any point"
+        yield problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +41,19 @@ class Spring(OnSlider):
         The slider it acts on.
     cubic : float or array
         N/m3: the force grows by so much times the cube of the elongation; negative for a spring that grows softer.
+
+    Raises
+    ------
+    ParameterError
+        The stiffness is negative, or a value no number or not finite; when a scene is made: there is no such slider.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2)
+    >>> pushed = ks.solve(pump, 1.5, crank_speed=0.0, loads=ks.Spring(1e3, 0.25))  # B is nearer to O: outwards
+    >>> bool(pushed.balancing_torque > 0)
+    True
     """
 
     stiffness: Any
@@ -72,6 +88,18 @@ class Spring(OnSlider):
             return -self.stiffness * elongation
         return -(self.stiffness + self.cubic * elongation * elongation) * elongation
 
+    def potential(self, motion):
+        """Energy stored, J."""
+        elongation = motion.elongation(self.free_position, self.on)
+        square = elongation * elongation
+        if present(self.cubic) is None:
+            return 0.5 * self.stiffness * square
+        return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
+
+    def signs(self, motion):
+        """A spring along the guide."""
+        yield Sign("spring", motion.position(motion.mechanism.references[self.on]), slider=self.on)
+
 
 @dataclass(frozen=True, eq=False)
 class ProcessForce(OnSlider):
@@ -88,6 +116,21 @@ class ProcessForce(OnSlider):
         The slider it acts on.
     period : float
         Crank angle after which the force repeats, rad: 2 pi unless told, 4 pi for a four-stroke engine.
+
+    Raises
+    ------
+    ParameterError
+        A value is no number or not finite, or the period no whole number of turns; when a scene is made: there is no
+        such slider.
+
+    Examples
+    --------
+    >>> import math
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2)
+    >>> s = ks.solve(pump, math.pi / 2, crank_speed=10.0, loads=ks.ProcessForce(-200.0))
+    >>> round(float(s.balancing_torque), 12)  # B moves by -0.05 m/rad: the force drives
+    -10.0
     """
 
     force: Any
@@ -118,3 +161,9 @@ class ProcessForce(OnSlider):
     def push(self, motion):
         """Force on the slider along the guide, N."""
         return self.force
+
+    def signs(self, motion):
+        """An arrow along the guide."""
+        mechanism = motion.mechanism
+        along = motion.as_vector(mechanism.guides[self.on].direction)
+        yield Sign("force", motion.position(mechanism.references[self.on]), direction=along, sense=self.sense(motion))

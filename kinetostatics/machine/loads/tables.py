@@ -1,5 +1,6 @@
 """Tables of values for loads: by crank angle, or by the travel of a slider."""
 
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +18,8 @@ SAMPLES = 720
 """Crank angles a turn between which the kinks of a table over travel are found."""
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
+BACKWARDS = re.compile("back|return", re.IGNORECASE)
+"""What a heading has that is meant for a stroke back."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +119,7 @@ class Table:
         path : path
             First column ``crank_angle [deg]`` or ``travel [mm]``; then ``force [kN]``, ``torque [N m]``, or with an
             `area` ``pressure [bar]``; over travel the same for the stroke back, if any, headed ``force_back [kN]``
-            and so on.
+            and so on. Before the heading there may be lines of comment that begin with ``#``.
         unit : "N" or "N m"
             Of the load.
         area : float, optional
@@ -148,6 +151,14 @@ class Table:
         of = unit.replace(" ", "*") if area is None else "Pa"
         value = VALUES[of]
         back = over == "travel" and f"{value}_back" in names
+        read = [f"{value}_back"] if back else []
+        others = [f"{name}_back" for name in names if name != value]
+        unread = [name for name in names if BACKWARDS.search(name) and name not in (*read, *others)]
+        if unread:
+            wanted = (
+                f"the stroke back is headed {value}_back" if over == "travel" else "a stroke back stands over travel"
+            )
+            raise CaseError(path, [f"column {unread[0]!r} would not be read: {wanted}; rename it, or leave it out"])
         x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
         y, back, *_ = *(part if area is None else area * part for part in values), None
         try:
@@ -169,6 +180,12 @@ class Table:
     def back(self):
         """Values of the stroke with negative velocity; None where there are no others."""
         return self.rows.back
+
+    @property
+    def largest(self):
+        """Value of largest magnitude, with its sign."""
+        values = self.y if self.back is None else np.concatenate([self.y, self.back])
+        return float(values[np.argmax(np.abs(values))])
 
     def of(self, slider):
         """The table read by the travel of a slider unless it names one itself."""
@@ -227,21 +244,25 @@ class Table:
         forward = np.where(np.asarray(motion.crank_speed) < 0, -1.0, 1.0)
         return forward * motion.placement.travels[self._slider(motion)].first < 0
 
+    def period_on(self, mechanism):
+        """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""
+        return self.period if self.over == "angle" else TURN * mechanism.turns
+
     def kinks(self, motion):
-        """Crank angles (K,) in a turn, or its period, at which it has kinks, and (J,) at which it may jump.
+        """Crank angles (K,) in its period on a mechanism at which it has kinks, and (J,) at which it may jump.
 
         Those over travel lie where the slider passes a row, and at the ends of its strokes.
         """
         if self.over == "angle":
             return np.mod(self.x, self.period), np.empty(0)
-        name, grid = self._slider(motion), np.linspace(0.0, TURN, SAMPLES + 1)
+        name, turns = self._slider(motion), motion.mechanism.turns
 
         def travel(angle):
             return motion.mechanism.place(angle).travels[name]
 
-        ends = _roots(lambda angle: travel(angle).first, grid)
-        rows = [_roots(lambda angle, row=row: travel(angle).position - row, grid) for row in self.x.tolist()]
-        return np.concatenate([ends, *rows]), ends if self.back is not None else np.empty(0)
+        ends = _passed(lambda angle: travel(angle).first, np.zeros(1), turns)
+        passed = _passed(lambda angle: travel(angle).position, self.x, turns)
+        return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
     @property
     def _content(self):
@@ -264,17 +285,20 @@ def _piece(x, place):
     return np.clip(np.searchsorted(x, place, side="right") - 1, 0, x.size - 2)
 
 
-def _roots(function, grid):
-    """Crank angles at which a function of it changes its sign, between those of a grid."""
+def _passed(function, levels, turns):
+    """Crank angles in so many turns at which a function of it passes some levels."""
     from scipy.optimize import elementwise
 
+    grid = np.linspace(0.0, TURN * turns, SAMPLES * turns + 1)
+    above = np.broadcast_to(function(grid), grid.shape) - levels[:, None]
+    _, exact = np.nonzero(above[:, :-1] == 0)
     with np.errstate(invalid="ignore"):
-        values = np.broadcast_to(function(grid), grid.shape)
-        change = np.flatnonzero(np.diff(np.sign(values)) * np.isfinite(values[:-1] * values[1:]))
-        exact = grid[:-1][values[:-1] == 0]
-        between = change[(values[change] != 0) & (values[change + 1] != 0)]
-    found = elementwise.find_root(function, (grid[between], grid[between + 1])).x if between.size else between
-    return np.mod(np.concatenate([exact, found]), TURN)
+        level, before = np.nonzero(above[:, :-1] * above[:, 1:] < 0)
+    if not before.size:
+        return grid[exact]
+    bracket, given = (grid[before], grid[before + 1]), (levels[level],)
+    found = elementwise.find_root(lambda angle, level: function(angle) - level, bracket, args=given).x
+    return np.mod(np.concatenate([grid[exact], found]), TURN * turns)
 
 
 def _area(value):

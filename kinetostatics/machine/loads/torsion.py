@@ -12,7 +12,7 @@ from ...numbers.planar import minus, number, product, unturned
 from ..crank import ray
 from ..group import FRAME
 from ..links import Wrench, present
-from .load import Load, valued
+from .load import Load, Sign, valued
 from .period import TURN
 
 SAMPLES = 720
@@ -25,7 +25,7 @@ class Couple(Load):
     on: str
     against: Any
 
-    UNIT = "N m"
+    UNIT, SIGN = "N m", "couple"
 
     def couple(self, motion) -> Any:
         """Couple on the link, N m."""
@@ -50,6 +50,10 @@ class Couple(Load):
         yield self.on, Wrench(None, couple)
         if self._other is not None:
             yield self._other, Wrench(None, minus(None, couple))
+
+    def signs(self, motion):
+        """A sign at the link's reference joint."""
+        yield Sign(self.SIGN, motion.position(motion.mechanism.references[self.on]), sense=self.sense(motion))
 
     @property
     def _other(self):
@@ -136,7 +140,7 @@ class TorsionSpring(Couple):
     against: Any = field(default=None, kw_only=True)
     moment: Any = field(default=0.0, kw_only=True)
 
-    PATH, LENGTHS, REFUSES = "torsion_spring", ("free_angle",), True
+    PATH, LENGTHS, REFUSES, SIGN = "torsion_spring", ("free_angle",), True, "spiral"
     RULES = checks.Rules(
         "torsion spring",
         stiffness=checks.Number("N*m/rad", low=0.0),
@@ -148,8 +152,17 @@ class TorsionSpring(Couple):
 
     def couple(self, motion):
         """Couple on the link, N m."""
+        return minus(present(self.moment), self.stiffness * self._angle(motion))
+
+    def potential(self, motion):
+        """Energy stored, J; none where it is free."""
+        angle = self._angle(motion)
+        return minus(0.5 * self.stiffness * angle * angle, product(present(self.moment), angle))
+
+    def _angle(self, motion):
+        """Angle of the link from where the spring is free."""
         cosine, sine = self._leaning(motion.placement)
-        return minus(present(self.moment), self.stiffness * (2.0 * atan(sine / (1.0 + cosine))))
+        return 2.0 * atan(sine / (1.0 + cosine))
 
     def _leaning(self, placement):
         """Unit vector of the link as seen from where the spring is free."""
@@ -168,26 +181,26 @@ class TorsionSpring(Couple):
         return known[key]
 
     def _passing(self, mechanism):
-        grid = np.linspace(0.0, TURN, SAMPLES + 1)
+        grid = np.linspace(0.0, TURN * mechanism.turns, SAMPLES * mechanism.turns + 1)
         parts = self._leaning(mechanism.place(grid))
         if not all(isinstance(part, float | np.ndarray) and checks.known(part) for part in parts):
             return
-        angle = np.atleast_1d(np.arctan2(*np.broadcast_arrays(*parts)[::-1]))
+        angle = np.arctan2(*np.broadcast_arrays(*parts, grid)[1::-1])
         step = np.diff(angle, axis=-1)
         with np.errstate(invalid="ignore"):
             passing = np.abs(step) > np.pi
+            turns = np.round(np.sum(step - TURN * np.round(step / TURN), axis=-1) / TURN)
+        passing[..., -1] |= (np.abs(turns) > 0) & ~passing.any(axis=-1)  # at the very end of the period
         if not passing.any():
             return
-        turns = np.round(np.sum(step - TURN * np.round(step / TURN), axis=-1) / TURN)
         full = "it makes full turns" if np.any(turns) else "give a free angle nearer to it"
         places = np.unique(np.nonzero(passing)[-1])
         many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
-        wrong = checks.Problem(
+        yield checks.Problem(
             f"{self.title}: the link passes half a turn from the free angle at crank angle "
             f"{many}{' ...' if places.size > 4 else ''} deg, where the couple would jump; {full}",
+            passing,
         )
-        wrong.designs = passing.any(axis=-1) if passing.ndim > 1 else None
-        yield wrong
 
 
 _LOOKED_AT: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
@@ -223,7 +236,7 @@ class TorsionDamper(Couple):
     on: str = field(kw_only=True)
     against: Any = field(default=None, kw_only=True)
 
-    PATH = "torsion_damper"
+    PATH, SIGN = "torsion_damper", "ring"
     RULES = checks.Rules(
         "torsion damper",
         coefficient=checks.Number("N*m*s/rad", low=0.0),

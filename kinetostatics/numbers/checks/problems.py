@@ -9,13 +9,16 @@ from ...errors import ParameterError
 
 
 class Problem(str):
-    """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all."""
+    """What is wrong with a value, as a sentence; `designs` tells which of a batch have it, None all.
+
+    `wrong` tells it of each value of an array (designs, N).
+    """
 
     designs: Any
 
     def __new__(cls, text, wrong=None):
         made = super().__new__(cls, text)
-        made.designs = wrong[..., 0] if np.ndim(wrong) > 1 else None
+        made.designs = np.any(wrong, axis=-1) if np.ndim(wrong) > 1 else None
         return made
 
 
@@ -102,7 +105,7 @@ def choice(name, value, allowed):
     """What is wrong with a name that must be one of `allowed`; names the nearest."""
     if (type(value) is str and value in allowed) or any(value is word for word in allowed):
         return None
-    return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed))}{hint(value, allowed)}"
+    return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed)) or 'none'}{hint(value, allowed)}"
 
 
 def hint(value, allowed):

@@ -11,8 +11,6 @@ import numpy as np
 
 from ...errors import NotGivenError
 from ...machine.cam_roller import CamRoller
-from ...machine.cams import Circle, CosineLaw
-from ...machine.change_points import FAR, MEETING, NEAR, SIDES, parted
 from ...machine.cylinder_group import CylinderGroup
 from ...machine.dyad import Dyad
 from ...machine.group import FRAME, TRAVELS
@@ -26,6 +24,7 @@ from ...mechanics.quantities import RATES
 from ...numbers import checks
 from .acting import Acting
 from .enclosures import library, on_arb, require_one_design
+from .postures import Posture, cross, dot, left, of_kind
 
 
 def independent(solution, quantity, indices: Iterable[int], digits=30):
@@ -67,7 +66,7 @@ def working_digits(digits):
     return 6 * digits + 60
 
 
-class Machine(Acting):
+class Machine(Posture, Acting):
     """A mechanism at one crank angle in mpmath numbers; a planar vector is a complex number.
 
     `position`, `velocity` and `acceleration` are tables by kind ("joint", "centre" of mass, "direction") and name.
@@ -85,119 +84,6 @@ class Machine(Acting):
         self.velocity = {key: (ahead[key] - back[key]) / (2 * h) for key in here}
         self.acceleration = {key: (ahead[key] - 2 * here[key] + back[key]) / h**2 for key in here}
 
-    def number(self, value):
-        values = np.ravel(value)
-        return self.mp.mpf(float(values[self.index if values.size > 1 else 0]))
-
-    def vector(self, pair):
-        return self.mp.mpc(*map(self.number, pair))
-
-    # Positions, by angles
-
-    def table(self, angle):
-        """Joints, mass centres and directions of links at a crank angle."""
-        ray = self.mp.expj(angle)
-        self._angle = angle
-        joints, links = {"O": self.mp.mpc(0)}, {"crank": ("O", ray)}
-        if self.mechanism.crank.length is not None:
-            joints["A"] = self.number(self.mechanism.crank.length) * ray
-        for group in self.mechanism.groups:
-            if isinstance(group, CamRoller):
-                joints["A"], links["block"] = self.roller(group.cam, angle), ("A", ray)
-            else:
-                _of_kind(ADD, group)(self, group, joints, links)
-        found = {("joint", name): place for name, place in joints.items()}
-        for name, (joint, direction) in links.items():
-            found["centre", name] = joints[joint] + self.vector(self.mechanism.links[name].centre) * direction
-            found["direction", name] = direction
-        return found
-
-    def side(self, group):
-        """Side of a group, which changes at each change point that it passes."""
-        side = SIDES.get(group.assembly, group.assembly)
-        if not group.passes:
-            return side
-        (kind, _), slides = parted(group.passage), isinstance(group, SliderGroup)
-        start = -1j * self.vector(group.guide.direction) if slides else self.vector(group.pivot)
-        psi = self._angle - self.mp.arg(start)
-        passed = {FAR: self.mp.cos(psi / 2), NEAR: self.mp.sin(psi / 2), MEETING: self.mp.sin(psi / 2)}
-        return side * self.mp.sign(passed.get(kind, self.mp.sin(psi)))
-
-    def add_slider(self, group, joints, links):
-        mp, side = self.mp, self.side(group)
-        coupler, slider = group.links
-        start, length = joints[group.on], self.number(group.coupler_length)
-        along = self.vector(group.guide.direction)
-        along /= abs(along)
-        lean = mp.asin((self.number(group.guide.guide_offset) - _cross(along, start)) / length)
-        direction = mp.expj(mp.arg(along) + (lean if side > 0 else mp.pi - lean))
-        joints[group.pin] = start + length * direction
-        links[coupler], links[slider] = (group.on, direction), (group.pin, along)
-
-    def add_rocker(self, group, joints, links):
-        mp, side = self.mp, self.side(group)
-        coupler, rocker = group.links
-        start, pivot = joints[group.on], self.vector(group.pivot)
-        c, h, a = self.number(group.coupler_length), self.number(group.rocker_length), abs(pivot - start)
-        opening = mp.acos((a * a + c * c - h * h) / (2 * a * c))
-        direction = mp.expj(mp.arg(pivot - start) + side * opening)
-        joints[group.pin], joints[group.pivot_name] = start + c * direction, pivot
-        links[coupler], links[rocker] = (group.on, direction), (group.pivot_name, (joints[group.pin] - pivot) / h)
-
-    def add_dyad(self, group, joints, links):
-        mp = self.mp
-        first, second = (joints[name] for name in group.on)
-        a, b, d = self.number(group.length1), self.number(group.length2), abs(second - first)
-        opening = mp.acos((d * d + a * a - b * b) / (2 * d * a))
-        direction = mp.expj(mp.arg(second - first) + group.assembly * opening)
-        joints[group.pin] = first + a * direction
-        directions = direction, (joints[group.pin] - second) / b
-        links |= {link: part for link, *part in zip(group.links, group.on, directions, strict=True)}
-
-    def add_pin(self, group, joints, links):
-        joint, direction = ("O", 1) if group.on == FRAME else links[group.on]
-        joints[group.name] = joints[joint] + self.vector(group.at) * direction
-
-    def add_lever(self, group, joints, links):
-        mp = self.mp
-        lever, block = group.links
-        joints[group.pivot_name] = pivot = self.vector(group.pivot)
-        to_pin = joints[group.on] - pivot
-        direction = mp.expj(mp.arg(to_pin) - mp.asin(self.number(group.offset) / abs(to_pin)))
-        links[lever], links[block] = (group.pivot_name, direction), (group.on, direction)
-
-    def add_cylinder(self, group, joints, links):
-        rod, cylinder = group.links
-        joints[group.pivot_name] = pivot = self.vector(group.pivot)
-        direction = self.mp.expj(self.mp.arg(joints[group.on] - pivot))
-        links[rod], links[cylinder] = (group.on, -direction), (group.pivot_name, direction)
-
-    def add_yoke(self, group, joints, links):
-        block, slider = group.links
-        along = self.vector(group.guide.direction)
-        along /= abs(along)
-        way = along * self.mp.expj(self.number(group.slot_angle))
-        foot = _left(along) * self.number(group.guide.guide_offset)
-        joints[group.pin] = foot + _cross(joints[group.on] - foot, way) / _cross(along, way) * along
-        links[block], links[slider] = (group.on, way), (group.pin, along)
-
-    def roller(self, cam, angle):
-        """Roller centre A on the crank ray."""
-        mp = self.mp
-        if isinstance(cam, Circle):  # sine rule in the triangle of O, centre and A
-            centre, radius = self.vector(cam.centre), self.number(cam.pitch_radius)
-            return centre + radius * mp.expj(angle - mp.asin(_cross(mp.expj(angle), centre) / radius))
-        if isinstance(cam, CosineLaw):  # at the critical length from B: radicand as it stands, root with a sign
-            a, b = self.number(cam.amplitude), self.number(cam.mean)
-            turning = mp.acos((mp.sqrt(b * b + 8 * a * a) - b) / (4 * a))
-            length = (b + a * mp.cos(turning)) * mp.sin(turning)
-            from_guide = angle - self.number(cam.guide_angle)
-            slider = b + a * mp.cos(from_guide)
-            root = mp.sqrt(length**2 - (slider * mp.sin(from_guide)) ** 2)
-            side = mp.sign(mp.cos(from_guide) - mp.cos(turning))
-            return (slider * mp.cos(from_guide) - side * root) * mp.expj(angle)
-        raise NotGivenError(f"there is no independent formula for cam {type(cam).__name__}")
-
     def components(self, quantity):
         """Components of a quantity."""
         links = self.mechanism.links
@@ -208,10 +94,10 @@ class Machine(Acting):
         if travel and slider in self.mechanism.guides:
             table = (self.position, self.velocity, self.acceleration)[TRAVELS.index(travel)]
             pin = self.mechanism.references[slider]
-            found = _dot(self.position["direction", slider], table["joint", pin])
+            found = dot(self.position["direction", slider], table["joint", pin])
         elif ending and link in links:
             table = self.velocity if ending == "_rate" else self.acceleration
-            found = _cross(self.position["direction", link], table["direction", link])
+            found = cross(self.position["direction", link], table["direction", link])
         else:
             forces = self.forces()
             if quantity not in forces:
@@ -231,12 +117,12 @@ class Machine(Acting):
         shaking = {}
         for name, link in links.items():
             mass, at = self.number(link.mass), self.position["centre", name]
-            turning = _cross(self.position["direction", name], self.acceleration["direction", name])
+            turning = cross(self.position["direction", name], self.acceleration["direction", name])
             shaking[name] = -mass * self.acceleration["centre", name], -self.number(link.inertia) * turning
             self.enter(right, 0, name, at, -shaking[name][0] - mass * self.gravity(), -shaking[name][1])
         for name in self.mechanism.guides:
             pin, along = self.position["joint", self.mechanism.references[name]], self.position["direction", name]
-            self.enter(right, 0, name, pin, -self.push(name, _dot(along, pin)) * along, 0)
+            self.enter(right, 0, name, pin, -self.push(name, dot(along, pin)) * along, 0)
         for item in self.solution.loads:
             if not isinstance(item, Gravity | Spring | ProcessForce) and isinstance(item, Load):
                 for name, force, at, couple in self.of(item):
@@ -248,9 +134,9 @@ class Machine(Acting):
             found[name] = found.get(name, 0) + size * force if name in self.solution.reactions else size
         for group in self.mechanism.groups:
             for name in group.guides:
-                normal = _left(self.position["direction", name])
+                normal = left(self.position["direction", name])
                 found["guide" + group.label] = found["guide_force" + group.label] * normal
-        turning = (_cross(self.position["centre", name], force) + moment for name, (force, moment) in shaking.items())
+        turning = (cross(self.position["centre", name], force) + moment for name, (force, moment) in shaking.items())
         return found | {
             "balancing_torque_by_power": found["balancing_torque"],
             "shaking_force": sum(force for force, _ in shaking.values()),
@@ -263,7 +149,7 @@ class Machine(Acting):
             row = 3 * list(self.mechanism.links).index(link)
             matrix[row, column] += self.mp.re(force)
             matrix[row + 1, column] += self.mp.im(force)
-            matrix[row + 2, column] += moment + _cross(at - self.position["centre", link], force)
+            matrix[row + 2, column] += moment + cross(at - self.position["centre", link], force)
 
     def unknowns(self):
         """Unit wrenches: name, force, moment, point, link it acts on, link it comes from (None: ground)."""
@@ -272,7 +158,7 @@ class Machine(Acting):
         found: list[tuple[Any, ...]] = [("O", part, 0, at["O"], "crank", None) for part in self.parts]
         found.append(("balancing_torque", none, 1, at["O"], "crank", None))
         for group in self.mechanism.groups:
-            found += _of_kind(UNKNOWN, group)(self, group, at)
+            found += of_kind(UNKNOWN, group)(self, group, at)
         return found
 
     def held(self, name, joint, at, link):
@@ -282,12 +168,12 @@ class Machine(Acting):
 
     def slid(self, kind, label, at, direction, link, other):
         """Force and moment of a sliding pair, on a link from another (None: ground), about a place."""
-        yield kind + "_force" + label, _left(direction), 0, at, link, other
+        yield kind + "_force" + label, left(direction), 0, at, link, other
         yield kind + "_moment" + label, self.mp.mpc(0), 1, at, link, other
 
     def of_roller(self, group, at):
         ahead, back = (self.roller(group.cam, self.angle + step) for step in (self.step, -self.step))
-        inward = _left((ahead - back) / abs(ahead - back))
+        inward = left((ahead - back) / abs(ahead - back))
         slot = self.slid("slot", "", at["A"], self.position["direction", "crank"], "block", "crank")
         return [*slot, ("cam_force", inward, 0, at["A"], "block", None)]
 
@@ -366,7 +252,7 @@ class Machine(Acting):
         """Reference joint, axis, velocity of the joint and angular velocity of a link."""
         joint, axis = self.mechanism.references[link], self.position["direction", link]
         shift = self.velocity["joint", joint]
-        return self.position["joint", joint], axis, shift, _cross(axis, self.velocity["direction", link])
+        return self.position["joint", joint], axis, shift, cross(axis, self.velocity["direction", link])
 
     def given(self, place):
         """Value of a load that is a function of the motion, which no formula but the user's own can give."""
@@ -376,16 +262,6 @@ class Machine(Acting):
             return self.mp.mpf(values[self.index if values.size > 1 else 0])
 
 
-ADD: Any = {
-    SliderGroup: Machine.add_slider,
-    RockerGroup: Machine.add_rocker,
-    Dyad: Machine.add_dyad,
-    Pin: Machine.add_pin,
-    LeverGroup: Machine.add_lever,
-    CylinderGroup: Machine.add_cylinder,
-    YokeGroup: Machine.add_yoke,
-}
-"""How each kind of group is placed."""
 UNKNOWN: Any = {
     CamRoller: Machine.of_roller,
     SliderGroup: Machine.of_slider,
@@ -397,22 +273,3 @@ UNKNOWN: Any = {
     YokeGroup: Machine.of_yoke,
 }
 """What each kind of group adds to the unknown wrenches."""
-
-
-def _of_kind(table, group):
-    for kind in type(group).__mro__:
-        if kind in table:
-            return table[kind]
-    raise NotGivenError(f"there is no independent formula for a {type(group).__name__}")
-
-
-def _left(a):
-    return a * 1j
-
-
-def _dot(a, b):
-    return (a.conjugate() * b).real
-
-
-def _cross(a, b):
-    return (a.conjugate() * b).imag

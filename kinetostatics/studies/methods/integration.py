@@ -1,6 +1,6 @@
 """Constrained multibody integration over the turn at constant crank speed, drift held by Baumgarte terms or projection.
 
-The crank angle itself is the time, and the drive a constraint that depends on it. The constraint equations of `newton`,
+The crank angle itself is the time, and the drive a constraint that depends on it. The equations of `constraints`,
 differentiated twice, make ordinary differential equations (index 1; Hairer and Wanner, *Solving Ordinary Differential
 Equations II*), which DOP853 integrates:
 
@@ -17,8 +17,9 @@ projection  where results are asked for, one Newton iteration puts q back and J 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from .configurations import Configuration, components
 from .method import Method, NotGivenError
-from .newton import Configuration, modelled, table
+from .newton import modelled, table
 
 DAMPING = 1.0
 """Baumgarte's a = alpha = beta, per rad; in time, the crank speed. Over one turn drift stays near the tolerance even
@@ -51,8 +52,8 @@ def _integrating(damping, projected):
                 raise NotGivenError(f"integration stops: {found.message}")
             q, rates = np.split(found.y.T, 2, axis=1)
             if projected:
-                return model.components(solution, quantity, Configuration(model, q, angle).corrected())
-            return model.components(solution, quantity, q, rates * solution.crank_speed)
+                return components(model, solution, quantity, Configuration(model, q, angle).corrected())
+            return components(model, solution, quantity, q, rates * solution.crank_speed)
 
         return run
 

@@ -118,7 +118,9 @@ def loading(loads):
     number = all(isinstance(item.force, int | float) for item in pushes)
     linear = len(springs) < 2 and all(isinstance(item.cubic, float) and item.cubic == 0 for item in springs)
     if len(weights) + len(springs) + len(pushes) < len(loads) or not linear or not number:
-        raise NotGivenError("SymPy's Kane method takes gravity, one linear spring, and process forces that are numbers")
+        raise NotGivenError(
+            "SymPy's Kane method takes gravity, one spring without cubic term, and process forces that are numbers"
+        )
     stiffness, free = (springs[0].stiffness, springs[0].free_position) if springs else (0, 0)
     pull = [sum(parts) for parts in zip((0, 0), *(item.vector for item in weights), strict=True)]
     push = sum(item.force for item in pushes)

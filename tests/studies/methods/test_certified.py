@@ -180,7 +180,7 @@ def test_what_is_zero_but_for_rounding_is_given_up():
     ("module", "kernel", "field", "name", "quantity"),
     [
         (slider_group, "place", "sine", "plain", "balancing_torque"),
-        (slider_group, "resolve", "guide_force", "six-bar", "guide2"),
+        (slider_group, "resolve", "guide_force", "six-bar", "guide_force2"),
         (rocker_group, "place", "divisor", "six-bar", "O2"),
         (cam_roller, "resolve", "slot", "circle", "slot_force"),
     ],

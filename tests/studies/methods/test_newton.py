@@ -9,7 +9,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS, Group
 from kinetostatics.mechanics import quantities
-from kinetostatics.studies.methods import integration, newton
+from kinetostatics.studies.methods import configurations, constraints, integration, newton
 from kinetostatics.studies.methods.method import NotGivenError
 from support.machines import CLOSE, KINDS, LINKS, Machine, largest
 
@@ -68,10 +68,10 @@ every_mechanism = pytest.mark.parametrize("name", [*KINDS, *CHAINS])
 def test_global_system_gives_every_quantity_of_the_closed_forms(name):
     """At the table's own positions, which continuation finds from one position of the library."""
     s = solved(name)
-    model = newton.Model(s.mechanism)
+    model = constraints.Model(s.mechanism)
     angle, positions, _ = newton.table(model, TURN)
     s = solved(name, angle)
-    errors = {wanted: error(s, wanted, model.components(s, wanted, positions)) for wanted in names(s)}
+    errors = {wanted: error(s, wanted, configurations.components(model, s, wanted, positions)) for wanted in names(s)}
     assert {wanted: value for wanted, value in errors.items() if not value < CLOSE} == {}
 
 
@@ -135,3 +135,14 @@ def test_integration_refuses_all_but_constant_speed_and_angles_that_rise_within_
     ):
         with pytest.raises(NotGivenError, match="integration runs"):
             method.prepare(replace(s, **change), "O", 1e-6)
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.errors.ConditionWarning")
+def test_singular_equations_at_a_change_point_passed_are_refused_in_one_line():
+    deltoid = ks.four_bar(0.1, 0.2, 0.2, rocker_pivot=(0.1, 0.0), assembly="open", coupler=ks.Link(1.0, 0.1))
+    s = ks.solve(deltoid, np.linspace(0.0, 6.0, 7), crank_speed=10.0)
+    for method in (NEWTON, *integration.METHODS):
+        with pytest.raises(
+            NotGivenError, match="four-bar passes change points, where constraint equations are singular"
+        ):
+            method.prepare(s, "balancing_torque", method.settings[-1])()

@@ -99,7 +99,7 @@ MISPLACED = {
     "one link": (lambda: ks.PointForce(1.0, between=("B", ("rocker", 0.1))), "both points are of the rocker"),
     "frame": (lambda: ks.PointDamper(1.0, between=((0.0, 0.1), (1.0, 1.0))), "both points are fixed to the frame"),
     "slider": (lambda: ks.Spring(1.0, 0.0, cubic=3.0), "Spring: on is 'slider', allowed: 'slider2'"),
-    "a class": (lambda: ks.Torque, "loads must be of Gravity, Spring"),
+    "a class": (lambda: ks.Torque, "loads must be Gravity, Spring"),
 }
 
 
@@ -158,6 +158,7 @@ TABLES = {
     "back": (lambda: ks.Table([0, 1, 2], [0, 1, 2], back=[0, 1, 2]), "back is for a table over"),
     "back of another length": (lambda: ks.Table([0, 1], [0, 1], over="travel", back=[0]), "of one length"),
     "period": (lambda: ks.Table([0, 1, 2], [0, 1, 2], period=3.0), "2 pi or a whole multiple"),
+    "huge period": (lambda: ks.Table([0, 1, 2], [0, 1, 2], period=10**400), "2 pi or a whole multiple"),
     "period of travel": (lambda: ks.Table([0, 1], [0, 1], over="travel", period=4 * np.pi), "one turn"),
     "nan": (lambda: ks.Table([0, np.nan, 2], [0, 1, 2]), "x must be finite"),
     "text": (lambda: ks.Table("abc", [0, 1, 2]), "x must be"),
@@ -181,3 +182,13 @@ def test_arrays_over_other_angles_are_refused():
     s = ks.solve(six_bar(), [0.1, 0.2], crank_speed=1.0, loads=ks.Torque(np.ones(2), on="rocker"))
     with pytest.raises(ks.ParameterError, match="Torque is a table over the crank angles given"):
         s.at(0.3)
+
+
+@pytest.mark.parametrize("angles", [[0.1], [0.1, 0.2], np.linspace(0.0, 6.0, 50)], ids=len)
+def test_an_array_of_one_value_is_that_value_at_every_crank_angle(angles):
+    one, plain = (
+        ks.solve(six_bar(), angles, crank_speed=1.0, loads=ks.Torque(value, on="rocker"))
+        for value in (np.array([3.0]), 3.0)
+    )
+    assert np.array_equal(one.balancing_torque, plain.balancing_torque)
+    assert np.array_equal(one.reaction("O"), plain.reaction("O"))

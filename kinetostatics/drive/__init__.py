@@ -1,0 +1,27 @@
+"""The machine under its real drive: motors, periodic running, flywheels, starting and coasting.
+
+May import all rooms above: numbers to solution.
+
+motor       motors: torque over speed at their own shaft
+driven      the one degree of freedom: reduced inertia and load torque of a scene by crank angle and speed
+pieces      functions of the crank angle as Chebyshev series between their kinks
+resolution  pieces that resolve a machine's inertia and load torque
+operating   the speed at which mean torques agree
+newton      Newton's iteration on the energy of running
+following   running found by following a machine from above
+running     a machine in periodic running, and its solution, for all that looks at solutions
+periodic    exact periodic running, by all of these
+summary     what running comes to, in one table
+sizing      flywheels for a coefficient of fluctuation
+trajectory  motion over time
+transient   starting and coasting
+"""
+
+from .motor import Motor
+from .periodic import steady
+from .running import Running
+from .sizing import Flywheel, flywheel
+from .trajectory import Event, Trajectory
+from .transient import coast, start
+
+__all__ = ["Event", "Flywheel", "Motor", "Running", "Trajectory", "coast", "flywheel", "start", "steady"]

@@ -1,0 +1,186 @@
+"""A scene as one degree of freedom: its reduced inertia and the torque that its loads ask, by crank angle and speed.
+
+    (J + Jf) alpha + J' omega^2 / 2 + load torque(phi, omega) = motor torque
+
+Functions as loads may depend on the crank angle and speed, not on the acceleration.
+"""
+
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import DriveError, NotGivenError
+from ..machine.loads import TURN, is_given, value_of
+from ..mechanics.pushes import title_of
+from ..numbers import checks
+from ..numbers.leaves import with_fields
+from ..solution.compile import compile as compiled
+from ..solution.scene import Scene
+from .motor import Motor, single
+
+INERTIA, SLOPE, TORQUE, CLOSURE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque", "closure")
+SAME = 1e-12
+"""Crank angles this near, rad, are the same."""
+STEP = 1e-6
+"""Relative step of speed by which functions that cannot be recorded are differentiated, for the iteration alone."""
+
+
+class State(NamedTuple):
+    """Reduced inertia, its slope, and load torque at crank angles."""
+
+    inertia: np.ndarray
+    slope: np.ndarray
+    torque: np.ndarray
+    closure: np.ndarray
+
+
+class Driven:
+    """What a scene is to its drive; `flywheel` holds all inertia on the crank besides the links.
+
+    The crank speed of the scene does not matter, but for its sign without a motor.
+    """
+
+    def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
+        flywheel, wrong = single(flywheel, name="flywheel", low=0.0)
+        checks.require(
+            owner,
+            None if isinstance(scene, Scene) else f"scene must be a Scene, as ks.Scene(...), got {checks.shown(scene)}",
+            None if isinstance(motor, Motor | None) else f"motor must be a Motor, got {checks.shown(motor)}",
+            wrong,
+            None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
+        )
+        checks.require(owner, *_load_problems(scene))
+        self.motor = motor
+        self.direction = motor.direction if motor is not None else direction or 1.0
+        self.flywheel = flywheel + (motor.inertia_at_crank if motor is not None else 0.0)
+        self.scene = with_fields(scene, crank_speed=self.direction, crank_acceleration=0.0)
+        checks.require(owner, _batch_problem(self.scene))
+        self.program = compiled(self.scene, QUANTITIES, parameters=("crank_speed",), engine=engine or "numpy")
+        self._kept: tuple[Any, State] | None = None
+        self._require_no_acceleration(owner)
+
+    @property
+    def period(self):
+        """Crank angle after which motion and loads repeat, rad."""
+        return self.scene.period
+
+    @property
+    def turns(self):
+        return round(self.period / TURN)
+
+    @cached_property
+    def by_speed(self):
+        """Whether the load torque depends on the speed."""
+        functions = (item for item in self.scene.loads if not is_given(item) and not hasattr(value_of(item), "kinks"))
+        return self.program.depends_on("crank_speed") or any(
+            title_of(one) in self.program.unrecorded for one in functions
+        )
+
+    @cached_property
+    def kinks(self):
+        """Crank angles in (0, period) at which tables of loads have kinks, rad."""
+        found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
+        for item in self.scene.loads:
+            value = value_of(item)
+            if hasattr(value, "kinks"):
+                kinks, jumps = value.kinks(motion)
+                repeats = np.arange(round(self.period / value.period))[:, None]
+                found.append(np.ravel(np.concatenate([kinks, jumps]) + value.period * repeats))
+        kinks = np.unique(np.mod(np.concatenate(found), self.period))
+        apart = np.diff(kinks, prepend=0.0) > SAME
+        return kinks[apart & (kinks < self.period - SAME)]
+
+    def at(self, angle, speed=None) -> State:
+        """State at crank angles, at crank speeds if loads depend on them; kept for the same angles if they do not."""
+        if self._kept and self._kept[0] is angle and not self.by_speed:
+            return self._kept[1]
+        found = self._checked(angle, State(*self._values(angle, speed)))
+        self._kept = angle, found
+        return found
+
+    def here(self, angle, speed):
+        """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats."""
+        found = self.program(angle, {"crank_speed": speed}) if self.by_speed else self.program(angle)
+        inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
+        drive = 0.0 if self.motor is None else float(self.motor.torque_at_crank(speed))
+        return self.flywheel + inertia, slope, drive - load
+
+    def torque_by_speed(self, angle, speed, torque):
+        """Derivative of the load torque by the crank speed, for a torque known there."""
+        if not self.by_speed:
+            return 0.0
+        shape = angle.shape
+        try:
+            found = self.program.derivatives(angle.reshape(-1, 1), "crank_speed", {"crank_speed": speed.reshape(-1, 1)})
+            return found[TORQUE]["crank_speed"].reshape(shape)
+        except NotGivenError:
+            step = STEP * np.abs(speed).max()
+            return (self._values(angle, speed + step)[2] - torque) / step
+
+    def inertia(self, angle):
+        """All inertia that the crank feels, kg m2."""
+        return self.flywheel + self.at(angle, self._any_speed(angle)).inertia
+
+    def motor_torque(self, speed):
+        """Torque of the motor on the crank, N m; none without one."""
+        return 0.0 * speed if self.motor is None else self.motor.torque_at_crank(speed)
+
+    def acceleration(self, state, speed):
+        """Crank acceleration, rad/s2."""
+        turning = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
+        return turning / (self.flywheel + state.inertia)
+
+    def _any_speed(self, angle):
+        return np.full(np.shape(angle), self.direction) if self.by_speed else None
+
+    def _values(self, angle, speed):
+        angle = np.asarray(angle, dtype=float)
+        if not self.by_speed:
+            found = self.program(angle)
+            return tuple(found[name] for name in QUANTITIES)
+        found = self.program(angle.reshape(-1, 1), {"crank_speed": np.asarray(speed, dtype=float).reshape(-1, 1)})
+        *scalars, closure = (np.reshape(found[name], (-1, *angle.shape)) for name in QUANTITIES)
+        return *(part[0] for part in scalars), closure
+
+    def _checked(self, angle, state):
+        """The state, where all of it is finite; else what `solve` says of these crank angles."""
+        finite = np.isfinite(state.torque).all() and np.isfinite(state.inertia).all()
+        if not (finite and state.closure.min(initial=0.0) >= 0.0):
+            self.scene.solve(np.ravel(angle))
+        if not finite:
+            raise DriveError(f"{self.scene.mechanism.name}: the loads have no finite torque at some crank angles")
+        return state
+
+    def _require_no_acceleration(self, owner):
+        if all(map(is_given, self.scene.loads)):
+            return
+        angle = np.linspace(0.1, self.period, 7)
+        calm, hasty = (
+            with_fields(self.scene, crank_acceleration=alpha).solve(angle, on_gap="nan").load_torque
+            for alpha in (0.0, 1e3)
+        )
+        if not np.array_equal(calm, hasty, equal_nan=True):
+            checks.require(
+                owner,
+                "a load is a function that depends on the crank acceleration, which follows from the loads; let it "
+                "depend on angle, position and velocity alone",
+            )
+
+
+def _load_problems(scene):
+    """What keeps loads from being taken at any crank angle, as sentences."""
+    for item in scene.loads:
+        value = value_of(item)
+        if np.ndim(value) and not callable(value) and np.shape(value)[-1] > 1:
+            yield (
+                f"{type(item).__name__} is a table over the crank angles given, unknown between them; use a constant, "
+                "a table by crank angle or a function of the motion"
+            )
+
+
+def _batch_problem(scene):
+    *designs, _ = scene.unsolved(np.zeros(1)).shape
+    if designs:
+        return f"takes one design at a time, but the scene has shape {(*designs,)}"
+    return None

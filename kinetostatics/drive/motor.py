@@ -1,0 +1,344 @@
+"""Motors: torque over speed at their own shaft, and what the crank feels of it."""
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..numbers import checks
+from ..numbers.elementary import read_only
+
+REACH = 2.0
+"""Speeds up to so many times a motor's own are looked at for steady running."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motor:
+    """A motor that turns the crank through a transmission; made by `kloss`, `linear`, `constant` or `table`.
+
+    Attributes
+    ----------
+    transmission : float
+        Motor speed over crank speed; negative where they turn against each other. Counter-clockwise is positive for
+        the crank; the motor drives toward its own positive speeds.
+    inertia : float
+        Moment of inertia of the rotor and all that turns with it, kg m2.
+    """
+
+    transmission: float = field(default=1.0, kw_only=True)
+    inertia: float = field(default=0.0, kw_only=True)
+
+    @staticmethod
+    def kloss(power, speed, *, synchronous_speed, overload, transmission=1.0, inertia=0.0) -> "Motor":
+        """Induction motor by Kloss's formula.
+
+        T = 2 Tk s sk / (s^2 + sk^2) with the slip s = 1 - speed / synchronous speed: smooth through s = 0, beyond which
+        it regenerates. Tk = overload * power / speed, sk = sn (overload + sqrt(overload^2 - 1)); stator resistance is
+        left out (M. Kloss, *Drehmoment und Schlüpfung des Drehstrommotors*, 1916).
+
+        Parameters
+        ----------
+        power : float
+            Rated, at the shaft, W.
+        speed : float
+            Rated, rad/s at the motor's shaft.
+        synchronous_speed : float
+            rad/s.
+        overload : float
+            Breakdown torque over rated torque, more than 1.
+        transmission : float
+            Motor speed over crank speed, not 0; negative where they turn against each other.
+        inertia : float
+            Of the rotor, at its own shaft, kg m2.
+
+        Raises
+        ------
+        ParameterError
+            A value that no motor can have; all of them at once.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> motor = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.08, overload=2.5)
+        >>> round(float(motor.torque(153.9) * 153.9), 6)
+        55000.0
+        """
+        found = _numbers(
+            "Motor.kloss",
+            _below(speed, synchronous_speed),
+            power=(power, POSITIVE),
+            speed=(speed, POSITIVE),
+            synchronous_speed=(synchronous_speed, POSITIVE),
+            overload=(overload, {"low": 1.0, "strict": True}),
+            **_shared(transmission, inertia),
+        )
+        return Kloss(**found)
+
+    @staticmethod
+    def linear(torque, speed, *, transmission=1.0, inertia=0.0) -> "Motor":
+        """Motor whose torque falls on a straight line, from its torque at standstill to 0 at its idle speed.
+
+        Parameters
+        ----------
+        torque : float
+            At standstill, N m at the motor's shaft.
+        speed : float
+            At which there is no torque left, rad/s; beyond, the motor brakes.
+        transmission, inertia
+            As for `kloss`.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> float(ks.drive.Motor.linear(10.0, 100.0).torque(50.0))
+        5.0
+        """
+        found = _numbers(
+            "Motor.linear",
+            standstill_torque=(torque, {**POSITIVE, "name": "torque"}),
+            idle_speed=(speed, {**POSITIVE, "name": "speed"}),
+            **_shared(transmission, inertia),
+        )
+        return Linear(**found)
+
+    @staticmethod
+    def constant(torque, *, transmission=1.0, inertia=0.0) -> "Motor":
+        """Motor of the same torque at every speed, N m at its shaft; not 0, negative brakes.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> float(ks.drive.Motor.constant(10.0).torque(50.0))
+        10.0
+        """
+        found = _numbers(
+            "Motor.constant", own_torque=(torque, {"name": "torque", "unequal": 0.0}), **_shared(transmission, inertia)
+        )
+        return Constant(**found)
+
+    @staticmethod
+    def table(speed, torque, *, transmission=1.0, inertia=0.0) -> "Motor":
+        """Motor by a table of torque over speed, with a monotone cubic between the rows (PCHIP: no new extremes).
+
+        Parameters
+        ----------
+        speed : array (N,)
+            Rising, rad/s at the motor's shaft; two rows at least. Outside them the motor is not known: running there
+            is refused.
+        torque : array (N,)
+            N m at the motor's shaft.
+        transmission, inertia
+            As for `kloss`.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> motor = ks.drive.Motor.table([0.0, 100.0, 150.0, 160.0], [300.0, 500.0, 200.0, 0.0])
+        >>> float(motor.torque(150.0))
+        200.0
+        """
+        rows = [np.array(given, dtype=float) if _is_row(given) else given for given in (speed, torque)]
+        found = _numbers("Motor.table", *_row_problems(*rows), **_shared(transmission, inertia))
+        return Tabled(read_only(rows[0]), read_only(rows[1]), **found)
+
+    def torque(self, speed) -> Any:
+        """Torque at speeds of the motor's shaft, N m."""
+        raise NotImplementedError
+
+    def slope(self, speed) -> Any:
+        """Derivative of the torque by the speed, N m s."""
+        raise NotImplementedError
+
+    @property
+    def field_speed(self) -> float | None:
+        """Speed of the field that it slips behind, rad/s; None of a motor that has none."""
+        return None
+
+    @property
+    def top(self) -> float:
+        """Speed of the motor's shaft beyond which it is not looked for, rad/s."""
+        raise NotImplementedError
+
+    @property
+    def limits(self):
+        """Speeds of the motor's shaft between which its torque is known, rad/s."""
+        return -math.inf, math.inf
+
+    @property
+    def direction(self):
+        """+1 if its positive speed turns the crank counter-clockwise, else -1."""
+        return math.copysign(1.0, self.transmission)
+
+    @property
+    def inertia_at_crank(self):
+        """Inertia of its rotor as the crank feels it, kg m2."""
+        return self.inertia * self.transmission**2
+
+    def torque_at_crank(self, crank_speed):
+        """Torque that the crank feels, by crank speed, N m."""
+        return self.transmission * self.torque(self.transmission * crank_speed)
+
+    def slope_at_crank(self, crank_speed):
+        """Derivative of that torque by the crank speed, N m s."""
+        return self.transmission**2 * self.slope(self.transmission * crank_speed)
+
+
+@dataclass(frozen=True, eq=False)
+class Kloss(Motor):
+    """Induction motor; see `Motor.kloss`."""
+
+    power: float
+    speed: float
+    synchronous_speed: float
+    overload: float
+
+    @property
+    def breakdown_torque(self):
+        return self.overload * self.power / self.speed
+
+    @property
+    def breakdown_slip(self):
+        rated = (self.synchronous_speed - self.speed) / self.synchronous_speed
+        return rated * (self.overload + math.sqrt((self.overload - 1.0) * (self.overload + 1.0)))
+
+    def torque(self, speed):
+        slip, most = (self.synchronous_speed - speed) / self.synchronous_speed, self.breakdown_slip
+        return 2.0 * self.breakdown_torque * most * slip / (slip * slip + most * most)
+
+    def slope(self, speed):
+        slip, most = (self.synchronous_speed - speed) / self.synchronous_speed, self.breakdown_slip
+        square = slip * slip + most * most
+        by_slip = 2.0 * self.breakdown_torque * most * (most - slip) * (most + slip) / (square * square)
+        return -by_slip / self.synchronous_speed
+
+    @property
+    def field_speed(self):
+        return self.synchronous_speed
+
+    @property
+    def top(self):
+        return REACH * self.synchronous_speed
+
+
+@dataclass(frozen=True, eq=False)
+class Linear(Motor):
+    """Motor with a straight line of torque; see `Motor.linear`."""
+
+    standstill_torque: float
+    idle_speed: float
+
+    def torque(self, speed):
+        return self.standstill_torque * (1.0 - speed / self.idle_speed)
+
+    def slope(self, speed):
+        return 0.0 * speed - self.standstill_torque / self.idle_speed
+
+    @property
+    def top(self):
+        return REACH * self.idle_speed
+
+
+@dataclass(frozen=True, eq=False)
+class Constant(Motor):
+    """Motor of constant torque; see `Motor.constant`."""
+
+    own_torque: float
+
+    def torque(self, speed):
+        return 0.0 * speed + self.own_torque
+
+    def slope(self, speed):
+        return 0.0 * speed
+
+    @property
+    def top(self):
+        return math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Tabled(Motor):
+    """Motor by a table; see `Motor.table`. Beyond its ends the curve goes on straight, for iterations to find back."""
+
+    speeds: np.ndarray
+    torques: np.ndarray
+
+    def torque(self, speed):
+        inside = np.clip(speed, *self.limits)
+        return self._curve(inside) + self._curve(inside, 1) * (speed - inside)
+
+    def slope(self, speed):
+        return self._curve(np.clip(speed, *self.limits), 1)
+
+    @cached_property
+    def _curve(self):
+        from scipy.interpolate import PchipInterpolator
+
+        return PchipInterpolator(self.speeds, self.torques)
+
+    @property
+    def top(self):
+        return float(self.speeds[-1])
+
+    @property
+    def limits(self):
+        return float(self.speeds[0]), float(self.speeds[-1])
+
+
+# What a motor must be given
+
+POSITIVE = {"low": 0.0, "strict": True}
+
+
+def _shared(transmission, inertia):
+    return {"transmission": (transmission, {"unequal": 0.0}), "inertia": (inertia, {"low": 0.0})}
+
+
+def _numbers(owner, *problems, **given):
+    """Single numbers by name, each given with what it must be; one `ParameterError` for all that is wrong."""
+    found, wrong = {}, []
+    for field_name, (value, rule) in given.items():
+        found[field_name], problem = single(value, **{"name": field_name, **rule})
+        wrong.append(problem)
+    checks.require(owner, *wrong, *([] if any(wrong) else problems))
+    return found
+
+
+def single(value, name, unequal=None, **rule):
+    """One number as a float, and what is wrong with it, as a sentence, or None."""
+    found, problem = checks.Number(name=name, **rule).taken(value)
+    if problem is None and type(found) is not float:
+        problem = f"{name} must be one number, got {checks.shown(value)}"
+    if problem is None and found == unequal:
+        problem = f"{name} must not be {unequal:g}"
+    return found, problem
+
+
+def _below(speed, synchronous_speed):
+    """What is wrong with a rated speed, or None."""
+    if all(isinstance(value, int | float) for value in (speed, synchronous_speed)) and not speed < synchronous_speed:
+        return (
+            f"synchronous_speed must be greater than the rated speed of {speed:.9g} rad/s, got {synchronous_speed:.9g}"
+        )
+    return None
+
+
+def _is_row(given):
+    return checks.table("row", given) is None and np.ndim(given) == 1
+
+
+def _row_problems(speed, torque):
+    """What is wrong with the rows of a table of torque over speed, as sentences."""
+    wrong = [
+        checks.table(name, given) or (None if np.ndim(given) == 1 else f"{name} must be a row of numbers")
+        for name, given in (("speed", speed), ("torque", torque))
+    ]
+    if any(wrong):
+        return wrong
+    if speed.size != torque.size or speed.size < 2:
+        return [f"speed and torque must be of one length, 2 at least, got {speed.size} and {torque.size}"]
+    if np.any(np.diff(speed) <= 0):
+        row = int(np.argmax(np.diff(speed) <= 0)) + 1
+        return [f"speeds must rise, but {speed[row]:.9g} follows {speed[row - 1]:.9g} rad/s"]
+    return []

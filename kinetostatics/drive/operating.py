@@ -1,0 +1,71 @@
+"""The operating speed: where the mean torques of motor and loads agree, before running is known."""
+
+import math
+
+import numpy as np
+
+from ..errors import DriveError
+from ..machine.loads import TURN
+
+SAMPLED = 96
+"""Crank angles by which mean load torques are judged."""
+SEEN = 512
+"""Speeds at which the mean torques of motor and loads are compared."""
+
+
+def operating_speed(driven):
+    """Crank speed at which the mean torques of motor and loads agree and the motor yields to more load, rad/s."""
+    motor, name = driven.motor, driven.scene.mechanism.name
+    if math.isfinite(motor.top):
+        speed = motor.top * np.linspace(0.0, 1.0, SEEN)
+    elif driven.by_speed:
+        speed = np.concatenate([[0.0], np.geomspace(1e-4, 1e6, SEEN)]) * abs(motor.transmission)
+    else:
+        mean = float(_mean_load(driven, np.ones(1))[0])
+        raise DriveError(
+            f"{name}: nothing holds the speed, as neither the motor's torque nor the loads depend on it; a turn leaves "
+            f"{TURN * (motor.torque_at_crank(0.0) - mean):.6g} J over; give a motor whose torque falls with speed"
+        )
+    load = _mean_load(driven, speed / motor.transmission) / motor.transmission
+    spare = motor.torque(speed) - load
+    crossing = np.flatnonzero((spare[:-1] > 0.0) & (spare[1:] <= 0.0))
+    if crossing.size:
+        from scipy.optimize import brentq
+
+        low, high = speed[crossing[-1]], speed[crossing[-1] + 1]
+
+        def spare_at(own):
+            if not driven.by_speed:
+                return motor.torque(own) - load[0]
+            mean = _mean_load(driven, np.array([own / motor.transmission]))[0] / motor.transmission
+            return float(motor.torque(own) - mean)
+
+        return float(brentq(spare_at, low, high, xtol=1e-9 * high, rtol=1e-9)) / motor.transmission
+    if spare[-1] > 0.0:
+        raise DriveError(
+            f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest speed of the motor that is looked "
+            f"at, {spare[-1]:.6g} N m are left over at its shaft"
+        )
+    best = int(np.argmax(spare))
+    missing = float(-spare[best] * abs(motor.transmission))
+    raise DriveError(
+        f"{name}: the motor is too weak, so there is no periodic running: the loads take {load[best]:.6g} N m at its "
+        f"shaft in the mean, where it gives {motor.torque(speed[best]):.6g} N m at most (at {speed[best]:.6g} rad/s); "
+        f"{-spare[best]:.6g} N m are missing, {missing:.6g} N m at the crank; give a motor "
+        f"{_times(load[best], motor, speed)}or another transmission",
+        missing,
+    )
+
+
+def _times(load, motor, speed):
+    most = float(motor.torque(speed).max())
+    return f"{load / most:.3g} times as strong " if most > 0.0 else "that drives "
+
+
+def _mean_load(driven, speed):
+    """Mean load torque over the period at constant crank speeds, N m."""
+    angle = (np.arange(SAMPLED) + 0.5) * driven.period / SAMPLED
+    if not driven.by_speed:
+        return driven.at(angle).torque.mean() + 0.0 * speed
+    grid = np.broadcast_arrays(angle[None, :], speed[:, None])
+    return driven.at(*grid).torque.mean(axis=1)

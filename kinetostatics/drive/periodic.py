@@ -1,0 +1,154 @@
+"""Exact periodic running of a machine under its motor, or under the constant torque that textbooks assume."""
+
+import math
+
+import numpy as np
+
+from ..errors import DriveError
+from ..numbers import checks
+from ..solution.angles import crank_angles
+from ..solution.scene import Scene
+from .driven import Driven
+from .following import from_above
+from .motor import single
+from .newton import interpolated, looked_at, settled, unresolved
+from .operating import operating_speed
+from .pieces import LEVELS, MOST_PIECES, TAIL
+from .resolution import require_inertia, resolved
+from .running import Running
+
+
+def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
+    """Periodic running of a machine under its motor, exact to rounding.
+
+    Where there are several, the stable one, at the highest speed; a motor below its breakdown torque does not count.
+    It is followed over one turn, or as many as motion and loads take to repeat.
+
+    Parameters
+    ----------
+    scene : Scene
+        Mechanism and loads; its crank speed does not matter, but for `motor` None.
+    motor : Motor or None
+        None: a motor that gives the constant torque that the machine takes at the mean speed of the scene, as textbooks
+        assume; loads must not depend on the speed then.
+    flywheel : float
+        Moment of inertia on the crank, beside its own link, kg m2.
+    angles : int or array
+        Crank angles of the tables: so many over the period, its end excluded, or these, rad.
+    engine : "numpy" or "compiled"
+        As for `solve`; "compiled" pays where the same kind of machine is run often.
+
+    Returns
+    -------
+    Running
+
+    Raises
+    ------
+    DriveError
+        There is no periodic running: the motor is too weak, with the torque missing; nothing holds the speed; the
+        inertia vanishes somewhere.
+    ParameterError
+        A value is out of range, or a load cannot be taken at any crank angle.
+    AssemblyError
+        The mechanism does not make full turns.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0, loads=ks.ProcessForce(-200.0))
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> run = ks.drive.steady(pump, motor, flywheel=0.05)
+    >>> print(f"{run.mean_speed:.4f} rad/s, fluctuation {run.fluctuation:.5f}")
+    104.6753 rad/s, fluctuation 0.05021
+    """
+    direction = _direction(scene) if motor is None else None
+    driven = Driven("steady", scene, motor, flywheel, engine, direction)
+    checks.require("steady", _angles_problem(angles))
+    pieces, energy = (_prescribed if motor is None else _driven_running)(driven, scene)
+    angle = np.linspace(0.0, driven.period, angles, endpoint=False) if _is_count(angles) else crank_angles(angles)
+    return Running(scene, motor, driven.flywheel, angle, driven, pieces, energy)
+
+
+def _driven_running(driven, scene):
+    """Pieces, and the energy U at their points, of stable periodic running under a motor."""
+    start = operating_speed(driven)
+    pieces = resolved(driven, start)
+    require_inertia(driven, pieces)
+    found = settled(driven, pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
+    pieces, energy = found or from_above(driven, pieces, start)
+    for _ in range(LEVELS):
+        marked = unresolved(driven, pieces, energy)
+        if not marked.any() or len(pieces.half) > MOST_PIECES:
+            break
+        found = settled(driven, pieces.split(marked), interpolated(pieces, energy))
+        pieces, energy = found or from_above(driven, pieces.split(marked), start)
+    _require_known(driven, pieces, energy)
+    return pieces, energy
+
+
+def _require_known(driven, pieces, energy):
+    """Refuse running at speeds of which a table of the motor knows nothing."""
+    _, _, speed, _ = looked_at(driven, pieces, energy)
+    own = driven.motor.transmission * speed
+    low, high = driven.motor.limits
+    if own.min() < low or own.max() > high:
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: the motor runs at {own.min():.6g} to {own.max():.6g} rad/s, but its table "
+            f"knows {low:.6g} to {high:.6g} rad/s only; give more rows"
+        )
+
+
+def _prescribed(driven, scene):
+    """Pieces, and the energy U at their points, under the constant torque that keeps the mean speed of the scene."""
+    if driven.by_speed:
+        raise DriveError(
+            f"{scene.mechanism.name}: loads depend on the speed, so no constant torque is known that carries them; "
+            "give a motor"
+        )
+    from scipy.optimize import brentq
+
+    speed = abs(scene.crank_speed)
+    pieces = resolved(driven, speed)
+    require_inertia(driven, pieces)
+    for _ in range(LEVELS):
+        state = driven.at(pieces.angle)
+        inertia = driven.flywheel + state.inertia
+        spare = pieces.total(state.torque) / driven.period - state.torque
+        gained = pieces.integrated(spare)
+        gained = gained + pieces.largest(-gained)[0]
+        scale = 0.5 * speed * speed * pieces.total(inertia) / driven.period
+
+        def too_fast(size, inertia=inertia, gained=gained, pieces=pieces, scale=scale):
+            slowness = np.sqrt(0.5 * inertia / (gained + scale * math.exp(size)))
+            return driven.period / pieces.total(slowness) - speed
+
+        low = next((size for size in (-5.0, -12.0, -25.0) if too_fast(size) < 0.0), None)
+        if low is None:
+            raise DriveError(
+                f"{scene.mechanism.name}: no constant torque keeps a mean speed as low as {speed:.6g} rad/s: the "
+                "energy gained over the turn alone makes it faster; give a larger flywheel or a higher speed"
+            )
+        energy = gained + scale * math.exp(brentq(too_fast, low, 5.0, xtol=1e-15, rtol=1e-15))
+        slow = np.sqrt(0.5 * inertia / energy)
+        marked = ((pieces.tail(energy) > TAIL) | (pieces.tail(slow) > TAIL)) & pieces.can_split
+        if not marked.any():
+            break
+        pieces = pieces.split(marked)
+    return pieces, energy
+
+
+def _direction(scene):
+    """Sign of the crank speed of a scene that is to be run without motor."""
+    checks.require("steady", None if isinstance(scene, Scene) else f"scene must be a Scene, got {checks.shown(scene)}")
+    speed, wrong = single(scene.crank_speed, name="crank_speed of the scene", unequal=0.0)
+    checks.require("steady", wrong)
+    return math.copysign(1.0, speed)
+
+
+def _is_count(angles):
+    return isinstance(angles, int | np.integer) and not isinstance(angles, bool)
+
+
+def _angles_problem(angles):
+    """What is wrong with a number of crank angles, or None."""
+    return checks.count("angles", angles, size=checks.ANGLE) if _is_count(angles) else None

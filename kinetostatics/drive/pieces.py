@@ -1,0 +1,126 @@
+"""Functions of the crank angle as Chebyshev series between their kinks.
+
+Values stand at Chebyshev points of the first kind, none of them at an end of a piece, so jumps there do no harm
+(Trefethen, *Approximation Theory and Approximation Practice*, chapters 2, 8 and 19).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+TAIL = 2e-14
+"""Size of the last coefficients of a series, relative to its largest value, that is rounding."""
+LEVELS = 60
+"""How often pieces are halved."""
+MOST_PIECES = 20_000
+DENSE = 8
+"""Places beside each point of a series at which its extremes are looked for."""
+SMALLEST = 1e-13
+"""Width of a piece, relative to all, that is not split: there is a jump in it."""
+
+
+class Rule(NamedTuple):
+    """Matrices on values at the points in [-1, 1]: to series, to integrals from -1, to slopes, to values between."""
+
+    points: np.ndarray
+    series: np.ndarray
+    integral: np.ndarray
+    weights: np.ndarray
+    slope: np.ndarray
+    dense: np.ndarray
+    places: np.ndarray
+
+
+@lru_cache
+def rule(count) -> Rule:
+    points = chebyshev.chebpts1(count)
+    vander = chebyshev.chebvander(points, count - 1)
+    series = vander.T * (np.where(np.arange(count) == 0, 1.0, 2.0) / count)[:, None]
+    whole = chebyshev.chebint(series, lbnd=-1)
+    places = np.cos(np.linspace(np.pi, 0.0, DENSE * count))
+    return Rule(
+        points,
+        series,
+        chebyshev.chebvander(points, count) @ whole,
+        whole.sum(axis=0),
+        chebyshev.chebvander(points, count - 2) @ chebyshev.chebder(series),
+        chebyshev.chebvander(places, count - 1) @ series,
+        places,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Pieces of a turn between edges, each with so many points; values are (pieces, points)."""
+
+    edges: np.ndarray
+    count: int
+
+    @cached_property
+    def half(self):
+        return 0.5 * np.diff(self.edges)[:, None]
+
+    @cached_property
+    def angle(self):
+        """Crank angles of all points."""
+        return 0.5 * (self.edges[:-1] + self.edges[1:])[:, None] + self.half * rule(self.count).points
+
+    def integral(self, values):
+        """Integral from the start of its piece to each point."""
+        return self.half * (values @ rule(self.count).integral.T)
+
+    def whole(self, values):
+        """Integral over each piece."""
+        return self.half[:, 0] * (values @ rule(self.count).weights)
+
+    def integrated(self, values):
+        """Integral from the first edge to each point."""
+        before = np.concatenate([[0.0], np.cumsum(self.whole(values))[:-1]])
+        return self.integral(values) + before[:, None]
+
+    def total(self, values):
+        """Integral over all pieces."""
+        return float(self.whole(values).sum())
+
+    def series(self, values):
+        """Chebyshev coefficients (points, pieces)."""
+        return rule(self.count).series @ values.T
+
+    def tail(self, values):
+        """Size of the last coefficients of each piece, relative to the largest value of all."""
+        size = np.abs(values).max()
+        return np.abs(self.series(values)[-3:]).max(axis=0) / size if size else np.zeros(len(values))
+
+    def evaluate(self, series, angle):
+        """Values of a series at crank angles between the first and the last edge."""
+        shape, angle = angle.shape, angle.ravel()
+        piece = np.clip(np.searchsorted(self.edges, angle, side="right") - 1, 0, len(self.half) - 1)
+        place = (angle - 0.5 * (self.edges[piece] + self.edges[piece + 1])) / self.half[piece, 0]
+        return chebyshev.chebval(place, series[:, piece], tensor=False).reshape(shape)
+
+    def largest(self, values):
+        """Largest value of a function given at the points, and where: crank angle."""
+        dense = values @ rule(self.count).dense.T
+        piece, at = np.unravel_index(np.argmax(dense), dense.shape)
+        place = rule(self.count).places[at]
+        series = rule(self.count).series @ values[piece]
+        slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
+        for _ in range(4):
+            curved = chebyshev.chebval(place, bend)
+            if curved < 0.0:
+                place = np.clip(place - chebyshev.chebval(place, slope) / curved, -1.0, 1.0)
+        angle = 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place
+        return float(chebyshev.chebval(place, series)), float(angle)
+
+    def split(self, marked):
+        """Pieces with those marked halved."""
+        middle = 0.5 * (self.edges[:-1] + self.edges[1:])[marked]
+        return Pieces(np.sort(np.concatenate([self.edges, middle])), self.count)
+
+    @property
+    def can_split(self):
+        """Whether a piece is wide enough to be halved."""
+        return 2.0 * self.half[:, 0] > SMALLEST * (self.edges[-1] - self.edges[0])

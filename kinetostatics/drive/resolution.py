@@ -1,0 +1,89 @@
+"""Pieces of a turn in which a machine's inertia and load torque are Chebyshev series to rounding."""
+
+import itertools
+import math
+
+import numpy as np
+
+from ..errors import DriveError
+from ..machine.loads import TURN
+from .pieces import LEVELS, MOST_PIECES, TAIL, Pieces
+
+POINTS, FEW_POINTS, MANY = 24, 12, 60
+"""Points of a piece, and those where there are so many pieces."""
+WIDEST = TURN / 6
+JUMP = 1e-9
+"""Difference of values, relative to the largest, from both sides of an edge that is a jump."""
+VANISHING = 1e-10
+"""Smallest inertia, relative to the largest, with which there is a speed."""
+
+
+def resolved(driven, speed):
+    """Pieces in which inertia and load torque at a speed are series that are done."""
+    edges = _edges(np.concatenate([[0.0], driven.kinks, [driven.period]]))
+    pieces = _refined(driven, Pieces(edges, FEW_POINTS if len(edges) > MANY else POINTS), speed)
+    width = 2.0 * pieces.half[:, 0]
+    if np.any(width < 1e-6 * driven.period):
+        jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
+        edges = _edges(np.unique(np.concatenate([[0.0], driven.kinks, jumps, [driven.period]])))
+        again = _refined(driven, Pieces(edges, pieces.count), speed)
+        pieces = again if len(again.half) < len(pieces.half) else pieces
+    return _with_jumps(driven, pieces, speed)
+
+
+def _with_jumps(driven, pieces, speed):
+    """Pieces with further edges where the load torque jumps between an edge and the points beside it."""
+    torque = _state_at(driven, pieces.angle, speed).torque
+    series = pieces.series(torque)
+    ends, starts = series.sum(axis=0), (series * (-1.0) ** np.arange(pieces.count)[:, None]).sum(axis=0)
+    starts = np.append(starts[1:], starts[0])
+    jumping = np.flatnonzero(np.abs(ends - starts) > JUMP * np.abs(torque).max())
+    found = []
+    for piece in jumping:
+        low = pieces.angle[piece, -1]
+        high = pieces.angle[(piece + 1) % len(ends), 0] + (driven.period if piece + 1 == len(ends) else 0.0)
+        while high - low > 1e-15 * driven.period:
+            inner = np.linspace(low, high, 34)[1:-1]
+            if not (inner[0] > low and inner[-1] < high):
+                break
+            values = _state_at(driven, np.mod(inner, driven.period), speed).torque
+            after = np.abs(values - starts[piece]) < np.abs(values - ends[piece])
+            first = int(np.argmax(after)) if after.any() else after.size
+            bounds = np.concatenate([[low], inner, [high]])
+            low, high = bounds[first], bounds[first + 1]
+        found.append(high % driven.period)
+    edges = np.unique(np.concatenate([pieces.edges, found]))
+    return Pieces(edges, pieces.count) if found else pieces
+
+
+def _state_at(driven, angle, speed):
+    return driven.at(angle, np.full(angle.shape, speed) if driven.by_speed else None)
+
+
+def _refined(driven, pieces, speed):
+    for _ in range(LEVELS):
+        state = _state_at(driven, pieces.angle, speed)
+        marked = ((pieces.tail(state.inertia) > TAIL) | (pieces.tail(state.torque) > TAIL)) & pieces.can_split
+        if not marked.any() or len(marked) > MOST_PIECES:
+            break
+        pieces = pieces.split(marked)
+    return pieces
+
+
+def _edges(breaks):
+    """Edges at breaks, and between them where they are far apart."""
+    parts = [np.linspace(a, b, math.ceil((b - a) / WIDEST - 1e-9) + 1)[:-1] for a, b in itertools.pairwise(breaks)]
+    return np.concatenate([*parts, breaks[-1:]])
+
+
+def require_inertia(driven, pieces):
+    """Refuse a machine whose inertia vanishes somewhere, so that it has no speed there."""
+    inertia = driven.inertia(pieces.angle)
+    least, angle = pieces.largest(-inertia)
+    if not -least > VANISHING * inertia.max():
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: all inertia vanishes at crank angle {math.degrees(angle):.6g} deg "
+            f"({max(-least, 0.0):.3g} kg m2, {inertia.max():.3g} at most), so there is no speed there; give a "
+            "flywheel, or the crank or the rotor of the motor its inertia",
+            crank_angle=angle,
+        )

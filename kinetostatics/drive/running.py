@@ -1,0 +1,304 @@
+"""A machine in periodic running, and its solution at the true speed and acceleration, whatever the crank angles."""
+
+import math
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..errors import DriveError
+from ..numbers.elementary import read_only
+from ..numbers.leaves import with_fields
+from ..solution.angles import crank_angles
+from ..solution.scene import Scene
+from ..solution.solution import Solution
+from .driven import Driven
+from .motor import Motor
+from .pieces import Pieces
+
+
+@dataclass(frozen=True, eq=False)
+class Running:
+    """A machine in periodic running; made by `steady`.
+
+    Attributes
+    ----------
+    scene : Scene
+    motor : Motor or None
+    flywheel : float
+        All inertia on the crank besides the links, that of the motor's rotor with it, kg m2.
+    crank_angle : array (..., N)
+        rad.
+    """
+
+    scene: Scene
+    motor: Motor | None
+    flywheel: float
+    crank_angle: np.ndarray
+    _driven: Driven = field(repr=False)
+    _pieces: Pieces = field(repr=False)
+    _energy: np.ndarray = field(repr=False)
+
+    def __repr__(self):
+        lines = [
+            f"<Running: {self.scene.mechanism.name}, period {self.turns} turn{'s' * (self.turns > 1)}",
+            f"  mean speed      {self.mean_speed:.9g} rad/s",
+            f"  fluctuation     {self.fluctuation:.9g} ({self.speed_range[0]:.9g} to {self.speed_range[1]:.9g} rad/s)",
+            f"  energy a turn   {self.energy_per_turn:.9g} J",
+            f"  motor power     {self.mean_power:.9g} W mean, {self.rms_power:.9g} rms, {self.peak_power:.9g} peak>",
+        ]
+        return "\n".join(lines)
+
+    # the period
+
+    @property
+    def period(self):
+        """Crank angle after which running repeats, rad."""
+        return self._driven.period
+
+    @property
+    def turns(self):
+        """Turns of the crank after which running repeats."""
+        return self._driven.turns
+
+    @cached_property
+    def duration(self):
+        """Time of the period, s."""
+        return abs(self._pieces.total(1.0 / self._speed))
+
+    @cached_property
+    def mean_speed(self):
+        """Mean over time of the crank speed, rad/s: 2 pi turns by the time of the period."""
+        return math.copysign(self.period / self.duration, self._driven.direction)
+
+    @property
+    def speed_range(self):
+        """Smallest and largest speed of the crank, without sign, rad/s."""
+        (low, _), (high, _) = self._slowest_and_fastest
+        return -low, high
+
+    @property
+    def speed_range_angles(self):
+        """Crank angles of the smallest and largest speed, rad."""
+        return tuple(angle % self.period for _, angle in self._slowest_and_fastest)
+
+    @property
+    def fluctuation(self):
+        """Coefficient of fluctuation: largest less smallest speed over the mean speed over time."""
+        return float(np.subtract(*self.speed_range[::-1])) / abs(self.mean_speed)
+
+    @property
+    def fluctuation_arithmetic(self):
+        """The same over the mean of largest and smallest speed, as textbooks have it."""
+        low, high = self.speed_range
+        return 2.0 * (high - low) / (high + low)
+
+    # over the crank angle
+
+    @cached_property
+    def speed(self):
+        """Crank speed at the crank angles, (..., N), rad/s."""
+        return read_only(self.motion(self.crank_angle)[0])
+
+    @cached_property
+    def acceleration(self):
+        """Crank acceleration at the crank angles, (..., N), rad/s2."""
+        return read_only(self.motion(self.crank_angle)[1])
+
+    @cached_property
+    def time(self):
+        """Time since crank angle 0, of which crank angles are taken modulo the period, (..., N), s."""
+        return read_only(self._time_at(np.mod(self.crank_angle, self.period)))
+
+    @cached_property
+    def motor_torque(self):
+        """Torque of the motor at its shaft, its rotor's inertia not taken off, (..., N), N m."""
+        return read_only(self._motor_torque(self.speed))
+
+    @property
+    def motor_speed(self):
+        """Speed of the motor's shaft, (..., N), rad/s; of the crank without motor."""
+        return self._transmission * self.speed
+
+    @property
+    def motor_power(self):
+        """Power of the motor at its shaft, (..., N), W."""
+        return self.motor_torque * self.motor_speed
+
+    @property
+    def crank_torque(self):
+        """Torque that the machine itself takes at the crank: its balancing torque, (..., N), N m."""
+        return self.solution.balancing_torque
+
+    def motion(self, angle):
+        """Speed and acceleration of the crank at any crank angles, rad/s, rad/s2."""
+        driven, angle = self._driven, np.mod(angle, self.period)
+        energy, inertia = self._pieces.evaluate(self._energy_series, angle), driven.inertia(angle)
+        speed = driven.direction * np.sqrt(2.0 * energy / inertia)
+        state = driven.at(angle, speed)
+        turning = self._transmission * self._motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
+        return speed, turning / inertia
+
+    @cached_property
+    def solution(self):
+        """`Solution` at the crank angles with the true speed and acceleration, for tables, extremes, plots, compare."""
+        return RunningSolution.of(self)
+
+    def plot(self, ax=None):
+        """Crank speed over the crank angle, and on a second axis the torques of motor and machine at the crank.
+
+        Returns both axes.
+        """
+        import matplotlib.pyplot as plt
+
+        ax = ax if ax is not None else plt.subplots()[1]
+        angle = np.linspace(0.0, self.period, 721)
+        speed, acceleration = self.motion(angle)
+        drive = self._transmission * self._motor_torque(speed)
+        ax.plot(np.degrees(angle), speed, color="C0", label="crank speed")
+        ax.axhline(self.mean_speed, color="C0", lw=0.8, ls=":", label="its mean")
+        ax.set(xlabel="crank angle [deg]", ylabel="crank speed [rad/s]", title=self.scene.mechanism.name)
+        torques = ax.twinx()
+        torques.plot(np.degrees(angle), drive, color="C1", label="motor")
+        torques.plot(np.degrees(angle), drive - self.flywheel * acceleration, color="C2", label="machine")
+        torques.set_ylabel("torque at the crank [N m]")
+        lines = [*ax.get_lines(), *torques.get_lines()]
+        torques.legend(lines, [str(line.get_label()) for line in lines], frameon=False, fontsize="small")
+        return ax, torques
+
+    def frame(self):
+        """Table with a row for each crank angle, a pandas DataFrame: time, motion, torques and power of the drive."""
+        import pandas as pd
+
+        columns = {
+            "crank_angle [deg]": np.degrees(self.crank_angle),
+            "time [s]": self.time,
+            "crank_speed [rad/s]": self.speed,
+            "crank_acceleration [rad/s2]": self.acceleration,
+            "motor_torque [N m]": self.motor_torque,
+            "motor_power [W]": self.motor_power,
+            "balancing_torque [N m]": self.solution.balancing_torque,
+            "load_torque [N m]": self.solution.load_torque,
+            "kinetic_energy [J]": self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2,
+        }
+        return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+
+    # powers and energies
+
+    @cached_property
+    def energy_per_turn(self):
+        """Energy that the motor gives at its shaft in a turn, J."""
+        return self._pieces.total(self._powers / np.abs(self._speed)) / self.turns
+
+    @cached_property
+    def air_gap_energy_per_turn(self):
+        """Energy through the air gap of an induction motor in a turn, J: torque times speed of the field."""
+        if self.motor is None or self.motor.field_speed is None:
+            raise DriveError(
+                "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
+            )
+        power = self._motor_torque(self._speed) * self.motor.field_speed
+        return self._pieces.total(power / np.abs(self._speed)) / self.turns
+
+    @property
+    def rotor_loss_per_turn(self):
+        """Energy that an induction motor loses in its rotor by slip in a turn, J."""
+        return self.air_gap_energy_per_turn - self.energy_per_turn
+
+    @property
+    def mean_power(self):
+        """Mean over time of the motor's power at its shaft, W."""
+        return self.energy_per_turn * self.turns / self.duration
+
+    @cached_property
+    def rms_power(self):
+        """Root of the mean over time of the square of the motor's power, W."""
+        return math.sqrt(self._pieces.total(self._powers**2 / np.abs(self._speed)) / self.duration)
+
+    @cached_property
+    def peak_power(self):
+        """Largest power of the motor, with its sign, W."""
+        high, low = self._pieces.largest(self._powers)[0], -self._pieces.largest(-self._powers)[0]
+        return max(high, low, key=abs)
+
+    @cached_property
+    def peak_motor_torque(self):
+        """Largest torque of the motor at its shaft, with its sign, N m."""
+        torque = self._motor_torque(self._speed)
+        high, low = self._pieces.largest(torque)[0], -self._pieces.largest(-torque)[0]
+        return max(high, low, key=abs)
+
+    # on the points of the pieces
+
+    @cached_property
+    def _slowest_and_fastest(self):
+        size = np.abs(self._speed)
+        return self._pieces.largest(-size), self._pieces.largest(size)
+
+    @cached_property
+    def _state(self):
+        driven, angle = self._driven, self._pieces.angle
+        if not driven.by_speed:
+            return driven.at(angle)
+        inertia = driven.inertia(angle)
+        return driven.at(angle, driven.direction * np.sqrt(2.0 * self._energy / inertia))
+
+    @cached_property
+    def _speed(self):
+        return self._driven.direction * np.sqrt(2.0 * self._energy / (self._driven.flywheel + self._state.inertia))
+
+    @cached_property
+    def _energy_series(self):
+        return self._pieces.series(self._energy)
+
+    @property
+    def _transmission(self):
+        return 1.0 if self.motor is None else self.motor.transmission
+
+    def _motor_torque(self, speed):
+        if self.motor is None:
+            return 0.0 * speed + self._pieces.total(self._state.torque) / self.period
+        return self.motor.torque(self.motor.transmission * speed)
+
+    @property
+    def _powers(self):
+        return self._transmission * self._motor_torque(self._speed) * self._speed
+
+    def _time_at(self, angle):
+        slowness = 1.0 / np.abs(self._speed)
+        return self._pieces.evaluate(self._pieces.series(self._pieces.integrated(slowness)), angle)
+
+
+@dataclass(frozen=True, eq=False)
+class RunningSolution(Solution):
+    """A `Solution` whose crank speed and acceleration are those of periodic running.
+
+    `running` gives them at any crank angles, so that extremes, means and tables look between the angles given.
+    """
+
+    running: Any = None
+
+    @classmethod
+    def of(cls, running):
+        """Solution of a `Running` at its crank angles."""
+        scene = with_fields(running.scene, crank_speed=running.speed, crank_acceleration=running.acceleration)
+        plain = scene.solve(running.crank_angle)
+        return cls(**{field.name: getattr(plain, field.name) for field in fields(Solution)}, running=running)
+
+    def __repr__(self):
+        return super().__repr__().replace("<Solution", "<RunningSolution").split(", crank_speed=")[0] + (
+            f", mean speed {self.running.mean_speed:.9g} rad/s>"
+        )
+
+    def at(self, crank_angle):
+        """The same machine in the same running at other crank angles."""
+        angle = crank_angles(crank_angle)
+        motion = self.running.motion(angle)
+        speed, acceleration = (float(part[0]) if part.shape == (1,) else np.asarray(part) for part in motion)
+        return replace(self, crank_angle=angle, crank_speed=speed, crank_acceleration=acceleration)
+
+    @property
+    def period(self):
+        """Crank angle after which running repeats, rad."""
+        return self.running.period

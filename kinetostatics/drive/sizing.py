@@ -1,0 +1,143 @@
+"""Flywheels for a coefficient of fluctuation: by the textbook, and true."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..errors import DriveError
+from ..numbers import checks
+from .driven import Driven
+from .motor import single
+from .periodic import steady
+from .resolution import resolved
+from .running import Running
+
+LARGEST = 60
+"""How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""
+PRECISION = 1e-13
+LIGHTEST = 1e-3
+"""Flywheel, relative to the machine's own inertia, below which no lighter one is looked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Flywheel:
+    """Size of a flywheel on the crank; made by `flywheel`.
+
+    Attributes
+    ----------
+    inertia : float
+        Moment of inertia on the crank beside links and motor, kg m2; 0 where none is needed.
+    energy : float
+        Fluctuation of energy over the turn, J: between the extremes of the turning-moment diagram without motor, of the
+        flywheel itself with one.
+    fluctuation : float
+        Coefficient of fluctuation reached.
+    running : Running or None
+        Periodic running with it, where a motor is given.
+    """
+
+    inertia: float
+    energy: float
+    fluctuation: float
+    running: Running | None = field(default=None, repr=False)
+
+
+def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
+    """Flywheel for a coefficient of fluctuation of the crank speed.
+
+    Without motor as in textbooks (Khurmi and Gupta, *Theory of Machines*, chapter 16; Uicker, Pennock and Shigley,
+    *Theory of Machines and Mechanisms*, on flywheels): the torque is that at constant speed, the motor gives its mean,
+    and the energy E between the extremes of what is left over makes J = E / (fluctuation * speed^2), with fluctuation
+    by the mean of largest and smallest speed. With a motor truly: periodic running (`steady`) whose `fluctuation`, by
+    the mean over time, is the one given.
+
+    Parameters
+    ----------
+    scene : Scene
+        Mechanism and loads, and the crank speed where there is no motor.
+    fluctuation : float
+        (largest - smallest) / mean speed, between 0 and 2.
+    motor : Motor, optional
+    engine : "numpy" or "compiled"
+        As for `solve`.
+
+    Returns
+    -------
+    Flywheel
+
+    Raises
+    ------
+    DriveError
+        The machine does not run under its motor with any flywheel.
+    ParameterError
+        A value is out of range.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0, loads=ks.ProcessForce(-200.0))
+    >>> print(f"{ks.drive.flywheel(pump, 0.01).inertia:.6f} kg m2")
+    0.259863 kg m2
+    """
+    wanted, wrong = single(fluctuation, name="fluctuation", low=0.0, strict=True)
+    if not wrong and not wanted < 2.0:
+        wrong = f"fluctuation must be less than 2, got {wanted:g}"
+    checks.require("flywheel", wrong)
+    return _textbook(scene, wanted, engine) if motor is None else _true(scene, wanted, motor, engine)
+
+
+def _textbook(scene, wanted, engine):
+    driven = Driven("flywheel", scene, None, 0.0, engine)
+    speed, wrong = single(scene.crank_speed, name="crank_speed of the scene", unequal=0.0)
+    checks.require("flywheel", wrong)
+    pieces = resolved(driven, speed)
+    angle = pieces.angle
+    state = driven.at(angle, 0.0 * angle + speed if driven.by_speed else None)
+    spare = pieces.total(state.torque) / driven.period - state.torque
+    gained = pieces.integrated(spare) - 0.5 * speed * speed * state.inertia
+    energy = pieces.largest(gained)[0] + pieces.largest(-gained)[0]
+    return Flywheel(energy / (wanted * speed * speed), energy, wanted)
+
+
+def _true(scene, wanted, motor, engine):
+    """The flywheel with which periodic running has the fluctuation, between one too small and one too large."""
+    from scipy.optimize import brentq
+
+    driven = Driven("flywheel", scene, motor, 0.0, engine)
+    unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
+    runs: dict[float, Any] = {}
+
+    def excess(inertia):
+        """Logarithm of the fluctuation over the one wanted; large where the machine does not run."""
+        try:
+            runs[inertia] = steady(scene, motor, inertia, engine=engine)
+        except DriveError:
+            runs[inertia] = None
+            return math.inf
+        return math.log(max(runs[inertia].fluctuation, 1e-300) / wanted)
+
+    if excess(0.0) <= 0.0:
+        return _found(runs[0.0], 0.0)
+    size, low, high = unit, 0.0, None
+    for _ in range(LARGEST):
+        if excess(size) <= 0.0:
+            high = size
+            break
+        low, size = size, 2.0 * size
+    if high is None:
+        steady(scene, motor, size, engine=engine)  # says why the machine does not run
+        raise DriveError(f"flywheel: even {size:.3g} kg m2 do not bring the fluctuation to {wanted:g}")
+    while not math.isfinite(excess(low)):  # too light to run at all
+        if high < LIGHTEST * unit:
+            return _found(runs[high], high)
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if excess(middle) <= 0.0 else (middle, high)
+    inertia = float(brentq(excess, low, high, xtol=PRECISION * high, rtol=PRECISION))
+    return _found(runs.get(inertia) or steady(scene, motor, inertia, engine=engine), inertia)
+
+
+def _found(running, inertia):
+    low, high = running.speed_range
+    return Flywheel(inertia, 0.5 * inertia * (high - low) * (high + low), running.fluctuation, running)

@@ -1,0 +1,131 @@
+"""Motion of a machine over time, as `start` and `coast` give it."""
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..machine.loads import TURN
+from ..numbers import checks
+from ..numbers.elementary import read_only
+from ..numbers.leaves import with_fields
+from ..solution.scene import Scene
+from .driven import Driven
+from .motor import Motor
+
+
+class Event(NamedTuple):
+    """What happens at a time, s, and crank angle, rad: "start", "reversal", "standstill" or "end"."""
+
+    name: str
+    time: float
+    crank_angle: float
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Motion of a machine over time; made by `start` and `coast`.
+
+    Attributes
+    ----------
+    scene : Scene
+    motor : Motor or None
+    flywheel : float
+        All inertia on the crank besides the links, kg m2.
+    time, crank_angle, speed, acceleration : array (N,)
+        s, rad (not taken modulo a turn), rad/s, rad/s2: the steps of the integration, or times asked for by `at`.
+    events : tuple of Event
+        In order of time.
+    energy_drift : float
+        Largest difference of kinetic energy and work done, J: what the integration lost or gained.
+    """
+
+    scene: Scene
+    motor: Motor | None
+    flywheel: float
+    time: np.ndarray
+    crank_angle: np.ndarray
+    speed: np.ndarray
+    acceleration: np.ndarray
+    events: tuple[Event, ...]
+    energy_drift: float
+    _driven: Driven = field(repr=False)
+    _dense: Any = field(repr=False)
+
+    def __repr__(self):
+        last = self.events[-1]
+        turns = (self.crank_angle[-1] - self.crank_angle[0]) / TURN
+        return (
+            f"<Trajectory: {self.scene.mechanism.name}, {self.time[-1]:.9g} s, {turns:.6g} turns, {last.name} at "
+            f"{math.degrees(last.crank_angle):.6g} deg with {self.speed[-1]:.9g} rad/s, "
+            f"energy drift {self.energy_drift:.2g} J>"
+        )
+
+    def at(self, time):
+        """The same motion at other times within it, s: so many evenly spread, or an array of them."""
+        if isinstance(time, int | np.integer) and not isinstance(time, bool):
+            checks.require("at", checks.count("time", time, size=checks.ANGLE))
+            time = np.linspace(self.time[0], self.time[-1], time)
+        checks.require("at", checks.table("time", time))
+        time = np.atleast_1d(np.array(time, dtype=float))
+        low, high = self.time[0], self.time[-1]
+        if time.min() < low or time.max() > high:
+            checks.require(
+                "at", f"time must lie between {low:.9g} and {high:.9g} s, got {time.min():.9g} to {time.max():.9g}"
+            )
+        angle, speed = self._dense(time)[:2]
+        found = map(read_only, (time, angle, speed, acceleration_at(self._driven, angle, speed)))
+        return with_fields(self, **dict(zip(("time", "crank_angle", "speed", "acceleration"), found, strict=True)))
+
+    @cached_property
+    def solution(self):
+        """`Solution` along the motion: every reaction and torque at its times."""
+        moving = with_fields(self.scene, crank_speed=self.speed, crank_acceleration=self.acceleration)
+        return moving.solve(self.crank_angle)
+
+    @property
+    def motor_torque(self):
+        """Torque of the motor at its shaft, N m; zeros without one."""
+        return 0.0 * self.speed if self.motor is None else self.motor.torque(self.motor.transmission * self.speed)
+
+    @property
+    def kinetic_energy(self):
+        """Kinetic energy of links and flywheel, J."""
+        return self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2
+
+    def frame(self):
+        """Table with a row for each time, a pandas DataFrame: motion, energies, torques of motor and loads."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            {
+                "time [s]": self.time,
+                "crank_angle [deg]": np.degrees(self.crank_angle),
+                "crank_speed [rad/s]": self.speed,
+                "crank_acceleration [rad/s2]": self.acceleration,
+                "motor_torque [N m]": self.motor_torque,
+                "balancing_torque [N m]": self.solution.balancing_torque,
+                "load_torque [N m]": self.solution.load_torque,
+                "kinetic_energy [J]": self.kinetic_energy,
+                "potential_energy [J]": self.solution.potential_energy,
+            }
+        )
+
+    def plot(self, ax=None):
+        """Crank speed over time, reversals and standstill marked; returns the axes."""
+        import matplotlib.pyplot as plt
+
+        ax = ax if ax is not None else plt.subplots()[1]
+        smooth = self.at(max(400, self.time.size)) if self.time.size > 1 else self
+        ax.plot(smooth.time, smooth.speed)
+        stops = [event.time for event in self.events if event.name in ("reversal", "standstill")]
+        ax.plot(stops, np.zeros(len(stops)), "o", ms=4)
+        ax.set(xlabel="time [s]", ylabel="crank speed [rad/s]", title=self.scene.mechanism.name)
+        ax.grid(alpha=0.3)
+        return ax
+
+
+def acceleration_at(driven, angle, speed):
+    return driven.acceleration(driven.at(angle, speed), speed)

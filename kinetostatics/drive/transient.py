@@ -1,0 +1,254 @@
+"""Machines over time: starting from rest, and coasting from a speed, through standstill and reversal.
+
+The equation of motion (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2 is integrated by the method DOP853
+of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), with the work
+of motor and loads beside it: what kinetic energy and work differ by at the end is the drift.
+"""
+
+import math
+
+import numpy as np
+
+from ..errors import DriveError
+from ..machine.loads import TURN
+from ..numbers import checks
+from ..numbers.elementary import read_only
+from .driven import Driven
+from .motor import Motor, single
+from .periodic import steady
+from .trajectory import Event, Trajectory, acceleration_at
+
+RELATIVE = 3e-14
+"""Tolerance of a step relative to the value, the smallest that the method takes."""
+ABSOLUTE = 1e-15
+READY = 0.99
+"""Share of the mean speed of steady running at which a machine has started."""
+LONGEST = 1e5
+"""Turns after which a start is given up."""
+SMALL = 1e-9
+"""Torque, relative to the largest, that moves nothing."""
+
+
+def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor=None, *, engine=None) -> Trajectory:
+    """Motion of a machine left to itself, or to its motor, from a crank angle and speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        Mechanism and loads; its crank speed does not matter.
+    flywheel : float
+        Moment of inertia on the crank, beside its own link, kg m2.
+    from_angle, from_speed : float
+        rad, rad/s.
+    until : float or "standstill"
+        Time, s, or the first standstill.
+    motor : Motor, optional
+    engine : "numpy" or "compiled"
+        As for `solve`.
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    DriveError
+        The motion cannot go on: the mechanism does not close, or all inertia vanishes.
+    ParameterError
+        A value is out of range.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pendulum = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15)), 1.0, loads=ks.Gravity())
+    >>> motion = ks.drive.coast(pendulum, 0.06, from_angle=-1.0, until=2.0)
+    >>> [event.name for event in motion.events]
+    ['start', 'reversal', 'reversal', 'reversal', 'end']
+    >>> motion.energy_drift < 1e-12
+    True
+    """
+    driven, flywheel, angle, speed = _begun("coast", scene, motor, flywheel, from_angle, from_speed, engine)
+    if not (isinstance(until, str) and until == "standstill"):
+        until, wrong = single(until, name="until", low=0.0, strict=True)
+        checks.require("coast", 'until must be a time in s, or "standstill"' + f", got {until!r}" if wrong else None)
+    elif speed == 0.0:
+        checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
+    return _followed(driven, scene, angle, speed, until)
+
+
+def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None) -> Trajectory:
+    """Start of a machine from rest at a crank angle.
+
+    Parameters
+    ----------
+    scene : Scene
+        Mechanism and loads; its crank speed does not matter.
+    motor : Motor
+    flywheel : float
+        Moment of inertia on the crank, beside its own link, kg m2.
+    from_angle : float
+        rad.
+    until : float, optional
+        Time, s; unless told, until the crank has 99 per cent of the mean speed of steady running.
+    engine : "numpy" or "compiled"
+        As for `solve`.
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    DriveError
+        It does not start: the torque of the loads at rest exceeds that of the motor at this or a later crank angle;
+        with the torque missing, and what would help. Or it has no steady running to start to.
+    ParameterError
+        A value is out of range.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 100.0, loads=ks.Gravity())
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> motion = ks.drive.start(pump, motor, 0.05, from_angle=0.3)
+    >>> print(f"{motion.time[-1]:.4f} s")
+    0.4189 s
+    """
+    if not isinstance(motor, Motor):
+        checks.require("start", f"motor must be a Motor, got {checks.shown(motor)}")
+    driven, flywheel, angle, _ = _begun("start", scene, motor, flywheel, from_angle, 0.0, engine)
+    target = None
+    if until is None:
+        target = READY * steady(scene, motor, flywheel, engine=engine).mean_speed
+    else:
+        until, wrong = single(until, name="until", low=0.0, strict=True)
+        checks.require("start", wrong)
+    pushing = _pushing(driven, angle)
+    if not pushing * driven.direction > SMALL * _most_torque(driven):
+        raise _no_start(driven, angle, "it does not start")
+    found = _followed(driven, scene, angle, 0.0, until, target, one_way=True)
+    if found.events[-1].name == "reversal":
+        raise _no_start(driven, found.events[-1].crank_angle, f"it starts and stops after {found.time[-1]:.6g} s")
+    return found
+
+
+def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
+    """The machine and where it begins, looked at."""
+    angle, wrong_angle = single(from_angle, name="from_angle")
+    speed, wrong_speed = single(from_speed, name="from_speed")
+    inertia, wrong_inertia = single(flywheel, name="flywheel", low=0.0)
+    checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
+    driven = Driven(owner, scene, motor, inertia, engine)
+    here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)
+    if not here[0] > 1e-12 * here.max():
+        raise DriveError(
+            f"{scene.mechanism.name}: no inertia at crank angle {math.degrees(angle):.6g} deg ({here[0]:.3g} kg m2), "
+            "so there is no acceleration there; give a flywheel, or the crank its inertia",
+            crank_angle=angle,
+        )
+    return driven, inertia, angle, speed
+
+
+def _pushing(driven, angle):
+    """Torque at the crank that is left over at rest, N m."""
+    at, rest = np.array([angle]), np.zeros(1)
+    return float((driven.motor_torque(rest) - driven.at(at, rest).torque)[0])
+
+
+def _most_torque(driven):
+    rest = np.zeros(96)
+    angle = np.linspace(0.0, driven.period, 96, endpoint=False)
+    return max(float(np.abs(driven.at(angle, rest).torque).max()), abs(float(driven.motor_torque(0.0))))
+
+
+def _no_start(driven, angle, what):
+    """Why a machine does not start, and what would help."""
+    rest = float(driven.motor_torque(0.0)) * driven.direction
+    places = np.linspace(0.0, driven.period, 720, endpoint=False)
+    asked = driven.at(places, 0.0 * places).torque * driven.direction
+    here = float(driven.at(np.array([angle]), np.zeros(1)).torque[0]) * driven.direction
+    missing, most = here - rest, int(np.argmax(asked))
+    better = np.flatnonzero(asked < rest)
+    remedies = [f"a motor with {asked[most] / rest:.3g} times the torque at rest" if rest > 0.0 else "another motor"]
+    if better.size:
+        easiest = math.degrees(places[int(np.argmin(asked))])
+        remedies.append(f"another crank angle (least is asked at {easiest:.6g} deg)")
+    remedies.append("a clutch that lets the motor and its flywheel run up before")
+    return DriveError(
+        f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "
+        f"N m at rest, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing; over the turn the loads ask up "
+        f"to {asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: {', '.join(remedies)}",
+        missing,
+        angle,
+    )
+
+
+def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
+    """The motion from an angle and speed until a time, a standstill, or a target speed."""
+    from scipy.integrate import solve_ivp
+
+    def change(time, state):
+        angle, speed = float(state[0]), float(state[1])
+        inertia, slope, spare = driven.here(angle, speed)
+        return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed
+
+    def still(time, state):
+        return state[1]
+
+    def ready(time, state):
+        return (state[1] - target) * driven.direction
+
+    vars(still).update(terminal=until == "standstill" or one_way, direction=-driven.direction if one_way else 0)
+    vars(ready)["terminal"] = True
+    events = [still] if target is None else [still, ready]
+    end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
+    found = solve_ivp(
+        change,
+        (0.0, end),
+        (angle, speed, 0.0),
+        "DOP853",
+        rtol=RELATIVE,
+        atol=ABSOLUTE,
+        dense_output=True,
+        events=events,
+    )
+    if found.status < 0 or not np.isfinite(found.y).all():
+        at = math.degrees(found.y[0, -1])
+        driven.scene.solve(found.y[0, -1:] + found.y[1, -1:] * 1e-6)
+        raise DriveError(
+            f"{scene.mechanism.name}: the motion cannot be followed beyond {found.t[-1]:.6g} s, at crank angle "
+            f"{at:.6g} deg and {found.y[1, -1]:.6g} rad/s: the mechanism may stand in a limit position there",
+            crank_angle=float(found.y[0, -1]),
+        )
+    if found.status == 0 and not isinstance(until, float):
+        what = "standstill" if target is None else f"{target:.6g} rad/s"
+        raise DriveError(f"{scene.mechanism.name}: does not come to {what} within {end:.6g} s; give a time as until")
+    time, (angles, speeds, work) = found.t, found.y
+    energy = 0.5 * driven.inertia(angles) * speeds * speeds
+    drift = float(np.abs(energy - energy[0] - work).max())
+    last = ("end", "standstill" if until == "standstill" else "reversal", "end")[_which(found)]
+    named = [Event("start", 0.0, angle)]
+    named += [
+        Event("reversal", float(t), float(y[0]))
+        for t, y in zip(found.t_events[0], found.y_events[0], strict=True)
+        if 0.0 < t < time[-1]
+    ]
+    named.append(Event(last, float(time[-1]), float(angles[-1])))
+    for array in (time, angles, speeds):
+        read_only(array)
+    alpha = read_only(acceleration_at(driven, angles, speeds))
+    return Trajectory(
+        scene, driven.motor, driven.flywheel, time, angles, speeds, alpha, tuple(named), drift, driven, found.sol
+    )
+
+
+def _which(found):
+    """0: the time was up; 1: standstill; 2: the speed wanted."""
+    if found.status == 0:
+        return 0
+    return 1 if found.t_events[0].size and found.t_events[0][-1] == found.t[-1] else 2
+
+
+def _long(driven, speed):
+    """Time after which a motion that does not end is given up, s."""
+    return LONGEST * TURN / max(abs(speed), 1e-3)

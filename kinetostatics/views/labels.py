@@ -1,0 +1,90 @@
+"""Labels that keep clear of each other and of what is drawn, placed anew whenever a figure is drawn."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.path import Path
+from matplotlib.transforms import Bbox
+
+DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
+"""Ways from a point to its label, the first of them preferred."""
+DISTANCES = (6.0, 11.0, 17.0)
+"""Between a point and the nearest side of its label, points of print."""
+ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE = 20.0, 4.0, 1.5, 10.0
+"""What it costs a label to lie there; a farther place costs up to 1."""
+
+
+class Labels(Artist):
+    """Places annotations clear of each other: it is drawn before them, and draws nothing itself."""
+
+    def __init__(self):
+        super().__init__()
+        self.set_zorder(-1)
+        self.set_in_layout(False)
+        self.texts = []
+
+    def draw(self, renderer):
+        """Move each label to the best place left."""
+        ax: Any = self.axes
+        lines, scale = ax.lines, renderer.points_to_pixels(1.0)
+        paths = [(_in_pixels(line), False) for line in lines] + [(_in_pixels(patch), True) for patch in ax.patches]
+        marks = [box for line in lines if isinstance(line.get_marker(), Path) for box in _boxes(line, scale)]
+        shown = [text for text in self.texts if np.isfinite(text.xy).all()]
+        points = ax.transData.transform([text.xy for text in shown]) if shown else ()
+        taken: list[Bbox] = []
+        for text, point in zip(shown, points, strict=True):
+            size = text.get_window_extent(renderer)
+            places = list(_places(point, size.width, size.height, scale))
+            costs = [
+                step + self._cost(box, taken, points, marks, paths)
+                for step, (_, box) in zip(STEPS, places, strict=True)
+            ]
+            offset, box = places[int(np.argmin(costs))]
+            text.set_position(offset / scale)
+            taken.append(box)
+
+    def _cost(self, box, taken, points, marks, paths):
+        frame: Any = self.axes
+        outside = not (frame.bbox.contains(box.x0, box.y0) and frame.bbox.contains(box.x1, box.y1))
+        return (
+            ON_LABEL * sum(bool(Bbox.intersection(box, other)) for other in taken)
+            + ON_POINT * sum(box.contains(*point) for point in points)
+            + ON_POINT * sum(bool(Bbox.intersection(box, mark)) for mark in marks)
+            + ON_CURVE * sum(path.intersects_bbox(box, filled=filled) for path, filled in paths)
+            + OUTSIDE * outside
+        )
+
+
+def _in_pixels(item):
+    return item.get_transform().transform_path(item.get_path())
+
+
+def _boxes(line, scale):
+    """Boxes of markers that have a shape of their own, in pixels."""
+    corners = line.get_marker().get_extents().get_points()
+    corners = corners * 0.5 * scale * line.get_markersize() / np.abs(line.get_marker().vertices).max()
+    return [Bbox(corners + point) for point in _in_pixels(line).vertices]
+
+
+STEPS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))
+
+
+def _places(point, width, height, scale):
+    """Offset of the label's lower left corner from the point, and its box, in pixels."""
+    for distance in DISTANCES:
+        for way in DIRECTIONS:
+            x = distance * scale * way.real + 0.5 * width * (np.sign(round(way.real, 9)) - 1.0)
+            y = distance * scale * way.imag + 0.5 * height * (np.sign(round(way.imag, 9)) - 1.0)
+            yield np.array([x, y]), Bbox.from_bounds(point[0] + x, point[1] + y, width, height)
+
+
+def label(ax, text, point, **style):
+    """Annotation at a point that keeps clear of the others and of what is drawn on the axes."""
+    keeper = next((item for item in ax.artists if isinstance(item, Labels)), None)
+    if keeper is None:
+        keeper = ax.add_artist(Labels())
+    options = {"textcoords": "offset points", "fontsize": "x-small", "ha": "left", "va": "bottom"}
+    made = ax.annotate(text, np.asarray(point, dtype=float), xytext=(6, 6), **options | style)
+    keeper.texts.append(made)
+    return made

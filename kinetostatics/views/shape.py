@@ -1,0 +1,231 @@
+"""What a mechanism looks like, read off what its groups and loads declare: lines and plates in each pose."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..machine.group import FRAME
+from ..numbers.planar import unturned
+from . import symbols
+
+THIN = 1e-3
+"""Breadth of a link, beside its length, up to which it is a straight bar."""
+SECTOR = np.radians(50.0)
+"""Half of the angle of a counterweight."""
+
+
+class Stroke(NamedTuple):
+    """Points (2, K, N) to be joined in each of N poses, and what they are."""
+
+    kind: str
+    points: Any
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What of a drawing is the same in all poses, from the mechanism all over its turns.
+
+    Attributes
+    ----------
+    turn : Motion
+    """
+
+    turn: Any
+
+    @property
+    def made(self):
+        return self.turn.mechanism
+
+    @cached_property
+    def size(self):
+        """Largest extent of the joints over the turn, m."""
+        joints = np.concatenate([self.turn.position(name) for name in self.turn.placement.joints], axis=-1)
+        return float(np.max(np.nanmax(joints, axis=-1) - np.nanmin(joints, axis=-1))) or 1.0
+
+    @property
+    def unit(self):
+        """Half the length of a block, m."""
+        return 0.03 * self.size
+
+    @cached_property
+    def slots(self):
+        """By slot: both ends of the way of its joint, (2, 2), in the axes of its link, the nearer end first."""
+        found = {slot: _ends(self._seen(slot.link, self.turn.position(slot.joint))) for slot in self.made.slots}
+        return {slot: ends if slot.rod else _longer(ends, self.unit) for slot, ends in found.items()}
+
+    @cached_property
+    def ways(self):
+        """By slider: both ends of its way, (2, 2), along its guide."""
+        found = {}
+        for slider, guide in self.made.guides.items():
+            path = self.turn.position(self.made.references[slider])
+            along = path.T @ np.asarray(guide.direction, dtype=float)
+            found[slider] = path[:, [np.nanargmin(along), np.nanargmax(along)]]
+        return found
+
+    @cached_property
+    def corners(self):
+        """By link: what it joins, (2, K), in its own axes, its reference joint first."""
+        found = {link: [(0.0, 0.0)] for link in self.made.links}
+        for point in self.made.joints.values():
+            if point.link != FRAME:
+                found[point.link].append((point.along, point.across))
+        for bar in self.made.bars:
+            found[bar.link].append((bar.length, 0.0))
+        for slot, ends in self.slots.items():
+            found[slot.link] += [] if slot.rod else [tuple(end) for end in ends.T]
+        return {link: self._different(points) for link, points in found.items()}
+
+    def _different(self, points):
+        kept: list[Any] = []
+        for point in (np.asarray(point, dtype=float).ravel() for point in points):
+            if all(np.hypot(*(point - other)) > 1e-6 * self.size for other in kept):
+                kept.append(point)
+        return np.array(kept).T
+
+    def _seen(self, link, position):
+        """Positions in the axes of a link."""
+        found = self.turn.placement.links[link]
+        apart = [here - there for here, there in zip(position, found.joint.position, strict=True)]
+        return np.array(np.broadcast_arrays(*unturned(apart, found.direction)))
+
+    @cached_property
+    def rods(self):
+        """Links that slide in others as pistons."""
+        return {slot.rod for slot in self.made.slots}
+
+    def strokes(self, pose):
+        """Lines and plates of all links in the poses of a motion, the hindmost first."""
+        for link, corners in self.corners.items():
+            order = _in_line(corners)
+            if corners.shape[1] > 1:
+                kind = "plate" if order is None else "bar"
+                order = _around(corners) if order is None else order[[0, -1]]
+                yield Stroke(kind, _on(pose, link, corners[:, order]))
+        for slot, ends in self.slots.items():
+            yield from self._piston(pose, slot, ends) if slot.rod else self._slot(pose, slot, ends)
+        for link, corners in self.corners.items():
+            if link in self.made.guides or (corners.shape[1] == 1 and link not in self.rods):
+                turn, place = self._axes(pose, link)
+                size = self.unit if link in self.made.guides else 0.8 * self.unit
+                yield Stroke("block", symbols.placed(symbols.RECTANGLE, place, turn, size))
+
+    def _axes(self, pose, link):
+        """Direction and reference joint of a link, (2, N)."""
+        return pose.as_vector(pose.placement.links[link].direction), pose.position(self.made.references[link])
+
+    def _slot(self, pose, slot, ends):
+        line = _on(pose, slot.link, ends)
+        yield Stroke("slotted", line)
+        yield Stroke("slot", line)
+
+    def _piston(self, pose, slot, ends):
+        """Cylinder from the reference joint to the nearer end of the way, and a rod into it."""
+        near, far = np.hypot(*ends)
+        origin, joint = pose.position(self.made.references[slot.link]), pose.position(slot.joint)
+        axis = (joint - origin) / np.hypot(*(joint - origin))
+        bottom = joint - axis * max(0.8 * near, far - 0.6 * near)
+        yield Stroke("bar", np.stack([joint, bottom], axis=1))
+        barrel = [(0.0, -0.5), (0.85 * near / self.unit, -0.5), (0.85 * near / self.unit, 0.5), (0.0, 0.5)]
+        yield Stroke("plate", symbols.placed(barrel, origin, axis, self.unit))
+        yield Stroke("bar", symbols.placed([(0.0, -0.5), (0.0, 0.5)], bottom, axis, self.unit))
+
+    def counterweights(self, pose):
+        """Sectors about the joints of turning links whose mass centres lie behind them, with the same mass centres."""
+        for name, link in self.made.links.items():
+            along, across = (float(np.ravel(part)[0]) for part in link.centre)
+            arm = np.hypot(along, across)
+            counterweight = arm > 0.3 * self.unit and along < min(self.corners[name][0].min(), -0.3 * arm)
+            if np.any(link.mass) and counterweight and name not in self.made.guides:
+                radius = arm * 1.5 * SECTOR / np.sin(SECTOR)
+                angle = np.arctan2(across, along) + np.linspace(-SECTOR, SECTOR, 24)
+                edge = radius * np.array([np.cos(angle), np.sin(angle)])
+                yield Stroke("counterweight", _on(pose, name, np.column_stack([(0.0, 0.0), edge])))
+
+    @property
+    def heavy(self):
+        """Links with mass."""
+        return [name for name, link in self.made.links.items() if np.any(link.mass)]
+
+    def signs(self, loads, pose):
+        """Lines of all loads in the poses of a motion."""
+        for item in loads:
+            for sign in _signs(item, pose):
+                yield from self._sign(sign)
+
+    def _sign(self, sign):
+        unit = self.unit
+        if sign.slider:
+            ahead = np.asarray(self.made.guides[sign.slider].direction, dtype=float)
+            end = (self.ways[sign.slider][:, 1] + 6.0 * unit * ahead)[:, None] + 0.0 * sign.start
+            start = sign.start + unit * ahead[:, None]
+            yield Stroke("spring", symbols.spanned(symbols.SPRING, start, end, 0.5 * unit))
+            yield Stroke("spring", symbols.spanned([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
+        elif sign.kind == "force":
+            tip = sign.start + 5.0 * unit * sign.sense * sign.direction
+            yield Stroke("force", symbols.spanned(symbols.ARROW, sign.start, tip, unit))
+        elif sign.end is not None:
+            shape = {"spring": symbols.SPRING, "damper": symbols.DAMPER}.get(sign.kind, symbols.LINE)
+            yield Stroke(sign.kind, symbols.spanned(shape, sign.start, sign.end, 0.5 * unit))
+        else:
+            shape = {"spiral": symbols.SPIRAL, "ring": symbols.RING}.get(sign.kind, symbols.COUPLE)
+            level = np.broadcast_to([[1.0], [0.0]], sign.start.shape)
+            kind = "force" if sign.kind == "couple" else "spring"
+            yield Stroke(kind, symbols.placed(shape, sign.start, level, 1.6 * unit, sign.sense))
+
+    def grounds(self, loads):
+        """Fixed points that something turns about or is fastened to, (2,) each."""
+        for name, point in self.made.joints.items():
+            if point.link == FRAME:
+                yield self.turn.position(name)[:, 0]
+        for item in loads:
+            for sign in _signs(item, self.turn):
+                if sign.kind in ("spring", "damper", "line") and sign.end is not None:
+                    yield from (end[:, 0] for end in (sign.start, sign.end) if not np.ptp(end, axis=-1).any())
+
+
+def _signs(item, pose):
+    """How a load is drawn; one of the user's own need not say."""
+    return item.signs(pose) if hasattr(item, "signs") else ()
+
+
+def _on(pose, link, points):
+    """Points (2, K) of a link in the poses, (2, K, N)."""
+    return np.stack([pose.position((link, along, across)) for along, across in points.T], axis=1)
+
+
+def _ends(points):
+    """Both ends of a straight row of points, (2, 2), the one nearer to zero first."""
+    points = points[:, np.isfinite(points).all(axis=0)]
+    middle = points.mean(axis=1, keepdims=True)
+    far = points[:, np.argmax(np.hypot(*(points - middle)))]
+    other = points[:, np.argmax(np.hypot(*(points - far[:, None])))]
+    return np.column_stack(sorted((far, other), key=np.linalg.norm))
+
+
+def _longer(ends, more):
+    """A line with both ends so much farther out."""
+    apart = ends[:, 1] - ends[:, 0]
+    step = apart * more / (np.hypot(*apart) or 1.0)
+    return ends + np.column_stack([-step, step])
+
+
+def _in_line(points):
+    """Order of points along a straight line, the reference joint first if it is an end; None for no such line."""
+    far = points[:, np.argmax(np.hypot(*points))]
+    length = np.hypot(*far)
+    if not length:
+        return np.arange(1)
+    along, across = np.array([far, symbols.left(far)]) @ points / length
+    if np.ptp(across) > THIN * np.ptp(along):
+        return None
+    order = np.argsort(along)
+    return order if order[-1] else order[::-1]
+
+
+def _around(points):
+    """Order of points around their middle."""
+    x, y = points - points.mean(axis=1, keepdims=True)
+    return np.argsort(np.arctan2(y, x))

@@ -1,0 +1,308 @@
+"""Groups, loads and tables of values in case files that are wrong: each named with file, key, and what is allowed."""
+
+import re
+
+import pytest
+
+import kinetostatics as ks
+from support.case_files import case_file, problems
+
+HEAD = 'title = "t"\nreference = "a"\n'
+CHAIN = """
+[variants.a]
+crank_speed = "60 rpm"
+crank_length = "0.1 m"
+[[variants.a.groups]]
+kind = "slider"
+coupler_length = "0.4 m"
+slider = { mass = "2 kg" }
+"""
+GROUP = "[[variants.a.groups]]\n"
+LOAD = "[[variants.a.loads]]\n"
+FORCE = LOAD + 'kind = "force"\nvalue = "1 N"\nat = "B"\n'
+
+
+@pytest.fixture(scope="module", autouse=True)
+def libraries():
+    """Loads pint and scipy before the clock of any test runs."""
+    ks.load_case("sawframe_2r63")
+
+
+WRONG = {
+    "no kind": (GROUP + 'on = "A"', "variants.a.groups[2].kind is missing; allowed: 'slider', 'rocker'"),
+    "kind of a load": (GROUP + 'kind = "torque"', "variants.a.groups[2].kind is 'torque', allowed: 'slider', 'rocker'"),
+    "kind misspelt": (LOAD + 'kind = "point_spring"', "variants.a.loads[1].kind is 'point_spring', allowed: 'spring'"),
+    "kind no text": (LOAD + "kind = 5", "variants.a.loads[1].kind is 5, allowed: 'spring', 'process force'"),
+    "kind a list": (LOAD + 'kind = ["force"]', "variants.a.loads[1].kind is ['force'], allowed: 'spring'"),
+    "empty": (LOAD, "variants.a.loads[1].kind is missing; allowed: 'spring'"),
+    "key misspelt": (
+        GROUP + 'kind = "pin"\non = "crank"\nat = ["1 m", "0 m"]\nnam = "Q"',
+        "variants.a.groups[2].nam is not a key here; did you mean 'name'? (allowed: kind, on, at, name)",
+    ),
+    "key of another kind": (
+        FORCE + 'between = ["A", "B"]',
+        "variants.a.loads[1].between is not a key here (allowed: k",
+    ),
+    "key missing": (LOAD + 'kind = "force"\nat = "B"', "variants.a.loads[1].value is missing"),
+    "length missing": (GROUP + 'kind = "slider"', "variants.a.groups[2].coupler_length is missing"),
+    "wrong unit": (FORCE.replace("1 N", "1 N m"), 'variants.a.loads[1].value "N m" does not measure the same as "N"'),
+    "no unit": (
+        FORCE.replace("1 N", "1"),
+        'variants.a.loads[1].value has no unit; write for example "1 N"; or write a',
+    ),
+    "a bare number": (FORCE.replace('"1 N"', "1"), "variants.a.loads[1].value must be text of a number and a unit"),
+    "list of values": (FORCE.replace('"1 N"', '["1 N"]'), "variants.a.loads[1].value must be text of a number and a"),
+    "not finite": (FORCE.replace("1 N", "nan N"), "variants.a.loads[1].value must be text of a number and a unit"),
+    "negative stiffness": (
+        LOAD + 'kind = "point spring"\nstiffness = "-1 N/m"\nbetween = ["B", ["0 m", "1 m"]]',
+        "variants.a.loads[1].stiffness must be at least 0 N/m, found '-1 N/m'",
+    ),
+    "length of nothing": (
+        GROUP + 'kind = "dyad"\nlength1 = "0 m"\nlength2 = "1 m"',
+        "variants.a.groups[2].length1 must be greater than 0 m, found '0 m'",
+    ),
+    "one joint twice": (
+        GROUP + 'kind = "dyad"\nlength1 = "1 m"\nlength2 = "1 m"\non = ["B", "B"]',
+        "variants.a.groups[2].on must name two different joints, got 'B' twice",
+    ),
+    "label no text": (
+        GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = 2',
+        "variants.a.groups[2].label must be a name, a text of one line, got 2",
+    ),
+    "assembly": (
+        GROUP + 'kind = "rocker"\ncoupler_length = "1 m"\nrocker_length = "1 m"\npivot = ["1 m", "0 m"]\nassembly = 0',
+        "variants.a.groups[2].assembly must be 1 or -1, or one of 'open', 'crossed', found 0",
+    ),
+    "assembly of a dyad in words": (
+        GROUP + 'kind = "dyad"\nlength1 = "1 m"\nlength2 = "1 m"\nassembly = "open"',
+        "variants.a.groups[2].assembly must be 1 or -1, found 'open'",
+    ),
+    "pivot no pair": (
+        GROUP + 'kind = "lever"\npivot = "1 m"',
+        'variants.a.groups[2].pivot must be a pair such as ["0.1 m"',
+    ),
+    "a name of three": (
+        FORCE.replace('"B"', '["coupler", "0 m", "0 m", "0 m"]'),
+        'variants.a.loads[1].at must be a joint ("B"), a place on a link',
+    ),
+    "point of numbers": (
+        FORCE.replace('"B"', "[1.0, 0.0]"),
+        "variants.a.loads[1].at must be text of a number and a unit",
+    ),
+    "point of one unit": (FORCE.replace('"B"', '["1 m", "0 kg"]'), 'variants.a.loads[1].at "kg" does not measure the'),
+    "comma": (
+        FORCE.replace('"B"', '["1,5 m", "0 m"]'),
+        "variants.a.loads[1].at must be text of a number and a unit that",
+    ),
+    "one point": (
+        LOAD + 'kind = "point damper"\ncoefficient = "1 N s/m"\nbetween = "B"',
+        "variants.a.loads[1].between must be a pair of points, each a joint",
+    ),
+    "group as a table": (
+        '[variants.b]\ncrank_speed = "1 rpm"\ngroups = {}',
+        "variants.b.groups must be a list of tables, each",
+    ),
+    "no group at all": (
+        '[variants.b]\ncrank_speed = "1 rpm"\ngroups = []',
+        "variants.b.groups must be a list of tables, each under [[groups]], 1 at least",
+    ),
+    "group no table": (
+        '[variants.b]\ncrank_speed = "1 rpm"\ngroups = ["slider"]',
+        "variants.b.groups[1] must be a table with a kind, of 'slider', 'rocker'",
+    ),
+    "groups of a crank-slider": (
+        '[variants.b]\nmechanism = "crank-slider"\ngroups = []',
+        "variants.b.groups is not a key here",
+    ),
+    "both ways of a guide": (
+        GROUP + 'kind = "yoke"\nguide_angle = "1 deg"\nguide_through = [["0 m", "0 m"], ["1 m", "0 m"]]',
+        "variants.a.groups[2]: give either guide_through or guide_angle and guide_offset",
+    ),
+    "slot along the guide": (
+        GROUP + 'kind = "yoke"\nslot_angle = "180 deg"',
+        "variants.a.groups[2]: yoke group: slot_angle 3.14159 rad makes the slot parallel to the guide",
+    ),
+    "mid-length of a slider": (
+        GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"\npin = "D"\nslider = { centre = "mid-length" }',
+        'variants.a.groups[2]: centre "mid-length" is for links between two joints',
+    ),
+    "joint that is not there": (
+        GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"\npin = "D"\non = "Q"',
+        "variants.a: chain: SliderGroup hangs on joint 'Q', which no part before it places",
+    ),
+    "joint twice": (
+        GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"',
+        "variants.a: chain: SliderGroup adds joint 'B' a second time",
+    ),
+    "force on no joint": (FORCE.replace('"B"', '"Q"'), "variants.a.loads[1]: Force: at is 'Q', allowed: 'O', 'A', 'B'"),
+    "force on no link": (
+        FORCE.replace('"B"', '["couplr", "1 m"]'),
+        "variants.a.loads[1]: Force: link of at is 'couplr', allowed: 'crank', 'coupler', 'slider', 'frame'; did you",
+    ),
+    "torque on a joint": (
+        LOAD + 'kind = "torque"\nvalue = "1 N m"\non = "B"',
+        "variants.a.loads[1]: Torque: on is 'B', allowed: 'crank', 'coupler', 'slider'",
+    ),
+    "spring on no slider": (
+        LOAD + 'kind = "spring"\nstiffness = "balance the slider"\nfree_position = "1 m"\non = "slider2"',
+        "variants.a.loads[1]: Spring: on is 'slider2', allowed: 'slider'",
+    ),
+    "no such file": (FORCE.replace('"1 N"', '{ file = "none.csv" }'), "none.csv: cannot be read: No such file"),
+    "a folder": (FORCE.replace('"1 N"', '{ file = "." }'), "cannot be read: it is a folder, not a file"),
+    "a device": (
+        FORCE.replace('"1 N"', '{ file = "/dev/zero" }'),
+        "cannot be read: it is a pipe or device, not a file",
+    ),
+    "no file": (FORCE.replace('"1 N"', '{ over = "angle" }'), "variants.a.loads[1].value.file is missing"),
+    "file no text": (
+        FORCE.replace('"1 N"', "{ file = 5 }"),
+        "variants.a.loads[1].value.file: input should be a valid str",
+    ),
+    "over what": (
+        FORCE.replace('"1 N"', '{ file = "t.csv", over = "time" }'),
+        "variants.a.loads[1].value.over: input should be 'angle' or 'travel', found 'time'",
+    ),
+    "period": (
+        FORCE.replace('"1 N"', '{ file = "t.csv", period = "500 deg" }'),
+        "variants.a.loads[1].value.period must be a whole number of turns",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_group_or_load_is_named_by_its_key_with_what_is_allowed(tmp_path, name):
+    text, message = WRONG[name]
+    found = problems(tmp_path, HEAD + CHAIN + text + "\n")
+    assert any(line.startswith(message) or message in line for line in found), found
+    assert all(len(line) < 600 for line in found)
+
+
+def test_all_that_is_wrong_with_a_chain_is_said_at_once(tmp_path):
+    """Of tables, then of files and of what loads name: a file that is missing hides no other problem."""
+    keys = [
+        ("groups[1].coupler_length", 'coupler_length = "0.4 m"', 'coupler_length = "0.4 kg"'),
+        ("groups[1].kind", 'kind = "slider"', 'kind = "slidr"'),
+        ("loads[1].value", '"1 N"', "1"),
+        ("loads[2].stiffness", "2 N/m", "-2 N/m"),
+        ("loads[3].valu", "value =", "valu ="),
+        ("loads[3].value", "", ""),
+    ]
+    spring = LOAD + 'kind = "point spring"\nstiffness = "2 N/m"\nbetween = ["B", ["0 m", "1 m"]]\n'
+    text = HEAD + CHAIN + FORCE + spring + FORCE.replace("value", "valu")
+    for _, before, after in keys[:4]:
+        text = text.replace(before, after, 1)
+    found = problems(tmp_path, text)
+    assert sorted(line.split()[0].removeprefix("variants.a.") for line in found) == sorted(key for key, *_ in keys)
+    text = HEAD + CHAIN + FORCE.replace('"1 N"', '{ file = "none.csv" }') + FORCE.replace('"B"', '"Q"')
+    found = problems(tmp_path, text + spring.replace('"B"', '"P"').replace("0 m", "0 mm"))
+    assert [line.split(":")[0] for line in found] == [
+        f"variants.a.loads[{n}]{e}" for n, e in ((1, ".value"), (2, ""), (3, ""))
+    ]
+
+
+def test_what_is_wrong_in_common_is_said_once_where_it_stands(tmp_path):
+    text = (HEAD + CHAIN + FORCE).replace("variants.a", "common").replace('"1 N"', '{ file = "none.csv" }')
+    (found,) = problems(tmp_path, text.replace('"0.4 m"', '"4 dm"') + "[variants.a]\n[variants.b]\n")
+    assert found.startswith("common.loads[1].value: ")
+    found = problems(tmp_path, text.replace('"0.4 m"', '"0.4 kg"') + "[variants.a]\n[variants.b]\n")
+    assert found == (
+        'common.groups[1].coupler_length "kg" does not measure the same as "m"; give a unit that converts to it',
+    )
+
+
+# Tables of values
+
+ANGLES = "crank_angle [deg], force [kN]\n0, 1\n90, 3\n180, 2\n270, 0\n"
+TRAVEL = "travel [mm], pressure [bar], pressure_back [bar]\n300, 8, 2\n400, 4, 1\n500, 1, 0\n"
+AREA = 'area = "10 cm^2"'
+WRONG_TABLES = {
+    "a gap": (ANGLES.replace("3", ""), "", "column 'force [kN]', line 3: not a number: ''"),
+    "a field too few": (ANGLES.replace("90, 3", "90"), "", "line 3 has 1 fields, but the heading 2"),
+    "not a number": (ANGLES.replace("3", "nan"), "", "column 'force [kN]', line 3: not a number: 'nan'"),
+    "infinite": (ANGLES.replace("3", "inf"), "", "line 3: not a number: 'inf'"),
+    "beyond doubles": (ANGLES.replace("3", "1e999"), "", "line 3: not a number: '1e999'"),
+    "a word": (ANGLES.replace("3", "n/a"), "", "line 3: not a number: 'n/a'"),
+    "decimal commas": (ANGLES.replace("90, 3", "90, 3,5"), "", "line 3 has 3 fields, but the heading 2; if a comma is"),
+    "decimal commas in quotes": (ANGLES.replace("90, 3", '90, "3,5"'), "", "line 3: not a number: '3,5'"),
+    "semicolons": (ANGLES.replace(",", ";"), "", "has semicolons between its columns; write commas there"),
+    "tabs": (ANGLES.replace(", ", "\t"), "", "has tabs between its columns"),
+    "wrong unit": (ANGLES.replace("kN", "kg"), "", '"kg" does not measure the same as "N"'),
+    "a torque": (
+        ANGLES.replace("force [kN]", "torque [N m]"),
+        "",
+        "no column 'force'; it has 'crank_angle [deg]', 'to",
+    ),
+    "no unit": (ANGLES.replace(" [kN]", ""), "", "column 'force': has no unit; head it for example \"force [N]\""),
+    "angles in metres": (ANGLES.replace("deg", "mm"), "", '"mm" does not measure the same as "rad"'),
+    "pressure without area": (TRAVEL, "", "no column 'force', but pressures; give the area"),
+    "area without pressure": (ANGLES, AREA, "no column 'pressure'; it has 'crank_angle [deg]', 'force [kN]'"),
+    "area in metres": (TRAVEL, 'area = "10 cm"', '"cm" does not measure the same as "m^2"'),
+    "pressure in newtons": (TRAVEL.replace("bar", "N", 1), AREA, '"N" does not measure the same as "Pa"'),
+    "unsorted angles": (ANGLES.replace("180", "80"), "", "angles must rise, but 80 deg follows 90 deg in row 3"),
+    "unsorted travel": (TRAVEL.replace("400", "200"), AREA, "travel must rise, but 0.2 m follows 0.3 m in row 2"),
+    "unsorted falling travel": (
+        "travel [mm], force [N]\n500, 1\n600, 2\n400, 3\n300, 1\n",
+        "",
+        "travel must fall, but 0.6 m follows 0.5 m in row 2",
+    ),
+    "too few rows": (ANGLES.split("180")[0], "", "at least 3 rows are needed, got 2"),
+    "one row of travel": ("travel [m], force [N]\n0.3, 1\n", "", "at least 2 rows are needed, got 1"),
+    "heading only": (ANGLES.split("\n")[0] + "\n", "", "has a heading, 'crank_angle [deg], force [kN]', but no rows"),
+    "nothing": ("", "", "is empty: a heading and rows of numbers are needed"),
+    "degrees as radians": (ANGLES.replace("deg", "rad"), "", "more than the period of 360 deg; are they degrees"),
+    "half a turn": (ANGLES.replace("90", "45").replace("180", "90").replace("270", "135"), "", "rows are missing"),
+    "two turns": (ANGLES.replace("270", "630"), "", 'if it repeats after 2 turns, give period = "720 deg"'),
+    "travel too short": (
+        TRAVEL.replace("300", "310"),
+        AREA,
+        "the slider goes from 0.3 to 0.5 m, but the table from 0.31 to 0.5 m",
+    ),
+    "travel from the dead centre": (
+        TRAVEL.replace("300", "0").replace("400", "100").replace("500", "200"),
+        AREA,
+        "travel is the coordinate of the pin along the guide",
+    ),
+    "travel of no slider": (TRAVEL, f'{AREA}, slider = "slider2"', "slider is 'slider2', allowed: 'slider'"),
+    "slider of an angle": (ANGLES, 'slider = "slider"', 'slider is for a table over="travel"'),
+    "over a column that is not there": (ANGLES, 'over = "travel"', "no column 'travel'; it has 'crank_angle [deg]'"),
+    "period over travel": (TRAVEL, f'{AREA}, period = "720 deg"', "over travel the period is one turn"),
+    "two columns of a name": (
+        ANGLES.replace("\n", ", force [N]\n", 1).replace("\n0, 1", "\n0, 1, 1"),
+        "",
+        "line 3 has 2",
+    ),
+    "UTF-16": (ANGLES.encode("utf-16"), "", "is not UTF-8 text, but UTF-16; save it as UTF-8"),
+    "Latin-1": (ANGLES.replace("force", "f\xe4rce").encode("latin-1"), "", "is not UTF-8 text"),
+    "zero bytes": (ANGLES.encode() + b"\0", "", "is not text: it has a zero byte"),
+    "huge": (ANGLES.encode() + b"1" * 10_000_001, "", "cannot be read: it is larger than 10 MB"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_TABLES)
+def test_a_wrong_table_is_refused_with_key_file_and_row(tmp_path, name):
+    content, options, message = WRONG_TABLES[name]
+    (tmp_path / "t.csv").write_bytes(content if isinstance(content, bytes) else content.encode())
+    entry = f'{{ file = "t.csv"{", " if options else ""}{options} }}'
+    found = problems(tmp_path, HEAD + CHAIN + FORCE.replace('"1 N"', entry))
+    assert message in found[0]
+    assert all(line.startswith("variants.a.loads[1]") for line in found)
+
+
+GOOD_TABLES = {
+    "with a byte order mark": (b"\xef\xbb\xbf" + ANGLES.encode(), ""),
+    "of another system": (ANGLES.replace("\n", "\r\n").encode(), ""),
+    "with empty lines": (ANGLES.replace("\n", "\n\n").encode(), ""),
+    "that ends a turn later": ((ANGLES + "360, 1\n").encode(), ""),
+    "falling": (b"travel [m], force [N]\n0.5, 1\n0.3, 2\n", ""),
+    "in other units": (TRAVEL.replace("bar", "kPa").replace("mm", "cm").replace("00,", "0,").encode(), AREA),
+    "with columns to spare": (TRAVEL.replace("\n", ", 1\n").replace("[bar], 1", "[bar], row [1]").encode(), AREA),
+}
+
+
+@pytest.mark.parametrize("name", GOOD_TABLES)
+def test_a_table_as_programs_write_them_is_read(tmp_path, name):
+    content, options = GOOD_TABLES[name]
+    (tmp_path / "t.csv").write_bytes(content)
+    entry = f'{{ file = "t.csv"{", " if options else ""}{options} }}'
+    case = ks.load_case(case_file(tmp_path, HEAD + CHAIN + FORCE.replace('"1 N"', entry)))
+    assert re.match("(angle|travel)", case.variant("a").loads[0].value.over)

@@ -1,0 +1,443 @@
+"""Slotted levers through change points: motion, forces and torque equal a reference of 60 digits, however near."""
+
+from functools import cache
+from itertools import product
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+
+DATA = {"crank": (2.0, 0.3, 0.1, 0.2), "lever": (1.5, 0.7, -0.2, 0.1), "block": (3.0, 0.04, 0.25, 0.5)}
+LINKS = {name: ks.Link(mass, (along, across), inertia) for name, (mass, along, across, inertia) in DATA.items()}
+LEVERS = {
+    "meeting": (1.0, 0.0),
+    "outside left": (2.0, 1.0),
+    "outside right": (2.0, -1.0),
+    "inside left": (0.5, 0.5),
+    "inside right": (0.5, -0.5),
+    "grazing": (1.0 + 2.0**-7, 2.0**-7),
+}
+"""Distance of the pivot and offset of the slot, for a crank of 1 m."""
+SIDES = {"open": 1, "crossed": -1}
+every = pytest.mark.parametrize(("name", "assembly"), list(product(LEVERS, SIDES)))
+meeting = pytest.mark.parametrize("assembly", SIDES)
+SPEED, ACCELERATION, WEIGHT = 2.0, 1.5, 9.81
+DIGITS = 240
+"""Carried; differences over a step of 1e-80 leave more than 60, also 1e-17 rad from a change point."""
+
+
+def lever(name, assembly, start=0.0, **links):
+    distance, offset = LEVERS[name]
+    pivot = (distance * np.cos(start), distance * np.sin(start)) if start else (distance, 0.0)
+    return ks.slotted_lever(1.0, pivot=pivot, offset=offset, assembly=assembly, **(links or LINKS))
+
+
+def solve(made, angles, **options):
+    given = {"crank_speed": SPEED, "crank_acceleration": ACCELERATION, "loads": ks.Gravity(WEIGHT)}
+    return ks.solve(made, angles, **given | options)
+
+
+# Reference: angles of the line O2 A and of the offset in it, differences of positions, moments of lever and block
+
+
+def places(name, assembly, angle):
+    """A, O2, directions and mass centres of the links, as complex numbers, and the place of the block in the slot."""
+    distance, offset = map(mp.mpf, LEVERS[name])
+    ray, A = mp.expj(angle), mp.expj(angle)
+    toward = A - distance
+    side = SIDES[assembly] * mp.sign(mp.sin(angle / 2))
+    lean = mp.asin(offset / abs(toward)) if offset else mp.mpf(0)
+    way = mp.expj(mp.arg(toward) - (lean if side > 0 else mp.pi - lean))
+    ways = (ray, way, way)
+    centres = [
+        joint + direction * mp.mpc(along, across)
+        for joint, direction, (_, along, across, _) in zip((0, distance, A), ways, DATA.values(), strict=True)
+    ]
+    return [A, distance, *ways, *centres], (mp.conj(way) * toward).real
+
+
+@cache
+def reference(name, assembly, angle):
+    """By quantity."""
+    with mp.workdps(DIGITS):
+        phi, step = mp.mpf(angle), mp.mpf(10) ** -80
+        times = (-step, mp.mpf(0), step)
+        (before, _), (here, reach), (after, _) = (
+            places(name, assembly, phi + SPEED * t + ACCELERATION * t * t / 2) for t in times
+        )
+        first = [(y - x) / (2 * step) for x, y in zip(before, after, strict=True)]
+        second = [(x - 2 * m + y) / step**2 for x, m, y in zip(before, here, after, strict=True)]
+        rates = [(v / way).imag for v, way in zip(first[2:5], here[2:5], strict=True)]
+        slopes = [(v / way).imag for v, way in zip(second[2:5], here[2:5], strict=True)]
+        data = list(DATA.values())
+        forces = [mass * (-1j * mp.mpf(WEIGHT) - a) for (mass, *_), a in zip(data, second[5:], strict=True)]
+        moments = [-inertia * slope for (*_, inertia), slope in zip(data, slopes, strict=True)]
+        parts = zip(forces, first[5:], moments, rates, strict=True)
+        torque = -sum((mp.conj(v) * f).real + m * rate for f, v, m, rate in parts) / SPEED
+        A, O2, _, way, _ = here[:5]
+        of_lever = (mp.conj(here[6] - O2) * forces[1]).imag + moments[1]
+        of_block = (mp.conj(here[7] - A) * forces[2]).imag + moments[2]
+        slot = (of_lever + of_block) / reach  # lever on block, along the left normal of the lever
+        inner = -slot * 1j * way - forces[2]
+        return {
+            "balancing_torque": torque,
+            "rate": rates[1],
+            "slope": slopes[1],
+            "reach": reach,
+            "direction": way,
+            "slot_force": slot,
+            "slot_moment": -of_block,
+            "A": inner,
+            "O2": slot * 1j * way - forces[1],
+            "O": inner - forces[0],
+        }
+
+
+def found(solution, place):
+    """The same quantities, as the library gives them."""
+    scalars = {
+        "balancing_torque": solution.balancing_torque,
+        "rate": solution.rate("lever"),
+        "slope": solution.angular_acceleration("lever"),
+        "reach": solution.measure("block_position"),
+        "slot_force": solution.scalar("slot_force"),
+        "slot_moment": solution.scalar("slot_moment"),
+    }
+    vectors = {joint: solution.reaction(joint) for joint in ("A", "O2", "O")}
+    vectors["direction"] = solution.placement.links["lever"].direction
+    scalars |= {name: x + 1j * y for name, (x, y) in vectors.items()}
+    return {name: np.broadcast_to(values, solution.shape)[place] for name, values in scalars.items()}
+
+
+NEAR = [sign * 10.0**-power for power in (1, 2, 4, 6, 8, 11, 14, 17) for sign in (1, -1)]
+
+
+@every
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+def test_motion_forces_and_torque_are_exact_on_both_sides_of_a_change_point_however_near(name, assembly):
+    """Relative to the value itself, of vectors to the largest component at the angle."""
+    angles = np.array([*NEAR, 0.7, -2.0, 4.0, 9.0])
+    solution, wrong = solve(lever(name, assembly), angles), {}
+    for place, angle in enumerate(angles.tolist()):
+        expected = reference(name, assembly, angle)
+        for quantity, value in found(solution, place).items():
+            exact, value = mp.mpc(expected[quantity]), mp.mpc(value)
+            apart, size = value - exact, max(abs(exact.real), abs(exact.imag))
+            error = float(max(abs(apart.real), abs(apart.imag)) / (size if size > 1e-40 else 1))
+            if not error < 1e-12:
+                wrong[angle, quantity] = error, float(size)
+    assert not wrong
+
+
+@every
+def test_torque_and_motion_at_the_exact_angle_are_what_both_sides_tend_to_and_reactions_are_infinite(name, assembly):
+    if name == "grazing":
+        pytest.skip("the lever spins too fast there for a step of 1e-10 rad")
+    solution = solve(lever(name, assembly), np.array([-1e-10, 0.0, 1e-10]))
+    for values in (
+        solution.balancing_torque,
+        *solution.placement.links["lever"].direction,
+        np.broadcast_to(solution.rate("lever"), 3),
+        solution.angular_acceleration("lever"),
+        solution.measure("block_position"),
+    ):
+        assert np.isfinite(values).all()
+        assert np.ptp(values) < 1e-6
+    with pytest.warns(ks.ConditionWarning, match="O2 is infinite at crank angle 0 deg, at a change point"):
+        force = solution.reaction("O2")
+    assert not np.isnan(force).any()
+    assert np.isinf(np.hypot(*force)[1])
+    assert all(np.isinf(np.hypot(*solution.reaction(joint))[1]) for joint in ("A", "O"))
+    assert np.isinf(solution.scalar("slot_force")[1])
+    assert np.isfinite(solution.scalar("slot_moment")).all()
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@pytest.mark.parametrize("ulps", [-6, 6])
+def test_lengths_equal_within_rounding_are_taken_as_equal_wherever_the_pivot_stands(ulps):
+    """Pivots on the crank circle by decimals: the lever's rate is one half to the last bit."""
+    for angle in np.radians([0.0, 20.0, 90.0, 160.0, 180.0, 200.0, 270.0, 340.0]):
+        pivot = tuple(0.3 * np.array([np.cos(angle), np.sin(angle)]))
+        made = ks.slotted_lever(0.3 + ulps * 2.0**-54, pivot=pivot, assembly="open", **LINKS)
+        assert made.passes
+        solution = solve(made, np.linspace(-6.3, 6.3, 301))
+        assert set(np.broadcast_to(solution.rate("lever"), 301)) == {0.5 * SPEED}
+        along = np.array(solution.placement.links["lever"].direction) * solution.measure("block_position")
+        np.testing.assert_allclose(solution.position("A"), np.array(pivot)[:, None] + along, rtol=0, atol=2e-15)
+
+
+@pytest.mark.parametrize("name", ["meeting", "outside left", "inside right"])
+@pytest.mark.parametrize("assembly", SIDES)
+def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
+    psi = np.linspace(-7.0, 7.0, 28)
+    at_zero = found(solve(lever(name, assembly), psi, loads=()), slice(None))
+    for start in (-3.1, -2.0, -1.0, 1.0, 2.0, 3.1):
+        made = lever(name, assembly, start)
+        assert made.passes
+        turned = found(solve(made, start + psi, loads=()), slice(None))
+        for quantity in ("reach", "balancing_torque", "rate", "slope", "slot_force"):
+            expected = at_zero[quantity]
+            np.testing.assert_allclose(turned[quantity], expected, rtol=0, atol=1e-11 * (np.abs(expected).max() + 1e-9))
+
+
+@every
+def test_slot_of_open_points_to_the_block_in_the_first_turn_and_away_in_the_second(name, assembly):
+    made = lever(name, assembly, 0.4)
+    reach = solve(made, 0.4 + np.linspace(0.1, 6.2, 9)).measure("block_position")
+    assert np.all(SIDES[assembly] * reach > 0.0)
+    later = solve(made, 0.4 + 2 * np.pi + np.linspace(0.1, 6.2, 9)).measure("block_position")
+    np.testing.assert_allclose(later, -reach, rtol=0, atol=1e-13)
+
+
+@every
+def test_motion_goes_on_through_the_change_point_and_closes_after_two_turns(name, assembly):
+    made, other = lever(name, assembly, 0.9), lever(name, "crossed" if assembly == "open" else "open", 0.9)
+    assert made.turns == 2
+    np.testing.assert_allclose(made.change_points, [0.9], atol=1e-15)
+    angles = np.array([1.1, 2.0, 5.0])
+    first = solve(made, angles).balancing_torque
+    np.testing.assert_allclose(solve(made, angles + 4 * np.pi).balancing_torque, first, rtol=1e-11)
+    np.testing.assert_allclose(solve(other, angles + 2 * np.pi).balancing_torque, first, rtol=1e-11)
+    angles = np.linspace(0.0, 4 * np.pi, 2001)
+    x, y = solve(made, angles).placement.links["lever"].direction
+    assert np.abs(np.diff(np.unwrap(np.arctan2(y, x)))).max() < (2.0 if name == "grazing" else 0.05)
+
+
+# Sides
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.03])
+def test_the_other_side_turns_the_slot_away_from_the_block(offset):
+    """With masses turned likewise, and without an offset, all forces are the same."""
+    angles = np.linspace(0.0, 6.0, 13)
+    one, other = (
+        solve(ks.slotted_lever(0.1, pivot=(0.03, -0.25), offset=offset, assembly=side), angles) for side in (1, -1)
+    )
+    np.testing.assert_array_equal(other.measure("block_position"), -one.measure("block_position"))
+    away = np.array(other.placement.links["lever"].direction)
+    place = np.array([[0.03], [-0.25]]) + away * other.measure("block_position")
+    np.testing.assert_allclose(place + offset * np.array([-away[1], away[0]]), other.position("A"), atol=1e-15)
+    if not offset:
+        turned = ks.Link(1.5, (-0.7, 0.2), 0.1)
+        plain, back = (
+            ks.slotted_lever(0.1, pivot=(0.03, -0.25), assembly=side, lever=link)
+            for side, link in ((1, LINKS["lever"]), (-1, turned))
+        )
+        first, second = (found(solve(made, angles), slice(None)) for made in (plain, back))
+        for quantity in ("balancing_torque", "rate", "A", "O2"):
+            np.testing.assert_allclose(first[quantity], second[quantity], rtol=1e-13)
+        np.testing.assert_allclose(first["slot_force"], -second["slot_force"], rtol=1e-13)
+
+
+@pytest.mark.parametrize("assembly", SIDES)
+def test_levers_without_change_points_keep_their_side_to_the_last_bit(assembly):
+    word, number = (
+        ks.slotted_lever(0.1, pivot=(0.03, -0.25), offset=0.02, assembly=way, **LINKS)
+        for way in (assembly, SIDES[assembly])
+    )
+    assert (word.turns, word.change_points, word.passes) == (1, (), False)
+    angles = np.linspace(0.0, 7.0, 50)
+    np.testing.assert_array_equal(solve(word, angles).reaction("A"), solve(number, angles).reaction("A"))
+
+
+@pytest.mark.parametrize("assembly", [1, -1, "open", "crossed"])
+@pytest.mark.parametrize("offset", [0.0, 0.05])
+def test_groups_of_every_assembly_balance(assembly, offset):
+    links = {name: LINKS[name] for name in ("lever", "block")}
+    assert ks.check(ks.LeverGroup((0.1, -0.3), offset=offset, assembly=assembly, **links)).ok
+    assert ks.check(lever("outside left", "open").groups[0]).ok
+
+
+def test_fixed_side_names_its_jump_and_its_kink():
+    with pytest.warns(ks.ConditionWarning, match="a jump, as A meets the pivot at 0 deg"):
+        solve(lever("meeting", 1), np.array([0.0, 1.0]))
+    with pytest.warns(ks.ConditionWarning, match="a kink at 0 deg"):
+        solve(lever("outside left", -1), np.array([0.0, 1.0]))
+
+
+# What follows from it
+
+
+@every
+def test_engines_agree(name, assembly, interpreted):
+    scene = ks.Scene(lever(name, assembly, 0.7), SPEED)
+    angles = np.array([0.3, 2.0, 5.0, 8.0, 11.0])
+    numpy, compiled = (scene.solve(angles, engine=engine) for engine in ("numpy", "compiled"))
+    for found in (compiled, numpy.dynamics):
+        np.testing.assert_allclose(found.balancing_torque, numpy.balancing_torque, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(found.reaction("O2"), numpy.reaction("O2"), rtol=1e-12, atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        ks.slotted_lever(2.5, pivot=(-1.5, -2.0), assembly="crossed", **LINKS),
+        ks.slotted_lever(2.5, pivot=(-3.0, 4.0), offset=-2.5, assembly="crossed", **LINKS),
+        ks.slotted_lever(2.0, pivot=(0.0, -1.0), offset=-1.0, assembly="open", **LINKS),
+        ks.slotted_lever(2.0, pivot=(0.0, -1.0), offset=0.5, assembly=-1, **LINKS),
+    ],
+    ids=lambda made: f"{made.groups[0].assembly} {made.groups[0].passage}",
+)
+def test_enclosures_by_the_kernels_hold_what_other_formulas_give(made):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    from kinetostatics.studies.methods.certified import certified
+
+    solution = solve(made, np.array([0.3, 4.0, 9.0]))
+    for quantity in ("balancing_torque", "A"):
+        found = certified(solution, quantity)
+        assert found.agreement < 1e-25
+        values = solution.balancing_torque[None] if quantity != "A" else solution.reaction("A")
+        np.testing.assert_allclose(values, found.middle, rtol=0, atol=1e-14 * found.largest)
+
+
+@meeting
+def test_two_turns_are_solved_without_a_warning_until_reactions_are_read(assembly):
+    """Warnings are errors in the tests."""
+    solution = ks.Scene(lever("meeting", assembly), SPEED, loads=ks.Gravity()).solve(72)
+    assert solution.crank_angle[-1] > 3.9 * np.pi
+    assert np.isfinite(solution.balancing_torque).all()
+    assert solution.condition.max() < 1e4
+    assert solution.condition_of("balancing_torque").max() < 1e4
+    with pytest.warns(ks.ConditionWarning, match="second freedom"):
+        solution.reaction("A")
+
+
+@meeting
+def test_extremes_of_torque_are_ordinary_over_two_turns_and_those_of_reactions_infinite(assembly):
+    scene = ks.Scene(lever("meeting", assembly), SPEED, loads=ks.Gravity())
+    torque, fine = ks.extremes(scene.solve(12), "balancing_torque"), scene.solve(7200).balancing_torque
+    np.testing.assert_allclose(torque.range, [fine.min(), fine.max()], rtol=1e-6)
+    for name in ("O2", "slot_force"):
+        with pytest.warns(ks.ConditionWarning, match=f"{name} grows without bound at 0, 360 deg"):
+            assert np.inf in np.abs(ks.extremes(scene.solve(12), name).range)
+    moment, fine = ks.extremes(scene.solve(12), "slot_moment"), scene.solve(7200).scalar("slot_moment")
+    np.testing.assert_allclose(moment.range, [fine.min(), fine.max()], rtol=1e-6)
+
+
+def test_work_of_the_torque_over_two_turns_is_zero_without_friction():
+    for name in LEVERS.keys() - {"grazing"}:
+        torque = ks.Scene(lever(name, "open"), SPEED, loads=ks.Gravity()).solve(720).balancing_torque
+        assert abs(torque.mean()) < 1e-9 * abs(torque).max()
+
+
+def test_block_weighted_at_its_pin_leaves_a_lever_without_mass_unloaded():
+    """What does not grow is not infinite: no moment acts, so the slot bears no force, the change point included."""
+    made = lever("meeting", "open", block=ks.Link(3.0))
+    solution = solve(made, np.array([0.0, 1e-300, 1.0]))
+    assert not solution.scalar("slot_force").any()
+    assert np.isfinite(solution.reaction("A")).all()
+    assert not solution.reaction("O2").any()
+
+
+@meeting
+def test_drawing_has_the_slot_on_both_sides_of_the_pivot(assembly):
+    from kinetostatics.views.shape import Shape
+
+    made = lever("meeting", assembly)
+    shape = Shape(ks.Scene(made, SPEED).solve(24).dynamics)
+    (ends,) = shape.slots.values()
+    along = np.sort(ends[0])
+    assert along[0] < -1.99
+    assert along[1] > 1.99
+    strokes = [stroke for stroke in shape.strokes(shape.turn) if stroke.kind == "slot"]
+    (line,) = (stroke.points for stroke in strokes)
+    (x1, y1), (x2, y2) = (line[:, end] for end in range(2))
+    x, y = shape.turn.position("A")
+    between = (x - x1) * (x2 - x1) + (y - y1) * (y2 - y1), (x2 - x1) ** 2 + (y2 - y1) ** 2
+    assert np.all((between[0] > 0.0) & (between[0] < between[1]))
+
+
+def test_batches_of_one_kind_are_solved_and_of_several_refused():
+    scale = np.array([[1.0], [2.5], [0.3]])
+    made = ks.slotted_lever(scale, pivot=(0.6 * scale, -0.8 * scale), assembly="open", **LINKS)
+    assert made.turns == 2
+    assert solve(made, np.linspace(0.0, 12.0, 9)).rate("lever").shape == (3, 9)
+    with pytest.raises(
+        ks.ParameterError, match="must be of one kind, but these have change points none; a = d"
+    ) as error:
+        ks.slotted_lever(scale, pivot=(1.0, 0.0), assembly="open")
+    assert error.value.designs.tolist() == [True, False, False]
+
+
+# What is refused
+
+
+def program(name):
+    return ks.compile(ks.Scene(lever(name, "open"), SPEED, loads=ks.Gravity()), "balancing_torque", engine="numpy")
+
+
+def test_program_takes_values_that_keep_the_kind():
+    found = program("meeting")(0.3, {"crank_length": 2.0, "lever_pivot.x": 2.0})["balancing_torque"]
+    made = ks.slotted_lever(2.0, pivot=(2.0, 0.0), assembly="open", **LINKS)
+    assert found == ks.Scene(made, SPEED, loads=ks.Gravity()).solve(0.3).balancing_torque
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("meeting", {"crank_length": 1.1}),
+        ("meeting", {"lever_pivot.x": 1.0 - 1e-14}),
+        ("outside left", {"slot_offset": 0.5}),
+        ("outside left", {"slot_offset": -1.0}),
+        ("inside left", {"crank_length": 2.0, "slot_offset": 1.0}),
+    ],
+)
+def test_program_refuses_values_of_another_kind(name, values):
+    with pytest.raises(ks.ParameterError, match="another kind"):
+        program(name)(0.3, values)
+
+
+@pytest.mark.parametrize("path", ["crank_length", "lever_pivot.x", "slot_offset"])
+def test_derivatives_by_lengths_are_refused_and_those_by_masses_given(path):
+    found = program("outside left")
+    with pytest.raises(ks.ParameterError, match=f"no derivative by {path}"):
+        found.derivatives(0.3, (path, "lever.mass"))
+    slopes = found.derivatives(0.3)["balancing_torque"]
+    assert path not in slopes
+    assert {"lever.mass", "block.centre.along", "lever.inertia"} <= slopes.keys()
+    ends = (found(0.3, {"lever.mass": 1.5 + step})["balancing_torque"] for step in (1e-3, -1e-3))
+    assert slopes["lever.mass"] == pytest.approx(np.subtract(*ends) / 2e-3, rel=1e-9)
+
+
+def test_slot_offset_that_a_program_keeps_at_zero_must_stay():
+    scene = ks.Scene(lever("meeting", "open"), SPEED)
+    kept = ks.compile(scene, "balancing_torque", parameters=("slot_offset",), engine="numpy")
+    assert kept(0.3)["balancing_torque"] == scene.solve(0.3).balancing_torque
+    with pytest.raises(ks.ParameterError, match="another kind"):
+        kept(0.3, {"slot_offset": 1e-3})
+
+
+CASE = """
+title = "slotted lever"
+source = "assumed"
+reference = "a"
+[common]
+crank_speed = "2 rad/s"
+[variants.a]
+mechanism = "slotted-lever"
+crank_length = "1 m"
+lever_pivot = ["0 m", "-1 m"]
+assembly = "crossed"
+[variants.b]
+mechanism = "chain"
+crank_length = "1 m"
+[[variants.b.groups]]
+kind = "lever"
+pivot = ["0 m", "-1 m"]
+assembly = "crossed"
+"""
+
+
+def test_case_files_know_the_words(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    for variant in "ab":
+        solution = ks.load_case(path).solve(variant)
+        assert solution.mechanism.turns == 2
+        assert solution.measure("block_position")[1] < 0.0
+    path.write_text(CASE.replace('"crossed"', '"across"'))
+    with pytest.raises(ks.CaseError) as error:
+        ks.load_case(path)
+    assert str(error.value).count("assembly must be 1 or -1, or one of 'open', 'crossed', found 'across'") == 2
