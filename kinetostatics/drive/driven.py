@@ -24,6 +24,7 @@ SAME = 1e-12
 """Crank angles this near, rad, are the same."""
 STEP = 1e-6
 """Relative step of speed by which functions that cannot be recorded are differentiated, for the iteration alone."""
+FRICTION = "friction is not taken yet; what it costs at constant speed is told by solve(...).friction_loss"
 
 
 class State(NamedTuple):
@@ -50,7 +51,7 @@ class Driven:
             wrong,
             None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         )
-        checks.require(owner, *_load_problems(scene))
+        checks.require(owner, *_load_problems(scene), FRICTION if scene.friction else None)
         self.motor = motor
         self.direction = motor.direction if motor is not None else direction or 1.0
         self.flywheel = flywheel + (motor.inertia_at_crank if motor is not None else 0.0)

@@ -143,7 +143,7 @@ class Scene:
 
     def unsolved(self, angle):
         """Motion and forces at crank angles, an array, nothing checked."""
-        return Solution(self.mechanism, angle, self.crank_speed, self.crank_acceleration, self.loads)
+        return Solution(self.mechanism, angle, self.crank_speed, self.crank_acceleration, self.loads, self.friction)
 
     def turn(self, angles):
         """Crank angles of so many over one period from 0, its end excluded; what is no whole number stays as it is."""

@@ -359,7 +359,8 @@ def drive_and_loads(item):
     """Drive and loads of a scene or solution in a line."""
     loads = ", ".join(type(load).__name__ for load in item.loads) or "no loads"
     drive = f"crank_speed={_short(item.crank_speed)}, crank_acceleration={_short(item.crank_acceleration)}"
-    return f"{drive}, {loads}"
+    rubbing = f", friction at {', '.join(item.friction)}" if item.friction else ""
+    return f"{drive}, {loads}{rubbing}"
 
 
 def _short(value):
