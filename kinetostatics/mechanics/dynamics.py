@@ -16,7 +16,8 @@ from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.planar import added, minus, moment, number, plus, product
 from . import energy
-from .friction import Rubbing, driving, larger, smaller
+from .friction import Rubbing, driving
+from .friction_laws import larger, smaller
 from .motion import Motion
 from .principal_points import principal_points
 from .pushes import pushed, settled

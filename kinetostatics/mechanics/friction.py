@@ -20,9 +20,8 @@ from ..machine.links import Wrench, present
 from ..numbers.elementary import held, root, sign, sqrt
 from ..numbers.nothing import NOTHING, absent
 from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
+from .friction_laws import Channel, Law, bends, direction_of, larger, size_of, smaller
 
-TINY = 1e-290
-"""Square of a force that counts as nothing but can be divided by."""
 SMALL = 1e-100
 """Friction that need not be found to rounding."""
 FASTER = 2.0**600
@@ -52,38 +51,6 @@ class Rubbed(NamedTuple):
     def work(self):
         """Loss per unit of crank angle, with the sign of the crank speed."""
         return plus(product(self.amount, self.rate), product(self.couple, self.couple_rate))
-
-
-class Law(NamedTuple):
-    """A friction moment or force: `factor` times the size of what is watched.
-
-    Attributes
-    ----------
-    name : str
-        Of the pair.
-    factor : number
-        With the sign of the motion.
-    watched : function
-        From a `Resolved` to what is watched, a tuple of components.
-    kind : str
-        "length" of a vector, "size" of a number, "larger" of the sizes of two, or the number "itself".
-    effects : tuple of (Channel, int)
-        What it puts on links.
-    """
-
-    name: str
-    factor: Any
-    watched: Any
-    kind: str
-    effects: tuple
-
-
-class Channel(NamedTuple):
-    """Loads on links, and pushes on sliders, of a unit of friction: of all moments on a link, or of a force."""
-
-    name: str
-    wrenches: tuple = ()
-    pushes: tuple = ()
 
 
 @dataclass(eq=False)
@@ -136,7 +103,7 @@ class Rubbing:
         resolved = part.resolve(placement, *_with(loads, along, acting, own))
         self.turning += rates.values()
         for law in laws:
-            self.bending += _bends(law.kind, law.watched(resolved))
+            self.bending += bends(law.kind, law.watched(resolved))
         return self._completed(resolved, part, placement, acting, own)
 
     def _laws(self, part, name, placement, rates):
@@ -279,7 +246,7 @@ class _System:
 
     def _amounts(self, watched):
         """Friction of each law, from what it watches."""
-        sizes = (_size(law.kind, parts) for law, parts in zip(self.laws, watched, strict=True))
+        sizes = (size_of(law.kind, parts) for law, parts in zip(self.laws, watched, strict=True))
         return [number(product(law.factor, size)) for law, size in zip(self.laws, sizes, strict=True)]
 
     def _totals(self, amounts):
@@ -299,7 +266,7 @@ class _System:
 
     def _linear(self, watched):
         """Friction by channel with the directions of what laws watch."""
-        directed = [_directed(law, parts) for law, parts in zip(self.laws, watched, strict=True)]
+        directed = [direction_of(law, parts) for law, parts in zip(self.laws, watched, strict=True)]
         matrix: list[list] = [[None] * self.count for _ in range(self.count)]
         right: list[Any] = [None] * self.count
         for law, weights in enumerate(directed):
@@ -320,7 +287,8 @@ class _System:
         matrix: list[list] = [[None] * self.count for _ in range(self.count)]
         for law, slopes, effects in zip(self.laws, self.slopes, self.effects, strict=True):
             sizes = [
-                product(abs(law.factor), _size("size" if law.kind == "itself" else law.kind, slope)) for slope in slopes
+                product(abs(law.factor), size_of("size" if law.kind == "itself" else law.kind, slope))
+                for slope in slopes
             ]
             for place, _ in effects:
                 matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
@@ -334,54 +302,6 @@ class _System:
                 sizes[place] = plus(sizes[place], abs(amount))
         rest = zip(self._totals(amounts), unknowns, sizes, strict=True)
         return reduce(larger, [abs(total - unknown) / (size + SMALL) for total, unknown, size in rest])
-
-
-def _directed(law, parts):
-    """Factor times direction of what a law watches: by components."""
-    if law.kind == "itself":
-        return (law.factor,)
-    if law.kind == "size" or len(parts) == 1:
-        return (None if parts[0] is None else law.factor * sign(parts[0]),)
-    first, second = parts
-    if first is None and second is None:
-        return (None, None)
-    if law.kind == "length":
-        over = 1.0 / _size("length", parts)  # of a direction friction depends but in second order: see the module
-        return tuple(product(law.factor, None if part is None else held(over * part)) for part in parts)
-    if first is None or second is None:
-        return tuple(None if part is None else law.factor * sign(part) for part in parts)
-    ahead = 0.5 * sign(abs(first) - abs(second))
-    return law.factor * (0.5 + ahead) * sign(first), law.factor * (0.5 - ahead) * sign(second)
-
-
-def _bends(kind, parts):
-    """What is zero where the size of what is watched has a kink; that of a vector has none but where it vanishes."""
-    given = [part for part in parts if part is not None]
-    if kind == "larger" and len(given) == 2:
-        return [given[0], given[1], abs(given[0]) - abs(given[1])]
-    return given if kind == "size" else []
-
-
-def _size(kind, parts):
-    """Size of what is watched, None if it is absent."""
-    if kind == "itself":
-        return parts[0]
-    given = [part for part in parts if part is not None]
-    if not given:
-        return None
-    if len(given) == 1:
-        return abs(given[0])
-    if kind == "length":
-        return sqrt(given[0] * given[0] + given[1] * given[1] + TINY)
-    return larger(abs(given[0]), abs(given[1]))
-
-
-def larger(a, b):
-    return 0.5 * (a + b + abs(a - b))
-
-
-def smaller(a, b):
-    return 0.5 * (a + b - abs(a - b))
 
 
 def _weighted(weights, parts):
