@@ -19,7 +19,8 @@ from ..machine.mechanism import Mechanism
 from ..mechanics import jamming
 from ..numbers import checks, paths
 from .angles import crank_angles, problems
-from .solution import Solution, drive_and_loads
+from .drive_and_loads import in_a_line
+from .solution import Solution
 
 DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
@@ -92,7 +93,7 @@ class Scene:
         values.update(drive, loads=loads, friction=rubbing.taken(self.friction))
 
     def __repr__(self):
-        return f"<Scene: {self.mechanism.name}, {drive_and_loads(self)}>"
+        return f"<Scene: {self.mechanism.name}, {in_a_line(self)}>"
 
     @property
     def period(self):

@@ -11,15 +11,15 @@ import numpy as np
 from ..engines.engines import NUMPY
 from ..errors import ConditionWarning, ParameterError
 from ..machine.friction import Turning
-from ..machine.loads import is_given, period_of, value_of
+from ..machine.loads import is_given, period_of
 from ..mechanics import assembly, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
-from ..mechanics.quantities import of_scene, scale, values
-from ..numbers import checks
+from ..mechanics.quantities import all_found, of_scene, scale, values
 from ..numbers.elementary import read_only
 from ..results.turn import Turn
 from .angles import crank_angles
+from .drive_and_loads import in_a_line, over_the_angles
 
 SHARE = 100_000
 """Values over designs and angles up to which all forces are computed together."""
@@ -46,19 +46,11 @@ class Solution(Motion):
         assembly.warn_of_lost_digits(self.dynamics)
 
     def __repr__(self):
-        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {drive_and_loads(self)}>"
+        return f"<Solution: {self.mechanism.name}, shape {self.shape}, {in_a_line(self)}>"
 
     def at(self, crank_angle):
         """The same mechanism, speed and loads at other crank angles."""
-        varying = [
-            name
-            for name, value in [
-                ("crank_speed", self.crank_speed),
-                ("crank_acceleration", self.crank_acceleration),
-                *((type(item).__name__, value_of(item)) for item in self.loads),
-            ]
-            if np.ndim(value) and np.shape(value)[-1] > 1 and not callable(value)
-        ]
+        varying = over_the_angles(self)
         if varying:
             raise ParameterError(
                 f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
@@ -348,20 +340,7 @@ class Solution(Motion):
         if name not in self._values:
             if not self.mechanism.trusted and name in self.mechanism.outputs:
                 self.dynamics.resolved  # noqa: B018  warns if forces of a group of the user's own lose power
-            own = name in self.mechanism.outputs or (self.friction and "friction" in name)
-            of_all = self.is_given if name == "closure" else own
+            of_all = self.is_given if name == "closure" else name in all_found(self)
             together = of_all and math.prod(self.shape) <= SHARE
             self._values.update(self.engine.values(self.dynamics, None if together else (name,)))
         return self._values[name]
-
-
-def drive_and_loads(item):
-    """Drive and loads of a scene or solution in a line."""
-    loads = ", ".join(type(load).__name__ for load in item.loads) or "no loads"
-    drive = f"crank_speed={_short(item.crank_speed)}, crank_acceleration={_short(item.crank_acceleration)}"
-    rubbing = f", friction at {', '.join(item.friction)}" if item.friction else ""
-    return f"{drive}, {loads}{rubbing}"
-
-
-def _short(value):
-    return checks.shown(value) if np.ndim(value) == 0 else f"<array of shape {np.shape(value)}>"
