@@ -30,6 +30,8 @@ def reference():
 
 @pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
 def test_the_plain_sawframe_runs_as_30_digits_say(reference, engine):
+    if engine == "compiled":
+        pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     motor = ks.drive.Motor.kloss(reference["motor"].pop("power", 55e3), **{**reference["motor"], "speed": 153.9})
     scene = ks.load_case("sawframe_2r63").variants["plain"].scene
     run = ks.drive.steady(scene, motor, 1000.0, angles=np.radians(reference["angle [deg]"]), engine=engine)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from tests.support.rubbing import Pin, Roller
-from tests.support.rubbing_machines import KINDS, Drawn
+from support.rubbing import Pin, Roller
+from support.rubbing_machines import KINDS, Drawn
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
 CENTRIC = ks.crank_slider(0.1, 0.3)
@@ -214,6 +214,7 @@ def test_what_is_not_found_to_rounding_is_said():
 
 
 def test_compiled_and_plain_programs_agree():
+    pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     scene = ks.Scene(HEAVY, friction={name: ALL[name] for name in ("B", "guide")}, **DRIVE)
     compiled, plain = (ks.compile(scene, ("guide", "balancing_torque"), engine=name) for name in ("compiled", "numpy"))
     for name, values in plain(TURN).items():
@@ -224,6 +225,7 @@ def test_compiled_and_plain_programs_agree():
 
 
 def test_enclosures_hold_what_is_computed():
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
     from kinetostatics.mechanics.quantities import components
     from kinetostatics.studies.methods.enclosures import enclosure
 
