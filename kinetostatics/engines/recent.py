@@ -5,19 +5,26 @@ from functools import wraps
 
 MOST = 10_000
 """Crank angles up to which they are kept."""
+_last = threading.local()
 
 
 def kept_for_same_angles(compute):
     """Function of an array of crank angles that is not repeated, in each thread, for those of the last call."""
-    last = threading.local()
 
     @wraps(compute)
     def computed(angle):
         if angle.size > MOST:
             return compute(angle)
         key = angle.shape, angle.tobytes()
-        if getattr(last, "key", None) != key:
-            last.found, last.key = compute(angle), key
-        return last.found
+        held = _last.__dict__
+        known = held.get(compute)
+        if known is None or known[0] != key:
+            known = held[compute] = key, compute(angle)
+        return known[1]
 
     return computed
+
+
+def forget():
+    """Compute anew at the next call in this thread: what is timed shall not gain by having been called before."""
+    _last.__dict__.clear()

@@ -27,6 +27,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..numbers import checks
+from ..numbers.leaves import with_fields
 from ..numbers.planar import unturned
 
 SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
@@ -196,3 +197,35 @@ def angles(group, throws, start):
     return tuple(
         sorted((first + angle) % turn % turn for angle in at)
     )  # what lies just below 0 is rounded up to a turn
+
+
+class Passer:
+    """What groups that may pass change points have in common.
+
+    They give ``found_on(throws)``, how they pass them as `passage` tells, and ``start``, the direction from which their
+    crank angle is halved.
+    """
+
+    assembly: Any
+    passage: Any
+    through: bool
+    found_on: Any
+    start: Any
+
+    @property
+    def side(self):
+        """+1 or -1: its side where no change point is passed."""
+        return SIDES.get(self.assembly, self.assembly)
+
+    def on_crank(self, throws):
+        return with_fields(self, passage=self.found_on(throws)) if self.through else self
+
+    def kink(self, throws):
+        return kink(self, throws)
+
+    @property
+    def turns(self):
+        return turns(self.passage)
+
+    def change_points(self, throws):
+        return angles(self, throws, self.start)

@@ -15,7 +15,6 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
-from ..numbers.leaves import with_fields
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
 from . import change_points, passing
 from .friction import Slide, Sliding, Turning
@@ -103,7 +102,7 @@ def resolve(motion, lever_load, block_load):
 
 
 @dataclass(frozen=True, eq=False)
-class LeverGroup(checks.Checked, Group):
+class LeverGroup(checks.Checked, change_points.Passer, Group):
     """Block on joint `on`, sliding in a slotted lever about the fixed joint `pivot_name`: crank shaper, Whitworth.
 
     With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
@@ -183,20 +182,12 @@ class LeverGroup(checks.Checked, Group):
         assembly=checks.Sign(tuple(change_points.SIDES)),
     )
 
-    def on_crank(self, throws):
-        if not self.through:
-            return self
-        return with_fields(self, passage=change_points.of_lever_group(self, throws))
-
-    def kink(self, throws):
-        return change_points.kink(self, throws)
+    def found_on(self, throws):
+        return change_points.of_lever_group(self, throws)
 
     @property
-    def turns(self):
-        return change_points.turns(self.passage)
-
-    def change_points(self, throws):
-        return change_points.angles(self, throws, self.pivot)
+    def start(self):
+        return self.pivot
 
     @property
     def links(self):
@@ -261,9 +252,8 @@ class LeverGroup(checks.Checked, Group):
     def place(self, placement):
         """Add the pivot, lever and block."""
         given = self.pivot, present(self.offset)
-        side = change_points.SIDES.get(self.assembly, self.assembly)
-        motion = self.passage and passed(placement, self.on, *given, self.passage, side)
-        motion = motion or place(placement.joints[self.on], *given, side)
+        motion = self.passage and passed(placement, self.on, *given, self.passage, self.side)
+        motion = motion or place(placement.joints[self.on], *given, self.side)
         placement.joints[self.pivot_name] = motion.lever.joint
         placement.links[self._lever] = motion.lever
         placement.links[self._block] = motion.block

@@ -15,7 +15,6 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
-from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
 from . import change_points, passing
 from .friction import Turning
@@ -106,7 +105,7 @@ def balanced(pin, coupler_load, rocker_load):
 
 
 @dataclass(frozen=True, eq=False)
-class RockerGroup(checks.Checked, Group):
+class RockerGroup(checks.Checked, change_points.Passer, Group):
     """Coupler from joint `on` to joint `pin` of a rocker about the fixed joint `pivot_name`.
 
     Parameters
@@ -173,20 +172,12 @@ class RockerGroup(checks.Checked, Group):
         label=checks.Name(may_be_empty=True),
     )
 
-    def on_crank(self, throws):
-        if not self.through:
-            return self
-        return with_fields(self, passage=change_points.of_rocker_group(self, throws))
-
-    def kink(self, throws):
-        return change_points.kink(self, throws)
+    def found_on(self, throws):
+        return change_points.of_rocker_group(self, throws)
 
     @property
-    def turns(self):
-        return change_points.turns(self.passage)
-
-    def change_points(self, throws):
-        return change_points.angles(self, throws, self.pivot)
+    def start(self):
+        return self.pivot
 
     @property
     def links(self):
@@ -242,9 +233,8 @@ class RockerGroup(checks.Checked, Group):
     def place(self, placement):
         """Add joints B and O2, coupler and rocker."""
         given = self.coupler_length, self.rocker_length, self.pivot
-        side = change_points.SIDES.get(self.assembly, self.assembly)
-        passed = self.passage and passing.place(placement, self.on, *given, self.passage, side)
-        self._set(placement, passed or place(placement.joints[self.on], *given, side))
+        passed = self.passage and passing.place(placement, self.on, *given, self.passage, self.side)
+        self._set(placement, passed or place(placement.joints[self.on], *given, self.side))
 
     def follow(self, placement, joints):
         """Place coupler and rocker at joints found in another way."""

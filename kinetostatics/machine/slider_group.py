@@ -15,7 +15,6 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import divisor, root
-from ..numbers.leaves import with_fields
 from ..numbers.planar import (
     added,
     cross,
@@ -136,7 +135,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
 
 
 @dataclass(frozen=True, eq=False)
-class SliderGroup(checks.Checked, Group):
+class SliderGroup(checks.Checked, change_points.Passer, Group):
     """Coupler from joint `on` to a slider at joint `pin` on `guide`.
 
     Parameters
@@ -197,25 +196,13 @@ class SliderGroup(checks.Checked, Group):
         label=checks.Name(may_be_empty=True),
     )
 
-    def on_crank(self, throws):
-        if not self.through:
-            return self
-        return with_fields(self, passage=change_points.of_slider_group(self, throws))
-
-    def kink(self, throws):
-        return change_points.kink(self, throws)
+    def found_on(self, throws):
+        return change_points.of_slider_group(self, throws)
 
     @property
-    def turns(self):
-        return change_points.turns(self.passage)
-
-    def change_points(self, throws):
+    def start(self):
         x, y = self.guide.direction
-        return change_points.angles(self, throws, (y, -x))
-
-    @property
-    def _side(self):
-        return change_points.SIDES.get(self.assembly, self.assembly)
+        return y, -x
 
     @property
     def links(self):
@@ -275,8 +262,8 @@ class SliderGroup(checks.Checked, Group):
 
     def place(self, placement):
         given = self.coupler_length, self.guide.line
-        motion = self.passage and passed(placement, self.on, *given, self.passage, self._side)
-        self._set(placement, motion or place(placement.joints[self.on], *given, self._side))
+        motion = self.passage and passed(placement, self.on, *given, self.passage, self.side)
+        self._set(placement, motion or place(placement.joints[self.on], *given, self.side))
 
     def follow(self, placement, joints):
         """Place coupler and slider at joints found in another way."""
@@ -307,7 +294,7 @@ class SliderGroup(checks.Checked, Group):
             return motion.travel.position - free_position
         along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
         shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
-        return along + (self._side * self.coupler_length - free_position) - self._side * shortfall
+        return along + (self.side * self.coupler_length - free_position) - self.side * shortfall
 
     def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)

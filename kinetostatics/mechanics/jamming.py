@@ -51,18 +51,24 @@ def check(solution, on_gap):
     if not _is_plain(margin):
         return
     with np.errstate(invalid="ignore"):
-        jams, found = margin <= 0, converged(margin, residual)
-        lost = (margin > 0) & ~found
+        jams = margin <= 0
     if jams.any() and on_gap == "raise":
         raise _error(solution, margin, jams)
+    warn(solution, margin, residual, stacklevel=6)
+
+
+def warn(item, margin, residual, stacklevel):
+    """Warn where friction of a solution, or of a program's state, was not found to rounding."""
+    with np.errstate(invalid="ignore"):
+        lost = (margin > 0) & ~converged(margin, residual)
     if lost.any():
-        angle = np.broadcast_to(solution.crank_angle, margin.shape)[lost]
+        angle = np.broadcast_to(item.crank_angle, margin.shape)[lost]
         warnings.warn(
-            f"{solution.mechanism.name}: friction and reactions are not found to rounding at {lost.sum()} of "
+            f"{item.mechanism.name}: friction and reactions are not found to rounding at {lost.sum()} of "
             f"{lost.size} crank angles, {_degrees(angle)} deg; one more pass would change friction by up to "
-            f"{np.max(residual[lost]):.1g} of itself (solution.converged)",
+            f"{np.max(residual[lost]):.1g} of itself",
             ConditionWarning,
-            stacklevel=5,
+            stacklevel=stacklevel,
         )
 
 

@@ -12,8 +12,9 @@ from ..engines.trace import needed
 from ..errors import ParameterError
 from ..machine.friction import PASSES
 from ..machine.loads import may_refuse, refusals
+from ..mechanics import jamming
 from ..mechanics.dynamics import Dynamics
-from ..mechanics.jamming import settled
+from ..mechanics.quantities import CHECKS
 from ..numbers import checks, paths
 from ..numbers.elementary import read_only
 from ..numbers.leaves import Kept, with_fields
@@ -100,6 +101,7 @@ class Program:
         state = Dynamics(scene.mechanism, np.zeros(1), *_drive(scene))
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)
+        self._friction: Any = programs.of(state, CHECKS)[0] if scene.friction.acting else None
         numbered = programs.numbered(state)
         found = {path: place.value(numbered) for path, place in places.items()}
         self._numbers = {
@@ -141,8 +143,15 @@ class Program:
         ParameterError
             No machine has such a value, or there is no such parameter: what is zero in the scene is absent unless
             `compile` was told to keep it.
+
+        Warns
+        -----
+        ConditionWarning
+            With these values friction is not found to rounding: compile a scene that has them.
         """
         state, leaves = self._at(angle, values)
+        if values and self._friction is not None:
+            self._look_at_friction(state, leaves, values)
         rows = self._program.run(state, leaves, self._compiled)
         return self._program.recording.named(read_only(rows))
 
@@ -187,6 +196,12 @@ class Program:
             quantity: dict(zip(names, np.moveaxis(found, -1 - len(state.shape), 0), strict=True))
             for quantity, found in self._program.recording.named(rows).items()
         }
+
+    def _look_at_friction(self, state, leaves, values):
+        """Refuse a crank at rest, and warn where friction takes more passes than the scene's own numbers do."""
+        checks.require("program", jamming.standing(self.scene.varied(values)))
+        margin, residual = self._friction.run(state, leaves, self._compiled)
+        jamming.warn(state, np.asarray(margin), np.asarray(residual), stacklevel=4)
 
     @property
     def unrecorded(self):
@@ -264,7 +279,7 @@ def _with_enough_passes(scene):
     if any(np.ndim(leaf) and np.shape(leaf)[-1] > 1 for leaf in (scene.crank_speed, scene.crank_acceleration)):
         return with_fields(scene, friction=with_fields(scene.friction, passes=PASSES[1]))
     with np.errstate(all="ignore"):
-        found = settled(unchecked(scene, np.linspace(0.0, scene.period, FEW, endpoint=False), "numpy"))
+        found = jamming.settled(unchecked(scene, np.linspace(0.0, scene.period, FEW, endpoint=False), "numpy"))
     return with_fields(scene, friction=found.friction)
 
 

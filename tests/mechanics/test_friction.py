@@ -311,3 +311,14 @@ def test_ordinary_machines_say_nothing():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+
+
+def test_a_program_with_stronger_friction_than_its_scenes_says_where_it_is_not_found_and_refuses_a_crank_at_rest():
+    weak = {"O": ks.PinFriction(1e-4, 0.01), "B": ks.PinFriction(1e-4, 0.01), "guide": ks.GuideFriction(1e-4)}
+    program = ks.compile(ks.Scene(HEAVY, friction=weak, **DRIVE), "balancing_torque", engine="numpy")
+    program(TURN, {"friction.O.mu": 1.1e-4})
+    strong = {"friction.B.mu": 0.9, "friction.B.radius": 0.2, "friction.O.mu": 0.9, "friction.O.radius": 0.2}
+    with pytest.warns(ks.ConditionWarning, match="not found to rounding"):
+        program(TURN, strong)
+    with pytest.raises(ks.ParameterError, match="crank_speed and crank_acceleration are both 0"):
+        program(TURN, {"crank_speed": 0.0, "crank_acceleration": 0.0})
