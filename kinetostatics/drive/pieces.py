@@ -89,6 +89,12 @@ class Pieces:
         """Chebyshev coefficients (points, pieces)."""
         return rule(self.count).series @ values.T
 
+    def with_ends(self, values):
+        """Values at both ends of each piece beside those at its points, read from its series: (pieces, points + 2)."""
+        series = self.series(values)
+        starts = ((-1.0) ** np.arange(self.count)) @ series
+        return np.column_stack([starts, values, series.sum(axis=0)])
+
     def tail(self, values):
         """Size of the last coefficients of each piece, relative to the largest value of all."""
         size = np.abs(values).max()

@@ -180,6 +180,7 @@ class Running:
             "motor_power [W]": self.motor_power,
             "balancing_torque [N m]": self.solution.balancing_torque,
             "load_torque [N m]": self.solution.load_torque,
+            **({"friction_loss [W]": self.solution.friction_loss} if self.scene.friction.acting else {}),
             "kinetic_energy [J]": self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2,
         }
         return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
@@ -229,7 +230,42 @@ class Running:
         high, low = self._pieces.largest(torque)[0], -self._pieces.largest(-torque)[0]
         return max(high, low, key=abs)
 
+    @cached_property
+    def load_energy_per_turn(self):
+        """Energy that weight and loads take of the crank in a turn, friction left out, J."""
+        return self._pieces.total(self._driven.unrubbed(self._pieces.angle, self._speed).torque) * self._forward
+
+    @property
+    def friction_energy_per_turn(self):
+        """Energy that friction takes at all joints in a turn, J."""
+        return sum(self.friction_energy_per_turn_at(joint) for joint in self.scene.friction)
+
+    def friction_energy_per_turn_at(self, joint):
+        """Energy that friction takes at a joint, named as in `friction`, in a turn, J; 0 where nothing rubs."""
+        lost = self._at_points.friction_loss_at(joint).reshape(self._speed.shape)
+        return self._pieces.total(lost / self._speed) * self._forward
+
+    @property
+    def mean_friction_loss(self):
+        """Mean over time of the power lost by friction at all joints, W."""
+        return self.friction_energy_per_turn * self.turns / self.duration
+
+    def mean_friction_loss_at(self, joint):
+        """Mean over time of the power lost by friction at a joint, W."""
+        return self.friction_energy_per_turn_at(joint) * self.turns / self.duration
+
     # on the points of the pieces
+
+    @property
+    def _forward(self):
+        """Direction of the crank, by the turns of the period."""
+        return self._driven.direction / self.turns
+
+    @cached_property
+    def _at_points(self):
+        speed, acceleration = (part.ravel() for part in self.motion(self._pieces.angle))
+        moving = with_fields(self.scene, crank_speed=speed, crank_acceleration=acceleration)
+        return moving.solve(self._pieces.angle.ravel())
 
     @cached_property
     def _slowest_and_fastest(self):

@@ -40,6 +40,12 @@ def _rows(run, start):
         ("peak motor torque, at its shaft", "N m"): run.peak_motor_torque,
         ("energy per turn, at the shaft", "J"): run.energy_per_turn,
     }
+    if run.scene.friction.acting:
+        rows["lost by friction, mean", "W"] = run.mean_friction_loss
+        rows |= {
+            (f"lost by friction at {joint}, mean", "W"): run.mean_friction_loss_at(joint)
+            for joint in run.scene.friction
+        }
     if isinstance(run.motor, Kloss):
         rows["lost in the rotor per turn, by slip", "J"] = run.rotor_loss_per_turn
     if start is not None:
