@@ -216,6 +216,10 @@ class Group:
         """Which links turn or slide against what, by the name of the reaction or force."""
         return {}
 
+    def rigid_on(self, owners):
+        """Links that never turn against the links `owners`, which carry the joints it hangs on; none unless told."""
+        return ()
+
     @property
     def lengths(self):
         """All lengths it has, places of mass centres among them, for a first look at the condition."""
