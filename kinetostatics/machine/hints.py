@@ -22,8 +22,8 @@ def sizes(mechanism):
     """What a first look compares, of any numbers.
 
     In turn all lengths together, those of which the shortest counts, the bars, pairs of inertia and mass, and pairs of
-    a bar's length and how far that is from the arm of its inner joint. There are no hints where no bar is as long as its arm,
-    all lengths together are less than `FAR` of the longest bar, and no inertia is small even beside that bar.
+    a bar's length and how far that is from the arm of its inner joint. There are no hints where no bar is as long as
+    its arm, all lengths together are less than `FAR` of the longest bar, and no inertia is small even beside that bar.
     """
     reaches = [reach for part in mechanism.parts for reach in part.reaches]
     bodies = [(link.inertia, link.mass) for link in mechanism.links.values() if present(link.inertia) is not None]
