@@ -59,6 +59,10 @@ def run(options):
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"
         )
+        if solution.friction:
+            print("\npower lost by friction, exact means over the turn\n")
+            print_table(solution.losses.frame())
+            print(f"\n{solution.losses}")
     if options.csv:
         frames = [solution.frame().assign(variant=name) for name, solution in solutions.items()]
         table = pd.concat(frames)

@@ -15,7 +15,7 @@ from ..machine.loads import is_given, period_of
 from ..mechanics import assembly, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
-from ..mechanics.quantities import all_found, of_scene, scale, values
+from ..mechanics.quantities import all_found, of_scene
 from ..numbers.elementary import read_only
 from ..results.turn import Turn
 from .angles import crank_angles
@@ -124,6 +124,18 @@ class Solution(Motion):
         self._look_up("joint that rubs", joint, self.mechanism.pairs)
         return self._of_friction(f"{joint}_friction_loss")
 
+    @cached_property
+    def losses(self):
+        """Mean powers over the period, lost by joint and taken by loads, a `results.losses.Losses`; of one design."""
+        from ..results.losses import losses
+
+        return losses(self)
+
+    @property
+    def efficiency(self):
+        """Mechanical efficiency over the period: of what loads take and joints lose, the part that loads take."""
+        return self.losses.efficiency
+
     def friction_at(self, joint):
         """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
         self._look_up("joint that rubs", joint, self.mechanism.pairs)
@@ -222,16 +234,13 @@ class Solution(Motion):
 
     @property
     def potential_energy(self):
-        """Potential energy of weight and springs, (..., N), J; weight has none at the height of O.
-
-        Loads without potential, as process forces and dampers, count nothing.
-        """
+        """Potential energy of weight, none at the height of O, and springs, (..., N), J; other loads have none."""
         return self._found("potential_energy")
 
     @cached_property
     def energy_per_turn(self):
         """Work of the balancing torque in a turn of the crank, J: what the loads take of the drive; of one design."""
-        from ..results.comparison import energy_per_turn
+        from ..results.means import energy_per_turn
 
         return energy_per_turn(self)
 
@@ -274,15 +283,9 @@ class Solution(Motion):
         Geometry (`condition`) times cancellation: the largest of the terms that a force or torque is the sum of, over
         its largest value, where spring and inertia nearly balance for instance. 16 - log10 of it are the digits left.
         """
-        largest = np.asarray(self.dynamics.largest(values(replace(self, silent=True), quantity)))
-        terms = np.broadcast_to(scale(self, quantity), largest.shape)
-        cancelled = np.divide(terms, largest, out=np.ones(largest.shape), where=largest > 0)
-        condition = self.condition
-        if not callable(quantity) and self.mechanism.grows(quantity):
-            from ..mechanics import sensitivity
+        from .condition import condition_of
 
-            condition = sensitivity.condition(self.dynamics, reactions=True).reshape(self.shape)
-        return condition * np.fmax(cancelled, 1.0).reshape(*largest.shape, *[1] * (condition.ndim > 0))
+        return condition_of(self, quantity)
 
     def frame(self):
         """All results as a pandas DataFrame, one row for each crank angle (and design), units in the column names."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..design.linkage import chain_unit_angle, four_bar_of
 from ..errors import QuantityError
+from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, of_mechanism, values
 from ..numbers.checks import choice, problem, require
 from ..results.extremes import extremes
@@ -261,7 +262,7 @@ def _vector(solution, name):
 
 def _declared(named, name):
     """Unit and label of a quantity that all solutions have."""
-    return of_mechanism(next(iter(named.values())).mechanism)[name]
+    return quantities.quantity(next(iter(named.values())), name)
 
 
 def _marked(solution, step):
