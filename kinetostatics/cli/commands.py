@@ -11,6 +11,8 @@ from .printed import print_table, tell, with_published, write_table
 
 SWEEP_OUTPUTS = ("mean_absolute balancing_torque", "largest O")
 """What a sweep tells unless asked for something else."""
+LOST = "mean friction_loss"
+"""What it tells besides of a variant with friction."""
 TABLE_ENDINGS = (".csv", ".parquet")
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
@@ -201,7 +203,8 @@ def sweep(options):
     spreads = _spreads(options.vary)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
     varied, _ = sweeps.chosen(case, options.variant, options.reference)
-    wanted = [parsed(text).of(varied) for text in options.output or SWEEP_OUTPUTS]
+    usual = (*SWEEP_OUTPUTS, LOST) if varied.friction else SWEEP_OUTPUTS
+    wanted = [parsed(text).of(varied) for text in options.output or usual]
     outputs = [item.column for item in wanted]
     found = sweeps.sweep(
         case,
