@@ -84,10 +84,12 @@ def warn(item, margin, residual, stacklevel):
 
 
 def _error(solution, margin, jams, owner="", other=', or pass on_gap="nan" to get NaN there and the rest exact'):
+    """What is wrong where friction jams, for the owner of a call."""
     angle = np.broadcast_to(solution.crank_angle, margin.shape)[jams]
     return JammingError(
-        f"{owner}{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, {_degrees(angle)} "
-        f"deg: it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (1 or more: there no forces, or "
+        f"{owner}{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, "
+        f"{_degrees(angle)} deg: "
+        f"it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (1 or more: there no forces, or "
         "more than one state of them, are in equilibrium); lower the coefficients, lengthen the shoes or steepen the "
         f"links{other}",
         np.unique(angle).tolist(),

@@ -8,6 +8,8 @@ import numpy as np
 from ..engines.engines import Kernels
 from ..engines.series import harmonic_series
 from ..errors import NotGivenError
+from ..machine.friction import KINDS as FRICTIONS
+from ..machine.friction import taken as friction_of
 from ..machine.group import FRAME
 from ..machine.guide import Guide
 from ..machine.links import Link
@@ -79,6 +81,15 @@ def _without_load(kind):
     return simplified
 
 
+def _without_friction(kind):
+    def simplified(solution):
+        gone = {joint for joint, friction in solution.friction.acting.items() if isinstance(friction, kind)}
+        left = {joint: replace(item, mu=0.0) if joint in gone else item for joint, item in solution.friction.items()}
+        return replace(solution, friction=replace(friction_of(left), passes=solution.friction.passes)) if gone else None
+
+    return simplified
+
+
 def _at_constant_speed(solution):
     return None if _is_zero(solution.crank_acceleration) else replace(solution, crank_acceleration=0.0)
 
@@ -139,6 +150,7 @@ def _up_to_harmonic(order):
 
 BEFORE = {
     **{name: (Choice(f"no {name}", _without_load(kind)),) for kind in KINDS for name in [kind.RULES.owner]},
+    **{name: (Choice(f"no {name}", _without_friction(kind)),) for kind in FRICTIONS for name in [kind.RULES.owner]},
     "crank acceleration": (Choice("constant crank speed", _at_constant_speed),),
     "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
     "mass-centre offsets": (Choice("mass centres on the links", _with_links(_centred)),),
