@@ -20,7 +20,7 @@ from .canvas import INK, axes, closed, display, finished, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
 from .labels import label
-from .losses import losses, lost_power
+from .lost_power import losses, lost_power
 
 __all__ = [
     "acceleration_error",
