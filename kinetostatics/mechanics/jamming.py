@@ -59,13 +59,17 @@ def check(solution, on_gap):
 
 def require_free(solution, owner):
     """Raise `JammingError` for a result over the turn if friction jams at the solution's crank angles."""
+    if where(solution).size:
+        margin = solution._found("friction_margin")
+        raise _error(solution, margin, margin <= 0, f"{owner}: ", "")
+
+
+def where(solution):
+    """Crank angles of a solution of one design at which friction jams."""
     if not solution.friction.acting:
-        return
-    margin = solution._found("friction_margin")
+        return np.empty(0)
     with np.errstate(invalid="ignore"):
-        jams = margin <= 0
-    if jams.any():
-        raise _error(solution, margin, jams, f"{owner}: ", "")
+        return np.asarray(solution.crank_angle)[solution._found("friction_margin") <= 0]
 
 
 def warn(item, margin, residual, stacklevel):

@@ -9,6 +9,7 @@ from ..engines.engines import Kernels
 from ..engines.series import harmonic_series
 from ..errors import NotGivenError
 from ..machine.friction import KINDS as FRICTIONS
+from ..machine.friction import kind_for
 from ..machine.friction import taken as friction_of
 from ..machine.group import FRAME
 from ..machine.guide import Guide
@@ -150,7 +151,6 @@ def _up_to_harmonic(order):
 
 BEFORE = {
     **{name: (Choice(f"no {name}", _without_load(kind)),) for kind in KINDS for name in [kind.RULES.owner]},
-    **{name: (Choice(f"no {name}", _without_friction(kind)),) for kind in FRICTIONS for name in [kind.RULES.owner]},
     "crank acceleration": (Choice("constant crank speed", _at_constant_speed),),
     "guide offset": (Choice("guide through O", _guides_through_crank_centre),),
     "mass-centre offsets": (Choice("mass centres on the links", _with_links(_centred)),),
@@ -177,4 +177,7 @@ def ingredients(mechanism):
         choices = [Choice(f"no {kind} inertia", _without_inertia(kind))] if kind in hung else []
         choices += [Choice(f"two-mass {kind}", _as_two_masses(kind))] if kind in couplers else []
         links[kind] = (*choices, Choice(f"massless {kind}", _massless(kind)))
-    return BEFORE | links | AFTER
+    rubs = {kind_for(pair) for pair in mechanism.pairs.values()}
+    names = {kind.RULES.owner: kind for kind in FRICTIONS if kind in rubs}
+    friction = {name: (Choice(f"no {name}", _without_friction(kind)),) for name, kind in names.items()}
+    return BEFORE | friction | links | AFTER
