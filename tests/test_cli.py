@@ -355,25 +355,8 @@ def test_run_prints_what_friction_takes_at_each_joint_and_the_efficiency(capsys)
     assert main(["run", "sawframe_2r63_friction", "--variant", "cam-cosine", "--angles", "8"]) == 0
     text = capsys.readouterr().out.split("power lost by friction, exact means over the turn\n\n")[1]
     cells = {line.split()[0]: line.split()[1:] for line in text.splitlines() if line}
-    assert cells["lost"][1:] == [
-        "mean",
-        "[W]",
-        "share",
-        "[%]",
-        "largest",
-        "[W]",
-        "largest",
-        "at",
-        "[deg]",
-        "per",
-        "turn",
-        "[J]",
-    ]
-    assert [name for name in cells if name in ("O", "A", "B", "guide", "slot", "cam")] == list("OAB") + [
-        "guide",
-        "slot",
-        "cam",
-    ]
+    assert re.match(r"lost at +mean \[W\] +share \[%\] +largest \[W\] +largest at \[deg\] +per turn \[J\]", text)
+    assert {"O", "A", "B", "guide", "slot", "cam", "all"} < set(cells)
     assert float(cells["all"][0]) == pytest.approx(11733.0, rel=1e-5)
     assert "of 11733 W put in, 0 W are taken and 11733 W lost: efficiency 0" in text
 
