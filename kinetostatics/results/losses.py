@@ -165,9 +165,9 @@ def losses(solution) -> Losses:
     items = _named(item for item in solution.loads if not hasattr(item, "potential"))
     dampers = {name: item for name, item in items.items() if getattr(item, "DISSIPATES", False)}
     loads = {name: item for name, item in items.items() if name not in dampers}
-    lost = {joint: partial(_friction_loss, joint) for joint in solution.friction}
+    lost: dict[str, Callable[[Any], Any]] = {joint: partial(_friction_loss, joint) for joint in solution.friction}
     lost |= {name: partial(_taken, item) for name, item in dampers.items()}
-    powers = [_drive, *lost.values(), *(partial(_taken, item) for item in loads.values())]
+    powers: list[Callable[[Any], Any]] = [_drive, *lost.values(), *(partial(_taken, item) for item in loads.values())]
 
     def by_angle(angle):
         there = turn.at.at(turn.clear(angle))
