@@ -62,8 +62,8 @@ def losses(solutions, ax=None):
         bottom = bottom + height
     for place, top in zip(places, bottom, strict=True):
         ax.annotate(f"{top:.3g}", (place, top), (0, 3), textcoords="offset points", ha="center", fontsize="small")
-    ax.set_xticks(places, list(lost))
-    ax.tick_params(axis="x", rotation=0 if max(map(len, lost)) * len(lost) < 45 else 25)
+    slanted = max(map(len, lost)) * len(lost) > 45
+    ax.set_xticks(places, list(lost), **({"rotation": 25, "ha": "right"} if slanted else {}))
     ax.set_ylabel(f"mean power lost [{unit}]")
     ax.set_xlim(-0.6, len(lost) - 0.4)
     ax.set_ylim(0, 1.12 * bottom.max() or 1.0)
