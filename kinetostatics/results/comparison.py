@@ -1,7 +1,6 @@
 """Dynamic coefficients: how much one mechanism's torque and forces exceed another's."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from ..errors import QuantityError
 from ..mechanics.quantities import label_of, magnitude, unit_of
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from .extremes import extremes
 from .means import mean_absolute_torque
 from .turn import SAME

@@ -14,7 +14,7 @@ is that of one whose load and drive both give, as where friction holds a weight 
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import TURN
 from ..mechanics.energy import work_of
 from ..mechanics.pushes import title_of
+from ..numbers.lazy import cached_property
 from ..numbers.planar import number
 from .extremes import extrema
 from .means import FLOOR, PRECISE, closed_turn, means

@@ -1,6 +1,7 @@
 """Power lost by joint and mechanical efficiency: closed forms, the balance of powers, jumps, what has none."""
 
 import itertools
+import pickle
 
 import numpy as np
 import pytest
@@ -201,3 +202,34 @@ GAP = ks.crank_slider(0.3, 0.25, slider=ks.Link(1.0))
 def test_what_has_no_losses_over_the_turn_says_why(of, solution, error, words):
     with pytest.raises(error, match=words):
         of(solution())
+
+
+class Brake:
+    """A load of the user's own: a constant force against the motion, which jumps at the dead centres."""
+
+    on = "slider"
+
+    def push(self, motion):
+        """Force on the slider, N."""
+        return -5.0 * np.sign(motion.travel_velocity(self.on))
+
+
+@pytest.mark.parametrize(
+    ("load", "taken"),
+    [
+        (lambda: Brake(), 5.0 * 4.0 * R),
+        (lambda: ks.ProcessForce(lambda motion: -5.0 * np.sign(motion.travel_velocity("slider"))), 5.0 * 4.0 * R),
+        (lambda: ks.ProcessForce(lambda motion: -30.0 * motion.travel_velocity("slider")), 30.0 * np.pi * SPEED * R**2),
+        (lambda: ks.Torque(lambda motion: -2.0 - np.cos(motion.crank_angle), on="crank"), 4.0 * np.pi),
+    ],
+    ids=["own class", "function that jumps", "smooth function", "couple"],
+)
+def test_what_functions_and_loads_of_ones_own_take_is_counted(load, taken):
+    assert yoke(load()).efficiency == pytest.approx(taken / (taken + LOST), rel=1e-9)
+
+
+def test_losses_go_through_pickle_with_their_solution():
+    s = yoke(resisting(50.0))
+    found = pickle.loads(pickle.dumps(s.losses))
+    assert found.efficiency == s.efficiency
+    assert found.peaks == s.losses.peaks
