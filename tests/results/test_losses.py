@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.losses import losses
+from support.rubbing_machines import KINDS, Drawn
 
 R, MASS, MU, G, SPEED = 0.1, 3.0, 0.2, 9.81, 6.0
 YOKE = ks.scotch_yoke(R, slider=ks.Link(MASS))
@@ -233,3 +234,11 @@ def test_losses_go_through_pickle_with_their_solution():
     found = pickle.loads(pickle.dumps(s.losses))
     assert found.efficiency == s.efficiency
     assert found.peaks == s.losses.peaks
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_powers_balance_over_the_period_whatever_the_groups(kind):
+    scene = Drawn(kind, 5).scene
+    found = ks.Scene(scene.mechanism, scene.crank_speed, loads=scene.loads, friction=scene.friction).solve(0.3).losses
+    assert found.total > 0.0
+    assert found.drive == pytest.approx(sum(found.loads.values()) + found.total, rel=1e-12)
