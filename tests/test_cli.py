@@ -377,3 +377,16 @@ def test_sweep_of_a_variant_with_friction_tells_what_it_loses_unasked(capsys):
     arguments = ["sweep", "sawframe_2r63_friction", "--variant", "plain", "--vary", "slider.mass=600..650 kg:2"]
     assert main(arguments) == 0
     assert "mean friction_loss [W]" in capsys.readouterr().out
+
+
+def test_run_and_compare_of_a_saw_that_starts_from_rest_have_no_losses(tmp_path, capsys):
+    text = shipped_cases()["sawframe_2r63_friction"].read_text(encoding="utf-8")
+    text = text.replace('crank_speed = "320 rpm"', 'crank_speed = "0 rpm"\ncrank_acceleration = "2 rad/s^2"')
+    text = text.replace('"balance the slider"', '"674 kN/m"')
+    path = tmp_path / "from_rest.toml"
+    path.write_text(text, encoding="utf-8")
+    assert main(["run", str(path), "--variant", "plain"]) == 0
+    assert main(["compare", str(path), "--variant", "cam-cosine"]) == 0
+    printed = capsys.readouterr().out
+    assert "reaction O" in printed
+    assert not re.search("mean power lost|efficiency", printed)

@@ -47,6 +47,7 @@ def run(options):
     import pandas as pd
 
     from ..casefile.case import load_case
+    from ..results.losses import lose
     from ..results.tables import extremes_frame
 
     case = load_case(options.case)
@@ -61,7 +62,7 @@ def run(options):
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"
         )
-        if solution.friction:
+        if lose(solution):
             print("\npower lost by friction, exact means over the turn\n")
             print_table(solution.losses.frame())
             print(f"\n{solution.losses}")

@@ -10,6 +10,7 @@ from ..mechanics.quantities import label_of, magnitude, unit_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .extremes import extremes
+from .losses import lose
 from .means import mean_absolute_torque
 from .turn import SAME
 
@@ -112,8 +113,8 @@ class Comparison:
         return table.dropna(how="all", subset=list(self.names))
 
     def _lost(self):
-        """Rows of the power lost by joint, all together, and of the efficiency; none without friction."""
-        if not (self.reference.friction or self.balanced.friction):
+        """Rows of the power lost by joint, all together, and of the efficiency; none where no power is lost."""
+        if not lose(self.reference, self.balanced):
             return
         both = self.reference.losses, self.balanced.losses
         for name in dict.fromkeys(name for losses in both for name in losses.lost):
@@ -135,7 +136,7 @@ def compare(reference, balanced):
     -------
     Comparison
         Ratios reference / balanced: `.torque_extremum_ratios`, `.mean_torque_ratio`, `.peak_reaction_ratio(joint)`,
-        ranges of cam and inertia force, `.frame()`.
+        `.lost_power_ratio` with friction; ranges of cam and inertia force, `.frame()`.
     """
     checks.require("compare", checks.solution("reference", reference), checks.solution("balanced", balanced))
     return Comparison(reference, balanced)

@@ -137,6 +137,11 @@ class Losses:
         return f"<Losses: {self}>"
 
 
+def lose(*solutions):
+    """Whether any machine has friction, and all turn, so that there is a power to tell."""
+    return any(s.friction for s in solutions) and all(np.all(np.asarray(s.crank_speed)) for s in solutions)
+
+
 def losses(solution) -> Losses:
     """Mean powers over time that a machine takes, gives and loses over the period of a solution.
 
