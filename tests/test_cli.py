@@ -387,6 +387,7 @@ def test_run_and_compare_of_a_saw_that_starts_from_rest_have_no_losses(tmp_path,
     path.write_text(text, encoding="utf-8")
     assert main(["run", str(path), "--variant", "plain"]) == 0
     assert main(["compare", str(path), "--variant", "cam-cosine"]) == 0
+    assert main(["plot", str(path), "--only", "losses", "--out", str(tmp_path)]) == 2
     printed = capsys.readouterr().out
     assert "reaction O" in printed
     assert not re.search("mean power lost|efficiency", printed)

@@ -13,6 +13,7 @@ from ..errors import ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
+from ..results.losses import lose
 from . import drives, plots
 
 
@@ -91,11 +92,11 @@ def _is_chain_unit(case):
 
 
 def _rubs(case):
-    return any(item.friction for item in case.variants.values())
+    return any(map(lose, case.variants.values()))
 
 
 def _that_rub(solutions):
-    return {name: solution for name, solution in solutions.items() if solution.friction}
+    return {name: solution for name, solution in solutions.items() if lose(solution)}
 
 
 def _is_balanced(case):
