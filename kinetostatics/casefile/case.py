@@ -47,6 +47,10 @@ class Variant:
         return self.scene.mechanism
 
     @property
+    def friction(self):
+        return self.scene.friction
+
+    @property
     def crank_speed(self):
         return self.scene.crank_speed
 
