@@ -13,7 +13,7 @@ from ..numbers import checks
 from ..numbers.planar import added, cross, dot, subtracted
 from . import rocker_group
 from .friction import Turning
-from .group import Bar, Group, Output, Point, Resolved, joint_reaction, separation, smaller
+from .group import Bar, Group, Output, Point, Resolved, joint_reaction, separation
 from .links import Joint, Link, Wrench, between
 from .rocker_group import RockerMotion
 
@@ -130,10 +130,6 @@ class Dyad(checks.Checked, Group):
         return Bar(first, self.pin, self._link1, self.length1), Bar(second, self.pin, self._link2, self.length2)
 
     @property
-    def shortest(self):
-        return smaller(self.length1, self.length2)
-
-    @property
     def lengths(self):
         return (self.length1, self.length2, *self.dyad1.centre, *self.dyad2.centre)
 
@@ -170,7 +166,7 @@ class Dyad(checks.Checked, Group):
 
     def rigid_on(self, owners):
         """Both links on two joints of one link: a triangle that does not move in itself."""
-        return tuple(self.links) if len(set(owners)) == 1 else ()
+        return dict.fromkeys(self.links, owners[0]) if len(set(owners)) == 1 else {}
 
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)

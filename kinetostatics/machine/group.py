@@ -217,8 +217,8 @@ class Group:
         return {}
 
     def rigid_on(self, owners):
-        """Links that never turn against the links `owners`, which carry the joints it hangs on; none unless told."""
-        return ()
+        """Link that each of its links never turns against, by name, of `owners`, which carry the joints it hangs on."""
+        return {}
 
     @property
     def lengths(self):
@@ -226,9 +226,9 @@ class Group:
         return [bar.length for bar in self.bars]
 
     @property
-    def shortest(self):
-        """Its shortest link or cam radius."""
-        return smaller(*(bar.length for bar in self.bars))
+    def reaches(self):
+        """Lengths of its bars and cam radii, the shortest of which counts for a first look at the condition."""
+        return [bar.length for bar in self.bars]
 
     @property
     def bars(self):

@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.batched import Batched
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
@@ -160,7 +160,7 @@ class Mechanism(Batched):
         for group in self.groups:
             owners = [self.joints[name].link for name in group.hangs_on]
             owners = [found.get(owner, owner) for owner in owners]
-            found |= {link: owners[0] for link in group.rigid_on(owners)}
+            found |= group.rigid_on(owners)
         return found
 
     @cached_property
@@ -207,7 +207,7 @@ class Mechanism(Batched):
     @cached_property
     def proportion(self):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
-        found = self.extent / smaller(*(part.shortest for part in self.parts))
+        found = self.extent / smaller(*(reach for part in self.parts for reach in part.reaches))
         return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
 
     @cached_property
