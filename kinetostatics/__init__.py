@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from . import drive
     from .casefile.case import load_case
     from .design import balancing, linkage
-    from .machine import cams
+    from .machine import cams, laws
     from .machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
     from .machine.cam_roller import CamRoller
     from .machine.crank import Crank
@@ -141,6 +141,7 @@ __all__ = [
     "drive",
     "extremes",
     "four_bar",
+    "laws",
     "linkage",
     "load_case",
     "needs",
@@ -157,7 +158,7 @@ __all__ = [
 
 
 _WHERE = {
-    "machine": ["cams"],
+    "machine": ["cams", "laws"],
     "machine.builders": ["cam_crank_slider", "crank_slider", "four_bar", "scotch_yoke", "slotted_lever"],
     "machine.cam_roller": ["CamRoller"],
     "machine.crank": ["Crank"],
