@@ -63,8 +63,8 @@ class Cam:
         Raises
         ------
         ParameterError
-            The roller undercuts the cam or cuts into another part of it, with the crank angles and the radius; the pitch
-            curve does not go around O.
+            The roller undercuts the cam or cuts into another part of it, with the crank angles and the radius; the
+            pitch curve does not go around O.
 
         Examples
         --------

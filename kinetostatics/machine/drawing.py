@@ -48,7 +48,7 @@ class _Drawing:
         notes = [*self.sheet.notes, "scale 1:1, print without scaling; the bar is 100 mm"]
         top = self.low[1] - 10 * size
         for number, note in enumerate(notes):
-            self._words(self.low[0] - 4 * size, top - 1.6 * size * number, note)
+            self._words((self.low[0] - 4 * size, top - 1.6 * size * number), note)
         bottom = top - 1.6 * size * len(notes)
         x = self.low[0] - 4 * size
         self._line((x, bottom), (x + 100.0, bottom))
@@ -87,7 +87,7 @@ class _Drawing:
         size, (left, below), (right, above) = self.size, self.low, self.high
         self._line((left - 2 * size, 0.0), (right + 2 * size, 0.0), "axis")
         self._line((0.0, below - 2 * size), (0.0, above + 2 * size), "axis")
-        self._words(0.5 * size, -1.5 * size, "O")
+        self._words((0.5 * size, -1.5 * size), "O")
 
     def _roller(self):
         """The roller where it stands at the zero mark, and the mark."""
@@ -96,7 +96,7 @@ class _Drawing:
         along = np.array([x, y]) / np.hypot(x, y)
         outer = np.hypot(x, y) + self.roller
         self._line(outer * along, (outer + 5 * self.size) * along)
-        self._words(*(outer * along + [0.2 * self.size, -1.3 * self.size]), "0° zero mark")
+        self._words(outer * along + [0.2 * self.size, -1.3 * self.size], "0° zero mark")
 
     def _sense(self):
         """An arc with an arrow, the way the roller goes around."""
@@ -105,7 +105,7 @@ class _Drawing:
         arc = reach * np.stack([np.cos(turn), np.sin(turn)])
         self.items.append(f'<path id="sense" d="{_path(arc, closed=False)}"/>')
         self._tip(arc[:, -1], arc[:, -1] - arc[:, -2])
-        self._words(*(arc[:, 20] + [self.size, 0.0]), f"roller goes {self.sheet.sense}")
+        self._words(arc[:, 20] + [self.size, 0.0], f"roller goes {self.sheet.sense}")
 
     def _dimensions(self):
         size, surface, sheet = self.size, self.curves["surface"], self.sheet
@@ -120,7 +120,7 @@ class _Drawing:
         for place, name in ((int(np.argmax(self.radius)), "largest"), (int(np.argmin(self.radius)), "smallest")):
             self._ray(place, name)
         x, y = self.curves["pitch"][:, 0]
-        self._words(x + 0.75 * self.roller, y + 0.8 * self.roller, f"roller ⌀ {sheet.written(2 * self.roller / MM)}")
+        self._words((x + 0.75 * self.roller, y + 0.8 * self.roller), f"roller ⌀ {sheet.written(2 * self.roller / MM)}")
 
     def _ray(self, place, name):
         """A radius of the pitch curve, from O to where it is largest or smallest."""
@@ -130,7 +130,7 @@ class _Drawing:
         degrees = np.degrees(self.sheet.made.crank_angle[place])
         text = f"{name} R {self.sheet.written(self.radius[place] / MM)} at {degrees:.4g}°"
         share = 0.3 if name == "largest" else 0.45
-        self._words(*(share * end + [0.0, (0.6 if name == "largest" else 2.2) * self.size]), text)
+        self._words(share * end + [0.0, (0.6 if name == "largest" else 2.2) * self.size], text)
 
     # strokes
 
@@ -142,7 +142,7 @@ class _Drawing:
         self._tip(start, start - stop)
         upright = abs(stop[1] - start[1]) > abs(stop[0] - start[0])
         x, y = start + (0.8 if upright else 0.5) * (stop - start)  # clear of the zero mark
-        self._words(x + (0.6 * self.size if upright else 0.0), y + (0.0 if upright else 0.5 * self.size), text)
+        self._words((x + (0.6 * self.size if upright else 0.0), y + (0.0 if upright else 0.5 * self.size)), text)
 
     def _line(self, start, stop, kind="thin"):
         (x1, y1), (x2, y2) = start, stop
@@ -154,7 +154,8 @@ class _Drawing:
         corners = np.stack([point, point - ahead + beside, point - ahead - beside], axis=1)
         self.items.append(f'<path class="tip" d="{_path(corners)}"/>')
 
-    def _words(self, x, y, text):
+    def _words(self, place, text):
+        x, y = place
         self.items.append(f'<text x="{x:.6g}" y="{-y:.6g}" font-size="{self.size:.3g}">{escape(text)}</text>')
 
 

@@ -51,7 +51,10 @@ class Law:
     jumps, if it does.
     """
 
-    knots: tuple[float, ...] = ()
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Crank angles at which the jerk may jump, rad."""
+        return ()
 
     def __call__(self, phi) -> Motion:
         raise TypeError(f"{type(self).__name__} must define __call__(phi) -> position, velocity, acceleration, jerk")
@@ -263,7 +266,7 @@ def polynomial(start, end, angle, powers="3-4-5"):
     >>> [round(part, 4) for part in ks.laws.polynomial(0.0, 1.0, 1.0).coefficients]
     [1.875, 5.7735, 60.0]
     """
-    found = POLYNOMIALS.get(powers) if isinstance(powers, str) else powers
+    found: Any = POLYNOMIALS.get(powers) if isinstance(powers, str) else powers
     rising = isinstance(found, list | tuple) and all(isinstance(n, int | np.integer) and 2 <= n <= 15 for n in found)
     if not rising or len(found) < 2 or any(one >= other for one, other in pairwise(found)):
         names = " or ".join(map(repr, POLYNOMIALS))

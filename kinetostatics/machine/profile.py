@@ -2,8 +2,8 @@
 
 With kappa the curvature of the pitch curve, positive where it is convex seen from outside, R the radius of the roller:
 a disk inside the pitch curve has the curvature kappa / (1 - kappa R), a ring around it -kappa / (1 + kappa R), both
-positive where the surface is convex to the roller. The roller would cut the disk away where kappa R >= 1, the ring where
--kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
+positive where the surface is convex to the roller. The roller would cut the disk away where kappa R >= 1, the ring
+where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
 """
 
 from dataclasses import dataclass, field
@@ -217,8 +217,8 @@ def _cut_away(cam, radius, side):
         where = " and ".join(_intervals(grid, _bend(cam, grid, side) * radius >= 1.0)) or "there alone"
         yield (
             f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
-            f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); the "
-            f"roller's must be less"
+            f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "
+            "the roller's must be less"
         )
         return
     pitch, _, made = _curves(cam, radius, grid, side)
@@ -229,7 +229,8 @@ def _cut_away(cam, radius, side):
         worst = int(np.argmin(distance))
         yield (
             f"a roller of radius {radius:.6g} m cuts into another part of the {side}: where it touches at crank angle "
-            f"{np.degrees(grid[worst]):.6g} deg its centre comes as near as {distance[worst]:.6g} m later; take a smaller"
+            f"{np.degrees(grid[worst]):.6g} deg its centre comes as near as {distance[worst]:.6g} m later; "
+            "take a smaller"
         )
     elif side == "disk" and least.value <= radius:
         yield (

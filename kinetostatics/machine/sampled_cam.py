@@ -84,7 +84,8 @@ class Sampled(Cam):
         """
         from ..numbers.files import read_columns
 
-        return cls(*read_columns(path, {"angle": "rad", "radius": "m"}), noise)
+        angle, radius = read_columns(path, {"angle": "rad", "radius": "m"})
+        return cls(angle, radius, noise)
 
     @property
     def lengths(self):

@@ -97,11 +97,15 @@ class TurnTable:
         spline = _through(self.angle, self.values) if self.smoothing is None else self._fit(self.values)
         return spline, *(spline.derivative(order) for order in (1, 2, 3))
 
+    @property
+    def _stated(self) -> float:
+        return 0.0 if self.smoothing is None else self.smoothing
+
     def _fit(self, values):
         """Smoothest spline within the noise stated of the values; None where there is none."""
         from scipy.interpolate import BSpline, splrep
 
-        goal = values.size * self.smoothing**2
+        goal = values.size * self._stated**2
         (t, c, k), _, status, _ = splrep(
             *_closed(self.angle, values), k=DEGREE, s=goal, per=True, full_output=1, quiet=1
         )
@@ -139,7 +143,7 @@ class TurnTable:
         random, smooth = np.random.default_rng(0), self.splines[0](self.angle)
         errors = []
         for _ in range(TRIALS):
-            fitted = self._fit(smooth + random.normal(0.0, self.smoothing, smooth.size))
+            fitted = self._fit(smooth + random.normal(0.0, self._stated, smooth.size))
             if fitted is not None:
                 errors.append(float(np.max(np.abs(fitted.derivative(2)(places) - second))))
         return 1.5 * max(errors, default=math.inf)
