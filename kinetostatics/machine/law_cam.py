@@ -23,7 +23,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..numbers import checks
 from .cam import Cam
-from .laws import TURN, knots_of
+from .law import TURN, knots_of
 
 GRID = np.linspace(-np.pi, np.pi, 2881)
 """Crank angles from the guide at which the highest and lowest d are bracketed, rad."""
@@ -218,7 +218,7 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     >>> import kinetostatics as ks
     >>> cam = ks.cams.from_law(ks.laws.cosine(0.3, 2.0))
     >>> round(cam.coupler_length, 10)
-    2.0219051771
+    2.0219051769
     >>> saw = ks.cam_crank_slider(cam, cam.coupler_length)
     >>> round(float(ks.solve(saw, 1.0, crank_speed=30.0).slider_position), 9)  # 2 + 0.3 cos(1)
     2.162090692
