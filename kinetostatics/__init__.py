@@ -11,6 +11,7 @@ Call first
     compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
     sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
     balancing, linkage, needs                   counterweights; classes of four-bars; how much model a quantity needs
+    laws, cams, design                          laws of motion; cams that make them; contact of the roller, lift-off ...
     plots, precision, stability, check          figures; every method's time and error; a test of a group of one's own
 
 Rooms, in the order in which they build on each other
@@ -44,7 +45,7 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from . import drive
+    from . import design, drive
     from .casefile.case import load_case
     from .design import balancing, linkage
     from .machine import cams, laws
@@ -137,6 +138,7 @@ __all__ = [
     "compare",
     "compile",
     "crank_slider",
+    "design",
     "designs",
     "drive",
     "extremes",
@@ -193,7 +195,7 @@ _WHERE = {
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],
     "solution.solution": ["Solution"],
-    "": ["drive"],
+    "": ["design", "drive"],
     "design": ["balancing", "linkage"],
     "sweeps": ["designs"],
     "sweeps.sweeps": ["sweep"],

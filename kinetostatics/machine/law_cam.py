@@ -90,6 +90,7 @@ class LawCam(Cam):
     near: Turning
 
     TABULATED = True
+    RULES = checks.Rules("cam from a law")  # no number of it is a parameter by itself
 
     @property
     def singular_angles(self):

@@ -51,7 +51,7 @@ def highest(function, start=0.0, span=TURN):
             method="bounded",
             options={"xatol": 1e-10},
         )
-        found += [Peak(float(-best.fun), float(best.x % TURN)), Peak(float(values[place]), float(angle[place] % TURN))]
+        found += [Peak(float(-best.fun), float(best.x % span)), Peak(float(values[place]), float(angle[place]))]
     return max(found, key=lambda peak: peak.value)
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..numbers import checks
 from .cam import Cam
 from .turn_tables import TurnTable
 
@@ -63,6 +64,7 @@ class Sampled(Cam):
     smoothing: Any
 
     TABULATED = True
+    RULES = checks.Rules("sampled cam")  # no number of it is a parameter by itself
 
     def __init__(self, angle, radius, noise=None):
         table = TurnTable.of("sampled cam", angle, radius, "radius", noise, positive=True)

@@ -15,6 +15,7 @@ from ..errors import QuantityError
 from ..mechanics.quantities import magnitude, of_mechanism, values
 from ..numbers.checks import choice, problem, require
 from ..results.extremes import extremes
+from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .canvas import INK, axes, closed, display, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
@@ -23,10 +24,15 @@ from .labels import label
 __all__ = [
     "acceleration_error",
     "animation",
+    "cam_curvature",
     "cam_force",
+    "cam_pressure_angle",
+    "cam_profile",
     "chain_unit_motion",
+    "contact_pressure",
     "error_by_distance",
     "hodograph",
+    "law_motion",
     "mass_centres",
     "mechanism",
     "model_ladder",
