@@ -5,6 +5,7 @@ May import all rooms above: numbers to solution.
 balancing       full, partial, optimal counterweights
 linkage         classes of four-bars
 cam_contact     contact(...) of a roller on its cam: side, curvature, Hertz pressure, limits
+hertz           line contact of two cylinders
 cam_rollers     the roller itself: spin and sliding, load and life of its pin
 hardness        the pressure that steel bears
 followers       lift-off, surge of springs, torque to start

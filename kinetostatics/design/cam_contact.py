@@ -1,13 +1,4 @@
-"""Contact of the roller with its cam over the turn: side, curvature, Hertz pressure, and what exceeds limits.
-
-Two cylinders pressed together by F over a width w (Johnson, *Contact Mechanics*, 1985, section 4.2): with 1/E* =
-(1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/Re the sum of both curvatures
-
-    p0 = sqrt(F E* / (pi w Re)),   half width b = sqrt(4 F Re / (pi w E*))
-
-The working curve is the pitch curve moved by the roller's radius R, so that Re = R (1 - kappa R) on a disk inside it,
-and R (1 + kappa R) on a ring around it, kappa being the curvature of the pitch curve.
-"""
+"""Contact of the roller with its cam over the turn: side, curvature, Hertz pressure, and what exceeds limits."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -20,6 +11,7 @@ from ..machine.profile import POSITIVE, SAMPLES, Peak, curvature, highest, surfa
 from ..machine.profile import profile as working_curve
 from ..numbers import checks
 from ..results.turn import require_single
+from . import hertz
 from .cam_rollers import Roller
 from .followers import lift_off_speed, starting_torque
 from .hardness import hardness_from_pressure
@@ -67,9 +59,9 @@ class Contact:
             f"<Contact: {self.solution.mechanism.name}, roller radius {self.roller_radius:.6g} m",
             f"  side             {' and '.join(self.sides)}, {len(self.changes)} changes a period",
             f"  largest pressure {peak.value / 1e6:.6g} MPa at {np.degrees(peak.angle):.6g} deg",
-            f"  exceeded         {'; '.join(self.exceeded) or 'nothing'}>",
+            *(f"  exceeded         {text}" for text in self.exceeded),
         ]
-        return "\n".join(lines)
+        return "\n".join(lines) + ">"
 
     # over the crank angle
 
@@ -98,7 +90,7 @@ class Contact:
     @property
     def relative_radius(self):
         """Radius of the cylinder that presses a plane as the roller does the cam, m."""
-        return relative_radius(self._bend, self.roller_radius, self.cam_force)
+        return hertz.relative_radius(self._bend, self.roller_radius, self.cam_force)
 
     @property
     def pressure(self):
@@ -108,15 +100,15 @@ class Contact:
     @property
     def half_width(self):
         """Half the width of the contact, m."""
-        return np.sqrt(4.0 * np.abs(self.cam_force) * self.relative_radius / (np.pi * self.width * self.modulus))
+        return hertz.half_width(self.cam_force, self.width, self.modulus, self.relative_radius)
 
     @property
     def _bend(self):
         return curvature(self.cam, self.crank_angle)
 
     def _pressure(self, force, bend):
-        radius = relative_radius(bend, self.roller_radius, force)
-        return np.sqrt(np.abs(force) * self.modulus / (np.pi * self.width * radius))
+        radius = hertz.relative_radius(bend, self.roller_radius, force)
+        return hertz.pressure(force, self.width, self.modulus, radius)
 
     # over the period
 
@@ -246,11 +238,6 @@ class Contact:
         )
 
 
-def relative_radius(bend, roller_radius, force):
-    """Radius of the cylinder that presses a plane as the roller does the cam, m, from the pitch curve's curvature."""
-    return roller_radius * (1.0 + np.where(force > 0.0, 1.0, -1.0) * bend * roller_radius)
-
-
 def contact(
     solution,
     roller_radius,
@@ -328,15 +315,14 @@ def contact(
         *_limit_problems(limits, load_rating),
         **given,
     )
-    compliance = sum(
-        (1.0 - values[f"poissons_ratio of the {part}"] ** 2) / values[f"youngs_modulus of the {part}"]
-        for part in ("roller", "cam")
-    )
+    materials = [
+        (values[f"youngs_modulus of the {part}"], values[f"poissons_ratio of the {part}"]) for part in ("roller", "cam")
+    ]
     radius, mass = values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
     roller = Roller(cams[0], radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
     limits = {name: float(value) for name, value in (limits or {}).items()}
-    found = Contact(solution, cams[0], radius, values["width"], 1.0 / compliance, roller, limits)
+    found = Contact(solution, cams[0], radius, values["width"], hertz.modulus(materials), roller, limits)
     for side in found.sides:
         working_curve(found.cam, radius, 8, side)
     return found
