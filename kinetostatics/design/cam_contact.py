@@ -60,8 +60,18 @@ class Contact:
             f"  side             {' and '.join(self.sides)}, {len(self.changes)} changes a period",
             f"  largest pressure {peak.value / 1e6:.6g} MPa at {np.degrees(peak.angle):.6g} deg",
             *(f"  exceeded         {text}" for text in self.exceeded),
+            *(
+                []
+                if self.force_error is None
+                else [f"  uncertain        forces by {self.force_error:.2g} of the largest"]
+            ),
         ]
         return "\n".join(lines) + ">"
+
+    @property
+    def force_error(self):
+        """Expected largest error of forces, relative to the largest, of a cam from a table; None of others."""
+        return getattr(self.cam, "force_error", None)
 
     # over the crank angle
 

@@ -42,6 +42,10 @@ class Shifted(Law):
     def knots(self):
         return tuple(knot + self.phase for knot in knots_of(self.law))
 
+    @property
+    def force_error(self):
+        return getattr(self.law, "force_error", None)
+
     def __call__(self, phi):
         return self.law(angles(phi) - self.phase)
 

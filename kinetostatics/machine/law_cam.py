@@ -98,6 +98,11 @@ class LawCam(Cam):
         return tuple((self.guide_angle + turning.angle) % TURN for turning in (self.far, self.near))
 
     @property
+    def force_error(self):
+        """Expected largest error of a force, relative to its largest value; None unless the law is from a table."""
+        return getattr(self.law, "force_error", None)
+
+    @property
     def lengths(self):
         """What the pitch curve is made of, m."""
         return (self.coupler_length, float(np.max(np.abs(self.law(GRID)[0]))))
@@ -108,12 +113,13 @@ class LawCam(Cam):
         return float(np.min(self.radius(GRID)[0]))
 
     def polar(self, angle, ray):
-        phi = np.mod(np.asarray(angle, dtype=float) - self.guide_angle + np.pi, TURN) - np.pi
+        shape = np.shape(angle)
+        phi = np.mod(np.atleast_1d(np.asarray(angle, dtype=float)) - self.guide_angle + np.pi, TURN) - np.pi
         x, v, a, _ = self.law(phi)
         s, c = np.sin(phi), np.cos(phi)
         e = self.guide_offset
         along = x * c + e * s, (v + e) * c - x * s, (a - x) * c - (2.0 * v + e) * s
-        return tuple(one - other for one, other in zip(along, self._reach(phi), strict=True))
+        return tuple((one - other).reshape(shape) for one, other in zip(along, self._reach(phi), strict=True))
 
     def _reach(self, phi):
         """Signed reach w and two derivatives: by d itself, and near each singular angle from there."""

@@ -214,6 +214,15 @@ class Tabled(Law):
     def knots(self):
         return tuple(np.unique(np.mod(self.rows.splines[0].t, TURN)).tolist())
 
+    @property
+    def force_error(self):
+        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table."""
+        largest = float(np.max(np.abs(self.rows.splines[2](self.rows.angle)))) - self.rows.second_derivative_error
+        return self.rows.force_error(largest)
+
+    def __repr__(self):
+        return f"<Law through {self.rows.angle.size} points, forces within {self.force_error:.2g} of the largest>"
+
     def __call__(self, phi):
         phi = angles(phi)
         return Motion(*(spline(phi) for spline in self.rows.splines))
@@ -235,6 +244,19 @@ def table(angle, position, noise=None):
     Returns
     -------
     Law
+        Its `force_error` is what forces are uncertain by, relative to the largest.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 8 points, angles not rising or more than one turn, a value that is not finite, or noise that the
+        positions cannot have.
+
+    Warns
+    -----
+    UserWarning
+        The table is too coarse or too noisy: `force_error` is a hundredth or more. Or the noise stated is more than
+        three times what the positions show, or less than a third.
 
     Examples
     --------
@@ -245,4 +267,7 @@ def table(angle, position, noise=None):
     >>> round(float(law(1.0).velocity), 9)
     -0.252441295
     """
-    return Tabled(TurnTable.of("table of a law", angle, position, "position", noise))
+    rows = TurnTable.of("table of a law", angle, position, "position", noise)
+    law = Tabled(rows)
+    rows.warn_if_uncertain("table of a law", "x''", "positions", law.force_error)
+    return law

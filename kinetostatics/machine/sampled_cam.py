@@ -1,6 +1,5 @@
 """A cam from a table: a spline through its points, or as near as their noise allows, and how far it can be trusted."""
 
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,9 +9,6 @@ import numpy as np
 from ..numbers import checks
 from .cam import Cam
 from .turn_tables import TurnTable
-
-LEFT_BY_BALANCING = 7.0
-"""How many times inertia forces exceed what springs or counterweights leave of them."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -72,7 +68,7 @@ class Sampled(Cam):
         object.__setattr__(self, "samples", table.values)
         object.__setattr__(self, "smoothing", table.smoothing)
         object.__setattr__(self, "_table", table)
-        self._warn_if_uncertain()
+        table.warn_if_uncertain("sampled cam", "r''", "radii", self.force_error)
 
     def __repr__(self):
         way = "through" if self.smoothing is None else f"smoothed by {self.smoothing:.3g} m from"
@@ -125,16 +121,5 @@ class Sampled(Cam):
         the figure is for a machine in which they leave a seventh, and on the safe side for others.
         """
         r, slope, second = (spline(self.angle) for spline in self._table.splines[:3])
-        error = self.second_derivative_error
-        scale = max(np.max(np.hypot(second - r, 2 * slope)) - error, np.max(r))
-        return LEFT_BY_BALANCING * error / float(scale)
-
-    def _warn_if_uncertain(self):
-        if self.force_error >= 0.01:
-            warnings.warn(
-                f"sampled cam: {self.angle.size} points are too coarse or too noisy: r'' is uncertain by up to "
-                f"{self.second_derivative_error:.2g} m (the radii scatter by {self.noise:.2g} m about a smooth curve), "
-                f"and forces by up to {self.force_error:.1%} where inertia is balanced; measure more exactly, write "
-                "more digits, or state their noise to have them smoothed",
-                stacklevel=3,
-            )
+        largest = np.max(np.hypot(second - r, 2 * slope)) - self.second_derivative_error
+        return self._table.force_error(max(largest, np.max(r)))

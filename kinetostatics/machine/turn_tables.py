@@ -16,6 +16,8 @@ from ..numbers import checks
 NOISE_IN_SECOND_DERIVATIVE = 16.0
 """Largest error of r'' that noise of 1 makes at points 1 apart: a standard deviation of 4.8, exceeded 3.3 times."""
 DEGREE = 5
+LEFT_BY_BALANCING = 7.0
+"""How many times inertia forces exceed what springs or counterweights leave of them."""
 TRIALS = 6
 """Tables with other noise of the same size that tell how far a smoothed one can be trusted."""
 UNLIKE = 3.0
@@ -138,6 +140,27 @@ class TurnTable:
         difference = float(np.max(np.abs(second - coarse(places))))
         caused = NOISE_IN_SECOND_DERIVATIVE * self.noise / np.diff(nodes).min() ** 2
         return min(difference, caused + difference / 12)
+
+    def force_error(self, largest):
+        """Expected largest error of a force, relative to its largest value, from the `largest` acceleration by angle.
+
+        The error of an acceleration, relative to the largest over the turn at even speed, is that of inertia forces.
+        Springs or counterweights that balance them leave a fraction, but the error whole: the figure is for a machine
+        in which they leave a seventh, and on the safe side for others.
+        """
+        return LEFT_BY_BALANCING * self.second_derivative_error / float(largest) if largest > 0 else math.inf
+
+    def warn_if_uncertain(self, owner, symbol, name, force_error):
+        """Warn of a table that leaves forces uncertain by a hundredth or more."""
+        if force_error >= 0.01:
+            remedy = ", or state their noise to have them smoothed" if self.smoothing is None else ""
+            warnings.warn(
+                f"{owner}: {self.angle.size} points are too coarse or too noisy: {symbol} is uncertain by up to "
+                f"{self.second_derivative_error:.2g} m (the {name} scatter by {self.noise:.2g} m about a smooth "
+                f"curve), and forces by up to {force_error:.1%} where inertia is balanced; measure more exactly, "
+                f"write more digits{remedy}",
+                stacklevel=4,
+            )
 
     def _smoothing_error(self, places, second):
         random, smooth = np.random.default_rng(0), self.splines[0](self.angle)

@@ -57,7 +57,7 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
     ax.set(xlabel="x [m]", ylabel="y [m]")
-    ax.legend(frameon=False, fontsize="small", loc="center")
+    ax.legend(frameon=False, fontsize="small", loc="upper right")
     return ax
 
 
