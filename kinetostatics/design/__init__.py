@@ -1,10 +1,10 @@
 """Better machines: static balancing, counterweights, four-bar classes; the contact of rollers and cams.
 
-May import all rooms above: numbers to solution.
+May import all rooms above: numbers to drive.
 
 balancing       full, partial, optimal counterweights
 linkage         classes of four-bars
-cam_contact     contact(...) of a roller on its cam: side, curvature, Hertz pressure, limits
+cam_contact     contact of a roller with its cam: side, curvature, Hertz pressure, limits
 hertz           line contact of two cylinders
 cam_rollers     the roller itself: spin and sliding, load and life of its pin
 hardness        the pressure that steel bears
@@ -12,21 +12,39 @@ followers       lift-off, surge of springs, torque to start
 """
 
 from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .cam_contact import Contact, contact
+    from .followers import Surge, lift_off_speed, spring_surge, starting_torque
+    from .hardness import hardness_from_pressure, pressure_from_hardness
+
+__all__ = [
+    "Contact",
+    "Surge",
+    "contact",
+    "hardness_from_pressure",
+    "lift_off_speed",
+    "pressure_from_hardness",
+    "spring_surge",
+    "starting_torque",
+]
 
 _WHERE = {
-    "cam_contact": ("Contact", "contact"),
-    "hardness": ("hardness_from_pressure", "pressure_from_hardness"),
-    "followers": ("Surge", "lift_off_speed", "spring_surge", "starting_torque"),
+    "Contact": "cam_contact",
+    "Surge": "followers",
+    "contact": "cam_contact",
+    "hardness_from_pressure": "hardness",
+    "lift_off_speed": "followers",
+    "pressure_from_hardness": "hardness",
+    "spring_surge": "followers",
+    "starting_torque": "followers",
 }
-"""Names by the module that they are loaded from when first used."""
+"""Names by their module: loaded when first used."""
 
 
 def __getattr__(name):
-    place = next((place for place, names in _WHERE.items() if name in names), None)
-    if place is None:
+    if name not in _WHERE:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{place}"), name)
-
-
-def __dir__():
-    return sorted({*globals(), *(name for names in _WHERE.values() for name in names)})
+    found = globals()[name] = getattr(import_module(f"{__name__}.{_WHERE[name]}"), name)
+    return found
