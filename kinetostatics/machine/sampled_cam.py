@@ -1,12 +1,12 @@
 """A cam from a table: a spline through its points, or as near as their noise allows, and how far it can be trusted."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from .cam import Cam
 from .turn_tables import TurnTable
 
