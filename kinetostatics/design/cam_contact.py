@@ -1,7 +1,6 @@
 """Contact of the roller with its cam over the turn: side, curvature, Hertz pressure, and what exceeds limits."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ from ..machine.cam_roller import CamRoller
 from ..machine.profile import POSITIVE, SAMPLES, Peak, curvature, highest, surface_curvature
 from ..machine.profile import profile as working_curve
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from ..results.turn import require_single
 from . import hertz
 from .cam_rollers import Roller

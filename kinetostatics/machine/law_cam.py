@@ -15,13 +15,13 @@ nothing cancels at the singular angles, and w is as smooth around them as the la
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import ParameterError
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from .cam import Cam
 from .law import TURN, knots_of
 

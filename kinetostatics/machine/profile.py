@@ -7,13 +7,13 @@ where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chap
 """
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import ParameterError
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from .crank import ray as ray_at
 
 TURN = 2 * np.pi

@@ -6,12 +6,12 @@ A table says how far its second derivative can be trusted, from its own noise an
 import math
 import warnings
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from ..errors import ParameterError
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 
 NOISE_IN_SECOND_DERIVATIVE = 16.0
 """Largest error of r'' that noise of 1 makes at points 1 apart: a standard deviation of 4.8, exceeded 3.3 times."""

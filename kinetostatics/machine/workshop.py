@@ -1,7 +1,6 @@
 """A cam for the workshop: table (.csv), drawing 1:1 (.svg) and .dxf of its curves, each written whole or not at all."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from ..errors import FileError, MissingLibraryError
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
+from ..numbers.lazy import cached_property
 from .profile import POSITIVE, SIDES, Profile, profile
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}

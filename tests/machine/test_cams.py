@@ -299,3 +299,9 @@ def test_noise_of_uneven_points_and_a_point_read_wrongly_are_found():
     assert ks.cams.Sampled(angle, radius + noise).noise == pytest.approx(1e-8, rel=0.15)
     with pytest.warns(UserWarning, match="too coarse or too noisy"):
         ks.cams.Sampled(angle, radius + 1e-5 * (np.arange(360) == 77))
+
+
+def test_a_cam_roller_alone_is_a_mechanism():
+    """Without any bar: a block that the slotted crank drives around a circle takes its centrifugal force."""
+    machine = ks.Mechanism("wheel", ks.Crank(None), (ks.CamRoller(ks.cams.Circle(0.2), ks.Link(3.0)),))
+    assert_allclose(ks.solve(machine, ANGLES, crank_speed=10.0).cam_force, 3.0 * 0.2 * 100.0, rtol=1e-13)
