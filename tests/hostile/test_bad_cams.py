@@ -93,7 +93,7 @@ FIELDS = {
 }
 
 
-@pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=[f"{n}-{type(x).__name__}" for n, x in enumerate(NO_NUMBERS)])
 @pytest.mark.parametrize("field", FIELDS)
 def test_what_is_no_number_is_refused_by_the_name_of_its_field(field, value):
     make, name, _ = FIELDS[field]
