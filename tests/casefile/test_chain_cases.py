@@ -241,7 +241,7 @@ def test_a_sampled_cam_stands_in_a_chain(tmp_path):
     assert found.startswith(f"variants.cam.groups[1].cam: {tmp_path / 'none.csv'}: cannot be read")
 
 
-@pytest.mark.filterwarnings("ignore:sampled cam: 360 points")
+@pytest.mark.filterwarnings("ignore:sampled cam. 360 points")
 def test_the_noise_of_a_measured_cam_is_stated_with_its_unit(tmp_path):
     degrees = np.arange(360)
     radius = np.round(ks.cams.Circle(0.3, (-0.02, 0.0)).radius(np.radians(degrees))[0], 6)

@@ -264,7 +264,7 @@ def test_a_table_rounded_to_a_micrometre_gives_forces_to_a_thousandth_once_its_n
     assert "forces within 0.0004" in repr(smooth)
 
 
-@pytest.mark.filterwarnings("ignore:sampled cam: 360 points")
+@pytest.mark.filterwarnings("ignore:sampled cam. 360 points")
 @pytest.mark.parametrize(("noise", "words"), [(8e-8, "less than"), (1e-5, "more than")])
 def test_noise_unlike_that_of_the_table_is_warned_of(noise, words):
     table = rounded(LAW, 360, 1e-6)
