@@ -9,6 +9,7 @@ from scipy.optimize import linprog
 
 import kinetostatics as ks
 from kinetostatics.design.balancing import Counterweight, counterweight, full, optimal, partial
+from support.every import every
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 """Bodies drawn at random have any inertia."""
@@ -382,7 +383,7 @@ def test_weight_on_the_moment_lowers_it_at_the_price_of_force():
 BOTH = {"crank": HEAVY, "coupler": HEAVY}
 
 
-@pytest.mark.parametrize(
+@every(
     ("balance", "message"),
     [
         (lambda: Counterweight(), "counterweight: give either mass or arm, not neither"),

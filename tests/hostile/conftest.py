@@ -17,14 +17,17 @@ def _memory():
 
 @pytest.fixture(autouse=True)
 def soon_and_small(request):
-    """Stops a test after two seconds, unless it is marked `slow_start`, and fails it for taking a gigabyte."""
+    """Stops a test, or an input of it, after two seconds, and fails it for taking a gigabyte.
+
+    One that is marked `slow_start` has a minute.
+    """
 
     def late(*_):
         raise TimeoutError(f"took more than {SECONDS} s")
 
     allowed = 60 if request.node.get_closest_marker("slow_start") else SECONDS
     before, held = signal.signal(signal.SIGALRM, late), _memory()
-    signal.setitimer(signal.ITIMER_REAL, allowed)
+    signal.setitimer(signal.ITIMER_REAL, allowed, allowed)  # `support.every` begins anew with each input
     try:
         yield
     finally:

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from support.every import every
 from support.machines import ANGLES, assert_close, assert_equal, largest, planar, results
 from support.newton_euler import (
     DIGITS,
@@ -223,9 +224,9 @@ def rounded(cam, count, step):
 
 
 @pytest.mark.filterwarnings("ignore:sampled cam")
-@pytest.mark.parametrize("step", [1e-7, 1e-6, 1e-5])
-@pytest.mark.parametrize("count", [90, 360, 3600])
-@pytest.mark.parametrize("name", CAMS)
+@every("step", [1e-7, 1e-6, 1e-5])
+@every("count", [90, 360, 3600])
+@every("name", CAMS)
 def test_stated_error_of_forces_bounds_the_true_one_within_ten_times(name, count, step):
     sampled = ks.cams.Sampled(*rounded(CAMS[name], count, step))
     exact = balanced_cam_force(CAMS[name])
@@ -236,8 +237,8 @@ def test_stated_error_of_forces_bounds_the_true_one_within_ten_times(name, count
     assert 0.5 * found <= sampled.second_derivative_error <= 2 * found
 
 
-@pytest.mark.parametrize("count", [90, 360, 3600])
-@pytest.mark.parametrize("name", CAMS)
+@every("count", [90, 360, 3600])
+@every("name", CAMS)
 def test_exact_tables_are_silent_and_state_their_truncation(name, count):
     angle = 2 * np.pi * np.arange(count) / count
     sampled = ks.cams.Sampled(angle, CAMS[name].radius(angle)[0])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.machines import largest
 from support.scenes import six_bar
 
@@ -140,7 +141,7 @@ def test_an_indicator_diagram_is_read_with_its_units_and_multiplied_by_the_area(
     assert table.back == pytest.approx(DIAGRAM.back)
 
 
-@pytest.mark.parametrize(
+@every(
     ("text", "options", "words"),
     [
         ("crank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),

@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import kinetostatics as ks
+from support.every import every
 
 TURN = 2 * np.pi * np.arange(72) / 72
 EVEN = 2 * np.pi * np.arange(40) / 40
@@ -24,7 +25,7 @@ def solve(mechanism, angle=TURN, **changes):
 # Values
 
 
-@pytest.mark.parametrize(
+@every(
     ("values", "message"),
     [
         ({"mass": -1.0}, "Link: mass must be at least 0, got -1.0"),
@@ -48,7 +49,7 @@ def test_message_lists_every_fault_at_once():
         ks.Link(-1.0, (np.inf, 0.0), -3.0)
 
 
-@pytest.mark.parametrize(
+@every(
     ("changes", "message"),
     [
         ({"crank_length": 0.0}, "crank length must be greater than 0, got 0.0"),
@@ -180,7 +181,7 @@ def test_every_reaction_is_in_the_list_of_valid_ones():
 # Cams
 
 
-@pytest.mark.parametrize(
+@every(
     ("make", "message"),
     [
         (lambda: ks.cams.Circle(-0.3), "circle cam: radius must be greater than 0, got -0.3"),

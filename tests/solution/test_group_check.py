@@ -11,6 +11,7 @@ from numpy.testing import assert_array_equal
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS
 from kinetostatics.machine.links import Joint, Wrench
+from support.every import every
 from support.scenes import Pan
 
 TURN = 2 * np.pi * np.arange(72) / 72
@@ -49,8 +50,8 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize("shape", [(), (1,), (1, 1)])
-@pytest.mark.parametrize("name", PLACES)
+@every("shape", [(), (1,), (1, 1)])
+@every("name", PLACES)
 def test_an_array_that_the_caller_fills_again_leaves_what_was_made_of_it(name, shape):
     """Each in a loop over one buffer, read only when the loop is over."""
     buffer, made = np.empty(shape), []
@@ -249,9 +250,9 @@ def test_the_joint_that_a_group_of_ones_own_hangs_on_is_named_by_text_and_there(
         ks.Mechanism("pan", ks.Crank(0.1), (Pan(ROD, on=on),))
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("on_gap", ["raise", "nan"])
-@pytest.mark.parametrize("shape", [(72,), (2, 36), (72, 1)])
+@every("bad", [np.nan, np.inf, -np.inf])
+@every("on_gap", ["raise", "nan"])
+@every("shape", [(72,), (2, 36), (72, 1)])
 def test_crank_angles_that_are_not_finite_are_refused_whatever_gaps_do(bad, on_gap, shape):
     angle = TURN.copy()
     angle[40] = bad
