@@ -1,11 +1,10 @@
 """What tests lean on: many inputs in one test are each tried, named and timed."""
 
-import signal
 import time
 
 import pytest
 
-from support.every import every
+from support.every import every, limited
 
 
 def failure(test, **fixtures):
@@ -50,20 +49,22 @@ def test_decorators_give_all_combinations_beside_fixtures_and_keep_their_names()
 
 
 def test_each_input_has_the_time_of_a_test():
-    def late(*_):
-        raise TimeoutError("too late")
-
-    @every("seconds", [0.06, 0.0, 0.02, 0.02, 0.02])
+    @every("seconds", [0.3, 0.0, 0.06, 0.06, 0.06])
     def test(seconds):
         time.sleep(seconds)
 
-    before = signal.signal(signal.SIGALRM, late)
-    signal.setitimer(signal.ITIMER_REAL, 0.05, 0.05)
-    try:
-        assert failure(test)[1:] == ["0.06: TimeoutError: too late"]
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+    with limited(0.15):
+        assert failure(test)[1:] == ["0.3: TimeoutError: took more than 0.15 s"]
+
+
+def test_a_test_is_stopped_once_so_that_its_failure_can_be_told():
+    def stopped():
+        with limited(0.05):
+            time.sleep(1.0)
+
+    with pytest.raises(TimeoutError, match=r"more than 0\.05 s"):
+        stopped()
+    time.sleep(0.1)
 
 
 def test_an_input_that_would_skip_the_others_fails():

@@ -1,10 +1,11 @@
 """Hostile input ends at once: within two seconds and a gigabyte, whatever is handed in."""
 
 import resource
-import signal
 import sys
 
 import pytest
+
+from support.every import limited
 
 SECONDS = 2
 BYTES = 10**9
@@ -21,16 +22,7 @@ def soon_and_small(request):
 
     One that is marked `slow_start` has a minute.
     """
-
-    def late(*_):
-        raise TimeoutError(f"took more than {SECONDS} s")
-
-    allowed = 60 if request.node.get_closest_marker("slow_start") else SECONDS
-    before, held = signal.signal(signal.SIGALRM, late), _memory()
-    signal.setitimer(signal.ITIMER_REAL, allowed, allowed)  # `support.every` begins anew with each input
-    try:
+    held = _memory()
+    with limited(60 if request.node.get_closest_marker("slow_start") else SECONDS):
         yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
     assert _memory() - held < BYTES

@@ -16,7 +16,9 @@ from kinetostatics.studies import precision
 from kinetostatics.studies.methods import METHODS
 from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from kinetostatics.views import charts
-from support.curves import FEW
+from support.curves import FEW, torque_study
+
+pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
 KINDS = [
     ("sawframe_2r63", "plain"),
@@ -36,9 +38,8 @@ def case():
 
 
 @pytest.fixture(scope="module")
-def torque(case):
-    """The study of one case, the plain sawframe."""
-    return precision.study(case.solve("plain", 48), methods=FEW, repeats=1)
+def torque():
+    return torque_study()
 
 
 # A study

@@ -3,6 +3,7 @@
 import inspect
 import reprlib
 import signal
+from contextlib import contextmanager
 from functools import wraps
 from itertools import product
 
@@ -10,13 +11,14 @@ import pytest
 
 SHORT = reprlib.Repr()
 SHORT.maxother = SHORT.maxstring = 60
+_allowed = 0.0
 
 
 def every(names, values, ids=None):
     """As ``pytest.mark.parametrize``, within one test: it fails once, and names each input that did and why.
 
-    Decorators below one another give all combinations. Fixtures are those of the one test; a limit of time that a
-    fixture set by ``signal.setitimer``, with its seconds as the interval too, begins anew with each input.
+    Decorators below one another give all combinations. Fixtures are those of the one test; the time to which it is
+    `limited` begins anew with each input.
     """
     names = [name.strip() for name in names.split(",")] if isinstance(names, str) else list(names)
     rows = [[value] if len(names) == 1 else list(value) for value in values]
@@ -62,9 +64,27 @@ def _of_all(function, axes):
     return test
 
 
+@contextmanager
+def limited(seconds):
+    """Stops a test, or an input of it, once, after so many seconds: with a `TimeoutError`."""
+    global _allowed
+
+    def late(*_):
+        raise TimeoutError(f"took more than {seconds} s")
+
+    before, _allowed = signal.signal(signal.SIGALRM, late), seconds
+    _begin_clock()
+    try:
+        yield
+    finally:
+        _allowed = 0.0
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
 def _begin_clock():
-    _, seconds = signal.getitimer(signal.ITIMER_REAL)
-    signal.setitimer(signal.ITIMER_REAL, seconds, seconds)
+    if _allowed:
+        signal.setitimer(signal.ITIMER_REAL, _allowed)
 
 
 def _label(value):

@@ -5,24 +5,17 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.studies import precision
-from kinetostatics.studies.methods import METHODS
 from kinetostatics.views import charts
-from support.curves import FEW
+from support.curves import FEW, torque_study
 
-OTHERS = [method for method in METHODS if not method.ours]
+pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+
 TIME = "time [ns/angle]"
 
 
 @pytest.fixture(scope="module")
-def case():
-    return ks.load_case("sawframe_2r63")
-
-
-@pytest.fixture(scope="module")
-def torque(case):
-    """The study of one case, the plain sawframe."""
-    return precision.study(case.solve("plain", 48), methods=FEW, repeats=1)
+def torque():
+    return torque_study()
 
 
 def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_each_setting(torque):

@@ -6,20 +6,14 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.studies import precision
 from kinetostatics.studies.methods import METHODS
-from support.curves import FEW
+from support.curves import torque_study
 
-OTHERS = [method for method in METHODS if not method.ours]
-
-
-@pytest.fixture(scope="module")
-def case():
-    return ks.load_case("sawframe_2r63")
+pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
 
 @pytest.fixture(scope="module")
-def torque(case):
-    """The study of one case, the plain sawframe."""
-    return precision.study(case.solve("plain", 48), methods=FEW, repeats=1)
+def torque():
+    return torque_study()
 
 
 def curve(table, method, first, last):
