@@ -4,7 +4,6 @@ import re
 import typing
 import warnings
 from dataclasses import dataclass, field, fields, is_dataclass
-from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
@@ -17,6 +16,7 @@ from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, Ki
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from ..results.comparison import Comparison
 from ..solution.scene import Scene
 from ..solution.solution import Solution

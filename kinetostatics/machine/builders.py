@@ -16,6 +16,9 @@ from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
 from .yoke_group import YokeGroup
 
+LEVEL = Guide()
+"""The guide along +x through O."""
+
 
 def crank_slider(
     crank_length,
@@ -262,7 +265,7 @@ def _warn_off_law(cam, group):
 
 def _guide(guide, angle, offset):
     if guide is None:
-        return Guide.at(angle, offset)
+        return LEVEL if type(angle) is type(offset) is float and angle == offset == 0.0 else Guide.at(angle, offset)
     free = present(angle) is None and present(offset) is None
     checks.require("guide", None if free else "give either guide or guide_angle and guide_offset")
     return guide

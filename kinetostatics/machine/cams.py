@@ -6,13 +6,13 @@ the turn.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import namespace, sqrt
+from ..numbers.lazy import cached_property
 from .cam import Cam
 from .crank import ray as ray_at
 from .sampled_cam import Sampled

@@ -3,13 +3,13 @@
 import math
 import warnings
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..errors import ParameterError
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from .cam import Cam
 
 NOISE_IN_SECOND_DERIVATIVE = 16.0

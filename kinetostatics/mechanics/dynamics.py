@@ -6,7 +6,7 @@ Everything here is the kernels' own arithmetic; engines and solutions ask it, it
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from ..machine.group import FRAME
 from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
+from ..numbers.lazy import cached_property
 from ..numbers.planar import added, minus, moment, number, plus, product
 from . import energy
 from .friction import Rubbing, driving

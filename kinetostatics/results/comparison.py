@@ -2,7 +2,6 @@
 
 import warnings
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from ..machine.loads import TURN
 from ..mechanics.quantities import label_of, magnitude, unit_of
 from ..numbers import checks
 from ..numbers.elementary import UNIT
+from ..numbers.lazy import cached_property
 from .extremes import extrema, extremes, warning
 from .turn import SAME, USABLE, require_single
 

@@ -1,6 +1,6 @@
 """Whether numba can be had: what is said, and what goes on without it."""
 
-import importlib.util
+import sys
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from support.scenes import (
 
 
 def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "numba", None)
     with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]".*engine="numpy"'):
         solve(SCENES["plain"], SAMPLES, engine="compiled")
 
