@@ -28,8 +28,7 @@ def test_the_torque_is_inertia_slope_and_load_together():
 
 
 def test_what_has_a_potential_takes_nothing_in_a_turn_and_a_damper_does():
-    assert solved().energy_per_turn == pytest.approx(0.0, abs=1e-11)
-    damped = solved(
-        loads=ks.ProcessForce(lambda motion: -5.0 * motion.travel_velocity("slider")), crank_acceleration=0.0
-    )
-    assert damped.energy_per_turn == pytest.approx(5.0 * 0.01 * 7.0 * np.pi, rel=1e-9)
+    steady = {"crank_acceleration": 0.0}
+    assert solved(**steady).energy_per_turn == pytest.approx(0.0, abs=1e-11)
+    damper = ks.ProcessForce(lambda motion: -5.0 * motion.travel_velocity("slider"))
+    assert solved(loads=damper, **steady).energy_per_turn == pytest.approx(5.0 * 0.01 * 7.0 * np.pi, rel=1e-9)
