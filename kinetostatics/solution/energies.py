@@ -36,7 +36,7 @@ class Energies:
     @cached_property
     def energy_per_turn(self):
         """Work of the balancing torque in a turn of the crank, J: what the loads take of the drive; of one design."""
-        from ..results.comparison import energy_per_turn
+        from ..results.means import energy_per_turn
 
         return energy_per_turn(self)
 

@@ -138,6 +138,18 @@ class Solution(Energies, Motion):
         self._look_up("joint that rubs", joint, self.mechanism.pairs)
         return self._of_friction(f"{joint}_friction_loss")
 
+    @cached_property
+    def losses(self):
+        """Mean powers over the period, lost by joint and taken by loads, a `results.losses.Losses`; of one design."""
+        from ..results.losses import losses
+
+        return losses(self)
+
+    @property
+    def efficiency(self):
+        """Mechanical efficiency over the period: of what loads take and joints lose, the part that loads take."""
+        return self.losses.efficiency
+
     def friction_at(self, joint):
         """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
         self._look_up("joint that rubs", joint, self.mechanism.pairs)

@@ -20,7 +20,8 @@ def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_mode
     loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0), ks.Force(5.0, at="B")]
     loads += [kind(5.0, on="coupler") for kind in (ks.Torque, ks.TorsionSpring, ks.TorsionDamper)]
     loads += [kind(5.0, between=("A", (3.0, 3.0))) for kind in (ks.PointForce, ks.PointSpring, ks.PointDamper)]
-    everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0), "O"))
+    rubbing = {"O": ks.PinFriction(0.1, 0.01), "guide": ks.GuideFriction(0.1)}
+    everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0, friction=rubbing), "O"))
     offered = simplifications.ingredients(mechanism).values()
     assert set(everything) == {choice.name for choices in offered for choice in choices}
     bare = ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))
