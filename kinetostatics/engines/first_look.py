@@ -27,9 +27,9 @@ def first_look(kind):
     odd += [f"abs({noted(gap)}) <= 1e-9 * {noted(length)}" for length, gap in arms]
     source = f"""def line(numbers):
     v = sizes(0.0, 0.0, 1.0, numbers, ())
-    extent, longest = {noted(extent)}, max({", ".join(map(noted, bars))}, 0.0, 0.0)
+    extent, longest = {noted(extent)}, max({", ".join([*map(noted, bars), "0.0", "0.0"])})
     thin = longest * longest / {12.0 * hints.THIN}
-    return extent / min({", ".join(map(noted, reaches))}, inf, inf), {" or ".join(odd) or "False"}"""
+    return extent / min({", ".join([*map(noted, reaches), "inf", "inf"])}), {" or ".join(odd) or "False"}"""
     if any(node.operation == "table" for node in needed(outputs)):
         return None
     return made(source, PLAIN | {"sizes": made(writing.line(outputs), PLAIN)})

@@ -15,9 +15,10 @@ from ..numbers.elementary import namespace, sqrt
 from ..numbers.lazy import cached_property
 from .cam import Cam
 from .crank import ray as ray_at
+from .law_cam import LawCam, from_law
 from .sampled_cam import Sampled
 
-__all__ = ["Cam", "Circle", "CosineLaw", "Sampled"]
+__all__ = ["Cam", "Circle", "CosineLaw", "LawCam", "Sampled", "from_law"]
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -16,6 +16,7 @@ from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, of_mechanism, values
 from ..numbers.checks import choice, problem, require
 from ..results.extremes import extremes
+from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .canvas import INK, axes, closed, display, finished, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
@@ -25,10 +26,15 @@ from .lost_power import losses, lost_power
 __all__ = [
     "acceleration_error",
     "animation",
+    "cam_curvature",
     "cam_force",
+    "cam_pressure_angle",
+    "cam_profile",
     "chain_unit_motion",
+    "contact_pressure",
     "error_by_distance",
     "hodograph",
+    "law_motion",
     "losses",
     "lost_power",
     "mass_centres",
