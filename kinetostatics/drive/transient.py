@@ -5,6 +5,7 @@ of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations 
 of motor and loads beside it: what kinetic energy and work differ by at the end is the drift.
 """
 
+import contextlib
 import math
 
 import numpy as np
@@ -22,7 +23,9 @@ from .trajectory import Event, Trajectory
 READY = 0.99
 """Share of the mean speed of steady running at which a machine has started."""
 LONGEST = 1e5
-"""Turns after which a start is given up."""
+"""Turns after which a start or coast is given up."""
+ROUGH = 1e-9
+"""Tolerance of the turn by which it is judged whether a machine comes to standstill at all."""
 SMALL = 1e-9
 """Torque, relative to the largest, that moves nothing."""
 
@@ -71,6 +74,8 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
         checks.require("coast", 'until must be a time in s, or "standstill"' + f", got {until!r}" if wrong else None)
     elif speed == 0.0:
         checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
+    else:
+        _require_standstill(driven, angle, speed)
     return _followed(driven, scene, angle, speed, until)
 
 
@@ -145,6 +150,50 @@ def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
             crank_angle=angle,
         )
     return driven, inertia, angle, speed
+
+
+def _require_standstill(driven, angle, speed):
+    """Refuse a coast that does not end, or not within `LONGEST` turns.
+
+    Motions of one degree of freedom do not cross: none falls below periodic running under the motor, and what is not
+    slower after a period never is.
+    """
+    way, why = math.copysign(1.0, speed), None
+    if driven.motor is not None and way == driven.direction:
+        kept = _kept_speed(driven, angle)
+        if kept is not None and abs(kept) <= abs(speed):
+            why = "its motor keeps it running"
+    if why is None and (left := _energy_after_a_period(driven, angle, speed, way)) >= 1.0 - 1.0 / LONGEST:
+        why = f"after a period it has {left:.6g} times the kinetic energy of before"
+    if why is not None:
+        raise DriveError(f"{driven.scene.mechanism.name}: does not come to standstill: {why}; give a time as until")
+
+
+def _kept_speed(driven, angle):
+    """Speed at a crank angle of periodic running under the motor, None where there is none."""
+    with contextlib.suppress(DriveError):
+        running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
+        return float(running.motion(np.array([angle]))[0][0])
+    return None
+
+
+def _energy_after_a_period(driven, angle, speed, way):
+    """Kinetic energy a period on, over that at the start; 0 where the machine does not come so far."""
+    from scipy.integrate import solve_ivp
+
+    def net(place, energy):
+        place = float(place)
+        size = math.sqrt(2.0 * max(float(energy[0]), 0.0) * start / driven.inertia_here(place))
+        return driven.here(place, way * size, way)[2] / start
+
+    def still(place, energy):
+        return energy[0] - ROUGH
+
+    vars(still)["terminal"] = True
+    start = 0.5 * driven.inertia_here(angle) * speed * speed
+    ends = angle, angle + way * driven.period
+    found = solve_ivp(net, ends, [1.0], "LSODA", rtol=ROUGH, atol=ROUGH, events=still)
+    return float(found.y[0, -1]) if found.status == 0 else 0.0
 
 
 def _most_torque(driven):
