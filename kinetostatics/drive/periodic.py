@@ -1,6 +1,7 @@
 """Exact periodic running of a machine under its motor, or under the constant torque that textbooks assume."""
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -66,7 +67,8 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
     checks.require("steady", _angles_problem(angles))
     pieces, energy = (_prescribed if motor is None else _driven_running)(driven, scene)
     angle = np.linspace(0.0, driven.period, angles, endpoint=False) if _is_count(angles) else crank_angles(angles)
-    return Running(scene, motor, driven.flywheel, angle, driven, pieces, energy)
+    again = partial(steady, scene, motor, angles=angles, engine=engine)
+    return Running(scene, motor, driven.flywheel, angle, driven, pieces, energy, again)
 
 
 def _driven_running(driven, scene):

@@ -1,21 +1,29 @@
 """A machine in periodic running, and its solution at the true speed and acceleration, whatever the crank angles."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..errors import DriveError
+from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.leaves import with_fields
 from ..solution.angles import crank_angles
 from ..solution.scene import Scene
 from ..solution.solution import Solution
 from .driven import Driven
-from .motor import Motor
+from .energy_flow import energy_flow, without_noise
+from .motor import Motor, single
 from .pieces import Pieces
+from .saving import DrivenComparison
+from .search import flywheel_for
+
+ROUNDING = 1e-15
+"""Rounding of the energy of motion, relative to it: what a turn takes less than that is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +47,7 @@ class Running:
     _driven: Driven = field(repr=False)
     _pieces: Pieces = field(repr=False)
     _energy: np.ndarray = field(repr=False)
+    _again: Callable[[float], "Running"] = field(repr=False)
 
     def __repr__(self):
         lines = [
@@ -145,6 +154,24 @@ class Running:
         """`Solution` at the crank angles with the true speed and acceleration, for tables, extremes, plots, compare."""
         return RunningSolution.of(self)
 
+    @property
+    def crank_flywheel(self):
+        """Flywheel on the crank without the rotor of the motor, kg m2."""
+        return self.flywheel - (0.0 if self.motor is None else self.motor.inertia_at_crank)
+
+    def with_flywheel(self, inertia):
+        """Running of the same machine under the same motor with another flywheel on the crank, kg m2."""
+        return self._again(inertia)
+
+    def flywheel_for(self, fluctuation):
+        """Flywheel on the crank with which the same machine has a coefficient of fluctuation, kg m2; 0 if none."""
+        wanted, wrong = single(fluctuation, name="fluctuation", low=0.0, strict=True)
+        checks.require(
+            "flywheel_for", wrong or (None if wanted < 2.0 else f"fluctuation must be less than 2, got {wanted:g}")
+        )
+        unit = self.flywheel + self.inertia_on_pieces.max()
+        return flywheel_for(wanted, self.with_flywheel, unit)[0]
+
     def plot(self, ax=None):
         """Crank speed over the crank angle, and on a second axis the torques of motor and machine at the crank.
 
@@ -189,17 +216,29 @@ class Running:
     @cached_property
     def energy_per_turn(self):
         """Energy that the motor gives at its shaft in a turn, J."""
-        return self._pieces.total(self._powers / np.abs(self._speed)) / self.turns
+        torque = self._transmission * self._motor_torque(self._speed)
+        energy = self._pieces.total(self._driven.direction * torque)
+        return without_noise(energy, self._pieces.total(np.abs(torque)), ROUNDING * self._energy.max()) / self.turns
+
+    @cached_property
+    def energy_flow(self):
+        """Where the energy of a turn goes: an `EnergyFlow`, with a table by `.frame()`."""
+        return energy_flow(self)
 
     @cached_property
     def air_gap_energy_per_turn(self):
         """Energy through the air gap of an induction motor in a turn, J: torque times speed of the field."""
-        if self.motor is None or self.motor.field_speed is None:
+        if not self.has_air_gap:
             raise DriveError(
                 "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
             )
         power = self._motor_torque(self._speed) * self.motor.field_speed
         return self._pieces.total(power / np.abs(self._speed)) / self.turns
+
+    @property
+    def has_air_gap(self):
+        """Whether the motor is an induction motor, whose losses by slip are known."""
+        return self.motor is not None and self.motor.field_speed is not None
 
     @property
     def rotor_loss_per_turn(self):
@@ -210,6 +249,12 @@ class Running:
     def mean_power(self):
         """Mean over time of the motor's power at its shaft, W."""
         return self.energy_per_turn * self.turns / self.duration
+
+    @cached_property
+    def rms_motor_torque(self):
+        """Root of the mean over time of the square of the motor's torque at its shaft, N m: what heats it."""
+        square = self._motor_torque(self._speed) ** 2
+        return math.sqrt(self._pieces.total(square / np.abs(self._speed)) / self.duration)
 
     @cached_property
     def rms_power(self):
@@ -230,6 +275,21 @@ class Running:
         return max(high, low, key=abs)
 
     # on the points of the pieces
+
+    @property
+    def on_pieces(self):
+        """Pieces of the period, and speed and acceleration of the crank at their points, rad/s, rad/s2."""
+        return self._pieces, self._speed, self.motion(self._pieces.angle)[1]
+
+    @property
+    def inertia_on_pieces(self):
+        """Reduced inertia of the links at these points, kg m2."""
+        return self._state.inertia
+
+    @property
+    def direction(self):
+        """+1 if the crank turns counter-clockwise, else -1."""
+        return self._driven.direction
 
     @cached_property
     def _slowest_and_fastest(self):
@@ -278,6 +338,8 @@ class RunningSolution(Solution):
     """
 
     running: Any = None
+
+    COMPARISON: ClassVar = DrivenComparison
 
     @classmethod
     def of(cls, running):
