@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..errors import DriveError
-from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.leaves import with_fields
 from ..solution.angles import crank_angles
@@ -17,10 +16,10 @@ from ..solution.scene import Scene
 from ..solution.solution import Solution
 from .driven import Driven
 from .energy_flow import energy_flow, without_noise
-from .motor import Motor, single
+from .motor import Motor
 from .pieces import Pieces
 from .saving import DrivenComparison
-from .search import flywheel_for
+from .search import fluctuation_wanted, flywheel_for
 
 ROUNDING = 1e-15
 """Rounding of the energy of motion, relative to it: what a turn takes less than that is none."""
@@ -164,11 +163,8 @@ class Running:
         return self._again(inertia)
 
     def flywheel_for(self, fluctuation):
-        """Flywheel on the crank with which the same machine has a coefficient of fluctuation, kg m2; 0 if none."""
-        wanted, wrong = single(fluctuation, name="fluctuation", low=0.0, strict=True)
-        checks.require(
-            "flywheel_for", wrong or (None if wanted < 2.0 else f"fluctuation must be less than 2, got {wanted:g}")
-        )
+        """Flywheel on the crank with which the same machine has a coefficient of fluctuation, kg m2, or 0."""
+        wanted = fluctuation_wanted("flywheel_for", fluctuation)
         unit = self.flywheel + self.inertia_on_pieces.max()
         return flywheel_for(wanted, self.with_flywheel, unit)[0]
 
@@ -232,7 +228,7 @@ class Running:
             raise DriveError(
                 "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
             )
-        power = self._motor_torque(self._speed) * self.motor.field_speed
+        power = self._motor_torque(self._speed) * (self.motor.field_speed if self.motor else 0.0)
         return self._pieces.total(power / np.abs(self._speed)) / self.turns
 
     @property

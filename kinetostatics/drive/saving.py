@@ -82,9 +82,14 @@ class DrivenComparison(Comparison):
         )
 
     def flywheel_mass_saved(self, radius, fluctuation=None):
-        """Mass of a rim of a radius, m, by which the balanced machine's flywheel is lighter for the same fluctuation, kg.
+        """Mass of a rim that the balanced machine's flywheel saves for the same fluctuation, kg; negative if none.
 
-        Negative if it is heavier.
+        Parameters
+        ----------
+        radius : float
+            Of the rim, m.
+        fluctuation : float, optional
+            As for `flywheels`.
         """
         checks.require("flywheel_mass_saved", checks.Number(name="radius", low=0.0, strict=True).taken(radius)[1])
         reference, balanced = self.flywheels(fluctuation)

@@ -4,12 +4,23 @@ import math
 from typing import Any
 
 from ..errors import DriveError
+from ..numbers import checks
+from .motor import single
 
 LARGEST = 60
 """How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""
 PRECISION = 1e-13
 LIGHTEST = 1e-3
 """Flywheel, relative to the machine's own inertia, below which no lighter one is looked for."""
+
+
+def fluctuation_wanted(owner, fluctuation):
+    """A coefficient of fluctuation as a float, between 0 and 2."""
+    wanted, wrong = single(fluctuation, name="fluctuation", low=0.0, strict=True)
+    if not wrong and not wanted < 2.0:
+        wrong = f"fluctuation must be less than 2, got {wanted:g}"
+    checks.require(owner, wrong)
+    return wanted
 
 
 def flywheel_for(wanted, running_with, unit):

@@ -11,7 +11,7 @@ from .motor import single
 from .periodic import steady
 from .resolution import resolved
 from .running import Running
-from .search import flywheel_for
+from .search import fluctuation_wanted, flywheel_for
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,10 +74,7 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     >>> print(f"{ks.drive.flywheel(pump, 0.01).inertia:.6f} kg m2")
     0.259863 kg m2
     """
-    wanted, wrong = single(fluctuation, name="fluctuation", low=0.0, strict=True)
-    if not wrong and not wanted < 2.0:
-        wrong = f"fluctuation must be less than 2, got {wanted:g}"
-    checks.require("flywheel", wrong)
+    wanted = fluctuation_wanted("flywheel", fluctuation)
     return _textbook(scene, wanted, engine) if motor is None else _true(scene, wanted, motor, engine)
 
 

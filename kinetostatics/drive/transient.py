@@ -168,11 +168,10 @@ def _no_start(driven, angle, what):
     asked = driven.at(places, 0.0 * places).torque * driven.direction
     here = float(driven.at(np.array([angle]), np.zeros(1)).torque[0]) * driven.direction
     missing, most = here - rest, int(np.argmax(asked))
-    better = np.flatnonzero(asked < rest)
     remedies = [f"a motor with {asked[most] / rest:.3g} times the torque at rest" if rest > 0.0 else "another motor"]
-    if better.size:
-        easiest = math.degrees(places[int(np.argmin(asked))])
-        remedies.append(f"another crank angle (least is asked at {easiest:.6g} deg)")
+    easy = _easiest(places, asked - rest, driven.direction)
+    if easy is not None:
+        remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which the loads help it round")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
         f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "
@@ -181,6 +180,20 @@ def _no_start(driven, angle, what):
         missing,
         angle,
     )
+
+
+def _easiest(places, missing, direction):
+    """Crank angle from which torque at rest carries a machine round, or None where it does no work over the turn.
+
+    It lies behind the place up to which most energy is asked: from there on more is given than taken.
+    """
+    step = int(direction)
+    missing = missing[::step]  # in the order of motion
+    energy = np.cumsum(missing)
+    if energy[-1] >= 0.0:
+        return None
+    high = int(np.argmax(energy)) + 1
+    return float(places[::step][high % places.size])
 
 
 def _followed(driven, scene, angle, speed, until, target=None, one_way=False):

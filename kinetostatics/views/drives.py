@@ -32,7 +32,7 @@ def torques(run, ax=None):
 
 
 def energy_flow(runs, ax=None):
-    """Where the energy of a turn goes: a bar for each part that gives or takes any; of a mapping of label to Running."""
+    """Energy per turn, a bar for each part that gives or takes any; of a mapping of label to Running."""
     ax = axes(ax)
     shown = parts_that_move_energy(runs)
     flows = {name: {part.name: part.energy for part in run.energy_flow.parts} for name, run in runs.items()}
