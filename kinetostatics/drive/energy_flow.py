@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import QuantityError
 from ..machine.friction import NONE
 from ..mechanics.pushes import title_of
+from ..numbers import checks
 from ..numbers.leaves import with_fields
 
 ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
@@ -50,7 +52,11 @@ class EnergyFlow:
 
     def __getitem__(self, name):
         """Energy in a turn of a part by its name, J."""
-        return {part.name: part.energy for part in self.parts}[name]
+        found = {part.name: part.energy for part in self.parts}
+        problem = checks.choice("part", name, tuple(found))
+        if problem:
+            raise QuantityError(f"energy flow: {problem}")
+        return found[name]
 
     @property
     def residual(self):
@@ -116,9 +122,9 @@ def energy_flow(run) -> EnergyFlow:
     return EnergyFlow(tuple(parts), run.duration / run.turns)
 
 
-def without_noise(energy, flowing, least=0.0):
-    """An energy, or 0 where it is rounding of what flows to and fro, or less than `least`."""
-    return 0.0 if abs(energy) <= max(NOISE * flowing, least) else energy
+def without_noise(energy, flowing):
+    """An energy, or 0 where it is rounding of what flows to and fro."""
+    return 0.0 if abs(energy) <= NOISE * flowing else energy
 
 
 def _of_motor(run):

@@ -13,7 +13,7 @@ from .driven import Driven
 from .following import from_above
 from .motor import single
 from .newton import interpolated, looked_at, settled, unresolved
-from .operating import operating_speed
+from .operating import operating_speed, require_known
 from .pieces import LEVELS, MOST_PIECES, TAIL
 from .resolution import require_inertia, resolved
 from .running import Running
@@ -84,20 +84,9 @@ def _driven_running(driven, scene):
             break
         found = settled(driven, pieces.split(marked), interpolated(pieces, energy))
         pieces, energy = found or from_above(driven, pieces.split(marked), start)
-    _require_known(driven, pieces, energy)
-    return pieces, energy
-
-
-def _require_known(driven, pieces, energy):
-    """Refuse running at speeds of which a table of the motor knows nothing."""
     _, _, speed, _ = looked_at(driven, pieces, energy)
-    own = driven.motor.transmission * speed
-    low, high = driven.motor.limits
-    if own.min() < low or own.max() > high:
-        raise DriveError(
-            f"{driven.scene.mechanism.name}: the motor runs at {own.min():.6g} to {own.max():.6g} rad/s, but its table "
-            f"knows {low:.6g} to {high:.6g} rad/s only; give more rows"
-        )
+    require_known(driven, speed)
+    return pieces, energy
 
 
 def _prescribed(driven, scene):

@@ -2,27 +2,20 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
 
 import numpy as np
 
 from ..errors import DriveError
 from ..numbers.elementary import read_only
-from ..numbers.leaves import with_fields
-from ..solution.angles import crank_angles
 from ..solution.scene import Scene
-from ..solution.solution import Solution
 from .driven import Driven
 from .energy_flow import energy_flow, without_noise
 from .motor import Motor
 from .pieces import Pieces
-from .saving import DrivenComparison
+from .running_solution import RunningSolution
 from .search import fluctuation_wanted, flywheel_for
-
-ROUNDING = 1e-15
-"""Rounding of the energy of motion, relative to it: what a turn takes less than that is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,7 +207,8 @@ class Running:
         """Energy that the motor gives at its shaft in a turn, J."""
         torque = self._transmission * self._motor_torque(self._speed)
         energy = self._pieces.total(self._driven.direction * torque)
-        return without_noise(energy, self._pieces.total(np.abs(torque)), ROUNDING * self._energy.max()) / self.turns
+        flowing = self._pieces.total(np.abs(torque) + np.abs(self._state.torque))
+        return without_noise(energy, flowing) / self.turns
 
     @cached_property
     def energy_flow(self):
@@ -324,39 +318,3 @@ class Running:
     def _time_at(self, angle):
         slowness = 1.0 / np.abs(self._speed)
         return self._pieces.evaluate(self._pieces.series(self._pieces.integrated(slowness)), angle)
-
-
-@dataclass(frozen=True, eq=False)
-class RunningSolution(Solution):
-    """A `Solution` whose crank speed and acceleration are those of periodic running.
-
-    `running` gives them at any crank angles, so that extremes, means and tables look between the angles given.
-    """
-
-    running: Any = None
-
-    COMPARISON: ClassVar = DrivenComparison
-
-    @classmethod
-    def of(cls, running):
-        """Solution of a `Running` at its crank angles."""
-        scene = with_fields(running.scene, crank_speed=running.speed, crank_acceleration=running.acceleration)
-        plain = scene.solve(running.crank_angle)
-        return cls(**{field.name: getattr(plain, field.name) for field in fields(Solution)}, running=running)
-
-    def __repr__(self):
-        return super().__repr__().replace("<Solution", "<RunningSolution").split(", crank_speed=")[0] + (
-            f", mean speed {self.running.mean_speed:.9g} rad/s>"
-        )
-
-    def at(self, crank_angle):
-        """The same machine in the same running at other crank angles."""
-        angle = crank_angles(crank_angle)
-        motion = self.running.motion(angle)
-        speed, acceleration = (float(part[0]) if part.shape == (1,) else np.asarray(part) for part in motion)
-        return replace(self, crank_angle=angle, crank_speed=speed, crank_acceleration=acceleration)
-
-    @property
-    def period(self):
-        """Crank angle after which running repeats, rad."""
-        return self.running.period
