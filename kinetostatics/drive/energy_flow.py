@@ -92,7 +92,7 @@ def energy_flow(run) -> EnergyFlow:
 
     Every part by an integral of its own; that they balance is told by `residual`.
     """
-    pieces, speed, acceleration = run.on_pieces
+    pieces, speed, acceleration, inertia = run.on_pieces
     angle, shape = pieces.angle.ravel(), pieces.angle.shape
     moving = {"crank_speed": speed.ravel(), "crank_acceleration": acceleration.ravel()}
 
@@ -111,12 +111,8 @@ def energy_flow(run) -> EnergyFlow:
     parts = [*_of_motor(run)]
     for name, item in _named(run.scene.loads).items():
         parts.append(work(name, LOAD, solved(loads=(item,), friction=NONE).load_torque))
-    if run.scene.friction:
-        rubbing = solved()
-        for joint in run.scene.friction:
-            lost = rubbing.friction_loss_at(joint) / moving["crank_speed"]
-            parts.append(work(f"friction {joint}", JOINT, lost))
-    inertia = run.inertia_on_pieces
+    for joint in run.scene.friction.acting:
+        parts.append(Part(f"friction {joint}", JOINT, run.friction_energy_per_turn_at(joint)))
     kinetic = {FLYWHEEL: 0.5 * run.flywheel * speed**2, LINKS: 0.5 * inertia * speed**2}
     parts += [Part(name, HELD, 0.0, swing(energy)) for name, energy in kinetic.items() if np.any(energy)]
     return EnergyFlow(tuple(parts), run.duration / run.turns)

@@ -25,7 +25,7 @@ def from_above(driven, pieces, start):
     period, direction = driven.period, driven.direction
 
     def net(angle, energy):
-        angle, inertia = float(angle), driven.here(float(angle), direction)[0]
+        angle, inertia = float(angle), driven.inertia_here(float(angle))
         return driven.here(angle, direction * math.sqrt(2.0 * max(float(energy[0]), 0.0) / inertia))[2]
 
     most = 0.5 * driven.inertia(pieces.angle).max() * (2.0 * start) ** 2

@@ -11,6 +11,8 @@ SAMPLED = 96
 """Crank angles by which mean load torques are judged."""
 SEEN = 512
 """Speeds at which the mean torques of motor and loads are compared."""
+FEW = 16
+"""Speeds at which mean torques of friction are computed, those between found from these."""
 
 
 def operating_speed(driven):
@@ -79,5 +81,8 @@ def _mean_load(driven, speed):
     angle = (np.arange(SAMPLED) + 0.5) * driven.period / SAMPLED
     if not driven.by_speed:
         return driven.at(angle).torque.mean() + 0.0 * speed
+    if driven.smooth_by_speed and speed.size > FEW:
+        few = np.linspace(0, speed.size - 1, FEW).astype(int)
+        return np.interp(np.arange(speed.size), few, _mean_load(driven, speed[few]))
     grid = np.broadcast_arrays(angle[None, :], speed[:, None])
-    return driven.at(*grid).torque.mean(axis=1)
+    return driven.at_constant_speed(*grid).torque.mean(axis=1)

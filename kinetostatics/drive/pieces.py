@@ -89,6 +89,12 @@ class Pieces:
         """Chebyshev coefficients (points, pieces)."""
         return rule(self.count).series @ values.T
 
+    def with_ends(self, values):
+        """Values at both ends of each piece beside those at its points, read from its series: (pieces, points + 2)."""
+        series = self.series(values)
+        starts = ((-1.0) ** np.arange(self.count)) @ series
+        return np.column_stack([starts, values, series.sum(axis=0)])
+
     def tail(self, values):
         """Size of the last coefficients of each piece, relative to the largest value of all."""
         size = np.abs(values).max()
@@ -114,6 +120,10 @@ class Pieces:
                 place = np.clip(place - chebyshev.chebval(place, slope) / curved, -1.0, 1.0)
         angle = 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place
         return float(chebyshev.chebval(place, series)), float(angle)
+
+    def peak(self, values):
+        """Largest value by size of a function given at the points, with its sign."""
+        return max(self.largest(values)[0], -self.largest(-values)[0], key=abs)
 
     def split(self, marked):
         """Pieces with those marked halved."""

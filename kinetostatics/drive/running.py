@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import DriveError
 from ..numbers.elementary import read_only
+from ..numbers.leaves import with_fields
 from ..solution.scene import Scene
 from .driven import Driven
 from .energy_flow import energy_flow, without_noise
@@ -158,7 +159,7 @@ class Running:
     def flywheel_for(self, fluctuation):
         """Flywheel on the crank with which the same machine has a coefficient of fluctuation, kg m2, or 0."""
         wanted = fluctuation_wanted("flywheel_for", fluctuation)
-        unit = self.flywheel + self.inertia_on_pieces.max()
+        unit = self.flywheel + self._state.inertia.max()
         return flywheel_for(wanted, self.with_flywheel, unit)[0]
 
     def plot(self, ax=None):
@@ -196,6 +197,7 @@ class Running:
             "motor_power [W]": self.motor_power,
             "balancing_torque [N m]": self.solution.balancing_torque,
             "load_torque [N m]": self.solution.load_torque,
+            **({"friction_loss [W]": self.solution.friction_loss} if self.scene.friction.acting else {}),
             "kinetic_energy [J]": self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2,
         }
         return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
@@ -254,32 +256,59 @@ class Running:
     @cached_property
     def peak_power(self):
         """Largest power of the motor, with its sign, W."""
-        high, low = self._pieces.largest(self._powers)[0], -self._pieces.largest(-self._powers)[0]
-        return max(high, low, key=abs)
+        return self._pieces.peak(self._powers)
 
     @cached_property
     def peak_motor_torque(self):
         """Largest torque of the motor at its shaft, with its sign, N m."""
-        torque = self._motor_torque(self._speed)
-        high, low = self._pieces.largest(torque)[0], -self._pieces.largest(-torque)[0]
-        return max(high, low, key=abs)
+        return self._pieces.peak(self._motor_torque(self._speed))
+
+    @cached_property
+    def load_energy_per_turn(self):
+        """Energy that weight and loads take of the crank in a turn, friction left out, J."""
+        return self._pieces.total(self._driven.unrubbed(self._pieces.angle, self._speed).torque) * self._forward
+
+    @property
+    def friction_energy_per_turn(self):
+        """Energy that friction takes at all joints in a turn, J."""
+        return sum(self.friction_energy_per_turn_at(joint) for joint in self.scene.friction)
+
+    def friction_energy_per_turn_at(self, joint):
+        """Energy that friction takes at a joint, named as in `friction`, in a turn, J; 0 where nothing rubs."""
+        lost = self._at_points.friction_loss_at(joint).reshape(self._speed.shape)
+        return self._pieces.total(lost / self._speed) * self._forward
+
+    @property
+    def mean_friction_loss(self):
+        """Mean over time of the power lost by friction at all joints, W."""
+        return self.friction_energy_per_turn * self.turns / self.duration
+
+    def mean_friction_loss_at(self, joint):
+        """Mean over time of the power lost by friction at a joint, W."""
+        return self.friction_energy_per_turn_at(joint) * self.turns / self.duration
 
     # on the points of the pieces
 
     @property
     def on_pieces(self):
-        """Pieces of the period, and speed and acceleration of the crank at their points, rad/s, rad/s2."""
-        return self._pieces, self._speed, self.motion(self._pieces.angle)[1]
-
-    @property
-    def inertia_on_pieces(self):
-        """Reduced inertia of the links at these points, kg m2."""
-        return self._state.inertia
+        """Pieces of the period; speed, acceleration and inertia of the links at their points."""
+        return self._pieces, self._speed, self.motion(self._pieces.angle)[1], self._state.inertia
 
     @property
     def direction(self):
         """+1 if the crank turns counter-clockwise, else -1."""
         return self._driven.direction
+
+    @property
+    def _forward(self):
+        """Direction of the crank, by the turns of the period."""
+        return self._driven.direction / self.turns
+
+    @cached_property
+    def _at_points(self):
+        speed, acceleration = (part.ravel() for part in self.motion(self._pieces.angle))
+        moving = with_fields(self.scene, crank_speed=speed, crank_acceleration=acceleration)
+        return moving.solve(self._pieces.angle.ravel())
 
     @cached_property
     def _slowest_and_fastest(self):

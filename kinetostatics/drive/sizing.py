@@ -1,15 +1,16 @@
 """Flywheels for a coefficient of fluctuation: by the textbook, and true."""
 
+import math
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 
 from ..numbers import checks
-from .driven import Driven
 from .motor import single
 from .periodic import steady
 from .resolution import resolved
+from .rubbing import driven_by
 from .running import Running
 from .search import fluctuation_wanted, flywheel_for
 
@@ -79,12 +80,12 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
 
 
 def _textbook(scene, wanted, engine):
-    driven = Driven("flywheel", scene, None, 0.0, engine)
-    speed, wrong = single(scene.crank_speed, name="crank_speed of the scene", unequal=0.0)
+    speed, wrong = single(getattr(scene, "crank_speed", 1.0), name="crank_speed of the scene", unequal=0.0)
     checks.require("flywheel", wrong)
-    pieces = resolved(driven, speed)
+    driven = driven_by("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
+    pieces, _ = resolved(driven, speed)
     angle = pieces.angle
-    state = driven.at(angle, 0.0 * angle + speed if driven.by_speed else None)
+    state = driven.at_constant_speed(angle, 0.0 * angle + speed if driven.by_speed else None)
     spare = pieces.total(state.torque) / driven.period - state.torque
     gained = pieces.integrated(spare) - 0.5 * speed * speed * state.inertia
     energy = pieces.largest(gained)[0] + pieces.largest(-gained)[0]
@@ -92,7 +93,7 @@ def _textbook(scene, wanted, engine):
 
 
 def _true(scene, wanted, motor, engine):
-    driven = Driven("flywheel", scene, motor, 0.0, engine)
+    driven = driven_by("flywheel", scene, motor, 0.0, engine)
     unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
     return _found(*flywheel_for(wanted, partial(steady, scene, motor, engine=engine), unit))
 

@@ -63,7 +63,7 @@ def _rows(run, start):
     flow = run.energy_flow
     if run.has_air_gap:
         rows["lost power in the rotor, by slip", "W"] = flow[ROTOR] / flow.turn_time
-    if run.scene.friction:
+    if run.scene.friction.acting:
         lost = sum(part.energy for part in flow.parts if part.kind == JOINT)
         rows["lost power by friction", "W"] = lost / flow.turn_time
     if start is not None:

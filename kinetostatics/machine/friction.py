@@ -152,13 +152,20 @@ def kind_for(pair):
 
 @dataclass(frozen=True, eq=False)
 class Rub(Batched):
-    """Friction at one joint."""
+    """Friction at one joint.
+
+    `sense` is the sign of the motion there where it is known beforehand; of a roller that of the crank. It stays so
+    beyond the dead centre at which the motion turns, which makes one-sided values smooth.
+    """
 
     joint: str
     friction: Any
+    sense: Any = None
 
     PATHS: ClassVar = {"friction": ""}
-    RULES = checks.Rules("friction", friction=checks.Own(("mu",), "friction"))
+    RULES = checks.Rules(
+        "friction", friction=checks.Own(("mu",), "friction"), sense=checks.Optional(checks.Number("1"))
+    )
 
     def __post_init__(self):
         """Checked where it is given, with the mechanism."""
@@ -201,6 +208,11 @@ class Frictions(Mapping, Batched):
     def acting(self):
         """Friction by joint, without what is zero."""
         return {rub.joint: rub.friction for rub in self.rubs if present(rub.friction.mu) is not None}
+
+    @property
+    def senses(self):
+        """Sign of the motion by joint, where it is known beforehand."""
+        return {rub.joint: rub.sense for rub in self.rubs if rub.sense is not None}
 
 
 NONE = Frictions()

@@ -119,6 +119,11 @@ class Solution(Motion):
         """Power lost by friction at all joints, (..., N), W, not negative."""
         return self._of_friction("friction_loss")
 
+    @property
+    def friction_torque(self):
+        """Torque on the crank that friction takes, its loss over the crank speed, (..., N), N m."""
+        return self._of_friction("friction_torque")
+
     def friction_loss_at(self, joint):
         """Power lost by friction at a joint, named as in `friction`, (..., N), W; 0 where nothing rubs."""
         self._look_up("joint that rubs", joint, self.mechanism.pairs)
@@ -136,7 +141,7 @@ class Solution(Motion):
 
     @property
     def friction_residual(self):
-        """How much friction would change by one more pass of its solution, relative."""
+        """How much forces would change by one more pass over friction, relative to the largest of a group."""
         return self._of_friction("friction_residual")
 
     def _of_friction(self, name):
@@ -222,10 +227,7 @@ class Solution(Motion):
 
     @property
     def potential_energy(self):
-        """Potential energy of weight and springs, (..., N), J; weight has none at the height of O.
-
-        Loads without potential, as process forces and dampers, count nothing.
-        """
+        """Potential energy of weight (none at the height of O) and springs, (..., N), J; other loads count nothing."""
         return self._found("potential_energy")
 
     @cached_property

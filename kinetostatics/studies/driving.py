@@ -43,7 +43,7 @@ def study_running(scene, motor, flywheel=0.0, *, methods=running.METHODS, repeat
     import numpy as np
 
     driven = running.Problem(scene, motor, flywheel, np.zeros(1)).driven
-    angles = (np.arange(ANGLES) + 0.4) * driven.period / ANGLES
+    angles = np.arange(ANGLES) * driven.period / ANGLES
     problem, exact = running.Problem(scene, motor, flywheel, angles), exact_speed(driven, angles)
 
     def error(found):

@@ -5,6 +5,8 @@ Newton's iteration on the energy U with dU/dphi = motor torque - load torque by 
 number of points is raised until the result stands still to `DIGITS`.
 """
 
+import itertools
+
 import numpy as np
 
 from ...errors import NotGivenError
@@ -52,7 +54,7 @@ def _collocated(flint, driven, angles, points):
     """Speeds at crank angles, arb numbers, by so many points in each piece."""
     arb = flint.arb
     edges = np.unique(np.concatenate([np.linspace(0.0, driven.period, PIECES + 1), driven.kinks]))
-    pieces = [_Piece(flint, driven, low, high, points) for low, high in zip(edges[:-1], edges[1:], strict=True)]
+    pieces = [_Piece(flint, driven, low, high, points) for low, high in itertools.pairwise(edges)]
     motor, way = driven.motor, driven.direction
     start = max(pieces[0].inertia, key=float)
     guess = float(motor.field_speed or motor.top / 2.0) / abs(motor.transmission)
@@ -150,7 +152,5 @@ def _kernels(arb, driven, angle):
     run = on_arb(arb, scene.unsolved(angle))
     inertia, load = energy.reduced_inertia(run), energy.load_torque(run)
     links = [arb(0)] * angle.size if inertia is None else [arb(value).mid() for value in inertia]
-    loads = (
-        [arb(0)] * angle.size if load is None else [arb(value).mid() for value in np.broadcast_to(load, angle.shape)]
-    )
-    return [value + arb(driven.flywheel) for value in links], loads
+    asked = np.zeros(angle.size) if load is None else np.broadcast_to(load, angle.shape)
+    return [value + arb(driven.flywheel) for value in links], [arb(value).mid() for value in asked]

@@ -66,7 +66,7 @@ def n_four_bar(windows=2):
             float(k),
             1.0,
             (float(k), 0.0),
-            "open",
+            "open",  # type: ignore[arg-type]
             Link(1.0, k - 0.5),
             bar,
             pin=f"B{k}",
