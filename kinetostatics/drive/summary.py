@@ -2,7 +2,7 @@
 
 import math
 
-from .energy_flow import HELD, JOINT, ROTOR
+from .energy_flow import HELD, ROTOR
 
 
 def summary(runs, starts):
@@ -62,10 +62,13 @@ def _rows(run, start):
     }
     flow = run.energy_flow
     if run.has_air_gap:
-        rows["lost power in the rotor, by slip", "W"] = flow[ROTOR] / flow.turn_time
+        rows["lost in the rotor by slip, mean", "W"] = flow[ROTOR] / flow.turn_time
     if run.scene.friction.acting:
-        lost = sum(part.energy for part in flow.parts if part.kind == JOINT)
-        rows["lost power by friction", "W"] = lost / flow.turn_time
+        rows["lost by friction, mean", "W"] = run.mean_friction_loss
+        rows |= {
+            (f"lost by friction at {joint}, mean", "W"): run.mean_friction_loss_at(joint)
+            for joint in run.scene.friction
+        }
     if start is not None:
         angle = math.degrees(start.crank_angle[0])
         rows[f"start-up time from crank angle {angle + 0.0:.6g} deg", "s"] = float(start.time[-1])

@@ -28,7 +28,9 @@ def torques(run, ax=None):
     for name, values, style in styled(curves):
         ax.plot(*_closed(run, factor * values), linestyle=style, label=name)
     ax.set_ylabel(f"torque at the crank [{unit}]")
-    return _finished(ax)
+    ax.margins(y=0.2)  # room for the legend
+    _finished(ax).legend(loc="upper center", ncols=3, frameon=False, fontsize="small", columnspacing=1.0)
+    return ax
 
 
 def energy_flow(runs, ax=None):
