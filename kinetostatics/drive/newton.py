@@ -75,7 +75,8 @@ def looked_at(driven, pieces, energy, state=None):
         inertia = driven.flywheel + state.inertia
         speed = driven.direction * np.sqrt(2.0 * energy / inertia)
     by_speed = driven.motor.slope_at_crank(speed) - driven.torque_by_speed(angle, speed, state.torque)
-    return state, inertia, speed, by_speed / (inertia * speed)
+    growth = by_speed / (inertia * speed)
+    return state, inertia, speed, pieces.smoothed(growth) if driven.smooth_by_speed else growth
 
 
 def _newton(driven, pieces, energy):

@@ -23,9 +23,13 @@ SMALLEST = 1e-13
 
 
 class Rule(NamedTuple):
-    """Matrices on values at the points in [-1, 1]: to series, to integrals from -1, to slopes, to values between."""
+    """Matrices on values at the points in [-1, 1]: to series, to integrals from -1, to slopes, to values between.
+
+    `vander` goes from series to values.
+    """
 
     points: np.ndarray
+    vander: np.ndarray
     series: np.ndarray
     integral: np.ndarray
     weights: np.ndarray
@@ -43,6 +47,7 @@ def rule(count) -> Rule:
     places = np.cos(np.linspace(np.pi, 0.0, DENSE * count))
     return Rule(
         points,
+        vander,
         series,
         chebyshev.chebvander(points, count) @ whole,
         whole.sum(axis=0),
@@ -88,6 +93,11 @@ class Pieces:
     def series(self, values):
         """Chebyshev coefficients (points, pieces)."""
         return rule(self.count).series @ values.T
+
+    def smoothed(self, values):
+        """Values of the lower half of each series: what hangs on the upper half of differences is noise."""
+        count = self.count // 2
+        return (rule(self.count).vander[:, :count] @ self.series(values)[:count]).T
 
     def with_ends(self, values):
         """Values at both ends of each piece beside those at its points, read from its series: (pieces, points + 2)."""
