@@ -3,12 +3,12 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 
 from ..errors import DriveError
 from ..numbers.elementary import read_only
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..solution.scene import Scene
 from .driven import Driven

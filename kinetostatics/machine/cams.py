@@ -6,18 +6,19 @@ the turn.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import namespace, sqrt
+from ..numbers.lazy import cached_property
 from .cam import Cam
 from .crank import ray as ray_at
+from .law_cam import LawCam, from_law
 from .sampled_cam import Sampled
 
-__all__ = ["Cam", "Circle", "CosineLaw", "Sampled"]
+__all__ = ["Cam", "Circle", "CosineLaw", "LawCam", "Sampled", "from_law"]
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -1,5 +1,6 @@
 """Charts of the studies: error over time, error over the distance from where it hurts, error over the model's cost."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,7 @@ def _styles(table):
     return styles
 
 
-def work_precision(table, ax=None):
+def work_precision(table, ax=None, like=None):
     """Error over time, both logarithmic: a curve for each method with a setting, else a point.
 
     Parameters
@@ -43,6 +44,8 @@ def work_precision(table, ax=None):
     table : pandas.DataFrame
         One quantity of one scene, from `precision.study`; or running and motions, from `studies.driving`.
     ax : Axes, optional
+    like : pandas.DataFrame, optional
+        A study of more methods, whose colours and marks are taken.
 
     Returns
     -------
@@ -53,7 +56,7 @@ def work_precision(table, ax=None):
     require_columns("work_precision", table, ("method", "ours", "setting", "error", time))
     ax = axes(ax)
     given = table.dropna(subset=["error"])
-    for name, style in _styles(table).items():
+    for name, style in _styles(table if like is None else like).items():
         rows = given[given["method"] == name]
         if len(rows):
             setting = rows["setting"].iloc[0]
@@ -228,7 +231,9 @@ def precision_page(table, path):
 
 def drive_page(tables, path):
     """Chart of studies of the drive, a panel for each of a mapping of title to table, saved as PNG and SVG."""
-    return _page(work_precision, tables, path)
+    import pandas as pd
+
+    return _page(partial(work_precision, like=pd.concat(tables.values())), tables, path)
 
 
 def stability_page(table, path):

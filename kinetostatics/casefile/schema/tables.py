@@ -121,6 +121,7 @@ class CosineLawTable(Table):
 class SampledTable(Table):
     kind: Literal["sampled"]
     table: str
+    noise: Length | None = None
 
 
 Cam = one_of("cam", {"circle": CircleTable, "cosine-law": CosineLawTable, "sampled": SampledTable})
