@@ -21,7 +21,10 @@ PASSES = (3, 6, 12)
 
 
 class Turning(NamedTuple):
-    """A pin: `link` turns against another, the one that carries `joint` unless told; the reaction acts on `link`."""
+    """A pin: `link` turns against another, the one that carries `joint` unless told; the reaction acts on `link`.
+
+    What turns against itself never turns: both are parts of one rigid triangle.
+    """
 
     link: str
     joint: str
@@ -245,3 +248,18 @@ def problems(mechanism, given):
                 type(pairs[name])
             ]
             yield f"friction: {name!r} {what} and takes a {wanted}, got {checks.shown(friction)}"
+        elif isinstance(pairs[name], Rolling):
+            yield from _too_large(mechanism, name, friction)
+
+
+def _too_large(mechanism, name, friction):
+    """Say where a roller is larger than its path is curved."""
+    tightest = next((getattr(group, "tightest", None) for group in mechanism.groups if name in group.pairs), None)
+    if tightest is None or not (checks.known(tightest) and checks.known(friction.roller_radius)):
+        return
+    if np.any(np.asarray(friction.roller_radius) >= tightest):
+        yield (
+            f"friction: roller_radius of {name!r}, {np.max(friction.roller_radius):.6g} m, must be less than the "
+            f"smallest radius of curvature of its path, {np.min(tightest):.6g} m: no cam has such a profile; give a "
+            "smaller roller or a larger cam"
+        )

@@ -47,6 +47,8 @@ def rate_of(part, name, pair, placement):
     """Rate by the crank angle at which a pair of a part turns or slides; None if it never does."""
     if isinstance(pair, Sliding):
         return part.sliding(name, placement).rate
+    if pair.against == pair.link:
+        return None
     against = None if pair.against == FRAME else placement.links[pair.against].ratio
     return minus(placement.links[pair.link].ratio, against)
 

@@ -1,6 +1,8 @@
 """Machines that rub under their drive: running, losses, starting, coasting to a standstill."""
 
+import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -103,6 +105,32 @@ def test_friction_that_vanishes_changes_nothing():
     assert np.array_equal(one.speed, other.speed)
     slight = ks.Scene(SAW, 1.0, loads=ks.Gravity(), friction={"O": ks.PinFriction(1e-12, 0.06)})
     assert ks.drive.steady(slight, MOTOR, 1000.0).speed == pytest.approx(one.speed, rel=1e-11)
+
+
+@pytest.fixture(scope="module")
+def reference():
+    path = Path(__file__).parents[1] / "data" / "driven_rubbing_sawframe.json"
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
+def test_the_rubbing_saw_runs_as_20_digits_say(reference, engine):
+    if engine == "compiled":
+        pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+    angles = np.radians(reference["angle [deg]"])
+    run = ks.drive.steady(RUBBING, MOTOR, 1000.0, angles=angles, engine=engine)
+    for name in ("speed", "acceleration", "motor_torque"):
+        exact = np.array(reference[name], dtype=float)
+        assert np.abs(getattr(run, name) - exact).max() < 1e-12 * np.abs(exact).max(), name
+    assert run.mean_speed == pytest.approx(float(reference["mean_speed"]), rel=1e-14)
+    assert run.friction_energy_per_turn == pytest.approx(float(reference["friction_energy"]), rel=1e-12)
+
+
+def test_the_rubbing_saw_coasts_to_a_standstill_as_20_digits_say(reference):
+    given = reference["coasting"]
+    motion = ks.drive.coast(RUBBING, given["flywheel"], given["from_angle"], given["from_speed"], "standstill")
+    assert motion.crank_angle[-1] == pytest.approx(float(given["angle"]), rel=1e-14)
+    assert motion.time[-1] == pytest.approx(float(given["time"]), rel=1e-14)
 
 
 # Over time

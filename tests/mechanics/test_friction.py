@@ -301,6 +301,39 @@ def test_a_program_with_stronger_friction_than_its_scenes_says_where_it_is_not_f
         program(TURN, {"crank_speed": 0.0, "crank_acceleration": 0.0})
 
 
+# What never moves, and what cannot be made
+
+
+def test_a_rigid_triangle_does_not_rub_at_its_corners():
+    """Two bars of a dyad on pins of one link do not turn against it; rounding decides no sign of friction there."""
+    crank = ks.Crank(0.1, ks.Link(1.0, 0.05, 0.01))
+    bars = {name: ks.Link(1.0, (0.1, 0.02), 0.01) for name in ("dyad1", "dyad2")}
+    parts = ks.Pin(on="crank", at=(0.02, 0.1), name="C"), ks.Dyad(0.3, 0.4, on=("A", "C"), **bars)
+    further = ks.Dyad(0.3, 0.35, on=("D", "C"), pin="E", label="_2")
+    triangle = ks.Mechanism("rigid", crank, (*parts, further))
+    pins = ("O", "dyad1_A", "dyad2_C", "D", "dyad1_2_D", "dyad2_2_C", "E")
+    friction = {name: ks.PinFriction(0.2, 0.02) for name in pins}
+    s = ks.solve(triangle, TURN, crank_speed=10.0, crank_acceleration=3.0, loads=ks.Gravity(), friction=friction)
+    for name in pins[1:]:
+        assert not s.friction_at(name).any()
+    alone = ks.solve(
+        triangle,
+        TURN,
+        crank_speed=10.0,
+        crank_acceleration=3.0,
+        loads=ks.Gravity(),
+        friction={"O": ks.PinFriction(0.2, 0.02)},
+    )
+    assert np.array_equal(s.balancing_torque, alone.balancing_torque)
+
+
+def test_a_roller_larger_than_its_path_is_curved_is_refused():
+    cam = ks.cam_crank_slider(ks.cams.Circle(0.1, (0.02, 0.0)), 0.4, slider=ks.Link(10.0))
+    ks.Scene(cam, 1.0, friction={"cam": ks.RollerFriction(0.01, 0.02, 0.0999)})
+    with pytest.raises(ks.ParameterError, match=r"roller_radius of 'cam', 0\.1 m, must be less than .* 0\.1 m"):
+        ks.Scene(cam, 1.0, friction={"cam": ks.RollerFriction(0.01, 0.02, 0.1 + 1e-12)})
+
+
 OPEN = {"coupler": ks.Link(2.0, 0.1, 0.01), "rocker": ks.Link(1.0, 0.05)}
 LEGS = {name: ks.PinFriction(0.1, 0.01) for name in ("O", "A", "B", "O2")}
 
