@@ -40,15 +40,14 @@ class Solution(Energies, Motion):
 
     @cached_property
     def first_look(self):
-        """Sum of all lengths over the shortest, and whether hints may be due."""
+        """Sum of all lengths over the shortest, and whether hints may be due; None unless all numbers are plain."""
         _, leaves = self.apart
         look = self.kind.answer(first_look) if leaves.are_plain and not leaves.parts else None
-        return look(leaves.numbers) if look else (self.mechanism.proportion, True)
+        return look and look(leaves.numbers)
 
     @property
     def proportion(self):
-        found, _ = self.first_look
-        return found
+        return self.first_look[0] if self.first_look else self.mechanism.proportion
 
     def check(self):
         """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""

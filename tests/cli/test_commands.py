@@ -13,7 +13,6 @@ import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
 from kinetostatics.cli.commands import STARTERS
-from kinetostatics.cli.printed import print_table
 
 
 @pytest.fixture
@@ -38,11 +37,6 @@ def test_run_prints_extremes_and_the_power_check(capsys):
     assert "40578.9" in printed
     assert "power balance: the torques by equilibrium and by powers differ by" in printed
     assert "cam" not in printed.split("plain: crank-slider")[1]
-
-
-def test_a_zero_is_printed_without_a_sign(capsys):
-    print_table(pd.DataFrame({"smallest": [-0.0, -1e-20, -2.5, np.nan], "unit": "N"}, index=list("abcd")))
-    assert [line.split()[1] for line in capsys.readouterr().out.splitlines()[2:]] == ["0", "-1e-20", "-2.5", "N"]
 
 
 def test_run_prints_0_for_what_is_rounding_and_groups_in_the_order_of_the_chain(capsys):
@@ -124,13 +118,6 @@ def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(tmp_path, monkey
     assert "disk full" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments", [["run", "sawframe_2r63", "--angles", "0"], ["runn", "sawframe_2r63"], []])
-def test_wrong_usage_ends_with_status_2(arguments):
-    with pytest.raises(SystemExit) as caught:
-        main(arguments)
-    assert caught.value.code == 2
-
-
 def test_module_and_shell_agree_and_show_no_traceback(broken):
     command = [sys.executable, "-m", "kinetostatics", "compare", str(broken)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -200,13 +187,6 @@ def test_list_has_a_line_for_each_shipped_case_with_title_and_variants(capsys):
     assert [line.split()[0] for line in lines] == list(shipped_cases())
     mower = next(line for line in lines if line.startswith("mower_drive "))
     assert "Mower drive: static balancing of an offset crank-slider (unbalanced, full, partial-1" in mower
-
-
-def test_version_is_that_of_the_library(capsys):
-    with pytest.raises(SystemExit) as caught:
-        main(["--version"])
-    assert caught.value.code == 0
-    assert capsys.readouterr().out == f"kinetostatics {ks.__version__}\n"
 
 
 @pytest.mark.parametrize("kind", STARTERS)
