@@ -13,7 +13,9 @@ import numpy as np
 RELATIVE = 3e-14
 """Tolerance of a step relative to the value, the smallest that the method takes."""
 ABSOLUTE = 1e-15
-MOST = 200_000
+AHEAD = 1e-6
+"""Crank angle ahead at which the sign of a force is looked at that is nothing at the start, rad."""
+MOST = 20_000
 """Stretches after which a motion is given up."""
 
 
@@ -100,7 +102,7 @@ def followed(driven, angle, speed, end, target=None, to_standstill=False) -> Fol
 
 
 def _stretch(driven, state, direction, time, target, crossed):
-    """Motion while nothing turns, what ended it, and which way forces that rub crossed zero there."""
+    """Motion while nothing turns, what ended it, and the sign behind it of a force that crossed zero there, by row."""
     from scipy.integrate import solve_ivp
 
     senses, edge = driven.senses.stretch(float(state[0]), direction)
@@ -115,8 +117,8 @@ def _stretch(driven, state, direction, time, target, crossed):
         driven.moving(angle, speed, senses)
         return driven.pressed
 
-    def bend(row):
-        return lambda time, state: pressed(float(state[0]), float(state[1]))[row]
+    def bend(row, side):  # at the start that sign which it has just behind, so that no zero is met twice
+        return lambda time, state: pressed(float(state[0]), float(state[1]))[row] if time > 0.0 else side
 
     events = [
         _event(lambda time, state: direction * state[1], -1),
@@ -124,8 +126,10 @@ def _stretch(driven, state, direction, time, target, crossed):
         _event(lambda time, state: 1.0 if target is None else direction * (state[1] - target), 0),
     ]
     names = ["still", "edge", "ready"]
-    for row in range(len(pressed(float(state[0]), float(state[1])))):
-        events.append(_event(bend(row), -crossed[row] if crossed else 0))
+    here, ahead = (pressed(float(state[0]) + way, float(state[1])) for way in (0.0, AHEAD * direction))
+    for row, pair in enumerate(zip(here, ahead, strict=True)):
+        side = (crossed or {}).get(row) or next((math.copysign(1.0, one) for one in pair if one), 1.0)
+        events.append(_event(bend(row, side), 0))
         names.append("bend")
     options = {"rtol": RELATIVE, "atol": ABSOLUTE, "method": "DOP853"}
     found = solve_ivp(change, (0.0, time), state, dense_output=True, events=events, **options)
@@ -141,9 +145,8 @@ def _stretch(driven, state, direction, time, target, crossed):
         found.y[0, -1] = edge
     if names[which] != "bend":
         return found, names[which], None
-    way = dict.fromkeys(range(len(events) - 3), 0)
-    way[which - 3] = int(np.sign(pressed(*map(float, found.y[:2, -2]))[which - 3])) * -1
-    return found, "bend", way
+    before = events[which](found.t[-2], found.y[:, -2])
+    return found, "bend", {which - 3: math.copysign(1.0, -before)}
 
 
 def _event(function, direction):
