@@ -15,9 +15,10 @@ from ..numbers import checks
 from ..numbers.elementary import namespace, sqrt
 from .cam import Cam
 from .crank import ray as ray_at
+from .harmonic_cam import Harmonic
 from .sampled_cam import Sampled
 
-__all__ = ["Cam", "Circle", "CosineLaw", "Sampled"]
+__all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "Sampled"]
 
 
 @dataclass(frozen=True, eq=False, init=False)

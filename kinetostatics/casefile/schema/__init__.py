@@ -8,7 +8,7 @@ variants    mechanisms, and the head of a file
 """
 
 from .parts import MADE_OF
-from .tables import TAGS, CosineLawTable, LinkTable, SampledTable, Table, ValuesTable, kinds
+from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable, kinds
 from .texts import BALANCE_THE_SLIDER, MID_LENGTH
 from .variants import (
     VARIANTS,
@@ -38,6 +38,7 @@ __all__ = [
     "CosineLawTable",
     "CrankSliderVariant",
     "FourBarVariant",
+    "HarmonicTable",
     "LinkTable",
     "MechanismVariant",
     "ProcessForceTable",
