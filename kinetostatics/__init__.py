@@ -35,6 +35,7 @@ from .errors import (
     AssemblyError,
     CaseError,
     ConditionWarning,
+    DesignError,
     DriveError,
     HintWarning,
     JammingError,
@@ -44,7 +45,7 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from . import drive
+    from . import design, drive
     from .casefile.case import load_case
     from .design import balancing, linkage
     from .machine import cams
@@ -98,6 +99,7 @@ __all__ = [
     "ConditionWarning",
     "Crank",
     "CylinderGroup",
+    "DesignError",
     "DriveError",
     "Dyad",
     "Force",
@@ -137,6 +139,7 @@ __all__ = [
     "compare",
     "compile",
     "crank_slider",
+    "design",
     "designs",
     "drive",
     "extremes",
@@ -192,7 +195,7 @@ _WHERE = {
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],
     "solution.solution": ["Solution"],
-    "": ["drive"],
+    "": ["design", "drive"],
     "design": ["balancing", "linkage"],
     "sweeps": ["designs"],
     "sweeps.sweeps": ["sweep"],

@@ -78,6 +78,10 @@ class DriveError(KinetostaticsError, ValueError):
         self.crank_angle = crank_angle
 
 
+class DesignError(KinetostaticsError, ValueError):
+    """No machine meets what is asked of a design; the message says why, and how near the best one comes."""
+
+
 class QuantityError(KinetostaticsError, AttributeError):
     """The mechanism has no such joint, link or quantity; the message lists those it has."""
 
