@@ -79,7 +79,17 @@ class DriveError(KinetostaticsError, ValueError):
 
 
 class DesignError(KinetostaticsError, ValueError):
-    """No machine meets what is asked of a design; the message says why, and how near the best one comes."""
+    """No machine meets what is asked of a design; the message says why, and how near the best one comes.
+
+    Attributes
+    ----------
+    values : dict of path to float, or None
+        Numbers of the nearest one, where a search was made.
+    """
+
+    def __init__(self, message, values=None):
+        super().__init__(message)
+        self.values = values
 
 
 class QuantityError(KinetostaticsError, AttributeError):

@@ -9,17 +9,21 @@ problem         outputs of a scene as functions of the numbers that vary
 search          the search by SciPy's optimisers
 found           its result: the machine, what binds, what it costs
 optimisation    any machine under limits
+cam_start       the cam-balanced crank-slider that a search for its cam begins with
+torque_free     cams that need no torque
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .found import Found
     from .optimisation import optimise
+    from .torque_free import torque_free_cam
 
-__all__ = ["optimise"]
+__all__ = ["Found", "optimise", "torque_free_cam"]
 
-_WHERE = {"optimise": "optimisation"}
+_WHERE = {"Found": "found", "optimise": "optimisation", "torque_free_cam": "torque_free"}
 """Names by their module: loaded when first used."""
 
 

@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from ..mechanics.quantities import of_scene
 from .demands import Demand
+from .derived import scene_of
 from .problem import true_value
 from .search import side_of
-from .derived import scene_of
 
 BINDS = 1e-6
 """How near, relative to its size or range, a design is to a limit or bound that holds it."""
@@ -38,6 +39,8 @@ class Found:
         Of all derivatives, by all starts.
     starts : list of float
         The goal that each start came to, infinite where it kept not its limits.
+    bound : float
+        Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
     """
 
     scene: Any
@@ -52,6 +55,7 @@ class Found:
     evaluations: int = 0
     starts: list[float] = field(default_factory=list)
     source: Any = field(default=None, repr=False)
+    bound: float = np.inf
 
     def report(self):
         """Outputs before and after, with their limits and what these cost; a pandas DataFrame."""
@@ -76,7 +80,7 @@ class Found:
         """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame."""
         import pandas as pd
 
-        own, units = self.before.parameters, self.before.units
+        own, units = self.before.parameters, self.scene.units
         rows = {
             f"{path} [{units[path]}]": {
                 "before": own.get(path, 0.0),
@@ -108,15 +112,14 @@ class Found:
         return write(path, title or f"Design for the {self.goal}", scenes)
 
     def _of(self, output, scene):
-        if output.quantity not in _known(scene):
+        if output.quantity not in known(scene):
             return np.nan
         own = true_value(output, scene)
         return true_value(output, self.reference) / own if output.ratio else own
 
 
-def _known(scene):
-    from ..mechanics.quantities import of_scene
-
+def known(scene):
+    """Quantities of a scene by name."""
     return of_scene(scene)
 
 

@@ -1,6 +1,7 @@
 """Optimisation of any machine under limits: what is made least, what may vary, what must hold, by texts."""
 
 from dataclasses import replace
+
 import numpy as np
 
 from ..errors import DesignError, ParameterError
@@ -80,18 +81,18 @@ def optimise(
     67
     """
     source, reference = chosen(source, variant, reference)
-    sign, text = _aim(minimise, maximise)
+    sign, text = aim(minimise, maximise)
     scene = scene_of(source)
     output, limits = wanted(text, scene), demands(limits, scene)
-    _require_reference(reference, output, limits)
+    require_reference(reference, output, limits)
     asked = (output, *(limit.output for limit in limits))
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
-    goal, plain = _without_ratios(problem, Goal(output, sign), limits)
+    goal, plain = without_ratios(problem, Goal(output, sign), limits)
     best, ends = multiple(problem, goal, plain, starting(problem, starts, seed), limits)
     best = held(problem, goal, plain, best)
     return found_of(
         problem,
-        goal,
+        Goal(output, sign),
         limits,
         best,
         dict.fromkeys(asked),
@@ -116,13 +117,13 @@ def chosen(source, variant, reference):
     return source, reference
 
 
-def _aim(minimise, maximise):
+def aim(minimise, maximise):
     if (minimise is None) == (maximise is None):
         raise ParameterError('design: give either minimise or maximise, an output such as "largest O"')
     return (1.0, minimise) if maximise is None else (-1.0, maximise)
 
 
-def _require_reference(reference, output, limits):
+def require_reference(reference, output, limits):
     ratios = [str(item) for item in (output, *(limit.output for limit in limits)) if item.ratio]
     checks.require(
         "design",
@@ -130,7 +131,7 @@ def _require_reference(reference, output, limits):
     )
 
 
-def _without_ratios(problem, goal, limits):
+def without_ratios(problem, goal, limits):
     """Goal and limits in which a ratio to what does not vary is the number below it."""
     if problem.reference is None or set(problem.names) & set(SHARED):
         return goal, limits
@@ -169,7 +170,8 @@ def multiple(problem, goal, limits, starts, told=None):
     ends = [searched(problem, goal, limits, start) for start in starts]
     best = better(ends)
     if best.missed > 1e3 * KEPT:
-        raise DesignError(_why(problem, told or limits, best, len(ends)))
+        nearest = dict(zip(problem.names, map(float, best.values), strict=True))
+        raise DesignError(_why(problem, told or limits, best, len(ends)), nearest)
     return best, [goal.sign * end.goal if end.missed <= 1e3 * KEPT else np.inf for end in ends]
 
 

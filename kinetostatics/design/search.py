@@ -96,7 +96,7 @@ def _round(problem, goal, limits, start):
         jac=turned.goal_slopes,
         constraints=constraints,
         method="SLSQP",
-        options={"maxiter": STEPS, "ftol": 1e-12},
+        options={"maxiter": STEPS, "ftol": 1e-10},
     )
     values = np.clip(turned.values(found.x), problem.low, problem.high)
     return Reached(values, turned.reached(values), missed(problem, limits, values), found.message)
