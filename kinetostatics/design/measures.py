@@ -61,7 +61,8 @@ def tops(curve, side, sectors=SECTORS):
     count = values.size
     sectors = min(sectors, count)
     bounds = np.arange(sectors) * count // sectors
-    highest = np.array([start + np.argmax(values[start:end]) for start, end in zip(bounds, [*bounds[1:], count])])
+    ends = zip(bounds, [*bounds[1:], count], strict=True)
+    highest = np.array([start + np.argmax(values[start:end]) for start, end in ends])
     weights = np.zeros((sectors, 2 * REACH + 1))
     weights[:, REACH] = 1.0
     near = (highest[:, None] + _AROUND) % count

@@ -11,6 +11,7 @@ from .demands import TOPS, Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
 from .problem import SHARED, Problem, true_value
+from .robust import Sampled
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
 
 ANGLES = 720
@@ -28,6 +29,7 @@ def optimise(
     maximise=None,
     variant=None,
     reference=None,
+    robust=None,
     starts=1,
     seed=0,
     angles=ANGLES,
@@ -50,6 +52,8 @@ def optimise(
         "largest O <= 0.75 kN", "largest slider_position = 2.3 m", "ratio mean_absolute balancing_torque >= 50" ...
     variant, reference : str
         As for `sweep`; of a scene `reference` is a `Scene`.
+    robust : Spread, optional
+        Makes a quantile of the output over spreads of numbers the goal.
     starts : int
         Searches: the first begins at the source itself, others at designs within the bounds (scrambled Sobol).
     seed : int
@@ -87,12 +91,12 @@ def optimise(
     require_reference(reference, output, limits)
     asked = (output, *(limit.output for limit in limits))
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
-    goal, plain = without_ratios(problem, Goal(output, sign), limits)
+    goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
     best, ends = multiple(problem, goal, plain, starting(problem, starts, seed), limits)
     best = held(problem, goal, plain, best)
     return found_of(
         problem,
-        Goal(output, sign),
+        Goal(goal.output, goal.sign) if robust is not None else Goal(output, sign),
         limits,
         best,
         dict.fromkeys(asked),
@@ -123,6 +127,11 @@ def aim(minimise, maximise):
     return (1.0, minimise) if maximise is None else (-1.0, maximise)
 
 
+def aimed(problem, output, sign, robust):
+    """The goal: an output, or a quantile of it over a spread."""
+    return Goal(output if robust is None else Sampled(problem, output, robust, sign), sign)
+
+
 def require_reference(reference, output, limits):
     ratios = [str(item) for item in (output, *(limit.output for limit in limits)) if item.ratio]
     checks.require(
@@ -147,7 +156,9 @@ def without_ratios(problem, goal, limits):
         else limit
         for limit in limits
     )
-    return (Goal(plain(goal.output), -goal.sign) if goal.output.ratio else goal), found
+    if callable(goal.output) or not goal.output.ratio:
+        return goal, found
+    return Goal(plain(goal.output), -goal.sign), found
 
 
 def starting(problem, count, seed):

@@ -105,7 +105,10 @@ class _Compared:
         self._problem = None
         self._reference, self._angles = reference, problem.angles
         if shared:
-            limits = {name: (problem.low[place], problem.high[place]) for name, place in zip(shared, self._columns)}
+            limits = {
+                name: (problem.low[place], problem.high[place])
+                for name, place in zip(shared, self._columns, strict=True)
+            }
             known = of_scene(scene_of(reference))
             ratios = tuple(name for name in problem.quantities if name in known)
             self._problem = Problem(reference, limits, ratios, None, problem.angles, problem.engine)
@@ -116,11 +119,12 @@ class _Compared:
             if output not in self._fixed:
                 self._fixed[output] = true_value(output, scene_of(self._reference))
             return self._fixed[output], slopes
-        found, slopes[self._columns] = self._problem.output(_own(output), values[self._columns])
+        found, slopes[self._columns] = self._problem.output(own(output), values[self._columns])
         return found, slopes
 
 
-def _own(output):
+def own(output):
+    """An output itself, not its ratio to the reference's."""
     return replace(output, ratio=False)
 
 
@@ -136,7 +140,7 @@ def _curve(values, slopes, changes, angle):
 def true_value(output, scene, angles=5760):
     """Value of an output of a scene, so many samples that it is true to rounding where the scene is smooth."""
     values = values_of(scene.solve(angles), output.quantity)
-    return float(_own(output).reduced(np.broadcast_to(values, (angles,))[None])[0])
+    return float(own(output).reduced(np.broadcast_to(values, (angles,))[None])[0])
 
 
 def bounds(source, vary):

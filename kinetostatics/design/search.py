@@ -177,7 +177,8 @@ class _Turned:
             yield self.goal_of.output(self.start)[1][None] / self.unit
 
     def values(self, unknowns):
-        return self.start + self.matrix @ unknowns[: self.start.size]
+        values = self.start + self.matrix @ unknowns[: self.start.size]
+        return np.clip(values, self.problem.low, self.problem.high)
 
     def reached(self, values):
         """The goal of a design; infinite where it cannot be built."""

@@ -22,7 +22,7 @@ from .cam_start import begun
 from .demands import demands, wanted
 from .derived import scene_of
 from .found import Found, found_of, known
-from .optimisation import aim, chosen, held, multiple, require_reference, without_ratios
+from .optimisation import aim, aimed, chosen, held, multiple, require_reference, without_ratios
 from .problem import Problem, true_value
 from .search import Goal
 
@@ -63,6 +63,7 @@ def torque_free_cam(
     counterweight=None,
     cubic=None,
     vary=None,
+    robust=None,
     variant=None,
     reference=None,
     starts=1,
@@ -98,7 +99,7 @@ def torque_free_cam(
         Bounds of the spring's cubic term, N/m3; without it the spring is linear.
     vary : dict of path to (low, high), optional
         Further numbers that vary, or other bounds.
-    variant, reference, starts, seed, engine
+    robust, variant, reference, starts, seed, engine
         As for `optimise`. Further starts have harmonics anywhere within a tenth of the cam's radius.
 
     Returns
@@ -142,7 +143,7 @@ def torque_free_cam(
     generator = np.random.default_rng(seed)
     begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
     begins = [least_squares(problem, start, values) for values in begins]
-    goal, plain = without_ratios(problem, Goal(output, sign), asked)
+    goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), asked)
     try:
         best, came_to = multiple(problem, goal, plain, begins, asked)
         best = held(problem, goal, plain, best)
@@ -151,7 +152,7 @@ def torque_free_cam(
         raise DesignError(f"{error}{_advice(start, problem, compared, nearest)}", error.values) from None
     found = found_of(
         problem,
-        Goal(output, sign),
+        goal if robust is not None else Goal(output, sign),
         asked,
         best,
         _shown(start.scene, compared, outputs),
