@@ -18,13 +18,21 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from .found import Found
+    from .fronts import Front, pareto
     from .optimisation import optimise
     from .robust import Spread
     from .torque_free import torque_free_cam
 
-__all__ = ["Found", "Spread", "optimise", "torque_free_cam"]
+__all__ = ["Found", "Front", "Spread", "optimise", "pareto", "torque_free_cam"]
 
-_WHERE = {"Found": "found", "Spread": "robust", "optimise": "optimisation", "torque_free_cam": "torque_free"}
+_WHERE = {
+    "Found": "found",
+    "Front": "fronts",
+    "Spread": "robust",
+    "optimise": "optimisation",
+    "pareto": "fronts",
+    "torque_free_cam": "torque_free",
+}
 """Names by their module: loaded when first used."""
 
 

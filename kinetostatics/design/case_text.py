@@ -106,7 +106,9 @@ def _keys(item):
     found: dict[str, str] = {}
     for name, rule in item.RULES.rules.items():
         value = getattr(item, name)
-        if value is None or (defaults[name] is not MISSING and type(value) is type(defaults[name]) and value == defaults[name]):
+        if value is None or (
+            defaults[name] is not MISSING and type(value) is type(defaults[name]) and value == defaults[name]
+        ):
             continue
         if isinstance(value, Guide):
             found |= _guide(value)
@@ -160,7 +162,9 @@ def _link(link):
 
 def _cam(cam):
     if type(cam) not in CAMS:
-        raise ParameterError(f"case file: has no text for a cam of the class {type(cam).__name__}; sample it as a table")
+        raise ParameterError(
+            f"case file: has no text for a cam of the class {type(cam).__name__}; sample it as a table"
+        )
     keys = {PLAIN.get(name, name): value for name, value in _keys(cam).items() if name != "guide_angle"}
     return _inline({"kind": _quoted(CAMS[type(cam)]), **keys})
 

@@ -30,6 +30,7 @@ def optimise(
     variant=None,
     reference=None,
     robust=None,
+    begin=None,
     starts=1,
     seed=0,
     angles=ANGLES,
@@ -54,6 +55,8 @@ def optimise(
         As for `sweep`; of a scene `reference` is a `Scene`.
     robust : Spread, optional
         Makes a quantile of the output over spreads of numbers the goal.
+    begin : dict of path to float, optional
+        Where the first search begins, in place of the source.
     starts : int
         Searches: the first begins at the source itself, others at designs within the bounds (scrambled Sobol).
     seed : int
@@ -92,7 +95,7 @@ def optimise(
     asked = (output, *(limit.output for limit in limits))
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
-    best, ends = multiple(problem, goal, plain, starting(problem, starts, seed), limits)
+    best, ends = multiple(problem, goal, plain, starting(problem, starts, seed, begin), limits)
     best = held(problem, goal, plain, best)
     return found_of(
         problem,
@@ -161,13 +164,17 @@ def without_ratios(problem, goal, limits):
     return Goal(plain(goal.output), -goal.sign), found
 
 
-def starting(problem, count, seed):
-    """Starts: the source's own values, then designs spread over the bounds."""
+def starting(problem, count, seed, begin=None):
+    """Starts: the source's own values or others told, then designs spread over the bounds."""
     from scipy.stats import qmc
 
     checks.require("design", checks.count("starts", count))
     spread = qmc.Sobol(problem.low.size, rng=seed).random(max(1, 2 ** int(np.ceil(np.log2(max(count - 1, 1))))))
-    return [problem.start, *(problem.low + spread[: count - 1] * (problem.high - problem.low))]
+    first = problem.start
+    if begin is not None:
+        checks.require("design", *(checks.choice("begin", path, problem.names) for path in begin))
+        first = np.array([begin.get(name, value) for name, value in zip(problem.names, first, strict=True)])
+    return [first, *(problem.low + spread[: count - 1] * (problem.high - problem.low))]
 
 
 def multiple(problem, goal, limits, starts, told=None):

@@ -18,6 +18,7 @@ from ..results.extremes import extremes
 from .canvas import INK, axes, closed, display, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
+from .fronts import front
 from .labels import label
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "cam_force",
     "chain_unit_motion",
     "error_by_distance",
+    "front",
     "hodograph",
     "mass_centres",
     "mechanism",
