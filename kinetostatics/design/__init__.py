@@ -8,9 +8,13 @@ measures        outputs with their derivatives
 problem         outputs of a scene as functions of the numbers that vary
 search          the search by SciPy's optimisers
 found           its result: the machine, what binds, what it costs
+case_text       scenes as case files
+robust          quantiles over spreads as what is made least or greatest
 optimisation    any machine under limits
+fronts          the best of one output for each value of another
 cam_start       the cam-balanced crank-slider that a search for its cam begins with
 torque_free     cams that need no torque
+weights         what carries weight where a symmetric cam cannot
 """
 
 from importlib import import_module
@@ -20,18 +24,30 @@ if TYPE_CHECKING:
     from .found import Found
     from .fronts import Front, pareto
     from .optimisation import optimise
-    from .robust import Spread
+    from .robust import Spread, over_spread
     from .torque_free import torque_free_cam
+    from .weights import weight_options
 
-__all__ = ["Found", "Front", "Spread", "optimise", "pareto", "torque_free_cam"]
+__all__ = [
+    "Found",
+    "Front",
+    "Spread",
+    "optimise",
+    "over_spread",
+    "pareto",
+    "torque_free_cam",
+    "weight_options",
+]
 
 _WHERE = {
     "Found": "found",
     "Front": "fronts",
     "Spread": "robust",
     "optimise": "optimisation",
+    "over_spread": "robust",
     "pareto": "fronts",
     "torque_free_cam": "torque_free",
+    "weight_options": "weights",
 }
 """Names by their module: loaded when first used."""
 

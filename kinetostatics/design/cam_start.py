@@ -21,6 +21,8 @@ STIFFEST = 3.0
 """How many times stiffer the spring may be than one that balances the slider."""
 TENTH = 0.1
 """How far, relative to half the stroke, the harmonics of random starts lie from a circle about O."""
+WEIGHT_REACH = 0.1
+"""How far the counterweight may lie from where it balances the coupler's weight, relative to its arm."""
 SPRING, OFFSET = "torsion_spring.stiffness", "guide_offset"
 WEIGHT = ("crank.centre.along", "crank.centre.across")
 
@@ -142,7 +144,8 @@ def begun(given, cosine, sine, ends, gravity, offset, coupler_spring, counterwei
         crank = links["crank"]
         links["crank"] = replace(crank, mass=float(counterweight), centre=(arm, 0.0))
         first |= {OFFSET}
-        vary |= {WEIGHT[0]: (2 * arm, 0.0), WEIGHT[1]: (arm, -arm), OFFSET: (-reach, reach)}
+        near = WEIGHT_REACH * arm
+        vary |= {WEIGHT[0]: (arm + near, arm - near), WEIGHT[1]: (near, -near), OFFSET: (-reach, reach)}
     mechanism = cam_crank_slider(cam, length, guide=guide, **links)
     scene = Scene(mechanism, speed, loads=loads)
     plain = crank_slider(

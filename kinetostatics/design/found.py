@@ -54,7 +54,6 @@ class Found:
     prices: dict[str, float] = field(default_factory=dict)
     evaluations: int = 0
     starts: list[float] = field(default_factory=list)
-    source: Any = field(default=None, repr=False)
     bound: float = np.inf
 
     def report(self):
@@ -140,11 +139,11 @@ def prices(problem, goal, limits, values):
             names.append(str(limit))
             columns.append(changes[:, place])
             free.append(limit.relation == "=")
-    for place, name in enumerate(problem.names):
+    for number, name in enumerate(problem.names):
         for end, side in ((problem.low, -1.0), (problem.high, 1.0)):
-            if abs(values[place] - end[place]) <= BINDS * reach[place]:
+            if abs(values[number] - end[number]) <= BINDS * reach[number]:
                 names.append(name)
-                columns.append(side * np.eye(values.size)[place])
+                columns.append(side * np.eye(values.size)[number])
                 free.append(False)
     if not names:
         return (), {}
@@ -173,6 +172,5 @@ def found_of(problem, goal, limits, reached, outputs, label, **more):
         tuple(outputs),
         active,
         cost,
-        source=problem.source,
         **more,
     )

@@ -9,8 +9,8 @@ from ..numbers import checks
 from .demands import Demand, demands, wanted
 from .derived import scene_of
 from .found import Found
-from .optimisation import ANGLES, chosen, optimise
-from .problem import true_value
+from .optimisation import ANGLES, optimise
+from .problem import chosen, true_value
 
 SLACK = 1e-9
 """Share by which a limit of the front is let out, so that the design before it keeps it."""
@@ -86,7 +86,8 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     ends = [best(0), best(1)]
     levels = [outputs(end.scene)[1] for end in ends]
     logarithmic = second.ratio and min(levels) > 0
-    between = (np.geomspace if logarithmic else np.linspace)(*levels, points)
+    first_level, last_level = map(float, levels)
+    between = (np.geomspace if logarithmic else np.linspace)(first_level, last_level, points)
     found, last = [ends[0]], ends[0]
     relation, side = (">=", -1.0) if pair[1][1] else ("<=", 1.0)
     for level in between[1:]:
@@ -110,5 +111,5 @@ def _table(found, outputs, pair):
     import pandas as pd
 
     columns = [output.column for output in pair]
-    rows = [dict(zip(columns, outputs(design.scene), strict=True)) | design.values for design in found]
+    rows = [dict(zip(columns, outputs(design.scene), strict=True)) | dict(design.values) for design in found]
     return pd.DataFrame(rows)

@@ -10,7 +10,7 @@ from ..results.extremes import extrema
 from .demands import TOPS, Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
-from .problem import SHARED, Problem, true_value
+from .problem import SHARED, Problem, chosen, true_value
 from .robust import Sampled
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
 
@@ -107,21 +107,6 @@ def optimise(
         evaluations=problem.evaluations,
         starts=ends,
     )
-
-
-def chosen(source, variant, reference):
-    """The variant or scene to vary, and what ratios refer to."""
-    if hasattr(source, "variants"):
-        name = reference or source.reference
-        first = next((other for other in source.variants if other != name), name)
-        return source.variant(variant or first), source.variant(name)
-    problem = (
-        None
-        if hasattr(source, "varied") and hasattr(source, "units")
-        else (f"source must be a Case, as of ks.load_case, or a Scene, got {checks.shown(source)}")
-    )
-    checks.require("design", problem, None if variant is None else "variant is for cases; a Scene has none")
-    return source, reference
 
 
 def aim(minimise, maximise):

@@ -1,6 +1,7 @@
 """A design problem: curves of a scene with exact derivatives by the numbers that vary, and outputs of them."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,7 @@ class Problem:
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
         self.evaluations = 0
         self._curves: dict[bytes, dict] = {}
-        self._compared = None if reference is None else _Compared(reference, self)
+        self._compared: Any = None if reference is None else _Compared(reference, self)
 
     @property
     def start(self):
@@ -135,6 +136,21 @@ def _curve(values, slopes, changes, angle):
     slopes = np.tensordot(changes.T, by_scene, 1)
     values = np.broadcast_to(values, shape)
     return measures.size(values, slopes) if values.ndim == 2 else measures.Curve(values, slopes)
+
+
+def chosen(source, variant, reference):
+    """The variant or scene to vary, and what ratios refer to."""
+    if hasattr(source, "variants"):
+        name = reference or source.reference
+        first = next((other for other in source.variants if other != name), name)
+        return source.variant(variant or first), source.variant(name)
+    problem = (
+        None
+        if hasattr(source, "varied") and hasattr(source, "units")
+        else (f"source must be a Case, as of ks.load_case, or a Scene, got {checks.shown(source)}")
+    )
+    checks.require("design", problem, None if variant is None else "variant is for cases; a Scene has none")
+    return source, reference
 
 
 def true_value(output, scene, angles=5760):

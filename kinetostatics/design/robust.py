@@ -6,16 +6,20 @@ quantile is Harrell and Davis's mean of ordered samples, which changes smoothly 
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 
 import numpy as np
 
 from ..errors import KinetostaticsError, ParameterError
+from ..mechanics.quantities import of_scene
+from ..mechanics.quantities import values as values_of
 from ..numbers import checks, spreads
 from ..numbers.units import base_factor, factor
 from ..solution.compile import compile as compiled
 from . import measures
+from .demands import wanted
 from .derived import Derived, scene_of
-from .problem import own
+from .problem import chosen, own
 
 ANGLES, TOGETHER = 180, 16
 """Crank angles of each sample, and samples computed at a time."""
@@ -89,10 +93,10 @@ class Sampled:
             scene.parameters[name] if isinstance(own_values[name], str) else own_values[name]
             for name in self.names[len(problem.names) :]
         ]
-        self._reference = None
-        if output.ratio:
-            self._reference = scene_of(problem.reference)
+        self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
         self._weights = _harrell_davis(spread.quantile, self.count)
+        if spread.trim:
+            self._require_trim()
 
     def __call__(self, values):
         """The quantile, and its derivatives by the numbers that vary."""
@@ -150,7 +154,7 @@ class Sampled:
         """Values (samples, N) and derivatives (samples, n, N)."""
         numbers, changes = self.derived(whole)
         shape = whole.shape[1], self.angle.size
-        values = np.broadcast_to(self.program(self.angle, numbers)[self.output.quantity], (*self._components, *shape))
+        values = np.broadcast_to(self.program(self.angle, numbers)[self.output.quantity], (*self._vector, *shape))
         if not sloped:
             return (np.hypot(*values) if values.ndim == 3 else values), None
         found = self.program.derivatives(self.angle, self.derived.paths, numbers)[self.output.quantity]
@@ -167,60 +171,99 @@ class Sampled:
             values = size
         return values, np.moveaxis(slopes, 0, 1)
 
-    @property
-    def _components(self):
-        from ..mechanics.quantities import of_scene
-
-        return (2,) if of_scene(scene_of(self.problem.source))[self.output.quantity].vector else ()
-
     def _above(self, whole):
-        """The reference's output for each sample, with those of the numbers that it has too."""
-        if self._reference is None:
-            return None
-        return own(self.output).reduced(self._of_reference(whole))
+        """The reference's output for each sample."""
+        return own(self.output).reduced(self._of_reference(whole)) if self.output.ratio else None
 
     def _of_reference(self, whole):
-        shared = [name for name in self.names if name in self.spread.spreads or name == SPEED]
-        own_numbers = {name: whole[self.names.index(name)] for name in shared if name in self._reference.units}
-        solution = (
-            self._reference.varied(own_numbers).solve(self.angle) if own_numbers else self._reference.solve(self.angle)
-        )
-        values = getattr(solution, self.output.quantity)
-        return np.broadcast_to(values, (whole.shape[1], self.angle.size))
+        """Curves of the reference, with those of the numbers that spread that it has too."""
+        reference, quantity = scene_of(self.problem.reference), self.output.quantity
+        known = [name for name in self.names if name in (*self.spread.spreads, SPEED) and name in reference.units]
+        numbers = {name: whole[self.names.index(name)] for name in known}
+        found = values_of(reference.varied(numbers).solve(self.angle), quantity)
+        return np.broadcast_to(found, (whole.shape[1], self.angle.size))
 
     def _trimmed(self, whole, rises, sloped):
-        """Curves at the speed within the trim that makes each sample's output best.
-
-        Inertia grows with the square of the speed, all else stays: two speeds tell all others.
-        """
-        place = self.names.index(SPEED)
-        nominal = self._fixed[place - len(self.problem.names)]
-        squares, ends, above = [], [], []
-        for side in (-1.0, 1.0):
-            speed = nominal * (1.0 + side * self.spread.trim)
-            at = whole.copy()
-            at[place] = speed
-            squares.append(speed * speed)
-            ends.append(self._curves(at, rises, sloped))
-            above.append(self._of_reference(at) if self._reference is not None else None)
-
-        def at_share(one, other, share):
-            return one * (1.0 - share) + other * share
+        """Curves at the speed within the trim that makes each sample's output best."""
+        slow, fast = (self._at_speed(whole, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
+        (low, low_slopes), (high, high_slopes) = (self._curves(at, rises, sloped) for at in (slow, fast))
+        below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
+        reduced = own(self.output).reduced
 
         def outputs(share):
-            share = share[:, None]
-            found = own(self.output).reduced(at_share(ends[0][0], ends[1][0], share))
-            if self._reference is None:
-                return self.sign * found
-            return self.sign * own(self.output).reduced(at_share(*above, share)) / found
+            found = reduced(_between(low, high, share[:, None]))
+            return self.sign * (reduced(_between(below, above, share[:, None])) / found if self.output.ratio else found)
 
-        share = _least(outputs, whole.shape[1])[:, None]
-        values = at_share(ends[0][0], ends[1][0], share)
-        slopes = at_share(ends[0][1], ends[1][1], share[..., None]) if sloped else None
-        compared = None
-        if self._reference is not None:
-            compared = own(self.output).reduced(at_share(*above, share))
-        return values, slopes, compared
+        share = _least(outputs, len(low))[:, None]
+        slopes = _between(low_slopes, high_slopes, share[..., None]) if sloped else None
+        compared = reduced(_between(below, above, share)) if self.output.ratio else None
+        return _between(low, high, share), slopes, compared
+
+    def _at_speed(self, whole, share):
+        """Numbers of samples at a share of the design's speed."""
+        found, place = whole.copy(), self.names.index(SPEED)
+        found[place] = self._fixed[place - len(self.problem.names)] * share
+        return found
+
+    def _require_trim(self):
+        """Refuse to trim what does not change with the square of the speed alone, which two speeds tell."""
+        problem = None
+        if SPEED in self.problem.names:
+            problem = f"trim sets {SPEED}, so it cannot vary too"
+        else:
+            whole, rises = self._numbers(self.problem.start, slice(0, 1))
+            squares = np.array([(1.0 - self.spread.trim) ** 2, 1.0, (1.0 + self.spread.trim) ** 2])
+            low, middle, high = (
+                self._curves(self._at_speed(whole, share), rises, False)[0] for share in np.sqrt(squares)
+            )
+            share = (1.0 - squares[0]) / (squares[2] - squares[0])
+            if not np.allclose(middle, _between(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
+                problem = (
+                    f"trim takes outputs of constant parts and others that grow as the speed squared; "
+                    f"{self.output} does not, as with friction or dampers"
+                )
+        checks.require("spread", problem)
+
+
+def over_spread(source, output, spread, *, variant=None, reference=None, samples=4096):
+    """An output of machines as they are made and run.
+
+    Parameters
+    ----------
+    source, variant, reference
+        As for `optimise`; of a design that was found, its `.scene` and `.reference`. The reference takes those of the
+        numbers that spread that it has too.
+    output : str
+    spread : Spread
+    samples : int
+        A power of two.
+
+    Returns
+    -------
+    array (samples,)
+        For ``numpy.quantile``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> spread = ks.design.Spread(0.05, {"spring.stiffness": "normal 0 % +- 0.5 %", "crank_speed": "normal 0 % +- 1 %"})
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> found = ks.design.over_spread(
+    ...     saw, "ratio mean_absolute balancing_torque", spread, variant="cam-circle", samples=64
+    ... )
+    >>> round(float(np.quantile(found, 0.05)), 1)
+    5.0
+    """
+    item, compared = chosen(source, variant, reference)
+    text = wanted(output, scene_of(item))
+    bare = SimpleNamespace(source=item, reference=compared, names=(), engine="numpy", start=np.empty(0))
+    return Sampled(bare, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+
+
+def _between(one, other, share):
+    """Values between those at two speeds: inertia grows with the square of the speed, all else stays."""
+    return one * (1.0 - share) + other * share
 
 
 def _least(function, count):

@@ -1,8 +1,8 @@
 """The search for a design: a problem set up for SciPy's SLSQP, with variables that count alike.
 
-Mean magnitudes and squares are smooth; of a largest value each part of the period is a limit of its own, and where it is
-to be made least, of one more unknown. Variables are turned and stretched so that each changes what is asked by about as
-much: of a cam's harmonics some combinations change the torque a thousand times as much as others.
+Mean magnitudes and squares are smooth; of a largest value each part of the period is a limit of its own, and where it
+is to be made least, of one more unknown. Variables are turned and stretched so that each changes what is asked by about
+as much: of a cam's harmonics some combinations change the torque a thousand times as much as others.
 """
 
 from typing import Any, NamedTuple
@@ -120,8 +120,8 @@ def side_of(problem, limit, values):
     """By how much a design exceeds a limit (parts,), not positive where it is kept, and derivatives (n, parts)."""
     output, relation = limit.output, limit.relation
     sign = -1.0 if relation == ">=" else 1.0
-    sides = TOPS.get(output.reduction)
-    bounded = sides is not None and not output.ratio and relation != "="
+    sides = TOPS.get(output.reduction, ())
+    bounded = bool(sides) and not output.ratio and relation != "="
     if bounded and (relation == "<=") == (output.reduction != "smallest"):
         curve = problem.curves(values)[output.quantity]
         parts = [measures.tops(curve, side) for side in sides]

@@ -1,12 +1,12 @@
 """Cams that need no torque: the cam-balanced crank-slider whose energy stays constant over the turn.
 
 Constant crank speed needs no torque exactly if kinetic energy and potential of weight and springs do not change
-together. Harmonics of the cam, the coupler's length, the spring's rate and free position are found for that, the ends of
-the stroke kept: first the least squares of the torque (Gauss and Newton, from the cosine law's cam), then the least of
-what is asked, under limits.
+together. Harmonics of the cam, the coupler's length, the spring's rate and free position are found for that, the ends
+of the stroke kept: first the least squares of the torque (Gauss and Newton, from the cosine law's cam), then the least
+of what is asked, under limits.
 
-The weight of half the coupler acts across the guide. Its torque is even in the crank angle from the guide, all else of a
-symmetric machine is odd, so that no symmetric cam can balance it: sine terms, a torsion spring on the coupler, or a
+The weight of half the coupler acts across the guide. Its torque is even in the crank angle from the guide, all else of
+a symmetric machine is odd, so that no symmetric cam can balance it: sine terms, a torsion spring on the coupler, or a
 counterweight on the crank with an offset guide can, each at a price.
 """
 
@@ -22,8 +22,8 @@ from .cam_start import begun
 from .demands import demands, wanted
 from .derived import scene_of
 from .found import Found, found_of, known
-from .optimisation import aim, aimed, chosen, held, multiple, require_reference, without_ratios
-from .problem import Problem, true_value
+from .optimisation import aim, aimed, held, multiple, require_reference, without_ratios
+from .problem import Problem, chosen, true_value
 from .search import Goal
 
 FEWEST, ENOUGH = 360, 32
@@ -244,8 +244,8 @@ def _require_possible(problem, start):
     low, high = start.ends
     if not (shortest < high and longest > low):
         raise DesignError(
-            f"torque-free cam: a coupler of {shortest:.6g} to {longest:.6g} m cannot make the stroke from {low:.6g} m to "
-            f"{high:.6g} m: its length must lie between these ends, or A would pass O"
+            f"torque-free cam: a coupler of {shortest:.6g} to {longest:.6g} m cannot make the stroke from {low:.6g} m "
+            f"to {high:.6g} m: its length must lie between these ends, or A would pass O"
         )
 
 
