@@ -12,9 +12,6 @@ from .found import Found
 from .optimisation import ANGLES, optimise
 from .problem import chosen, true_value
 
-SLACK = 1e-9
-"""Share by which a limit of the front is let out, so that the design before it keeps it."""
-
 
 @dataclass(frozen=True, eq=False)
 class Front:
@@ -89,14 +86,15 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     first_level, last_level = map(float, levels)
     between = (np.geomspace if logarithmic else np.linspace)(first_level, last_level, points)
     found, last = [ends[0]], ends[0]
-    relation, side = (">=", -1.0) if pair[1][1] else ("<=", 1.0)
-    for level in between[1:]:
-        limit = Demand(second, relation, float(level * (1.0 + side * np.sign(level) * SLACK)))
+    relation = ">=" if pair[1][1] else "<="
+    for level in between[1:-1]:
+        limit = Demand(second, relation, float(level))
         try:
             last = best(0, (limit,), last.values)
         except DesignError:
             last = best(0, (limit,), ends[1].values)
         found.append(last)
+    found.append(ends[1])
     return Front(
         (str(first), str(second)), _table(found, outputs, (first, second)), tuple(found), tuple(outputs(scene_of(item)))
     )

@@ -119,7 +119,7 @@ def torque_free_cam(
     >>> import kinetostatics as ks
     >>> found = ks.design.torque_free_cam(ks.load_case("sawframe_2r63"), cosine=4, gravity=False)
     >>> print(f"{found.report().loc['ratio mean_absolute balancing_torque [1]', 'after']:.3g}")
-    5.24e+04
+    5.25e+04
     """
     source, reference = chosen(source, variant, reference)
     checks.require(
