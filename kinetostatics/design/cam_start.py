@@ -183,9 +183,9 @@ def _across(loads, guide):
 
 def _carrying(moment, free_angle):
     """Torsion spring whose couple on the coupler is a moment where the coupler lies along the guide."""
+    if not moment:
+        raise ParameterError("torque-free cam: coupler_spring carries weight across the guide, but none acts")
     if not moment * free_angle > 0:
-        side = "negative" if moment < 0 else "positive" if moment > 0 else "of a machine with weight across its guide"
-        raise ParameterError(
-            f"torque-free cam: coupler_spring, a free angle in rad, must be {side}, got {free_angle:g}"
-        )
+        side = "negative" if moment < 0 else "positive"
+        raise ParameterError(f"torque-free cam: coupler_spring, a free angle, must be {side}, got {free_angle:g} rad")
     return TorsionSpring(moment / free_angle, free_angle, on="coupler", against="slider")

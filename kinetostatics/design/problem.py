@@ -38,8 +38,8 @@ class Problem:
 
     def __init__(self, source, vary, quantities, reference=None, angles=720, engine="numpy"):
         self.source, self.reference, self.angles, self.engine = source, reference, angles, engine
-        self.names = tuple(vary)
         self.low, self.high = bounds(source, vary)
+        self.names = tuple(vary)
         scene = scene_of(source)
         self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
         self.derived = Derived(source, self.names)

@@ -58,9 +58,9 @@ def searched(problem, goal, limits, start, rounds=ROUNDS) -> Reached:
     for _ in range(rounds - 1):
         found = _round(problem, goal, limits, best.values)
         before, best = best, _better(best, found)
-        if best is before or (
-            before.missed <= KEPT and before.goal - best.goal <= SETTLED * max(abs(best.goal), 1e-300)
-        ):
+        if best is before or best.missed > max(KEPT, 0.9 * before.missed):
+            break
+        if before.missed <= KEPT and before.goal - best.goal <= SETTLED * max(abs(best.goal), 1e-300):
             break
     return best
 

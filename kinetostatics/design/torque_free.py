@@ -125,7 +125,10 @@ def torque_free_cam(
     checks.require(
         "torque-free cam",
         checks.count("cosine", cosine),
-        checks.count("sine", sine) if sine else None,
+        checks.count("sine", sine) if sine or sine is False else None,
+        None if ends is None else checks.pair("ends", ends),
+        None if counterweight is None else checks.positive("counterweight", counterweight),
+        None if coupler_spring is None else checks.finite("coupler_spring", coupler_spring),
     )
     given = _weighted(scene_of(source), gravity)
     compared = None if reference is None else _weighted(scene_of(reference), gravity)
