@@ -59,37 +59,34 @@ def tops(curve, side, sectors=SECTORS):
     """
     values = side * curve.values
     count = values.size
-    sectors = min(sectors, count)
-    bounds = np.arange(sectors) * count // sectors
-    ends = zip(bounds, [*bounds[1:], count], strict=True)
-    highest = np.array([start + np.argmax(values[start:end]) for start, end in ends])
-    weights = np.zeros((sectors, 2 * REACH + 1))
-    weights[:, REACH] = 1.0
+    length = next(length for length in range(-(-count // sectors), count + 1) if count % length == 0)
+    highest = np.arange(0, count, length) + values.reshape(-1, length).argmax(axis=1)
     near = (highest[:, None] + _AROUND) % count
-    inner = (values[near[:, REACH]] >= values[near[:, REACH - 1]]) & (
-        values[near[:, REACH]] >= values[near[:, REACH + 1]]
-    )
-    for row in np.flatnonzero(inner):
-        weights[row] = _through_peak(values[near[row]])
-    found = np.einsum("sw,sw->s", weights, values[near])
-    return found, side * np.einsum("sw,ksw->ks", weights, curve.slopes[:, near])
+    samples = values[near]
+    weights = _through_peaks(samples)
+    return np.einsum("sw,sw->s", weights, samples), side * np.einsum("sw,ksw->ks", weights, curve.slopes[:, near])
 
 
-def _through_peak(samples):
-    """Weights of the samples around a peak in its height; of the middle one alone where they do not go together."""
-    alone = (_AROUND == 0).astype(float)
-    bend = np.diff(samples, 2)[REACH - 2 : REACH + 1]
-    if not (bend < 0).all():
-        return alone
-    series = THROUGH @ samples
-    first = series[1:] * _ORDERS[1:]
-    second = first[1:] * _ORDERS[1:-1]
-    place = parabola = 0.5 * (samples[REACH - 1] - samples[REACH + 1]) / bend[1]
-    for _ in range(3):
-        place = place - np.polyval(first[::-1], place) / np.polyval(second[::-1], place)
-    if not abs(place) < 1.0 or abs(place - parabola) > 0.2:
-        return alone
-    return place**_ORDERS @ THROUGH
+def _through_peaks(samples):
+    """Weights of the samples around peaks (peaks, samples) in their heights; of the middle one alone where need be.
+
+    That is, where it is no peak, or the samples do not go together, as at a jump.
+    """
+    bends = np.diff(samples, 2)[:, REACH - 2 : REACH + 1]
+    peaks = np.flatnonzero((bends < 0).all(axis=1) & (samples[:, REACH - 1 : REACH + 2].argmax(axis=1) == 1))
+    weights = np.tile((_AROUND == 0).astype(float), (len(samples), 1))
+    series = samples[peaks] @ THROUGH.T
+    first = series[:, 1:] * _ORDERS[1:]
+    second = first[:, 1:] * _ORDERS[1:-1]
+    place = parabola = 0.5 * (samples[peaks, REACH - 1] - samples[peaks, REACH + 1]) / bends[peaks, 1]
+    with np.errstate(all="ignore"):
+        for _ in range(3):
+            powers = place[:, None] ** _ORDERS
+            slope = np.einsum("pk,pk->p", first, powers[:, :-1])
+            place = place - slope / np.einsum("pk,pk->p", second, powers[:, :-2])
+        good = (abs(place) < 1.0) & (abs(place - parabola) <= 0.2)
+    weights[peaks[good]] = place[good, None] ** _ORDERS @ THROUGH
+    return weights
 
 
 def _mean(values):

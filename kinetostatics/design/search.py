@@ -16,7 +16,9 @@ ROUNDS = 8
 """How often the variables are turned anew before a search ends."""
 STEPS = 200
 """Steps of one round."""
-SETTLED = 1e-9
+FIRST, AGAIN = 1e-10, 1e-9
+"""Relative change of the goal, and miss of a limit, at which the first round ends, and others."""
+SETTLED = 1e-7
 """Relative change of what is made least that ends a search."""
 KEPT = 1e-9
 """By how much, relative to its size, a limit may be missed."""
@@ -56,7 +58,7 @@ def searched(problem, goal, limits, start, rounds=ROUNDS) -> Reached:
     """Local optimum from a start."""
     best = _round(problem, goal, limits, np.clip(start, problem.low, problem.high))
     for _ in range(rounds - 1):
-        found = _round(problem, goal, limits, best.values)
+        found = _round(problem, goal, limits, best.values, AGAIN)
         before, best = best, _better(best, found)
         if best is before or best.missed > max(KEPT, 0.9 * before.missed):
             break
@@ -80,7 +82,7 @@ def better(several):
     return best
 
 
-def _round(problem, goal, limits, start):
+def _round(problem, goal, limits, start, change=FIRST):
     from scipy.optimize import minimize
 
     turned = _Turned(problem, goal, limits, start)
@@ -96,7 +98,7 @@ def _round(problem, goal, limits, start):
         jac=turned.goal_slopes,
         constraints=constraints,
         method="SLSQP",
-        options={"maxiter": STEPS, "ftol": 1e-10},
+        options={"maxiter": STEPS, "ftol": change},
     )
     values = np.clip(turned.values(found.x), problem.low, problem.high)
     return Reached(values, turned.reached(values), missed(problem, limits, values), found.message)
@@ -136,7 +138,7 @@ class _Turned:
 
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
-        self.raised = _is_raised(goal)
+        self.raised, self._last = _is_raised(goal), (None, None)
         first = self.reached(start)
         self.unit = abs(first) or 1.0
         count = start.size
@@ -221,6 +223,12 @@ class _Turned:
 
     def _sides(self, unknowns, equal):
         """How far under the limits, each in units of its size, with derivatives by the unknowns."""
+        key = unknowns.tobytes(), equal
+        if self._last[0] != key:
+            self._last = key, self._computed_sides(unknowns, equal)
+        return self._last[1]
+
+    def _computed_sides(self, unknowns, equal):
         values = self.values(unknowns)
         parts, slopes = [np.empty(0)], [np.empty((self.start.size, 0))]
         for limit in self.limits:
