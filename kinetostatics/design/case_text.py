@@ -136,7 +136,7 @@ def _value(value, rule, name):
         unit = getattr(getattr(rule, "rule", None), "unit", "m")
         parts = (_quoted(part) if isinstance(part, str) else _number(part, _spelled(unit), name) for part in value)
         return f"[{', '.join(parts)}]"
-    if isinstance(rule, checks.Number) and not rule.unit:
+    if isinstance(rule, checks.Number) and rule.unit in ("", "1"):
         return repr(_plain(value, name))
     return _number(value, _spelled(getattr(rule, "unit", "")), name)
 

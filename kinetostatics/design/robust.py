@@ -7,6 +7,7 @@ quantile is Harrell and Davis's mean of ordered samples, which changes smoothly 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -71,28 +72,21 @@ class Spread:
 
 
 class Sampled:
-    """An output of a design over its spread."""
+    """An output of a design over its spread; deviations are of the scene's own numbers, from which nothing follows."""
 
     def __init__(self, problem, output, spread, sign, samples=None, angles=ANGLES):
         self.problem, self.output, self.spread, self.sign = problem, output, spread, sign
-        known = problem.source.units
-        problems = [checks.choice("parameter", path, tuple(known)) for path in spread.spreads]
-        checks.require("spread", *problems)
-        self.count = spread.samples if samples is None else samples
-        self.shares, self.deviations = _deviations(spread, known, self.count)
-        self.names = (*problem.names, *(path for path in spread.spreads if path not in problem.names))
-        if spread.trim and SPEED not in self.names:
-            self.names = (*self.names, SPEED)
         scene = scene_of(problem.source)
+        checks.require("spread", *(checks.choice("parameter", path, tuple(scene.units)) for path in spread.spreads))
+        self.count = spread.samples if samples is None else samples
+        self._shares, self._deviations = _deviations(spread, scene.units, self.count)
         self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
-        self.derived = Derived(problem.source, self.names)
-        zeros = [path for path in self.derived.paths if scene.parameters[path] == 0.0]
+        self._derived: Any = Derived(problem.source, problem.names) if problem.names else None
+        designed = self._derived.paths if self._derived else ()
+        self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
+        self._own = scene.parameters
+        zeros = [path for path in self.paths if self._own[path] == 0.0]
         self.program = compiled(scene, output.quantity, zeros, problem.engine)
-        own_values = problem.source.parameters
-        self._fixed = [
-            scene.parameters[name] if isinstance(own_values[name], str) else own_values[name]
-            for name in self.names[len(problem.names) :]
-        ]
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
         self._weights = _harrell_davis(spread.quantile, self.count)
         if spread.trim:
@@ -112,81 +106,72 @@ class Sampled:
         return self._sampled(values, False)[0]
 
     def _sampled(self, values, sloped):
-        parts = [
-            self._part(values, slice(start, min(start + TOGETHER, self.count)), sloped)
-            for start in range(0, self.count, TOGETHER)
-        ]
+        design, changes = self._derived(values) if self._derived else ({}, np.zeros((0, 0)))
+        parts = []
+        for start in range(0, self.count, TOGETHER):
+            numbers, rises = self._numbers(design, slice(start, start + TOGETHER))
+            parts.append(self._part(numbers, rises[:, :, None] * _row_by_row(changes, len(self.paths)), sloped))
         return tuple(np.concatenate([part[place] for part in parts]) for place in (0, 1))
 
-    def _part(self, values, part, sloped):
+    def _numbers(self, design, part):
+        """Numbers of some samples by path (samples, 1), and how each grows with the design's own (paths, samples)."""
+        numbers, rises = {}, []
+        for path in self.paths:
+            value = design.get(path, self._own[path])
+            deviation = self._deviations.get(path, np.zeros(self.count))[part]
+            share = path in self._shares
+            rises.append(1.0 + deviation if share else np.ones(deviation.size))
+            numbers[path] = (value * (1.0 + deviation) if share else value + deviation)[:, None]
+        return numbers, np.array(rises)
+
+    def _part(self, numbers, changes, sloped):
         """Output of some samples, with derivatives (samples, n)."""
-        whole, rises = self._numbers(values, part)
-        if not self.spread.trim:
-            curves, slopes = self._curves(whole, rises, sloped)
-            above = self._above(whole)
+        if self.spread.trim:
+            curves, slopes, above = self._trimmed(numbers, changes, sloped)
         else:
-            curves, slopes, above = self._trimmed(whole, rises, sloped)
-        found = np.empty(len(curves)), np.zeros((len(curves), len(self.problem.names)))
+            (curves, slopes), above = self._curves(numbers, changes, sloped), self._above(numbers)
+        found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
             own_slopes = slopes[place] if sloped else np.zeros((0, curve.size))
-            value, changes = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes))
+            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes))
             if self.output.ratio:
-                value, changes = above[place] / value, -above[place] / value**2 * changes
-            found[0][place] = value
-            found[1][place] = changes if sloped else 0.0
-        return found
+                value, row = above[place] / value, -above[place] / value**2 * row
+            found[place] = value
+            rows[place] = row if sloped else 0.0
+        return found, rows
 
-    def _numbers(self, values, part):
-        """Values of all numbers of some samples (names, samples, 1), and how each rises with the design's own."""
-        count = len(self.deviations[next(iter(self.deviations))][part])
-        whole = np.empty((len(self.names), count, 1))
-        rises = np.ones((len(self.names), count))
-        for place, (name, value) in enumerate(zip(self.names, [*values, *self._fixed], strict=True)):
-            deviation = self.deviations[name][part] if name in self.deviations else np.zeros(count)
-            if name in self.shares:
-                rises[place] = 1.0 + deviation
-                whole[place, :, 0] = value * (1.0 + deviation)
-            else:
-                whole[place, :, 0] = value + deviation
-        return whole, rises
-
-    def _curves(self, whole, rises, sloped):
+    def _curves(self, numbers, changes, sloped):
         """Values (samples, N) and derivatives (samples, n, N)."""
-        numbers, changes = self.derived(whole)
-        shape = whole.shape[1], self.angle.size
-        values = np.broadcast_to(self.program(self.angle, numbers)[self.output.quantity], (*self._vector, *shape))
+        quantity = self.output.quantity
+        shape = (*self._vector, len(next(iter(numbers.values()))), self.angle.size)
+        values = np.broadcast_to(self.program(self.angle, numbers)[quantity], shape)
         if not sloped:
-            return (np.hypot(*values) if values.ndim == 3 else values), None
-        found = self.program.derivatives(self.angle, self.derived.paths, numbers)[self.output.quantity]
-        count = len(self.problem.names)
-        slopes = np.zeros((count, *values.shape))
-        for row, part in enumerate(found.values()):
-            for place in range(count):
-                change = changes[row, place] * rises[place][:, None]
-                if np.any(change):
-                    slopes[place] += change * part
-        if values.ndim == 3:
-            size = np.hypot(*values)
-            slopes = np.einsum("csa,ncsa->nsa", values / np.maximum(size, np.finfo(float).tiny), slopes)
-            values = size
+            return (np.hypot(*values) if self._vector else values), None
+        found = self.program.derivatives(self.angle, self._derived.paths, numbers)[quantity]
+        by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
+        slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
+        if self._vector:
+            curve = [measures.size(values[:, place], slopes[:, :, place]) for place in range(shape[-2])]
+            return np.array([part.values for part in curve]), np.array([part.slopes for part in curve])
         return values, np.moveaxis(slopes, 0, 1)
 
-    def _above(self, whole):
+    def _above(self, numbers):
         """The reference's output for each sample."""
-        return own(self.output).reduced(self._of_reference(whole)) if self.output.ratio else None
+        return own(self.output).reduced(self._of_reference(numbers)) if self.output.ratio else None
 
-    def _of_reference(self, whole):
+    def _of_reference(self, numbers):
         """Curves of the reference, with those of the numbers that spread that it has too."""
-        reference, quantity = scene_of(self.problem.reference), self.output.quantity
-        known = [name for name in self.names if name in (*self.spread.spreads, SPEED) and name in reference.units]
-        numbers = {name: whole[self.names.index(name)] for name in known}
-        found = values_of(reference.varied(numbers).solve(self.angle), quantity)
-        return np.broadcast_to(found, (whole.shape[1], self.angle.size))
+        reference = scene_of(self.problem.reference)
+        known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
+        found = reference.varied({path: numbers[path] for path in known}).solve(self.angle)
+        return np.broadcast_to(
+            values_of(found, self.output.quantity), (len(next(iter(numbers.values()))), self.angle.size)
+        )
 
-    def _trimmed(self, whole, rises, sloped):
+    def _trimmed(self, numbers, changes, sloped):
         """Curves at the speed within the trim that makes each sample's output best."""
-        slow, fast = (self._at_speed(whole, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
-        (low, low_slopes), (high, high_slopes) = (self._curves(at, rises, sloped) for at in (slow, fast))
+        slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
+        (low, low_slopes), (high, high_slopes) = (self._curves(at, changes, sloped) for at in (slow, fast))
         below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
         reduced = own(self.output).reduced
 
@@ -199,11 +184,9 @@ class Sampled:
         compared = reduced(_between(below, above, share)) if self.output.ratio else None
         return _between(low, high, share), slopes, compared
 
-    def _at_speed(self, whole, share):
+    def _at_speed(self, numbers, share):
         """Numbers of samples at a share of the design's speed."""
-        found, place = whole.copy(), self.names.index(SPEED)
-        found[place] = self._fixed[place - len(self.problem.names)] * share
-        return found
+        return numbers | {SPEED: np.full_like(numbers[SPEED], self._own[SPEED] * share)}
 
     def _require_trim(self):
         """Refuse to trim what does not change with the square of the speed alone, which two speeds tell."""
@@ -211,18 +194,25 @@ class Sampled:
         if SPEED in self.problem.names:
             problem = f"trim sets {SPEED}, so it cannot vary too"
         else:
-            whole, rises = self._numbers(self.problem.start, slice(0, 1))
+            numbers, _ = self._numbers({}, slice(0, 1))
             squares = np.array([(1.0 - self.spread.trim) ** 2, 1.0, (1.0 + self.spread.trim) ** 2])
             low, middle, high = (
-                self._curves(self._at_speed(whole, share), rises, False)[0] for share in np.sqrt(squares)
+                self._curves(self._at_speed(numbers, share), None, False)[0] for share in np.sqrt(squares)
             )
             share = (1.0 - squares[0]) / (squares[2] - squares[0])
             if not np.allclose(middle, _between(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
                 problem = (
-                    f"trim takes outputs of constant parts and others that grow as the speed squared; "
+                    "trim takes outputs of constant parts and others that grow as the speed squared; "
                     f"{self.output} does not, as with friction or dampers"
                 )
         checks.require("spread", problem)
+
+
+def _row_by_row(changes, count):
+    """Derivatives of a scene's numbers by those of a design (paths, 1, n), with zeros for paths that it has not."""
+    found = np.zeros((count, 1, changes.shape[1]))
+    found[: len(changes), 0] = changes
+    return found
 
 
 def over_spread(source, output, spread, *, variant=None, reference=None, samples=4096):

@@ -138,7 +138,8 @@ class _Turned:
 
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
-        self.raised, self._last = _is_raised(goal), (None, None)
+        self.raised = _is_raised(goal)
+        self._last: tuple[Any, Any] = (None, None)
         first = self.reached(start)
         self.unit = abs(first) or 1.0
         count = start.size

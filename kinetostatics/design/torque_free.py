@@ -32,6 +32,8 @@ PASSES = ((2.0, 1.0), (2e3, 0.0))
 """Passes of the least squares, one after the other: what ends of the stroke count, a miss by half of it as so many mean
 torques, and what the bends of the cam do. From far away the first finds the way, the second keeps to the ends."""
 STEPS = 100
+NEARLY = 1.05
+"""How far beyond the bound of symmetric cams a limit is refused at once: the bound moves a little with the cam."""
 TORQUE, POSITION = "balancing_torque", "slider_position"
 SHOWN = (
     "ratio mean_absolute balancing_torque",
@@ -146,6 +148,7 @@ def torque_free_cam(
     generator = np.random.default_rng(seed)
     begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
     begins = [least_squares(problem, start, values) for values in begins]
+    _require_within_bound(start, problem, asked, compared, begins[0])
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), asked)
     try:
         best, came_to = multiple(problem, goal, plain, begins, asked)
@@ -250,6 +253,20 @@ def _require_possible(problem, start):
             f"torque-free cam: a coupler of {shortest:.6g} to {longest:.6g} m cannot make the stroke from {low:.6g} m "
             f"to {high:.6g} m: its length must lie between these ends, or A would pass O"
         )
+
+
+def _require_within_bound(start, problem, limits, reference, values):
+    """Refuse a ratio of mean torques that the weight alone forbids a symmetric cam."""
+    advice = _advice(start, problem, reference, values)
+    if not advice:
+        return
+    greatest = bound(start, scene_of(problem.scene(values)), reference)
+    for limit in limits:
+        output = limit.output
+        mean = output.ratio and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
+        if mean and limit.relation != "<=" and limit.value > NEARLY * greatest:
+            nearest = dict(zip(problem.names, map(float, values), strict=True))
+            raise DesignError(f"torque-free cam: {limit} cannot be kept{advice}", nearest)
 
 
 def _advice(start, problem, reference, values):
