@@ -11,6 +11,7 @@ Call first
     compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
     sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
     balancing, linkage, needs                   counterweights; classes of four-bars; how much model a quantity needs
+    laws, cams, design                          laws of motion; cams that make them; contact of the roller, lift-off ...
     plots, precision, stability, check          figures; every method's time and error; a test of a group of one's own
 
 Rooms, in the order in which they build on each other
@@ -48,7 +49,7 @@ if TYPE_CHECKING:
     from . import design, drive
     from .casefile.case import load_case
     from .design import balancing, linkage
-    from .machine import cams
+    from .machine import cams, laws
     from .machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
     from .machine.cam_roller import CamRoller
     from .machine.crank import Crank
@@ -144,6 +145,7 @@ __all__ = [
     "drive",
     "extremes",
     "four_bar",
+    "laws",
     "linkage",
     "load_case",
     "needs",
@@ -160,7 +162,7 @@ __all__ = [
 
 
 _WHERE = {
-    "machine": ["cams"],
+    "machine": ["cams", "laws"],
     "machine.builders": ["cam_crank_slider", "crank_slider", "four_bar", "scotch_yoke", "slotted_lever"],
     "machine.cam_roller": ["CamRoller"],
     "machine.crank": ["Crank"],

@@ -27,6 +27,7 @@ def programs(tmp_path_factory):
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
     from kinetostatics.engines import compiled, loops, machine_code, programs
+    from kinetostatics.numbers import kinds
 
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function
@@ -35,9 +36,9 @@ def interpreted(monkeypatch):
     loaded = cache(machine_code.load)
     for module in (compiled, loops, programs):
         monkeypatch.setattr(module, "_loaded", loaded)
-    programs._kept.clear()
+    kinds.forget()
     yield
-    programs._kept.clear()
+    kinds.forget()
 
 
 @pytest.fixture(scope="session")

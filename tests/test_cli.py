@@ -349,3 +349,45 @@ def test_drive_says_why_nothing_runs_and_where_there_is_no_drive(pump, capsys):
         printed = capsys.readouterr()
         assert message in printed.err
         assert not printed.out
+
+
+def test_run_prints_what_friction_takes_at_each_joint_and_the_efficiency(capsys):
+    assert main(["run", "sawframe_2r63_friction", "--variant", "cam-cosine", "--angles", "8"]) == 0
+    text = capsys.readouterr().out.split("power lost by friction, exact means over the turn\n\n")[1]
+    cells = {line.split()[0]: line.split()[1:] for line in text.splitlines() if line}
+    assert re.match(r"lost at +mean \[W\] +share \[%\] +largest \[W\] +largest at \[deg\] +per turn \[J\]", text)
+    assert {"O", "A", "B", "guide", "slot", "cam", "all"} < set(cells)
+    assert float(cells["all"][0]) == pytest.approx(11733.0, rel=1e-5)
+    assert "of 11733 W put in, 0 W are taken and 11733 W lost: efficiency 0" in text
+
+
+def test_run_and_compare_say_nothing_of_losses_without_friction(capsys):
+    for command in (["run", "mower_drive", "--variant", "full"], ["compare", "mower_drive", "--variant", "full"]):
+        assert main(command) == 0
+        assert not re.search("lost|efficiency", capsys.readouterr().out)
+
+
+def test_compare_prints_what_balancing_saves_of_friction(capsys):
+    assert main(["compare", "sawframe_2r63_friction", "--variant", "cam-cosine-rolling"]) == 0
+    (row,) = (line for line in capsys.readouterr().out.splitlines() if re.match(r"mean power lost +W", line))
+    assert row.split()[-3:] == ["42948.7", "7325.54", "5.86287"]
+
+
+def test_sweep_of_a_variant_with_friction_tells_what_it_loses_unasked(capsys):
+    arguments = ["sweep", "sawframe_2r63_friction", "--variant", "plain", "--vary", "slider.mass=600..650 kg:2"]
+    assert main(arguments) == 0
+    assert "mean friction_loss [W]" in capsys.readouterr().out
+
+
+def test_run_and_compare_of_a_saw_that_starts_from_rest_have_no_losses(tmp_path, capsys):
+    text = shipped_cases()["sawframe_2r63_friction"].read_text(encoding="utf-8")
+    text = text.replace('crank_speed = "320 rpm"', 'crank_speed = "0 rpm"\ncrank_acceleration = "2 rad/s^2"')
+    text = text.replace('"balance the slider"', '"674 kN/m"')
+    path = tmp_path / "from_rest.toml"
+    path.write_text(text, encoding="utf-8")
+    assert main(["run", str(path), "--variant", "plain"]) == 0
+    assert main(["compare", str(path), "--variant", "cam-cosine"]) == 0
+    assert main(["plot", str(path), "--only", "losses", "--out", str(tmp_path)]) == 2
+    printed = capsys.readouterr().out
+    assert "reaction O" in printed
+    assert not re.search("mean power lost|efficiency", printed)

@@ -34,9 +34,9 @@ def without(table, wrong):
 def _read(path, part, table, keys):
     """Cam or values in a file that a part of a table names."""
     if isinstance(part, schema.SampledTable):
-        columns = read_columns(path, {"angle": "rad", "radius": "m"})
+        angle, radius = read_columns(path, {"angle": "rad", "radius": "m"})
         try:
-            return cams.Sampled(*columns)
+            return cams.Sampled(angle, radius, part.noise)
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
     period = part.period or TURN

@@ -4,7 +4,6 @@ import re
 import typing
 import warnings
 from dataclasses import dataclass, field, fields, is_dataclass
-from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
@@ -17,6 +16,7 @@ from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, Ki
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from ..results.comparison import Comparison
 from ..solution.scene import Scene
 from ..solution.solution import Solution
@@ -47,6 +47,10 @@ class Variant:
         return self.scene.mechanism
 
     @property
+    def friction(self):
+        return self.scene.friction
+
+    @property
     def crank_speed(self):
         return self.scene.crank_speed
 
@@ -68,18 +72,22 @@ class Variant:
         """Flywheel of its drive, on the crank, kg m2; 0 if the file gives none."""
         return 0.0 if self.table.drive is None else self.table.drive.flywheel
 
+    @cached_property
+    def _places(self):
+        return parameters.paths(self.table)
+
     @property
     def units(self):
         """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x".
 
         Those of the drive are left out: solutions of a variant are at its crank speed, whatever drives it.
         """
-        return {path: place.unit for path, place in parameters.paths(self.table).items()}
+        return {path: place.unit for path, place in self._places.items()}
 
     @property
     def parameters(self):
         """What stands in the file by path: a number in SI, or the word for one that is derived, "mid-length"."""
-        return {path: parameters.value(self.table, place.steps) for path, place in parameters.paths(self.table).items()}
+        return {path: parameters.value(self.table, place.steps) for path, place in self._places.items()}
 
     @property
     def content(self):
@@ -101,7 +109,7 @@ class Variant:
         ----------
         values : dict of path to float or array (designs, 1)
         """
-        known = parameters.paths(self.table)
+        known = self._places
         checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
         varied = parameters.with_values(self.table, {known[path].steps: value for path, value in values.items()})
         return _made(varied, self.folder, self.tabulated)

@@ -11,6 +11,8 @@ from .printed import print_table, tell, with_published, write_table
 
 SWEEP_OUTPUTS = ("mean_absolute balancing_torque", "largest O")
 """What a sweep tells unless asked for something else."""
+LOST = "mean friction_loss"
+"""What it tells besides of a variant with friction."""
 TABLE_ENDINGS = (".csv", ".parquet")
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
@@ -45,6 +47,7 @@ def run(options):
     import pandas as pd
 
     from ..casefile.case import load_case
+    from ..results.losses import lose
     from ..results.tables import extremes_frame
 
     case = load_case(options.case)
@@ -59,6 +62,10 @@ def run(options):
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"
         )
+        if lose(solution):
+            print("\npower lost by friction, exact means over the turn\n")
+            print_table(solution.losses.frame())
+            print(f"\n{solution.losses}")
     if options.csv:
         frames = [solution.frame().assign(variant=name) for name, solution in solutions.items()]
         table = pd.concat(frames)
@@ -197,7 +204,8 @@ def sweep(options):
     spreads = _spreads(options.vary)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
     varied, _ = sweeps.chosen(case, options.variant, options.reference)
-    wanted = [parsed(text).of(varied) for text in options.output or SWEEP_OUTPUTS]
+    usual = (*SWEEP_OUTPUTS, LOST) if varied.friction else SWEEP_OUTPUTS
+    wanted = [parsed(text).of(varied) for text in options.output or usual]
     outputs = [item.column for item in wanted]
     found = sweeps.sweep(
         case,

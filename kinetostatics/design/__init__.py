@@ -1,7 +1,14 @@
-"""Better machines: static balancing, four-bar classes, optimisation under limits, torque-free cams.
+"""Better machines: counterweights, four-bar classes, contact of cams, optimisation under limits, torque-free cams.
 
 May import all rooms above: numbers to drive.
 
+balancing       full, partial, optimal counterweights
+linkage         classes of four-bars
+cam_contact     contact of a roller with its cam: side, curvature, Hertz pressure, limits
+hertz           line contact of two cylinders
+cam_rollers     the roller itself: spin and sliding, load and life of its pin
+hardness        the pressure that steel bears
+followers       lift-off, surge of springs, torque to start
 demands         what is asked of a design, read from texts
 derived         what follows from the numbers that vary
 measures        outputs with their derivatives
@@ -21,31 +28,50 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .cam_contact import Contact, contact
+    from .followers import Surge, lift_off_speed, spring_surge, starting_torque
     from .found import Found
     from .fronts import Front, pareto
+    from .hardness import hardness_from_pressure, pressure_from_hardness
     from .optimisation import optimise
     from .robust import Spread, over_spread
     from .torque_free import torque_free_cam
     from .weights import weight_options
 
 __all__ = [
+    "Contact",
     "Found",
     "Front",
     "Spread",
+    "Surge",
+    "contact",
+    "hardness_from_pressure",
+    "lift_off_speed",
     "optimise",
     "over_spread",
     "pareto",
+    "pressure_from_hardness",
+    "spring_surge",
+    "starting_torque",
     "torque_free_cam",
     "weight_options",
 ]
 
 _WHERE = {
+    "Contact": "cam_contact",
     "Found": "found",
     "Front": "fronts",
     "Spread": "robust",
+    "Surge": "followers",
+    "contact": "cam_contact",
+    "hardness_from_pressure": "hardness",
+    "lift_off_speed": "followers",
     "optimise": "optimisation",
     "over_spread": "robust",
     "pareto": "fronts",
+    "pressure_from_hardness": "hardness",
+    "spring_surge": "followers",
+    "starting_torque": "followers",
     "torque_free_cam": "torque_free",
     "weight_options": "weights",
 }

@@ -5,7 +5,6 @@
 Functions as loads may depend on the crank angle and speed, not on the acceleration.
 """
 
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ from ..errors import DriveError, NotGivenError
 from ..machine.loads import TURN, is_given, value_of
 from ..mechanics.pushes import title_of
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
 from ..solution.scene import Scene

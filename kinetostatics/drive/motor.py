@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import read_only
+from ..numbers.lazy import cached_property
 
 REACH = 2.0
 """Speeds up to so many times a motor's own are looked at for steady running."""

@@ -5,11 +5,13 @@ Values stand at Chebyshev points of the first kind, none of them at an end of a 
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
+
+from ..numbers.lazy import cached_property
 
 TAIL = 2e-14
 """Size of the last coefficients of a series, relative to its largest value, that is rounding."""

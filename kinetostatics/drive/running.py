@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..errors import DriveError
 from ..numbers.elementary import read_only
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..solution.angles import crank_angles
 from ..solution.scene import Scene

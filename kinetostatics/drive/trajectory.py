@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.elementary import read_only
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..solution.scene import Scene
 from .driven import Driven

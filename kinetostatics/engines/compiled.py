@@ -1,8 +1,8 @@
 """Whether numba (extra `fast`) can be had, and generated source as its modules."""
 
 import importlib
-import importlib.util
 import os
+import sys
 from functools import cache
 
 from ..errors import MissingLibraryError
@@ -15,12 +15,12 @@ def cores():
 
 def _problem():
     """Why numba cannot be used, or None."""
-    if importlib.util.find_spec("numba") is None:
-        return "is not installed"
+    if sys.modules.get("numba") is not None:
+        return None
     try:
         importlib.import_module("numba")
-    except ImportError as error:  # installed beside a NumPy that it does not know, for instance
-        return f"cannot be imported: {error}"
+    except ImportError as error:  # not there, or installed beside a NumPy that it does not know, for instance
+        return "is not installed" if error.name == "numba" else f"cannot be imported: {error}"
     return None
 
 

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError
-from ..machine.loads import is_given
 from ..mechanics.quantities import all_found, of_scene
 from ..numbers.elementary import read_only, stack
 from . import programs
@@ -59,7 +58,7 @@ class Recorded:
                 raise
             return KERNELS.values(state, names)
         rows = program.run(state, leaves, self.compiled)
-        if not (all(map(is_given, state.loads)) or np.isfinite(rows).all()):
+        if not (state.loads_are_given or np.isfinite(rows).all()):
             state.pushes, state.wrenches  # noqa: B018  an error if a load is no number where the mechanism closes
         return program.recording.named(read_only(rows))
 

@@ -14,6 +14,8 @@ from .writing import TURN
 
 SHARE = 100_000
 """Values over designs and angles that are worth a thread of their own."""
+NO_ROWS = np.empty((0, 1, 0))
+"""Tables of a loop that needs none."""
 
 
 @kept_for_same_angles
@@ -35,7 +37,7 @@ def table_of_parameters(numbers, shape):
 def table_of_rows(rows, shape):
     """Tables (T, 1 or designs, N) from rows, each a number or an array (..., N), of results of a shape."""
     if not rows:
-        return np.empty((0, 1, shape[-1]))
+        return NO_ROWS
     one_row = all(math.prod(np.shape(row)[:-1]) == 1 for row in rows)
     full = (1, shape[-1]) if one_row else (math.prod(shape[:-1]), shape[-1])
     spread = [np.broadcast_to(row, shape[-1:] if one_row else shape).reshape(full) for row in rows]

@@ -3,11 +3,8 @@
 A program runs in three ways, all from one recording: on plain numbers, on arrays by NumPy, and as a compiled loop.
 """
 
-import itertools
 import math
 import threading
-from collections import OrderedDict
-from functools import cached_property
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,7 +12,8 @@ import numpy as np
 
 from ..errors import NotGivenError, QuantityError
 from ..numbers.elementary import ROUNDING
-from ..numbers.leaves import Leaves, put_together
+from ..numbers.lazy import cached_property
+from ..numbers.leaves import Leaves
 from . import loops, writing
 from .compiled import _loaded
 from .derivatives import gradients
@@ -23,8 +21,6 @@ from .recent import kept_for_same_angles
 from .record import record
 from .trace import needed
 
-KEPT = 256
-"""Programs kept in memory; the longest unused goes first."""
 FEW = 12
 """Crank angles, up to this many, that are computed one by one on plain numbers."""
 BLOCK = 2048
@@ -72,12 +68,12 @@ class Program:
 
     @cached_property
     def _plain(self):
-        return _made(writing.line(self.outputs), _PLAIN)
+        return made(writing.line(self.outputs), PLAIN)
 
     @cached_property
     def _buffered(self):
         source, count = writing.buffered_line(self.outputs)
-        return [_made(source, _ARRAYS | by_design) for by_design in (_PLAIN, _BY_DESIGN)], count
+        return [made(source, _ARRAYS | by_design) for by_design in (PLAIN, _BY_DESIGN)], count
 
     @cached_property
     def loop(self):
@@ -136,6 +132,13 @@ class Program:
 
     def by_loop(self, angle, numbers, rows, shape):
         """The same by the compiled loop."""
+        if len(shape) == 1 and not rows:
+            results = np.empty((1, len(self.outputs), *shape))
+            angles = np.ascontiguousarray(angle.reshape(1, -1))
+            sine, cosine = loops.turn(angles)
+            parameters = loops.table_of_parameters(numbers, ())
+            loops.run(self.loop, angles, sine, cosine, parameters, loops.NO_ROWS, results)
+            return results[0]
         parameters = loops.table_of_parameters(numbers, shape[:-1])
         designs = len(parameters)
         own = math.prod(angle.shape[:-1]) > 1
@@ -153,7 +156,8 @@ def _turn(angle):
     return np.sin(angle), np.cos(angle)
 
 
-def _made(source, scope):
+def made(source, scope):
+    """Function `line` of a source."""
     scope = dict(scope)
     exec(source, scope)
     return scope["line"]
@@ -198,7 +202,7 @@ def _sqrt(square):
     return math.sqrt(square) if square >= 0.0 else math.nan
 
 
-_PLAIN = {
+PLAIN = {
     "sin": lambda angle: float(np.sin(angle)),
     "cos": lambda angle: float(np.cos(angle)),
     "atan": lambda slope: float(np.arctan(slope)),
@@ -245,10 +249,6 @@ _ARRAYS = {
 # Programs kept by structure
 
 
-_kept: OrderedDict[Any, Program | NotGivenError] = OrderedDict()
-_lock = threading.Lock()
-
-
 def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
     """Program for some quantities of a `Dynamics` and of all others of its structure, and its own leaves.
 
@@ -272,18 +272,14 @@ def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Lea
         if lasting:
             raise NotGivenError(f"{state.mechanism.name} holds what may change unseen, to be recorded each time")
         return _recorded(state, structure, quantities, sizes), leaves
-    key = structure, quantities, sizes
-    found = _kept.get(key)
+    known = state.kind.known
+    found = known.get((quantities, sizes))
     if found is None:
         try:
             found = _recorded(state, structure, quantities, sizes)
         except NotGivenError as refusal:
             found = refusal
-    with _lock:
-        _kept[key] = found
-        _kept.move_to_end(key)
-        while len(_kept) > KEPT:
-            _kept.popitem(last=False)
+        known[quantities, sizes] = found
     if isinstance(found, NotGivenError):
         raise found
     return found, leaves
@@ -291,11 +287,7 @@ def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Lea
 
 def numbered(state):
     """The scene of a `Dynamics` with the place of each number among its leaves, a `Numbered`, instead of it."""
-    structure, _ = state.apart
-    places = itertools.count()
-    mechanism, speed, acceleration, loads, *friction = put_together(
-        structure, lambda: Numbered(next(places)), lambda: None, lambda: None
-    )
+    mechanism, speed, acceleration, loads, *friction = state.kind.numbered
     return SimpleNamespace(
         mechanism=mechanism,
         crank_speed=speed,
@@ -303,10 +295,6 @@ def numbered(state):
         loads=loads,
         friction=(*friction, None)[0],
     )
-
-
-class Numbered(int):
-    """Place of a number among the leaves of a scene."""
 
 
 def _recorded(state, structure, quantities, sizes):

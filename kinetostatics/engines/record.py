@@ -6,6 +6,7 @@ recorded arithmetic holds for all scenes of that structure, whatever their numbe
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from .trace import Graph, Node, needed, operations
 
@@ -68,13 +70,16 @@ class Recording:
 
     def named(self, rows):
         """Results by name from rows (outputs, ...): (...) of a number, (rows, ...) of a vector and the closure."""
-        found, start = {}, 0
-        for name, width, vector in zip(self.quantities, self.widths, self.vectors, strict=True):
-            found[name] = (
-                rows[start] if width == 1 and not vector and name != "closure" else rows[start : start + width]
-            )
-            start += width
-        return found
+        return {name: rows[place] for name, place in self._places}
+
+    @cached_property
+    def _places(self):
+        """Row or rows of each quantity, by name."""
+        ends = accumulate(self.widths)
+        return [
+            (name, end - 1 if width == 1 and not vector and name != "closure" else slice(end - width, end))
+            for name, end, width, vector in zip(self.quantities, ends, self.widths, self.vectors, strict=True)
+        ]
 
     @property
     def operations(self):
@@ -117,6 +122,11 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
         tuple(recorder.tables),
         recorder.graph,
     )
+
+
+def recorded(structure):
+    """The scene of a structure with a `Node` for each of its numbers."""
+    return _Recorder(structure, None).recorded
 
 
 class _Recorder:

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..numbers import checks
 from .cam_roller import CamRoller
-from .cams import CosineLaw
+from .cams import CosineLaw, LawCam
 from .crank import Crank
 from .guide import Guide
 from .lever_group import LeverGroup
@@ -15,6 +15,9 @@ from .mechanism import Mechanism
 from .rocker_group import RockerGroup
 from .slider_group import SliderGroup
 from .yoke_group import YokeGroup
+
+LEVEL = Guide()
+"""The guide along +x through O."""
 
 
 def crank_slider(
@@ -109,7 +112,7 @@ def cam_crank_slider(
     0.95
     """
     group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
-    if isinstance(cam, CosineLaw):
+    if isinstance(cam, CosineLaw | LawCam):
         _warn_off_law(cam, group)
     return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block), group))
 
@@ -246,10 +249,11 @@ def scotch_yoke(
 def _warn_off_law(cam, group):
     """Warn if the slider will not follow the law that the cam is cut for."""
     angle, length = group.guide.guide_angle, group.coupler_length
+    offset = getattr(cam, "guide_offset", 0.0)
     wrong = [
         text
         for text, value, wanted in [
-            (f"guide_offset {group.guide.guide_offset} m is not 0", group.guide.guide_offset, 0.0),
+            (f"guide_offset {group.guide.guide_offset} m is not {offset:.9g}", group.guide.guide_offset, offset),
             (f"assembly {group.assembly} is not +1", group.assembly, 1.0),
             (f"guide_angle {angle} is not the cam's {cam.guide_angle}", np.cos(angle - cam.guide_angle), 1.0),
             (f"coupler_length {length} m is not the cam's {cam.coupler_length} m", length, cam.coupler_length),
@@ -257,12 +261,13 @@ def _warn_off_law(cam, group):
         if checks.known(value) and checks.known(wanted) and np.any(np.abs(value - wanted) > 1e-9)
     ]
     if wrong:
-        warnings.warn(f"the slider will not follow the cosine law of its cam: {'; '.join(wrong)}", stacklevel=3)
+        kind = "cosine law" if isinstance(cam, CosineLaw) else "law"
+        warnings.warn(f"the slider will not follow the {kind} of its cam: {'; '.join(wrong)}", stacklevel=3)
 
 
 def _guide(guide, angle, offset):
     if guide is None:
-        return Guide.at(angle, offset)
+        return LEVEL if type(angle) is type(offset) is float and angle == offset == 0.0 else Guide.at(angle, offset)
     free = present(angle) is None and present(offset) is None
     checks.require("guide", None if free else "give either guide or guide_angle and guide_offset")
     return guide

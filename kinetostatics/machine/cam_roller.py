@@ -102,10 +102,10 @@ class CamRoller(checks.Checked, Group):
         return (*getattr(self.cam, "lengths", ()), *self.block.centre)
 
     @property
-    def shortest(self):
+    def reaches(self):
         """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
         found = getattr(self.cam, "smallest_radius", None)
-        return np.min(self.cam.polar(GRID, ray(GRID))[0]) if found is None else found
+        return (np.min(self.cam.polar(GRID, ray(GRID))[0]) if found is None else found,)
 
     @property
     def hangs_on(self):

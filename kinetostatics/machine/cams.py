@@ -6,19 +6,20 @@ the turn.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import namespace, sqrt
+from ..numbers.lazy import cached_property
 from .cam import Cam
 from .crank import ray as ray_at
 from .harmonic_cam import Harmonic
+from .law_cam import LawCam, from_law
 from .sampled_cam import Sampled
 
-__all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "Sampled"]
+__all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "LawCam", "Sampled", "from_law"]
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.planar import minus, number, subtracted, vector
@@ -80,8 +78,8 @@ class Crank(checks.Checked):
         return (self.length is None,)
 
     @property
-    def shortest(self):
-        return np.inf if self.length is None else self.length
+    def reaches(self):
+        return () if self.length is None else (self.length,)
 
     @property
     def lengths(self):

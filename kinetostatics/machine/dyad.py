@@ -13,7 +13,7 @@ from ..numbers import checks
 from ..numbers.planar import added, cross, dot, subtracted
 from . import rocker_group
 from .friction import Turning
-from .group import Bar, Group, Output, Point, Resolved, joint_reaction, separation, smaller
+from .group import Bar, Group, Output, Point, Resolved, joint_reaction, separation
 from .links import Joint, Link, Wrench, between
 from .rocker_group import RockerMotion
 
@@ -128,10 +128,6 @@ class Dyad(checks.Checked, Group):
     def bars(self):
         first, second = self.on
         return Bar(first, self.pin, self._link1, self.length1), Bar(second, self.pin, self._link2, self.length2)
-
-    @property
-    def shortest(self):
-        return smaller(self.length1, self.length2)
 
     @property
     def lengths(self):

@@ -222,9 +222,9 @@ class Group:
         return [bar.length for bar in self.bars]
 
     @property
-    def shortest(self):
-        """Its shortest link or cam radius."""
-        return smaller(*(bar.length for bar in self.bars))
+    def reaches(self):
+        """Lengths of its bars and cam radii, the shortest of which counts for a first look at the condition."""
+        return [bar.length for bar in self.bars]
 
     @property
     def bars(self):

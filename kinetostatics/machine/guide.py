@@ -1,13 +1,13 @@
 """The straight guide of a slider: a line of any inclination and offset, and what a slider on it has from it."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
+from ..numbers.lazy import cached_property
 from ..numbers.planar import added, number, turned
 from .group import Output
 from .links import Joint, LinkMotion, present

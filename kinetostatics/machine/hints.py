@@ -1,13 +1,11 @@
 """What looks like a slip, though a machine could have it: a warning, and computed all the same."""
 
-import math
-from itertools import pairwise
-
 import numpy as np
 
 from ..numbers import checks
+from ..numbers.elementary import sqrt
 from .group import FRAME
-from .links import Link
+from .links import present
 
 FAR = 20.0
 """Lengths of the longest link beyond which nobody puts a mass centre: millimetres beside metres make 1000."""
@@ -17,13 +15,26 @@ THIN = 1000.0
 
 def of_mechanism(mechanism):
     """Sentences on sliders that stand still, and on mass centres and inertias that look like those of another unit."""
-    units = _of_units(mechanism)
-    return (*_still(mechanism), *units) if _may_stand_still(mechanism) else units
+    return (*_still(mechanism), *_of_units(mechanism))
+
+
+def sizes(mechanism):
+    """What a first look compares, of any numbers.
+
+    In turn all lengths together, those of which the shortest counts, the bars, pairs of inertia and mass, and pairs of
+    a bar's length and how far that is from the arm of its inner joint. There are no hints where no bar is as long as
+    its arm, all lengths together are less than `FAR` of the longest bar, and no inertia is small even beside that bar.
+    """
+    reaches = [reach for part in mechanism.parts for reach in part.reaches]
+    bodies = [(link.inertia, link.mass) for link in mechanism.links.values() if present(link.inertia) is not None]
+    arms = []
+    for bar, _ in _on_arms(mechanism):
+        _, along, across = mechanism.joints[bar.start]
+        arms.append((bar.length, sqrt(along * along + across * across) - bar.length))
+    return mechanism.extent, reaches, [bar.length for bar in mechanism.bars], bodies, arms
 
 
 def _of_units(mechanism):
-    if _surely_none(mechanism):
-        return ()
     bars = [bar for bar in mechanism.bars if checks.known(bar.length)]
     if not bars:
         return ()
@@ -38,22 +49,13 @@ def _of_units(mechanism):
     return (*found, *(text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link)))))
 
 
-def _may_stand_still(mechanism):
-    """Whether a quick look at plain numbers leaves it open: several groups, or two bars of one length."""
-    lengths = [bar.length for bar in mechanism.bars]
-    if len(mechanism.groups) > 1 or not all(type(length) is float for length in lengths):
-        return True
-    return any(abs(one - other) <= 1e-9 * one for one, other in pairwise(sorted(lengths)))
-
-
 def _still(mechanism):
     """Say which sliders stand still all over the turn.
 
     That takes a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
     """
-    for bar in mechanism.bars:
-        slider = mechanism.joints[bar.end].link
-        if slider in mechanism.guides and _as_long_as_its_arm(mechanism, bar):
+    for bar, slider in _on_arms(mechanism):
+        if _as_long_as_its_arm(mechanism, bar):
             angle = np.linspace(0.0, 2.0 * np.pi * mechanism.turns, 60 * mechanism.turns, endpoint=False) + 1e-3
             rate = np.abs(mechanism.place(angle).travels[slider].first)
             if np.any(np.max(rate, axis=-1) <= 1e-9 * _most(bar.length)):
@@ -63,31 +65,24 @@ def _still(mechanism):
                 )
 
 
+def _on_arms(mechanism):
+    """Bars from a joint on a link that turns about a fixed pivot to a slider, each with that slider."""
+    for bar in mechanism.bars:
+        arm, slider = (mechanism.joints[end].link for end in (bar.start, bar.end))
+        if slider in mechanism.guides and arm != FRAME and _is_on_the_frame(mechanism, arm):
+            yield bar, slider
+
+
+def _is_on_the_frame(mechanism, link):
+    return mechanism.joints[mechanism.references[link]].link == FRAME
+
+
 def _as_long_as_its_arm(mechanism, bar):
-    """Whether a bar is as long as its inner joint is far from the fixed pivot that its link turns about, if any."""
-    link, along, across = mechanism.joints[bar.start]
-    if link == FRAME or mechanism.joints[mechanism.references[link]].link != FRAME:
+    """Whether a bar is as long as its inner joint is far from the fixed pivot that its link turns about."""
+    _, along, across = mechanism.joints[bar.start]
+    if not all(map(checks.known, (along, across, bar.length))):
         return False
-    if not (type(along) is type(across) is type(bar.length) is float):
-        if not all(map(checks.known, (along, across, bar.length))):
-            return False
-        return bool(np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length))
-    return abs(math.hypot(along, across) - bar.length) <= 1e-9 * bar.length
-
-
-def _surely_none(mechanism):
-    """Whether a quick look at plain numbers finds nothing odd: no link is longer than all lengths together."""
-    extent = mechanism.extent
-    if type(extent) is not float or not mechanism.proportion < FAR:
-        return False
-    thin = extent * extent / (THIN * 12.0)
-    for part in mechanism.parts:
-        for link in vars(part).values():
-            if type(link) is Link:
-                mass, inertia = link.mass, link.inertia
-                if not (type(mass) is type(inertia) is float) or 0.0 < inertia < thin * mass:
-                    return False
-    return True
+    return bool(np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length))
 
 
 def _inertia(bar, link):

@@ -10,10 +10,10 @@ so geometry is computed once whatever the crank does, and a force at rest is no 
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, NamedTuple
 
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from ..numbers.planar import added, cross, left, minus, moment, plus, product, stretched, subtracted, vector, work
 
 

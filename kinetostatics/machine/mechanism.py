@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.batched import Batched
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
@@ -194,7 +194,7 @@ class Mechanism(Batched):
     @cached_property
     def proportion(self):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
-        found = self.extent / smaller(*(part.shortest for part in self.parts))
+        found = self.extent / smaller(*(reach for part in self.parts for reach in part.reaches))
         return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
 
     @cached_property

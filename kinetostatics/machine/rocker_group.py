@@ -18,7 +18,7 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
 from . import change_points, passing
 from .friction import Turning
-from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation, smaller
+from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
 from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-53
@@ -193,10 +193,6 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
             Bar(self.on, self.pin, self._coupler, self.coupler_length),
             Bar(self.pivot_name, self.pin, self._rocker, self.rocker_length),
         )
-
-    @property
-    def shortest(self):
-        return smaller(self.coupler_length, self.rocker_length)
 
     @property
     def lengths(self):

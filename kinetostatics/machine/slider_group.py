@@ -217,10 +217,6 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
         return (Bar(self.on, self.pin, self._coupler, self.coupler_length),)
 
     @property
-    def shortest(self):
-        return self.coupler_length
-
-    @property
     def lengths(self):
         return (self.coupler_length, self.guide.guide_offset, *self.coupler.centre, *self.slider.centre)
 

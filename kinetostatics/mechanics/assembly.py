@@ -65,7 +65,7 @@ def _enough(solution, farthest=None):
     A bound of the crank angles will do in place of the farthest of them.
     """
     farthest = float(np.abs(np.asarray(solution.crank_angle)).max()) if farthest is None else farthest
-    return solution.mechanism.proportion * math.sqrt(WORST * max(1.0, farthest) / HALF)
+    return solution.proportion * math.sqrt(WORST * max(1.0, farthest) / HALF)
 
 
 def _in_double_precision(solution):

@@ -6,7 +6,7 @@ Everything here is the kernels' own arithmetic; engines and solutions ask it, it
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from ..machine.group import FRAME
 from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
+from ..numbers.lazy import cached_property
 from ..numbers.planar import added, minus, moment, number, plus, product
 from . import energy
 from .friction import Rubbing, driving
@@ -51,7 +52,8 @@ class Dynamics(Motion):
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
         if self.mechanism.passes:  # the crank's equilibrium has reactions that grow without bound
-            found.scalars["balancing_torque"] = self._torque_by_power
+            rubbed = {} if self.rubbing is None else self.rubbing.found
+            found.scalars["balancing_torque"] = self._torque_with(rubbed)
         return found
 
     @cached_property
@@ -87,7 +89,7 @@ class Dynamics(Motion):
 
     @property
     def _work_of_friction(self):
-        return reduce(plus, (rubbed.work for rubbed in self.rubbed.values()), None)
+        return _work_of(self.rubbed)
 
     @property
     def friction_margin(self):
@@ -143,7 +145,10 @@ class Dynamics(Motion):
 
     @property
     def _torque_by_power(self):
-        total = minus(reduce(plus, self.powers), self._work_of_friction)
+        return self._torque_with(self.rubbed)
+
+    def _torque_with(self, rubbed):
+        total = minus(reduce(plus, self.powers), _work_of(rubbed))
         return minus(None, total) if total is not None else 0.0
 
     @property
@@ -279,3 +284,8 @@ class Dynamics(Motion):
         if not size.ndim:
             return size if closed else size * np.nan
         return np.where(closed.any(axis=-1), np.max(np.where(closed, size, 0.0), axis=-1), np.nan)
+
+
+def _work_of(rubbed):
+    """Loss of friction by joint per unit of crank angle, None without any."""
+    return reduce(plus, (found.work for found in rubbed.values()), None)

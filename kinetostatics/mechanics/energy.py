@@ -11,8 +11,10 @@ T = J alpha + J' omega^2 / 2 + load torque).
 
 from functools import reduce
 
-from ..machine.links import arm, first_at, second_at
+from ..machine.group import FRAME
+from ..machine.links import arm, first_at, second_at, virtual_work
 from ..numbers.planar import minus, plus, product, work
+from .pushes import pushed, settled
 
 
 def reduced_inertia(motion):
@@ -45,6 +47,15 @@ def load_torque(motion):
         for name, link in motion.mechanism.links.items()
     )
     return minus(None, plus(_summed(weights), motion.load_work))
+
+
+def work_of(item, motion):
+    """Work of a load but weight per unit of crank angle, N m; None where it does none."""
+    if hasattr(item, "push"):
+        return product(pushed(item, motion), motion.placement.travels[item.on].first)
+    wrenches = settled(item, motion).wrenches(motion)
+    links = motion.placement.links
+    return _summed(virtual_work(links[name], wrench) for name, wrench in wrenches if name != FRAME)
 
 
 def _summed(parts):

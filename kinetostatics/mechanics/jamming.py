@@ -57,6 +57,21 @@ def check(solution, on_gap):
     warn(solution, margin, residual, stacklevel=6)
 
 
+def require_free(solution, owner):
+    """Raise `JammingError` for a result over the turn if friction jams at the solution's crank angles."""
+    if where(solution).size:
+        margin = solution._found("friction_margin")
+        raise _error(solution, margin, margin <= 0, f"{owner}: ", "")
+
+
+def where(solution):
+    """Crank angles of a solution of one design at which friction jams."""
+    if not solution.friction.acting:
+        return np.empty(0)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(solution.crank_angle)[solution._found("friction_margin") <= 0]
+
+
 def warn(item, margin, residual, stacklevel):
     """Warn where friction of a solution, or of a program's state, was not found to rounding."""
     with np.errstate(invalid="ignore"):
@@ -72,13 +87,15 @@ def warn(item, margin, residual, stacklevel):
         )
 
 
-def _error(solution, margin, jams):
+def _error(solution, margin, jams, owner="", other=', or pass on_gap="nan" to get NaN there and the rest exact'):
+    """What is wrong where friction jams, for the owner of a call."""
     angle = np.broadcast_to(solution.crank_angle, margin.shape)[jams]
     return JammingError(
-        f"{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, {_degrees(angle)} "
-        f"deg: it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (1 or more: there no forces, or "
+        f"{owner}{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, "
+        f"{_degrees(angle)} deg: "
+        f"it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (1 or more: there no forces, or "
         "more than one state of them, are in equilibrium); lower the coefficients, lengthen the shoes or steepen the "
-        'links, or pass on_gap="nan" to get NaN there and the rest exact',
+        f"links{other}",
         np.unique(angle).tolist(),
     )
 

@@ -1,20 +1,26 @@
 """Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 from ..errors import QuantityError
 from ..machine.friction import NONE, Frictions
 from ..machine.group import FRAME
 from ..machine.links import Joint, Spot, accelerated, angular_acceleration, arm, present
+from ..machine.loads import is_given
 from ..machine.loads.places import PLACE
 from ..machine.mechanism import Mechanism
-from ..numbers import checks
+from ..numbers import checks, kinds
 from ..numbers.elementary import namespace, read_only, stack
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves, taken_apart, wider
 from ..numbers.planar import number, plus, product, stretched, vector
 from .quantities import of_mechanism
+
+
+def _given(kind):
+    _, _, _, loads, *_ = kind.numbered
+    return all(map(is_given, loads))
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +53,23 @@ class Motion:
         leaves = Leaves()
         scene = self.mechanism, self.crank_speed, self.crank_acceleration, self.loads
         return taken_apart((*scene, self.friction) if self.friction.rubs else scene, leaves), leaves
+
+    @cached_property
+    def kind(self):
+        """What all scenes of its structure have in common."""
+        structure, leaves = self.apart
+        return kinds.of(structure) if leaves.lasting else kinds.Kind(structure)
+
+    @cached_property
+    def loads_are_given(self):
+        """Whether all loads are numbers, checked when they were made, and none code of the user's."""
+        _, leaves = self.apart
+        return self.kind.answer(_given) if leaves.lasting else all(map(is_given, self.loads))
+
+    @property
+    def proportion(self):
+        """Sum of all lengths over the shortest, the largest of a batch."""
+        return self.mechanism.proportion
 
     @cached_property
     def shape(self):

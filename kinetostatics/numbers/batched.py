@@ -1,11 +1,10 @@
 """Parameters that may be arrays of designs, and the shape that these have in common."""
 
-from functools import cached_property
-
 import numpy as np
 
 from ..errors import ParameterError
 from .checks import fitting
+from .lazy import cached_property
 from .leaves import Leaves, taken_apart, wider
 from .paths import places
 

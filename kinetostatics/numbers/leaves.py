@@ -34,6 +34,9 @@ STRUCTURAL = (bool, int, str)
 """Types of dataclass fields that are no numbers: an assembly, a name; others may say so, by their metadata."""
 
 
+FLOATS = frozenset((float,))
+
+
 class Kept(float):
     """A zero that stays a leaf, so that it can be given another value."""
 
@@ -60,10 +63,12 @@ class Leaves:
     @property
     def are_plain(self):
         """Whether all are plain numbers, and the structure tells all else."""
-        return self.lasting and not self.tables and all(type(number) is float for number in self.numbers)
+        return self.lasting and not self.tables and FLOATS.issuperset(map(type, self.numbers))
 
     def shape(self, angles):
         """Shape (..., N) of scalar results at crank angles of a shape."""
+        if self.are_plain:
+            return angles
         arrays = [leaf.shape for leaf in (*self.numbers, *self.tables) if type(leaf) is not float]
         return np.broadcast_shapes(angles, *arrays) if arrays else angles
 
@@ -284,20 +289,21 @@ def _of_dataclass(kind):
     over_angles = getattr(kind, "OVER_ANGLES", ())
     lines = ["def taker(item, leaves):", "    append = leaves.numbers.append"]
     for place, (name, structural) in enumerate(_kinds(kind)):
-        lines += [f"    v{place} = item.{name}", f"    kind = type(v{place})"]
+        array = "taken_apart" if name in over_angles else "constants"
+        lines.append(f"    v{place} = item.{name}")
         if structural:
-            lines.append(f"    if kind is not str: v{place} = structural(v{place}, leaves)")
+            lines.append(f"    if v{place}.__class__ is not str: v{place} = structural(v{place}, leaves)")
         else:
             lines += [
-                "    if kind is float:",
+                f"    if v{place}.__class__ is float:",
                 f"        if v{place} != 0.0:",
                 f"            append(v{place})",
                 f"            v{place} = NUMBER",
                 f"        else: v{place} = 0.0",
-                "    elif kind is array:",
-                f"        v{place} = {'taken_apart' if name in over_angles else 'constants'}(v{place}, leaves)",
                 f"    elif v{place} is not None:",
-                f"        v{place} = (takers.get(kind) or taker_of(kind))(v{place}, leaves)",
+                f"        kind = type(v{place})",
+                f"        if kind is array: v{place} = {array}(v{place}, leaves)",
+                f"        else: v{place} = (takers.get(kind) or taker_of(kind))(v{place}, leaves)",
             ]
     lines.append(f"    return (whole, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
     scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "array": np.ndarray}

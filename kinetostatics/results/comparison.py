@@ -1,34 +1,18 @@
 """Dynamic coefficients: how much one mechanism's torque and forces exceed another's."""
 
-import warnings
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..errors import ConditionWarning, ParameterError, QuantityError
-from ..machine.loads import TURN
+from ..errors import QuantityError
 from ..mechanics.quantities import label_of, magnitude, unit_of
 from ..numbers import checks
-from ..numbers.elementary import UNIT
-from .extremes import extrema, extremes, warning
-from .turn import SAME, USABLE, require_single
-
-ORDER = 8
-"""Nodes of a panel of the quadrature."""
-SPLIT = 0.4
-"""Where a panel is parted: not in the middle, on both sides of which nodes lie alike, so that jumps there hide."""
-CLOSE = 1e-14
-"""Share of the integral, divided by the panels, that parting a panel may change for it to be done."""
-PRECISE = 1e-9
-"""Error of a mean, relative to it, from which a warning tells."""
-SMALLEST = 1e-14
-"""Panel, in periods, that is not parted any more."""
-LARGEST = 2**17
-"""Crank angles evaluated at a time."""
-WORK = 2**17
-"""Panels after which the quadrature stops."""
+from ..numbers.lazy import cached_property
+from .extremes import extremes
+from .losses import lose
+from .means import mean_absolute_torque
+from .turn import SAME
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +62,16 @@ class Comparison:
         """Ratio of the largest reactions at a joint."""
         return _ratio(*self.peak_reactions(joint))
 
+    @property
+    def lost_powers(self):
+        """Mean power lost in reference and balanced mechanism, W (`Solution.losses`)."""
+        return self.reference.losses.total, self.balanced.losses.total
+
+    @property
+    def lost_power_ratio(self):
+        """Ratio of the mean powers lost: what balancing saves of friction."""
+        return _ratio(*self.lost_powers)
+
     def cam_force_range(self):
         """Smallest and largest cam force of reference and balanced mechanism, N; NaN for one without a cam."""
         return tuple(_range(solution, "cam_force") for solution in (self.reference, self.balanced))
@@ -98,6 +92,7 @@ class Comparison:
         reference, matched = self.torque_extremes
         for number, row in enumerate(zip(reference.value, matched, self.torque_extremum_ratios, strict=True), 1):
             rows.append((f"torque extremum {number}", "N m", *row))
+        rows += self._lost()
         for joint in self.reference.reactions:
             if joint in self.balanced.reactions:
                 row = *self.peak_reactions(joint), self.peak_reaction_ratio(joint)
@@ -117,6 +112,17 @@ class Comparison:
         table = pd.DataFrame(rows, columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
         return table.dropna(how="all", subset=list(self.names))
 
+    def _lost(self):
+        """Rows of the power lost by joint, all together, and of the efficiency; none where no power is lost."""
+        if not lose(self.reference, self.balanced):
+            return
+        both = self.reference.losses, self.balanced.losses
+        for name in dict.fromkeys(name for losses in both for name in losses.lost):
+            powers = [losses.lost.get(name, np.nan) for losses in both]
+            yield f"mean power lost, {name}", "W", *powers, _ratio(*powers)
+        yield "mean power lost", "W", *self.lost_powers, self.lost_power_ratio
+        yield "efficiency", "1", *(losses.efficiency for losses in both), np.nan
+
 
 def compare(reference, balanced):
     """Compare two solutions, by dynamic coefficients.
@@ -130,109 +136,10 @@ def compare(reference, balanced):
     -------
     Comparison
         Ratios reference / balanced: `.torque_extremum_ratios`, `.mean_torque_ratio`, `.peak_reaction_ratio(joint)`,
-        ranges of cam and inertia force, `.frame()`.
+        `.lost_power_ratio` with friction; ranges of cam and inertia force, `.frame()`.
     """
     checks.require("compare", checks.solution("reference", reference), checks.solution("balanced", balanced))
     return Comparison(reference, balanced)
-
-
-def mean_absolute_torque(solution):
-    """Integral mean of the absolute balancing torque over the period of the solution, N m.
-
-    By Gauss quadrature between changes of sign, on panels that are parted where the parts do not agree with the whole,
-    which closes in on jumps, corners and narrow pulses of a load. The nodes of the first panels are a fiftieth of a
-    degree apart at most where a load is a function; a pulse between them may pass unseen.
-
-    Raises
-    ------
-    ParameterError
-        The solution is a batch of designs, or does not close all round.
-
-    Warns
-    -----
-    ConditionWarning
-        The torque grows without bound at a limit position, so the mean is infinite; values around it that have no
-        correct digit do not count; or the load is so uneven that fewer digits of the mean are right.
-    """
-    turn = _closed_turn(solution, "mean torque")
-    peaks = extrema(solution, "balancing_torque")
-    words = [warning(solution, [peaks])]
-    mean = np.inf
-    if not np.isinf(peaks.value).any():
-        floor = 1e-14 * turn.at.at(turn.angle[turn.usable]).largest_torque_term
-        mean, error = _mean_absolute(lambda angle: turn.at.at(turn.clear(angle)).balancing_torque, turn, floor)
-        if error > PRECISE * mean + floor:
-            words.append(f"mean torque: it is right to about {error:.2g} N m of {mean:.6g} only, so uneven is the load")
-    for text in filter(None, words):
-        warnings.warn(text, ConditionWarning, stacklevel=2)
-    return mean
-
-
-def energy_per_turn(solution):
-    """Work of the balancing torque in a turn of the crank, J: what the loads take of the drive, negative if they give.
-
-    The integral over the period of the solution, as of `mean_absolute_torque`, by its turns.
-
-    Raises
-    ------
-    ParameterError
-        The solution is a batch of designs, or does not close all round.
-    """
-    turn = _closed_turn(solution, "energy per turn")
-    at = turn.at.at(turn.angle[turn.usable])
-    lift = 2.0 * np.abs(at.balancing_torque).max()  # a torque of one sign has no corners where it changes
-    floor = 1e-14 * at.largest_torque_term
-    mean, _ = _mean_absolute(lambda angle: turn.at.at(turn.clear(angle)).balancing_torque + lift, turn, floor)
-    return TURN * (mean - lift) * (-1.0 if np.any(np.asarray(at.crank_speed) < 0) else 1.0)
-
-
-def _closed_turn(solution, owner):
-    """Turn of a single design that closes all round."""
-    require_single(solution, owner, "balancing_torque")
-    turn = solution.sampled
-    if turn.gaps:
-        where = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g}" for start, stop in turn.gaps)
-        raise ParameterError(f"{owner}: {solution.mechanism.name} does not close for crank angles {where} deg")
-    return turn
-
-
-def _mean_absolute(function, turn, floor):
-    """Mean of the absolute value of a function of the crank angle, and about how much it may be wrong."""
-    from scipy.optimize import elementwise
-
-    nodes, weights = (part / 2 for part in np.polynomial.legendre.leggauss(ORDER))
-    even = np.linspace(0.0, turn.period, turn.panels + 1)
-    grid = np.unique(np.concatenate([even, turn.limits % turn.period, turn.kinks]))
-    samples = function(grid)
-    change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
-    kinks = elementwise.find_root(function, (grid[change], grid[change + 1])).x if change.size else []
-    edges = np.unique(np.concatenate([grid, kinks]))
-
-    def integrals(start, width):
-        parts = []
-        for some in np.array_split(np.arange(start.size), 1 + start.size * ORDER // LARGEST):
-            angle = start[some, None] + width[some, None] * (0.5 + nodes)
-            parts.append(np.abs(function(angle.ravel())).reshape(angle.shape) @ weights)
-        return width * np.concatenate(parts)
-
-    noise = np.abs(samples).max() * UNIT * np.fmin(turn.condition, USABLE) * (turn.limits.size > 0)
-    start, width = edges[:-1], np.diff(edges)
-    whole, total, wrong, room = integrals(start, width), 0.0, 0.0, WORK
-    while start.size:
-        left, right = SPLIT * width, (1.0 - SPLIT) * width
-        both = integrals(np.concatenate([start, start + left]), np.concatenate([left, right])).reshape(2, -1)
-        error = np.abs(both.sum(axis=0) - whole)
-        room -= both.size
-        size = np.abs(total) + np.abs(both).sum()
-        rough = error > width * (floor + np.interp(start, turn.angle, noise)) + 1e-16 * size
-        rough &= (left > SMALLEST * turn.period) & (error > CLOSE * size / start.size)
-        if room < 0:
-            rough[:] = False
-        total += both[:, ~rough].sum()
-        wrong += error[~rough].sum()
-        start = np.concatenate([start[rough], start[rough] + left[rough]])
-        width, whole = np.concatenate([left[rough], right[rough]]), both[:, rough].ravel()
-    return float(total) / turn.period, float(wrong) / turn.period
 
 
 def _matched(reference, balanced):

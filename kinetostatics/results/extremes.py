@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import ConditionWarning, ParameterError
+from ..mechanics import jamming
 from ..mechanics.quantities import scale, unit_of, values
 from ..numbers import checks
 from ..numbers.elementary import UNIT
@@ -101,7 +102,8 @@ def extremes(solution, quantity):
     Warns
     -----
     ConditionWarning
-        Values around some crank angles have no correct digit, or the quantity grows without bound there.
+        Values around some crank angles have no correct digit, or the quantity grows without bound there; or friction
+        jams there.
     """
     checks.require("extremes", checks.solution("solution", solution), checks.quantity(quantity, function=True))
     found = extrema(solution, quantity)
@@ -116,6 +118,10 @@ def warning(solution, several):
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
+    jams = jamming.where(solution.sampled.at)
+    if jams.size:
+        ends = f"{_degrees(jams[:1])} ... {_degrees(jams[-1:])}"
+        sentences.append(f"friction jams between {ends} deg (solution.friction_margin), no value counts there")
     if left_out.size:
         sentences.append(f"around crank angles {_degrees(left_out)} deg no value has a correct digit, so none counts")
     for item in unbounded:

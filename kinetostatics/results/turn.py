@@ -5,7 +5,6 @@ where nothing of them is right they are left out, and what the quantity tends to
 """
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from ..machine.loads import TURN, Table, is_given, period_of, refusals, value_of
 from ..mechanics import assembly
 from ..mechanics.pushes import given, title_of
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 
 SAMPLES = 1440
 """Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""

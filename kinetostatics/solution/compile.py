@@ -17,6 +17,7 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.quantities import CHECKS
 from ..numbers import checks, paths
 from ..numbers.elementary import read_only
+from ..numbers.kinds import Numbered
 from ..numbers.leaves import Kept, with_fields
 from .angles import crank_angles, problems
 from .scene import Scene, unchecked
@@ -105,7 +106,7 @@ class Program:
         numbered = programs.numbered(state)
         found = {path: place.value(numbered) for path, place in places.items()}
         self._numbers = {
-            path: (number, places[path].rule) for path, number in found.items() if isinstance(number, programs.Numbered)
+            path: (number, places[path].rule) for path, number in found.items() if isinstance(number, Numbered)
         }
         self._absent = tuple(path for path in places if path not in self._numbers)
         self._doors = {path for path in self._numbers if _is_judged_together(scene, places[path].steps)}

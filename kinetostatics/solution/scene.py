@@ -3,7 +3,6 @@
 import math
 import warnings
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,11 +17,14 @@ from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, refusals, 
 from ..machine.mechanism import Mechanism
 from ..mechanics import jamming
 from ..numbers import checks, paths
+from ..numbers.lazy import cached_property
 from .angles import crank_angles, problems
 from .drive_and_loads import in_a_line
 from .solution import Solution
 
-DRIVE = {"crank_speed": checks.Number("rad/s", table=True), "crank_acceleration": checks.Number("rad/s**2", table=True)}
+DRIVE = checks.Rules(
+    "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)
+)
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
@@ -69,7 +71,7 @@ class Scene:
     RULES = checks.Rules(
         "scene",
         mechanism=checks.Made(Mechanism, "a Mechanism"),
-        **DRIVE,
+        **DRIVE.rules,
         loads=checks.Own((), "loads"),
         friction=checks.Own((), "friction"),
     )
@@ -81,16 +83,14 @@ class Scene:
         values = vars(self)
         if type(self.mechanism) is not Mechanism:
             checks.require(owner, _no_mechanism(self.mechanism))
-        drive = {name: rule.quick(values[name]) for name, rule in DRIVE.items()}
-        if checks.UNSURE in drive.values():
-            drive = checks.examined(owner, DRIVE, values)
+        DRIVE.keep(values, owner)
         loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
         wrong = [text for item in loads for text in _load_problems(self.mechanism, item)]
         if self.friction is not None and self.friction is not rubbing.NONE:
             wrong += rubbing.problems(self.mechanism, self.friction)
         checks.require(owner, *wrong, _period_problem(loads))
         loads = tuple(item if type(item) in KINDS else checks.kept(item) for item in loads)
-        values.update(drive, loads=loads, friction=rubbing.taken(self.friction))
+        values.update(loads=loads, friction=rubbing.taken(self.friction))
 
     def __repr__(self):
         return f"<Scene: {self.mechanism.name}, {in_a_line(self)}>"
@@ -216,7 +216,8 @@ def solve(
 
 
 def _solved(scene, crank_angle, on_gap, engine):
-    checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
+    if on_gap is not GAPS[0]:
+        checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded
@@ -239,12 +240,13 @@ def unchecked(scene, crank_angle, engine=None):
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
             stacklevel=4,
         )
-    for text in (*mechanism.hints, *hints.of_angles(angle)):
-        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=4)
     solution = Solution(mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads, scene.friction)
     _, leaves = solution.apart
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
+    _, odd = solution.first_look
+    for text in (*(mechanism.hints if odd else ()), *hints.of_angles(angle)):
+        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=4)
     vars(solution)["engine"] = _engine(engine, angle, solution)
     return solution
 

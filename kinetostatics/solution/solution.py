@@ -3,23 +3,25 @@
 import math
 import warnings
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..engines.engines import NUMPY
+from ..engines.first_look import first_look
 from ..errors import ConditionWarning, ParameterError
 from ..machine.friction import Turning
-from ..machine.loads import is_given, period_of
+from ..machine.loads import period_of
 from ..mechanics import assembly, jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
 from ..mechanics.quantities import all_found, of_scene, scale, values
 from ..numbers.elementary import read_only
+from ..numbers.lazy import cached_property
 from ..results.turn import Turn
 from .angles import crank_angles
 from .drive_and_loads import in_a_line, over_the_angles
+from .energies import Energies
 
 SHARE = 100_000
 """Values over designs and angles up to which all forces are computed together."""
@@ -27,7 +29,7 @@ SCENE = tuple(field.name for field in fields(Motion))
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Motion):
+class Solution(Energies, Motion):
     """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
 
     The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
@@ -35,6 +37,18 @@ class Solution(Motion):
 
     engine: Any = NUMPY
     silent: bool = field(default=False, repr=False)
+
+    @cached_property
+    def first_look(self):
+        """Sum of all lengths over the shortest, and whether hints may be due."""
+        _, leaves = self.apart
+        look = self.kind.answer(first_look) if leaves.are_plain and not leaves.parts else None
+        return look(leaves.numbers) if look else (self.mechanism.proportion, True)
+
+    @property
+    def proportion(self):
+        found, _ = self.first_look
+        return found
 
     def check(self):
         """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""
@@ -124,6 +138,18 @@ class Solution(Motion):
         self._look_up("joint that rubs", joint, self.mechanism.pairs)
         return self._of_friction(f"{joint}_friction_loss")
 
+    @cached_property
+    def losses(self):
+        """Mean powers over the period, lost by joint and taken by loads, a `results.losses.Losses`; of one design."""
+        from ..results.losses import losses
+
+        return losses(self)
+
+    @property
+    def efficiency(self):
+        """Mechanical efficiency over the period: of what loads take and joints lose, the part that loads take."""
+        return self.losses.efficiency
+
     def friction_at(self, joint):
         """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
         self._look_up("joint that rubs", joint, self.mechanism.pairs)
@@ -205,44 +231,6 @@ class Solution(Motion):
         """Moment about O of the inertia of all moving masses on the frame, (..., N), N m."""
         return self._found("shaking_moment")
 
-    @property
-    def reduced_inertia(self):
-        """Inertia of all links as the crank feels it, (..., N), kg m2: twice the energy over the speed squared."""
-        return self._found("reduced_inertia")
-
-    @property
-    def reduced_inertia_slope(self):
-        """Derivative of the reduced inertia by the crank angle, (..., N), kg m2."""
-        return self._found("reduced_inertia_slope")
-
-    @property
-    def kinetic_energy(self):
-        """Kinetic energy of all links, (..., N), J."""
-        return self._found("kinetic_energy")
-
-    @property
-    def potential_energy(self):
-        """Potential energy of weight and springs, (..., N), J; weight has none at the height of O.
-
-        Loads without potential, as process forces and dampers, count nothing.
-        """
-        return self._found("potential_energy")
-
-    @cached_property
-    def energy_per_turn(self):
-        """Work of the balancing torque in a turn of the crank, J: what the loads take of the drive; of one design."""
-        from ..results.comparison import energy_per_turn
-
-        return energy_per_turn(self)
-
-    @property
-    def load_torque(self):
-        """Torque on the crank that holds weight and loads at their speed, without any inertia, (..., N), N m.
-
-        With reduced inertia J the balancing torque is J alpha + J' omega^2 / 2 + load torque.
-        """
-        return self._found("load_torque")
-
     def inertia_force(self, link):
         """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""
         return self.dynamics.inertia_force(link)
@@ -295,7 +283,13 @@ class Solution(Motion):
         """The scene at its crank angles, as engines take it and kernels compute it."""
         own = vars(self)
         made = object.__new__(Dynamics)
-        vars(made).update({name: own[name] for name in SCENE}, apart=self.apart, shape=self.shape)
+        vars(made).update(
+            {name: own[name] for name in SCENE},
+            apart=self.apart,
+            loads_are_given=self.loads_are_given,
+            kind=self.kind,
+            shape=self.shape,
+        )
         vars(made).update(way=getattr(self.engine, "way", None))
         return made
 
@@ -316,7 +310,7 @@ class Solution(Motion):
     @property
     def is_given(self):
         """Whether nothing of it is code of the user's, which may be wrong and is to be told when it is asked."""
-        return self.mechanism.trusted and all(map(is_given, self.loads))
+        return self.mechanism.trusted and self.loads_are_given
 
     def _warn_of_growth(self, name, values):
         """Say once that forces grow without bound at a change point that is passed."""

@@ -113,14 +113,15 @@ class Needs:
 def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs:
     """How much model a quantity needs: every combination of simplifications run, the cheapest one named.
 
-    Left out or put more simply: gravity, springs, process forces, crank acceleration, guide offset, mass-centre offsets
-    across the links, masses of links, inertia of those that keep two joints apart, such as coupler and rocker, about
-    their centres, the coupler as two masses at its joints, and kinematics as Fourier series of one or two harmonics.
-    Links of one kind, such as coupler and coupler2, are simplified together. Where
-    that makes more than 2000 combinations, the simplifications that alone change most are left out of them; a cheaper
-    model in which their errors cancel would be missed. So are those that the scene does not allow, such as two masses
-    for a coupler whose mass centre lies beyond its joints, or harmonics that take a slider beyond the table of its
-    load. The result tells them by name, with the reason.
+    Left out or put more simply: gravity, springs, process forces, friction of pins, of guides, of slots and of rollers,
+    crank acceleration, guide offset, mass-centre offsets across the links, masses of links, inertia of those that keep
+    two joints apart, such as coupler and rocker, about their centres, the coupler as two masses at its joints, and
+    kinematics as Fourier series of one or two harmonics. Links of one kind, such as coupler and coupler2, are
+    simplified together, and joints that rub in the same way. Where that makes more than 2000 combinations, the
+    simplifications that alone change most are left out of them; a cheaper model in which their errors cancel would be
+    missed. So are those that the scene does not allow, such as two masses for a coupler whose mass centre lies beyond
+    its joints, or harmonics that take a slider beyond the table of its load. The result tells them by name, with the
+    reason.
 
     Parameters
     ----------

@@ -8,6 +8,9 @@ import numpy as np
 from ..engines.engines import Kernels
 from ..engines.series import harmonic_series
 from ..errors import NotGivenError
+from ..machine.friction import KINDS as FRICTIONS
+from ..machine.friction import kind_for
+from ..machine.friction import taken as friction_of
 from ..machine.group import FRAME
 from ..machine.guide import Guide
 from ..machine.links import Link
@@ -75,6 +78,15 @@ def _without_load(kind):
     def simplified(solution):
         kept = tuple(item for item in solution.loads if not isinstance(item, kind))
         return replace(solution, loads=kept) if len(kept) < len(solution.loads) else None
+
+    return simplified
+
+
+def _without_friction(kind):
+    def simplified(solution):
+        gone = {joint for joint, friction in solution.friction.acting.items() if isinstance(friction, kind)}
+        left = {joint: replace(item, mu=0.0) if joint in gone else item for joint, item in solution.friction.items()}
+        return replace(solution, friction=replace(friction_of(left), passes=solution.friction.passes)) if gone else None
 
     return simplified
 
@@ -165,4 +177,7 @@ def ingredients(mechanism):
         choices = [Choice(f"no {kind} inertia", _without_inertia(kind))] if kind in hung else []
         choices += [Choice(f"two-mass {kind}", _as_two_masses(kind))] if kind in couplers else []
         links[kind] = (*choices, Choice(f"massless {kind}", _massless(kind)))
-    return BEFORE | links | AFTER
+    rubs = {kind_for(pair) for pair in mechanism.pairs.values()}
+    names = {kind.RULES.owner: kind for kind in FRICTIONS if kind in rubs}
+    friction = {name: (Choice(f"no {name}", _without_friction(kind)),) for name, kind in names.items()}
+    return BEFORE | friction | links | AFTER

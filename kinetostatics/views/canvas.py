@@ -69,9 +69,25 @@ def display(name, arrays):
     if name == "rad":
         return 180 / np.pi, "deg"
     largest = max(float(np.nanmax(np.abs(array))) for array in arrays)
-    return (1e-3, f"k{name}") if name in ("N", "N m") and largest >= 1e4 else (1.0, name)
+    return (1e-3, f"k{name}") if name in ("N", "N m", "W") and largest >= 1e4 else (1.0, name)
 
 
 def closed(curve):
     """Curve (2, N) over one turn with its first point repeated at the end."""
     return np.concatenate([curve, curve[:, :1]], axis=1)
+
+
+def finished(ax, ylabel, legend, period=360):
+    """The axes of curves over the crank angle, degrees, with labels, grid and legend."""
+    ax.set_xlabel("crank angle [deg]")
+    ax.set_ylabel(ylabel)
+    low, high = ax.dataLim.intervalx
+    if low >= 0 and high <= period:
+        ax.set_xlim(0, period)
+        ax.set_xticks(range(0, period + 1, period // 4))
+    ax.axhline(0, color=INK, lw=0.5)
+    ax.grid(alpha=0.3)
+    if legend:
+        ax.margins(y=0.18)
+        ax.legend(frameon=False, loc="upper center", ncols=3, fontsize="small", columnspacing=1.0)
+    return ax

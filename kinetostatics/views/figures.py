@@ -13,6 +13,7 @@ from ..errors import ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
+from ..results.losses import lose
 from . import drives, plots
 
 
@@ -88,6 +89,14 @@ def _all_have_one_slider(case):
 
 def _is_chain_unit(case):
     return all(item.table.mechanism == "chain-unit" for item in case.variants.values())
+
+
+def _rubs(case):
+    return any(map(lose, case.variants.values()))
+
+
+def _that_rub(solutions):
+    return {name: solution for name, solution in solutions.items() if lose(solution)}
 
 
 def _is_balanced(case):
@@ -180,6 +189,8 @@ FIGURES = {
     "hodograph": (partial(_one_each, plots.hodograph), _always),
     "pressure_angle": (_of_those_that_have("pressure_angle"), _has("pressure_angle")),
     "cam_force": (_of_those_that_have("cam_force"), _has("cam_force")),
+    "losses": (lambda solutions: _single(plots.losses)(_that_rub(solutions)), _rubs),
+    "lost_power": (lambda solutions: _one_each(plots.lost_power, _that_rub(solutions), 6.4, 3.2, 1), _rubs),
     "mass_centres": (_single(plots.mass_centres, 9.0, 3.6), _is_balanced),
     "shaking_by_direction": (_single(plots.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
     "shaking_by_crank_angle": (

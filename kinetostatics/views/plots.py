@@ -12,23 +12,33 @@ import numpy as np
 
 from ..design.linkage import chain_unit_angle, four_bar_of
 from ..errors import QuantityError
+from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, of_mechanism, values
 from ..numbers.checks import choice, problem, require
 from ..results.extremes import extremes
-from .canvas import INK, axes, closed, display, labelled, styled
+from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
+from .canvas import INK, axes, closed, display, finished, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
 from .fronts import front
 from .labels import label
+from .lost_power import losses, lost_power
 
 __all__ = [
     "acceleration_error",
     "animation",
+    "cam_curvature",
     "cam_force",
+    "cam_pressure_angle",
+    "cam_profile",
     "chain_unit_motion",
+    "contact_pressure",
     "error_by_distance",
     "front",
     "hodograph",
+    "law_motion",
+    "losses",
+    "lost_power",
     "mass_centres",
     "mechanism",
     "model_ladder",
@@ -65,7 +75,7 @@ def over_turn(solutions, quantity, ax=None):
     factor, shown = display(declared.unit, [value for _, value in curves.values()])
     for name, (angle, value), style in styled(curves):
         ax.plot(angle, factor * value, linestyle=style, label=name)
-    return _finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named))
+    return finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named))
 
 
 def torque(solutions, ax=None):
@@ -100,7 +110,7 @@ def acceleration_error(solutions, ax=None, slider=None):
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
         ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
-    return _finished(
+    return finished(
         ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named)
     )
 
@@ -186,7 +196,7 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
         )
         ax.plot(angle[rows], relative[rows], linestyle=style, label=name)
     kind = "velocity" if order == 1 else "acceleration"
-    _finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
+    finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
     ax.set_xlabel("crank angle from +y, clockwise [deg]")
     return ax
 
@@ -238,21 +248,6 @@ def _longest(named):
     return round(np.degrees(max(solution.period for solution in named.values())))
 
 
-def _finished(ax, ylabel, legend, period=360):
-    ax.set_xlabel("crank angle [deg]")
-    ax.set_ylabel(ylabel)
-    low, high = ax.dataLim.intervalx
-    if low >= 0 and high <= period:
-        ax.set_xlim(0, period)
-        ax.set_xticks(range(0, period + 1, period // 4))
-    ax.axhline(0, color=INK, lw=0.5)
-    ax.grid(alpha=0.3)
-    if legend:
-        ax.margins(y=0.18)
-        ax.legend(frameon=False, loc="upper center", ncols=3, fontsize="small", columnspacing=1.0)
-    return ax
-
-
 def _vector(solution, name):
     """Values of a vector, (2, N)."""
     vectors = {known: found for known, found in of_mechanism(solution.mechanism).items() if found.vector}
@@ -263,7 +258,7 @@ def _vector(solution, name):
 
 def _declared(named, name):
     """Unit and label of a quantity that all solutions have."""
-    return of_mechanism(next(iter(named.values())).mechanism)[name]
+    return quantities.quantity(next(iter(named.values())), name)
 
 
 def _marked(solution, step):

@@ -1,12 +1,12 @@
 """What a mechanism looks like, read off what its groups and loads declare: lines and plates in each pose."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..machine.group import FRAME
+from ..numbers.lazy import cached_property
 from ..numbers.planar import unturned
 from . import symbols
 

@@ -241,6 +241,25 @@ def test_a_sampled_cam_stands_in_a_chain(tmp_path):
     assert found.startswith(f"variants.cam.groups[1].cam: {tmp_path / 'none.csv'}: cannot be read")
 
 
+@pytest.mark.filterwarnings("ignore:sampled cam. 360 points")
+def test_the_noise_of_a_measured_cam_is_stated_with_its_unit(tmp_path):
+    degrees = np.arange(360)
+    radius = np.round(ks.cams.Circle(0.3, (-0.02, 0.0)).radius(np.radians(degrees))[0], 6)
+    rows = "\n".join(f"{a},{1000 * r!r}" for a, r in zip(degrees.tolist(), radius.tolist(), strict=True))
+    (tmp_path / "cam.csv").write_text(f"angle [deg], radius [mm]\n{rows}\n", encoding="utf-8")
+    text = (EXAMPLES / "cam_roller.toml").read_text(encoding="utf-8")
+    law = '{ kind = "cosine-law", amplitude = "0.3 m", mean = "2 m" }'
+    measured = '{ kind = "sampled", table = "cam.csv", noise = "0.29 um" }'
+    variant = ks.load_case(case_file(tmp_path, text.replace(law, measured))).variant("cam")
+    assert variant.mechanism.groups[0].cam.smoothing == pytest.approx(0.29e-6)
+    assert variant.mechanism.groups[0].cam.force_error < 1e-3
+    (found,) = problems(tmp_path, text.replace(law, measured.replace("0.29 um", "0 um")))
+    assert "noise" in found
+    assert "must be greater than 0" in found
+    with pytest.warns(UserWarning, match=r"less than the 2\.75e-07 m by which the radius values scatter"):
+        ks.load_case(case_file(tmp_path, text.replace(law, measured.replace("0.29", "0.09")))).variant("cam")
+
+
 def test_a_chain_is_balanced_by_a_counterweight(tmp_path):
     shutil.copy(EXAMPLES / "indicator.csv", tmp_path)
     text = (EXAMPLES / "slider.toml").read_text(encoding="utf-8")

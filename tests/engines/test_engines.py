@@ -1,6 +1,6 @@
 """`ks.solve(engine=...)`: the compiled engine gives what NumPy gives, and says what it does not take."""
 
-import importlib.util
+import sys
 import warnings
 from dataclasses import dataclass, replace
 
@@ -242,7 +242,7 @@ def test_unknown_engine_is_refused_with_those_there_are():
 
 
 def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "numba", None)
     with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]".*engine="numpy"'):
         solve(SCENES["plain"], SAMPLES, engine="compiled")
 

@@ -1,6 +1,5 @@
 """One source of physics on every engine: JAX, arb, dask, and programs recorded from the kernels, compiled by numba."""
 
-import importlib.util
 import json
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from kinetostatics.engines.trace import Node
 from kinetostatics.errors import NotGivenError
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components, magnitude
+from kinetostatics.numbers import kinds
 from kinetostatics.numbers.leaves import put_together
 from support import DATA
 from support.scenes import (
@@ -373,7 +373,7 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
         return sorted((path.name, path.stat().st_mtime_ns) for path in kept)
 
     compiled._loaded.cache_clear()
-    programs._kept.clear()
+    kinds.forget()
     exec(code)
     here, compiled_here = capsys.readouterr().out, files()
     sources, code_files = ([name for name, _ in compiled_here if name.endswith(end)] for end in (".py", ".nbc"))
@@ -416,7 +416,7 @@ def test_program_of_a_table_at_other_angles_is_refused():
 
 
 def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "numba", None)
     scene = ks.Scene(SCENES["plain"].mechanism, crank_speed=1.0)
     with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]"'):
         ks.compile(scene, ["O"], engine="compiled")

@@ -322,3 +322,40 @@ def test_a_program_with_stronger_friction_than_its_scenes_says_where_it_is_not_f
         program(TURN, strong)
     with pytest.raises(ks.ParameterError, match="crank_speed and crank_acceleration are both 0"):
         program(TURN, {"crank_speed": 0.0, "crank_acceleration": 0.0})
+
+
+OPEN = {"coupler": ks.Link(2.0, 0.1, 0.01), "rocker": ks.Link(1.0, 0.05)}
+LEGS = {name: ks.PinFriction(0.1, 0.01) for name in ("O", "A", "B", "O2")}
+
+
+@pytest.mark.parametrize(("angle", "assembly"), [(0.7, "open"), (2.2, "crossed")])
+def test_friction_where_change_points_are_passed_is_that_of_the_side_it_is_on(angle, assembly):
+    """The same posture by its sign, off the change points: an assembly that keeps to one side passes none."""
+    found = [
+        ks.solve(
+            ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=(0.3, 0.0), assembly=side, **OPEN),
+            [angle],
+            crank_speed=10.0,
+            loads=ks.Gravity(),
+            friction=LEGS,
+        )
+        for side in (assembly, 1, -1)
+    ]
+    passing, *sides = found
+    same = min(sides, key=lambda s: float(np.abs(s.position("B") - passing.position("B")).max()))
+    assert np.abs(same.position("B") - passing.position("B")).max() < 1e-12
+    assert passing.balancing_torque == pytest.approx(same.balancing_torque, rel=1e-12)
+    assert passing.friction_loss == pytest.approx(same.friction_loss, rel=1e-12)
+    assert passing.power_residual < 1e-13
+
+
+def test_friction_jams_at_change_points_that_are_passed_and_extremes_and_means_say_so():
+    mechanism = ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=(0.3, 0.0), assembly="open", **OPEN)
+    drive = {"crank_speed": 10.0, "loads": ks.Gravity(), "friction": LEGS}
+    with pytest.raises(ks.JammingError, match="jams at 2 of 3 crank angles"):
+        ks.solve(mechanism, [1e-3, np.pi - 1e-4, 1.0], **drive)
+    between = ks.solve(mechanism, [1.0, 2.0], **drive)
+    with pytest.warns(ks.ConditionWarning, match=r"friction jams between 0\.25 \.\.\. 359\.75 deg"):
+        ks.extremes(between, "balancing_torque")
+    with pytest.raises(ks.JammingError, match=r"^losses: four-bar: friction jams"):
+        between.efficiency  # noqa: B018

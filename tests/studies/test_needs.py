@@ -125,7 +125,8 @@ def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_mode
     loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0), ks.Force(5.0, at="B")]
     loads += [kind(5.0, on="coupler") for kind in (ks.Torque, ks.TorsionSpring, ks.TorsionDamper)]
     loads += [kind(5.0, between=("A", (3.0, 3.0))) for kind in (ks.PointForce, ks.PointSpring, ks.PointDamper)]
-    everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0), "O"))
+    rubbing = {"O": ks.PinFriction(0.1, 0.01), "guide": ks.GuideFriction(0.1)}
+    everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0, friction=rubbing), "O"))
     offered = simplifications.ingredients(mechanism).values()
     assert set(everything) == {choice.name for choices in offered for choice in choices}
     bare = ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))
@@ -444,3 +445,49 @@ def test_a_simplification_that_takes_a_slider_beyond_the_table_of_its_load_is_to
         assert "but the table from" in found.left_out[name]
         assert all(name not in model.simplifications for model in (*found.alone, *found.ladder))
     assert found.smallest.error <= 0.01
+
+
+# Friction
+
+RUBBING = {
+    "O": ks.PinFriction(0.05, 0.02),
+    "A": ks.PinFriction(0.05, 0.02),
+    "B": ks.PinFriction(1e-9, 0.02),
+    "guide": ks.GuideFriction(0.1),
+}
+
+
+def rubbing(mechanism, friction, **options):
+    return solved(mechanism, angle=TURN + 0.01, friction=friction, **options)
+
+
+def test_friction_is_an_ingredient_by_the_kind_of_joint_and_offered_only_where_it_acts(few_models):
+    full = rubbing(MECHANISMS["crank-slider"], RUBBING)
+    found = alone(ks.needs(full, "balancing_torque"))
+    assert {name for name in found if "friction" in name} == {"no pin friction", "no guide friction"}
+    for name, kept in (("no pin friction", ["guide"]), ("no guide friction", ["O", "A", "B"])):
+        without = rubbing(MECHANISMS["crank-slider"], {joint: RUBBING[joint] for joint in kept})
+        assert found[name].error == pytest.approx(change(without, full, "balancing_torque"), rel=1e-9)
+        assert found[name].operations == operations(without, "balancing_torque")
+    assert not [name for name in alone(ks.needs(solved(MECHANISMS["crank-slider"]), "O")) if "friction" in name]
+    none = rubbing(MECHANISMS["crank-slider"], {"O": ks.PinFriction(0.0, 0.02)})
+    assert not [name for name in alone(ks.needs(none, "O")) if "friction" in name]
+    cam = RUBBING | {"slot": ks.SlotFriction(0.1), "cam": ks.RollerFriction(0.01, 0.02, 0.04)}
+    assert {"no slot friction", "no roller friction"} <= set(alone(ks.needs(rubbing(MECHANISMS["cam"], cam), "O")))
+
+
+def test_friction_may_be_left_out_of_a_torque_within_its_share_but_not_of_the_power_lost(few_models):
+    s = rubbing(MECHANISMS["crank-slider"], {"O": ks.PinFriction(1e-4, 0.02)})
+    assert "no pin friction" in ks.needs(s, "balancing_torque", within=0.01).smallest.simplifications
+    lost = ks.needs(s, "friction_loss", within=0.5)
+    assert alone(lost)["no pin friction"].error == 1.0
+    assert "no pin friction" not in lost.smallest.simplifications
+
+
+def test_model_without_friction_is_the_frictionless_scene_bit_for_bit(few_models):
+    s = rubbing(MECHANISMS["four-bar"], dict.fromkeys(("O", "A"), RUBBING["O"]))
+    model = alone(ks.needs(s, "O"))["no pin friction"].solution
+    plain = solved(MECHANISMS["four-bar"], angle=TURN + 0.01)
+    assert np.array_equal(model.reaction("O"), plain.reaction("O"))
+    assert np.array_equal(model.balancing_torque, plain.balancing_torque)
+    assert operations(model, "O") == operations(plain, "O")

@@ -191,3 +191,22 @@ def test_spreads_and_data_sets_of_new_groups_and_loads(tmp_path):
     first, again = (sweep(shaper(), designs, "rms O2", folder=tmp_path) for _ in range(2))
     assert first.equals(again)
     assert first.iloc[:, 1].is_monotonic_increasing
+
+
+def test_losses_of_a_case_are_outputs_and_their_means_those_of_each_design():
+    """Up to what even samples make of the jumps of friction between them."""
+    case = ks.load_case("sawframe_2r63_friction")
+    masses = pd.DataFrame({"slider.mass [kg]": [500.0, 600.0]})
+    outputs = ["mean friction_loss", "mean A_friction_loss", "ratio mean friction_loss"]
+    table = ks.sweep(case, masses, outputs, variant="plain", angles=3600, progress=False)
+    for row, mass in enumerate(masses.iloc[:, 0]):
+        losses = case.variant("plain").varied({"slider.mass": mass}).solve(8).losses
+        assert table["mean friction_loss [W]"][row] == pytest.approx(losses.total, rel=2e-5)
+        assert table["mean A_friction_loss [W]"][row] == pytest.approx(losses.friction["A"], rel=2e-5)
+    assert table["ratio mean friction_loss [1]"].tolist() == [1.0, 1.0]
+    coefficients = pd.DataFrame({"friction.guide.mu": [0.0, 0.1]})
+    lost = ks.sweep(case, coefficients, "mean guide_friction_loss", variant="plain", angles=3600, progress=False).iloc[
+        :, 1
+    ]
+    assert lost[0] == 0.0
+    assert lost[1] == pytest.approx(case.solve("plain", 8).losses.friction["guide"], rel=2e-5)

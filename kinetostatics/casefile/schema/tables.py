@@ -123,6 +123,7 @@ class CosineLawTable(Table):
 class SampledTable(Table):
     kind: Literal["sampled"]
     table: str
+    noise: Length | None = None
 
 
 class HarmonicTable(Table):

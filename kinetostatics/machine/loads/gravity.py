@@ -2,10 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import reduce
 from typing import Any
 
 from ...numbers import checks
+from ...numbers.lazy import cached_property
 from ...numbers.planar import added, dot, plus, product
 from ..crank import ray
 from ..links import arm

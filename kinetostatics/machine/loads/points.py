@@ -300,6 +300,7 @@ class PointDamper(PointLoad):
     between: Any = field(kw_only=True)
 
     PATH, LENGTHS, REFUSES, SIGN = "point_damper", ("between",), False, "damper"
+    DISSIPATES = True
     RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
 
     def pull(self, motion):

@@ -236,7 +236,7 @@ class TorsionDamper(Couple):
     on: str = field(kw_only=True)
     against: Any = field(default=None, kw_only=True)
 
-    PATH, SIGN = "torsion_damper", "ring"
+    PATH, SIGN, DISSIPATES = "torsion_damper", "ring", True
     RULES = checks.Rules(
         "torsion damper",
         coefficient=checks.Number("N*m*s/rad", low=0.0),

@@ -4,6 +4,8 @@ values
     What a value is: a number, an array, a truth value, a text ...; copies that nobody writes to.
 problems
     What is wrong, as sentences, and the one `ParameterError` that lists them: ``require(owner, *problems)``.
+single
+    Single numbers, where no arrays of designs are taken.
 rules
     What a field must be: `Number`, `Pair`, `Name` ..., and `Checked` dataclasses that keep to a table of `Rules`.
 
@@ -48,6 +50,7 @@ from .rules import (
     problem,
     table,
 )
+from .single import single, singles
 from .values import kept, known, unfit
 
 __all__ = [
@@ -82,6 +85,8 @@ __all__ = [
     "quantity",
     "require",
     "shown",
+    "single",
+    "singles",
     "solution",
     "table",
     "unfit",

@@ -22,7 +22,8 @@ class Number:
     """A number, or an array (designs, 1) of them; as a `table`, one for each crank angle.
 
     A rule has ``quick(value)``, which answers what to keep or `UNSURE`, and ``taken(value, field)``, which gives what
-    to keep and what is wrong with it, if anything, as a sentence.
+    to keep and what is wrong with it, if anything, as a sentence; ``plainly(value)`` may add the source of a condition
+    under which what is called so there is kept as it is, with the objects that it names.
     """
 
     unit: str = ""
@@ -43,6 +44,9 @@ class Number:
         if type(value) is float and self.above < value < self.below:
             return value
         return float(value) if type(value) is int and self.above < value < self.below else UNSURE
+
+    def plainly(self, value):
+        return f"{value}.__class__ is float and {self.above!r} < {value} < {self.below!r}", {}
 
     def taken(self, value, field=""):
         name = self.name or field
@@ -95,6 +99,10 @@ class Pair:
             first = quick(value)
             return UNSURE if first is UNSURE else (first, 0.0)
         return UNSURE
+
+    def plainly(self, value):
+        parts = (self.rule.plainly(f"{value}[{place}]")[0] for place in range(2))
+        return f"{value}.__class__ is tuple and len({value}) == 2 and {' and '.join(parts)}", {}
 
     def taken(self, value, field=""):
         name = self.name or field
@@ -174,6 +182,10 @@ class Optional:
     def quick(self, value):
         return value if value is None else self.rule.quick(value)
 
+    def plainly(self, value):
+        condition, objects = self.rule.plainly(value)
+        return f"({value} is None or {condition})", objects
+
     def taken(self, value, field=""):
         return (value, None) if value is None else self.rule.taken(value, field)
 
@@ -200,6 +212,9 @@ class Made:
 
     def quick(self, value):
         return value if type(value) is self.kind else UNSURE
+
+    def plainly(self, value):
+        return f"{value}.__class__ is kind_of_{value}", {f"kind_of_{value}": self.kind}
 
     def taken(self, value, field=""):
         return value, None if isinstance(value, self.kind) else f"{field} must be {self.words}, got {shown(value)}"
@@ -232,6 +247,10 @@ class Name:
 
     may_be_empty: bool = False
 
+    def plainly(self, value):
+        filled = "" if self.may_be_empty else f" and {value}"
+        return f"{value}.__class__ is str and {value}.isprintable(){filled}", {}
+
     def quick(self, value):
         return value if type(value) is str and value.isprintable() and (value or self.may_be_empty) else UNSURE
 
@@ -263,20 +282,43 @@ class Rules:
     """What the fields of a dataclass must be, field -> rule; `also` finds problems of several fields together."""
 
     def __init__(self, owner, also=None, **rules):
+        """`are_plain(values)` tells of a mapping whether all values are well and kept as they are."""
         self.owner, self.also, self.rules = owner, also, rules
-        self._looks = [(field, rule.quick) for field, rule in rules.items()]
+        self.are_plain = _look(rules)
 
     def admit(self, item):
         """Put into the fields what is to be kept of them, or raise `ParameterError`."""
-        values = vars(item)
-        for field, quick in self._looks:
-            found = quick(values[field])
-            if found is UNSURE:
-                values.update(examined(self.owner, self.rules, values))
-                break
-            values[field] = found
+        self.keep(vars(item), self.owner)
         if self.also is not None:
             require(self.owner, *self.also(item))
+
+    def keep(self, values, owner):
+        """The same in a mapping of field to value."""
+        if self.are_plain(values):
+            return
+        for field, rule in self.rules.items():
+            found = rule.quick(values[field])
+            if found is UNSURE:
+                values.update(examined(owner, self.rules, values))
+                return
+            values[field] = found
+
+
+def _look(rules):
+    """Function that tells of values by field whether all are kept as they are, written for the rules in one line."""
+    scope: dict[str, Any] = {}
+    lines = [f"    {field} = values[{field!r}]" for field in rules]
+    conditions = []
+    for field, rule in rules.items():
+        condition, objects = rule.plainly(field) if hasattr(rule, "plainly") else _quickly(rule, field)
+        scope |= objects
+        conditions.append(condition)
+    exec("\n".join(["def look(values):", *lines, f"    return {' and '.join(conditions) or 'True'}"]), scope)
+    return scope["look"]
+
+
+def _quickly(rule, value):
+    return f"quick_at_{value}({value}) is {value}", {f"quick_at_{value}": rule.quick}
 
 
 class Checked:
@@ -285,7 +327,9 @@ class Checked:
     RULES: ClassVar[Rules]
 
     def __post_init__(self):
-        self.RULES.admit(self)
+        rules = self.RULES
+        if rules.also is not None or not rules.are_plain(self.__dict__):
+            rules.admit(self)
 
 
 def examined(owner, rules, values):

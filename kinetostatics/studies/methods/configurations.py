@@ -1,11 +1,10 @@
 """Configurations: constraint equations at given coordinates, their derivatives, and what loads do there."""
 
-from functools import cached_property
-
 import numpy as np
 
 from ...machine.loads import Gravity, Spring
 from ...mechanics.pushes import pushed, settled
+from ...numbers.lazy import cached_property
 from .acting import Acting
 from .constraints import ACCELERATION, FORCE, RATE
 from .method import NotGivenError

@@ -1,0 +1,350 @@
+"""Contact of the roller with its cam over the turn: side, curvature, Hertz pressure, and what exceeds limits."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..machine.cam_roller import CamRoller
+from ..machine.profile import POSITIVE, SAMPLES, Peak, curvature, highest, surface_curvature
+from ..machine.profile import profile as working_curve
+from ..numbers import checks
+from ..numbers.lazy import cached_property
+from ..results.turn import require_single
+from . import hertz
+from .cam_rollers import Roller
+from .followers import lift_off_speed, starting_torque
+from .hardness import hardness_from_pressure
+
+LIMITS = {
+    "pressure": ("largest_pressure", "Pa", "Hertz pressure"),
+    "pin_load": ("largest_pin_load", "N", "load of the roller's pin"),
+    "friction_coefficient": ("largest_friction_coefficient", "1", "friction coefficient that keeps the roller rolling"),
+    "starting_torque": ("starting_torque", "N m", "torque to start"),
+}
+"""Largest values that limits are set to: where each is found, unit, what it is."""
+LEAST = {"life": ("h", "life of the roller's bearing"), "lift_off_speed": ("rad/s", "speed of lift-off")}
+"""Smallest values that limits are set to: unit, what it is."""
+OF_CURVE = ("pressure_angle", "curvature_radius")
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """The roller on its cam over the turn; made by `contact`.
+
+    Attributes
+    ----------
+    solution : Solution
+    cam : Cam
+    roller_radius, width : float
+        m.
+    modulus : float
+        E* of both materials together, Pa.
+    roller : Roller
+        What turns: its spin, its pin, its life.
+    limits : dict of str to float
+    """
+
+    solution: Any = field(repr=False)
+    cam: Any
+    roller_radius: float
+    width: float
+    modulus: float
+    roller: Roller = field(repr=False)
+    limits: dict[str, float] = field(repr=False, default_factory=dict)
+
+    def __repr__(self):
+        peak = self.largest_pressure
+        lines = [
+            f"<Contact: {self.solution.mechanism.name}, roller radius {self.roller_radius:.6g} m",
+            f"  side             {' and '.join(self.sides)}, {len(self.changes)} changes a period",
+            f"  largest pressure {peak.value / 1e6:.6g} MPa at {np.degrees(peak.angle):.6g} deg",
+            *(f"  exceeded         {text}" for text in self.exceeded),
+            *(
+                []
+                if self.force_error is None
+                else [f"  uncertain        forces by {self.force_error:.2g} of the largest"]
+            ),
+        ]
+        return "\n".join(lines) + ">"
+
+    @property
+    def force_error(self):
+        """Expected largest error of forces, relative to the largest, of a cam from a table; None of others."""
+        return getattr(self.cam, "force_error", None)
+
+    # over the crank angle
+
+    @property
+    def crank_angle(self):
+        """The solution's, rad."""
+        return self.solution.crank_angle
+
+    @property
+    def cam_force(self):
+        """Of the cam on the roller along the normal, N, positive toward the inside of the pitch curve."""
+        return self.solution.cam_force
+
+    @property
+    def side(self):
+        """Which side of the cam carries the roller, at each crank angle: "ring" outside it or "disk" inside."""
+        return np.where(self.cam_force > 0.0, "ring", "disk")
+
+    @property
+    def curvature_radius(self):
+        """Radius of the working curve that carries the roller, m: positive where convex, negative where hollow."""
+        bend = surface_curvature(self._bend, self.roller_radius, np.where(self.cam_force > 0.0, 1.0, -1.0))
+        with np.errstate(divide="ignore"):
+            return 1.0 / bend
+
+    @property
+    def relative_radius(self):
+        """Radius of the cylinder that presses a plane as the roller does the cam, m."""
+        return hertz.relative_radius(self._bend, self.roller_radius, self.cam_force)
+
+    @property
+    def pressure(self):
+        """Largest Hertz pressure in the contact, Pa."""
+        return self._pressure(self.cam_force, self._bend)
+
+    @property
+    def half_width(self):
+        """Half the width of the contact, m."""
+        return hertz.half_width(self.cam_force, self.width, self.modulus, self.relative_radius)
+
+    @property
+    def _bend(self):
+        return curvature(self.cam, self.crank_angle)
+
+    def _pressure(self, force, bend):
+        radius = hertz.relative_radius(bend, self.roller_radius, force)
+        return hertz.pressure(force, self.width, self.modulus, radius)
+
+    # over the period
+
+    @cached_property
+    def largest_pressure(self):
+        """Largest Hertz pressure over the period, Pa, and where, between the crank angles given too."""
+        return self._highest(lambda at: self._pressure(at.cam_force, curvature(self.cam, at.crank_angle)))
+
+    @cached_property
+    def largest_pin_load(self):
+        """Largest load of the roller's pin, N, and where."""
+        return self._highest(self.roller.pin_load)
+
+    @cached_property
+    def largest_pressure_angle(self):
+        """Largest size of the pressure angle, rad, and where."""
+        return highest(lambda angle: np.abs(self.cam.pressure_angle(angle)))
+
+    @cached_property
+    def largest_friction_coefficient(self):
+        """Largest friction coefficient that rolling without sliding takes, and where; without bound at a change."""
+        if self.changes:
+            return Peak(np.inf, self.changes[0])
+        return self._highest(self.roller.friction_coefficient)
+
+    @cached_property
+    def changes(self):
+        """Crank angles at which the roller changes sides, rad."""
+        from scipy.optimize import brentq
+
+        force = self._samples.cam_force
+        angle = np.append(self._samples.crank_angle, self.solution.period)
+        force = np.append(force, force[0])
+        places = np.flatnonzero((force[:-1] > 0.0) != (force[1:] > 0.0))
+
+        def at(angle):
+            return float(self.solution.at(np.array([angle])).cam_force[0])
+
+        return tuple(
+            float(brentq(at, angle[place], angle[place + 1], xtol=1e-13))
+            if at(angle[place]) * at(angle[place + 1]) < 0
+            else float(angle[place])
+            for place in places
+        )
+
+    @property
+    def sides(self):
+        """Sides that carry the roller somewhere in the period."""
+        positive = self._samples.cam_force > 0.0
+        return tuple(name for name, there in (("disk", not positive.all()), ("ring", positive.any())) if there)
+
+    @cached_property
+    def life(self):
+        """Basic rating life of the roller's bearing, h (ISO 281)."""
+        return self.roller.life(self._samples)
+
+    @cached_property
+    def equivalent_load(self):
+        """Constant load of the roller's bearing of the same life, N."""
+        return self.roller.equivalent_load(self._samples)
+
+    @cached_property
+    def reversals(self):
+        """What happens to the roller at each change of sides, as `Reversal`."""
+        return tuple(self.roller.reversal(self.solution, angle) for angle in self.changes)
+
+    @cached_property
+    def lift_off_speed(self):
+        """Crank speed from which the roller leaves the side it rests on, rad/s; 0 where both carry it at rest."""
+        return lift_off_speed(self.solution)
+
+    @cached_property
+    def starting_torque(self):
+        """Largest torque on the crank that turns the machine at rest, N m, and where."""
+        return starting_torque(self.solution)
+
+    @property
+    def hardness(self):
+        """Brinell hardness of through-hardened steel that bears the largest pressure 1e7 times (AGMA 2001-D04)."""
+        return hardness_from_pressure(self.largest_pressure.value)
+
+    @cached_property
+    def _samples(self):
+        period = self.solution.period
+        return self.solution.at(np.linspace(0.0, period, round(SAMPLES * period / (2 * np.pi)), endpoint=False))
+
+    def _highest(self, function):
+        return highest(lambda angle: function(self.solution.at(np.asarray(angle))), 0.0, self.solution.period)
+
+    # limits
+
+    @cached_property
+    def exceeded(self):
+        """What exceeds the limits, as sentences with both numbers and the crank angle."""
+        found = []
+        for name, (peak, unit, words) in LIMITS.items():
+            if name in self.limits and (found_peak := getattr(self, peak)).value > self.limits[name]:
+                found.append(
+                    f"{words}: {found_peak.value:.6g} {unit} at {np.degrees(found_peak.angle):.6g} deg, more than "
+                    f"{self.limits[name]:.6g}"
+                )
+        for side in self.sides:
+            made = working_curve(self.cam, self.roller_radius, 8, side)
+            given = {name: self.limits.get(name) for name in OF_CURVE}
+            found += [f"{side}: {text}" for text in made.exceeded(**given)]
+        for name, (unit, words) in LEAST.items():
+            if name in self.limits and (value := getattr(self, name)) < self.limits[name]:
+                found.append(f"{words}: {value:.6g} {unit}, less than {self.limits[name]:.6g}")
+        return tuple(found)
+
+    def frame(self):
+        """Table with a row for each crank angle, a pandas DataFrame."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            {
+                "crank_angle [deg]": np.degrees(self.crank_angle),
+                "cam_force [N]": self.cam_force,
+                "side": self.side,
+                "curvature_radius [m]": self.curvature_radius,
+                "pressure [Pa]": self.pressure,
+                "half_width [m]": self.half_width,
+                "pin_load [N]": self.roller.pin_load(self.solution),
+                "roller_spin [rad/s]": self.roller.spin(self.solution),
+                "friction_coefficient [1]": self.roller.friction_coefficient(self.solution),
+            }
+        )
+
+
+def contact(
+    solution,
+    roller_radius,
+    width,
+    youngs_modulus,
+    poissons_ratio,
+    *,
+    roller_mass=0.0,
+    roller_inertia=None,
+    load_rating=None,
+    life_exponent=10 / 3,
+    limits=None,
+):
+    """Contact of the roller with its cam over the turn, and what exceeds limits.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design, of a mechanism with a `CamRoller`.
+    roller_radius, width : float
+        m.
+    youngs_modulus : float or (roller, cam)
+        Pa.
+    poissons_ratio : float or (roller, cam)
+    roller_mass : float
+        Of what turns, a part of the block's mass, kg.
+    roller_inertia : float, optional
+        Of what turns about its pin, kg m2; m R^2 / 2 unless told.
+    load_rating : float, optional
+        Basic dynamic load rating C of its bearing (ISO 281), N.
+    life_exponent : float
+        10/3 for roller bearings, 3 for ball bearings.
+    limits : dict of str to float, optional
+        Largest "pressure" (Pa), "pin_load" (N), "friction_coefficient", "pressure_angle" (rad) and "starting_torque"
+        (N m); smallest convex "curvature_radius" (m), "life" (h) and "lift_off_speed" (rad/s). `exceeded` tells by what
+        they are broken.
+
+    Returns
+    -------
+    Contact
+
+    Raises
+    ------
+    ParameterError
+        A value no machine can have, no cam in the mechanism, a batch of designs, or a roller that undercuts the side of
+        the cam that it runs on.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.CosineLaw(0.3, 2.0)
+    >>> saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600.0))
+    >>> solution = ks.solve(saw, 0.5, crank_speed=10.0, loads=ks.Spring.balancing(600.0, 11.0, 2.0))
+    >>> found = ks.design.contact(solution, 0.05, 0.04, 210e9, 0.3, limits={"pressure": 1e9})
+    >>> print(f"{found.largest_pressure.value / 1e6:.1f} MPa on the {found.sides[0]}")
+    289.1 MPa on the disk
+    """
+    checks.require("contact", checks.solution("solution", solution))
+    require_single(solution, "contact", "cam_force")
+    cams = [group.cam for group in solution.mechanism.groups if isinstance(group, CamRoller)]
+    pairs = [
+        value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
+        for value in (youngs_modulus, poissons_ratio)
+    ]
+    given = {"roller_radius": (roller_radius, POSITIVE), "width": (width, POSITIVE)}
+    for part, E, nu in zip(("roller", "cam"), *pairs, strict=True):
+        given |= {f"youngs_modulus of the {part}": (E, POSITIVE)}
+        given |= {f"poissons_ratio of the {part}": (nu, {"low": 0.0, "high": 0.5 + 1e-12})}
+    given |= {"roller_mass": (roller_mass, {"low": 0.0}), "life_exponent": (life_exponent, POSITIVE)}
+    optional = {"roller_inertia": (roller_inertia, {"low": 0.0}), "load_rating": (load_rating, POSITIVE)}
+    given |= {name: pair for name, pair in optional.items() if pair[0] is not None}
+    values = checks.singles(
+        "contact",
+        None if cams else f"solution must be of a mechanism with a CamRoller, a {solution.mechanism.name} has none",
+        *_limit_problems(limits, load_rating),
+        **given,
+    )
+    materials = [
+        (values[f"youngs_modulus of the {part}"], values[f"poissons_ratio of the {part}"]) for part in ("roller", "cam")
+    ]
+    radius, mass = values["roller_radius"], values["roller_mass"]
+    inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
+    roller = Roller(cams[0], radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
+    limits = {name: float(value) for name, value in (limits or {}).items()}
+    found = Contact(solution, cams[0], radius, values["width"], hertz.modulus(materials), roller, limits)
+    for side in found.sides:
+        working_curve(found.cam, radius, 8, side)
+    return found
+
+
+def _limit_problems(limits, load_rating):
+    """What is wrong with limits, as sentences."""
+    known = (*LIMITS, *LEAST, *OF_CURVE)
+    if limits is not None and not isinstance(limits, dict):
+        yield f"limits must be a dict of name to number, got {checks.shown(limits)}"
+        return
+    for name, value in (limits or {}).items():
+        yield checks.choice("limit", name, known) or checks.single(f"limit {name!r}", value, **POSITIVE)[1]
+    if "life" in (limits or {}) and load_rating is None:
+        yield "a limit of the life takes the load_rating of the roller's bearing"

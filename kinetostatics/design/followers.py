@@ -1,0 +1,188 @@
+"""What sets the speed of a machine with a cam and springs: lift-off, surge of the springs, torque to start."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..machine.loads import Spring
+from ..machine.profile import POSITIVE, SAMPLES, highest
+from ..numbers import checks
+from ..results.turn import require_single
+from ..solution.scene import Scene
+
+CREEPING = 1e-6
+"""Share of the crank speed at which friction acts as in starting, and inertia no more."""
+QUADRATIC = 1e-9
+"""How far forces may be from growing with the square of the speed, relative to the largest."""
+FASTEST = 1e3
+"""Times its crank speed up to which lift-off is looked for."""
+
+
+class Surge(NamedTuple):
+    """A spring's own first oscillation between its ends, beside the motion of its end.
+
+    Attributes
+    ----------
+    natural_frequency : float
+        rad/s.
+    order : float
+        Times it swings in a turn of the crank at the solution's mean speed.
+    amplitudes : array
+        Of the spring's end by order, m; the first is its mean, orders count turns.
+    """
+
+    natural_frequency: float
+    order: float
+    amplitudes: np.ndarray
+
+    @property
+    def excitation(self):
+        """Amplitude of the end's motion at the order nearest to the natural frequency, m."""
+        nearest = round(self.order)
+        return float(self.amplitudes[nearest]) if 0 < nearest < len(self.amplitudes) else 0.0
+
+    def speeds(self, orders=range(1, 13)):
+        """Crank speeds at which a harmonic of each order meets the natural frequency, rad/s."""
+        return {order: self.natural_frequency / order for order in orders}
+
+
+def lift_off_speed(solution):
+    """Crank speed from which the roller leaves the side of the cam that it rests on, at constant speed, rad/s.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design, of a mechanism with a `CamRoller`; its speed tells which way the crank turns.
+
+    Returns
+    -------
+    float
+        0 where both sides carry it already at rest, inf where none of 1000 times the speed lifts it off.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> roller = ks.CamRoller(ks.cams.Circle(0.1, (0.02, 0.0)), block=ks.Link(2.0))
+    >>> machine = ks.Mechanism("cam drive", ks.Crank(None), (roller,))
+    >>> spring = ks.PointSpring(5e3, 0.03, between=("A", (0.0, 0.0)))
+    >>> round(ks.design.lift_off_speed(ks.solve(machine, 0.5, crank_speed=10.0, loads=spring)), 6)
+    39.528471
+    """
+    _require(solution, "lift_off_speed", "cam_force")
+    fast = _speed(solution)
+    angle = np.linspace(0.0, solution.period, SAMPLES, endpoint=False)
+    rest, moving, faster = (_force(solution, speed, angle) for speed in (CREEPING * fast, fast, 2.0 * fast))
+    side = np.sign(rest[int(np.argmax(np.abs(rest)))])
+    if not np.all(side * rest > 0.0):
+        return 0.0
+    if np.max(np.abs(faster - rest - 4.0 * (moving - rest))) <= QUADRATIC * np.max(np.abs(faster)):
+        return _by_squares(solution, fast)
+    return _by_search(solution, fast, side, angle)
+
+
+def _by_squares(solution, fast):
+    """Where forces are F0 + F2 speed^2: the least speed for which they vanish at some crank angle."""
+
+    def ratio(angle):
+        rest = _force(solution, CREEPING * fast, angle)
+        return (rest - _force(solution, fast, angle)) / (fast * fast * rest)
+
+    peak = highest(ratio, 0.0, solution.period).value
+    found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
+    return found if found <= FASTEST * abs(fast) else np.inf
+
+
+def _by_search(solution, fast, side, angle):
+    """Where loads hang on the speed in another way."""
+    from scipy.optimize import brentq
+
+    def least(speed):
+        return float(np.min(side * _force(solution, np.copysign(speed, fast), angle)))
+
+    low = CREEPING * abs(fast)
+    for speed in abs(fast) * np.geomspace(0.01, FASTEST, 61):
+        if least(speed) < 0.0:
+            return float(brentq(least, low, speed, rtol=1e-12))
+        low = speed
+    return np.inf
+
+
+def starting_torque(solution):
+    """Largest torque on the crank that turns the machine at rest through some crank angle, N m, and where.
+
+    Springs and weights must be overcome, and friction; inertia is not. Without sign.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.1, 0.3, slider=ks.Link(10.0))
+    >>> at_work = ks.solve(pump, 0.5, crank_speed=10.0, loads=ks.Spring(2e3, 0.3))
+    >>> round(ks.design.starting_torque(at_work).value, 3)
+    11.312
+    """
+    _require(solution, "starting_torque", "balancing_torque")
+    creeping = CREEPING * _speed(solution) if solution.friction.acting else 0.0
+    return highest(lambda angle: np.abs(_at(solution, creeping, angle).balancing_torque), 0.0, solution.period)
+
+
+def spring_surge(solution, spring_mass):
+    """Natural frequency of the springs on a slider, and the harmonics with which the machine moves their ends.
+
+    With both ends held, omega = pi sqrt(k / m); where it is a low multiple of the crank speed whose harmonic is not
+    small, coils clash (Wahl, *Mechanical Springs*, 1963, chapter 13).
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design, with a `Spring` among its loads.
+    spring_mass : float
+        Of all springs together that the stiffness is of, kg.
+
+    Returns
+    -------
+    Surge
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.1, 0.3)
+    >>> at_work = ks.solve(pump, 0.5, crank_speed=10.0, loads=ks.Spring(2e3, 0.3))
+    >>> found = ks.design.spring_surge(at_work, 0.5)
+    >>> print(f"order {found.order:.2f}, second harmonic {found.amplitudes[2] * 1e3:.2f} mm")
+    order 19.87, second harmonic 8.58 mm
+    """
+    _require(solution, "spring_surge", "")
+    mass = checks.singles("spring_surge", spring_mass=(spring_mass, POSITIVE))["spring_mass"]
+    springs = [load for load in solution.loads if isinstance(load, Spring)]
+    if len(springs) != 1 or not np.all(springs[0].stiffness):
+        raise ParameterError(
+            f"spring_surge: takes a solution with one Spring that has a stiffness among its loads, got {len(springs)}"
+        )
+    (spring,) = springs
+    turns = round(solution.period / (2.0 * np.pi))
+    at = solution.at(np.linspace(0.0, solution.period, SAMPLES * turns, endpoint=False))
+    series = np.abs(np.fft.rfft(at.placement.travels[spring.on].position))[::turns] / at.crank_angle.size
+    series[1:] *= 2.0
+    natural = float(np.pi * np.sqrt(spring.stiffness / mass))
+    return Surge(natural, natural / abs(_speed(solution)), series[: SAMPLES // 4])
+
+
+def _require(solution, owner, name):
+    checks.require(owner, checks.solution("solution", solution))
+    require_single(solution, owner, name)
+    if name == "cam_force" and "cam_force" not in solution.scalars:
+        raise ParameterError(f"{owner}: takes a mechanism with a CamRoller, a {solution.mechanism.name} has none")
+
+
+def _speed(solution):
+    """Mean crank speed over the crank angles given, with its sign; 1 rad/s of a machine that stands."""
+    return float(np.mean(solution.crank_speed)) or 1.0
+
+
+def _at(solution, speed, angle):
+    return Scene(solution.mechanism, speed, 0.0, solution.loads, solution.friction).solve(angle)
+
+
+def _force(solution, speed, angle):
+    return _at(solution, speed, angle).cam_force

@@ -1,0 +1,30 @@
+"""What Hertz pressure steel of a hardness bears, and the other way round."""
+
+from ..errors import ParameterError
+from ..machine.profile import POSITIVE
+from ..numbers import checks
+
+
+def pressure_from_hardness(brinell):
+    """Hertz pressure that through-hardened steel of a Brinell hardness bears 1e7 times, Pa.
+
+    2.22 HB + 200 MPa (AGMA 2001-D04, figure 2, grade 1), for 180 to 400 HB.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> round(ks.design.pressure_from_hardness(300.0) / 1e6, 3)
+    866.0
+    """
+    value = checks.singles("pressure_from_hardness", brinell=(brinell, POSITIVE))["brinell"]
+    if not 180.0 <= value <= 400.0:
+        raise ParameterError(
+            f"pressure_from_hardness: the standard tells of 180 to 400 HB, got {value:.6g}; give the pressure itself, "
+            "for case-hardened steel about 1.5e9 Pa"
+        )
+    return (2.22 * value + 200.0) * 1e6
+
+
+def hardness_from_pressure(pressure):
+    """Brinell hardness for a Hertz pressure in Pa: the same the other way round, extrapolated where it is."""
+    return (pressure / 1e6 - 200.0) / 2.22

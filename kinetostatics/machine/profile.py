@@ -1,0 +1,263 @@
+"""What a cam is cut to: the working curve for a roller, the path of a cutter, and what limits both.
+
+With kappa the curvature of the pitch curve, positive where it is convex seen from outside, R the radius of the roller:
+a disk inside the pitch curve has the curvature kappa / (1 - kappa R), a ring around it -kappa / (1 + kappa R), both
+positive where the surface is convex to the roller. The roller would cut the disk away where kappa R >= 1, the ring
+where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
+"""
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..numbers import checks
+from ..numbers.lazy import cached_property
+from .crank import ray as ray_at
+
+TURN = 2 * np.pi
+SAMPLES = 1440
+"""Crank angles a turn at which extremes are bracketed."""
+RIVALS = 4
+"""Highest samples between whose neighbours the peak is sought."""
+SIDES = {"disk": -1.0, "ring": 1.0}
+"""Side of the pitch curve on which the cam is: inside, outside."""
+POSITIVE = {"low": 0.0, "strict": True}
+CUT = 1e-3
+"""Share of the roller by which it may reach into another part of the cam: what a chain of points leaves open."""
+
+
+class Peak(NamedTuple):
+    """A largest or smallest value over the turn, and the crank angle where it is, rad."""
+
+    value: float
+    angle: float
+
+
+def highest(function, start=0.0, span=TURN):
+    """Largest value of a function of arrays of crank angles over the turn, between samples too."""
+    from scipy.optimize import minimize_scalar
+
+    step = span / SAMPLES
+    angle = start + step * np.arange(SAMPLES)
+    values = np.asarray(function(angle), dtype=float)
+    tops = np.flatnonzero((values >= np.roll(values, 1)) & (values >= np.roll(values, -1)))
+    found = []
+    for place in tops[np.argsort(-values[tops])][:RIVALS]:
+        best = minimize_scalar(
+            lambda x: -float(function(np.array([x]))[0]),
+            bounds=(angle[place] - step, angle[place] + step),
+            method="bounded",
+            options={"xatol": 1e-10},
+        )
+        found += [Peak(float(-best.fun), float(best.x % span)), Peak(float(values[place]), float(angle[place]))]
+    return max(found, key=lambda peak: peak.value)
+
+
+def lowest(function):
+    """Smallest value of a function of arrays of crank angles over the turn."""
+    peak = highest(lambda angle: -np.asarray(function(angle)))
+    return Peak(-peak.value, peak.angle)
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Working curve of a cam for a roller; made by ``cam.profile``.
+
+    Attributes
+    ----------
+    cam : Cam
+    roller_radius : float
+        m.
+    crank_angle : array (N,)
+        rad.
+    side : "disk" or "ring"
+        Whether the cam is inside the pitch curve or around it.
+    pitch, surface, normal : array (2, N)
+        Centre of the roller, where it touches the cam, and unit vector from inside the pitch curve outward; m.
+    pressure_angle : array (N,)
+        Between the normal and the crank ray, rad.
+    curvature_radius : array (N,)
+        Of the working curve, m: positive where it is convex to the roller, negative where it is hollow.
+    """
+
+    cam: Any
+    roller_radius: float
+    crank_angle: np.ndarray
+    side: str
+    pitch: np.ndarray = field(repr=False)
+    surface: np.ndarray = field(repr=False)
+    normal: np.ndarray = field(repr=False)
+    pressure_angle: np.ndarray = field(repr=False)
+    curvature_radius: np.ndarray = field(repr=False)
+
+    def cutter_path(self, cutter_radius):
+        """Centre of a cutter of another radius than the roller's that cuts the same working curve, (2, N), m.
+
+        Raises
+        ------
+        ParameterError
+            The cutter does not fit into a hollow of the working curve.
+        """
+        radius = checks.singles("cutter_path", cutter_radius=(cutter_radius, POSITIVE))["cutter_radius"]
+        hollow = self.smallest_hollow
+        if hollow is not None and radius >= -hollow.value:
+            raise ParameterError(
+                f"cutter_path: a cutter of radius {radius:.6g} m does not fit into the hollow of the {self.side} at "
+                f"crank angle {np.degrees(hollow.angle):.6g} deg, whose radius is {-hollow.value:.6g} m; take a smaller"
+            )
+        return self.surface - SIDES[self.side] * radius * self.normal
+
+    @cached_property
+    def largest_pressure_angle(self):
+        """Largest size of the pressure angle over the turn, rad, and where."""
+        return highest(lambda angle: np.abs(self.cam.pressure_angle(angle)))
+
+    @cached_property
+    def smallest_curvature_radius(self):
+        """Smallest radius of the working curve where it is convex to the roller, m, and where; None if nowhere."""
+        sharpest = highest(self._surface_curvature)
+        return Peak(1.0 / sharpest.value, sharpest.angle) if sharpest.value > 0 else None
+
+    @cached_property
+    def smallest_hollow(self):
+        """Radius of the tightest hollow of the working curve, m, negative, and where; None if there is none."""
+        deepest = lowest(self._surface_curvature)
+        return Peak(1.0 / deepest.value, deepest.angle) if deepest.value < 0 else None
+
+    @cached_property
+    def largest_roller_radius(self):
+        """Radius of the roller from which the cam would be undercut, m, by the pitch curve's curvature; inf without."""
+        sharpest = highest(lambda angle: _bend(self.cam, angle, self.side))
+        return 1.0 / sharpest.value if sharpest.value > 0 else np.inf
+
+    def exceeded(self, *, pressure_angle=None, curvature_radius=None):
+        """What exceeds limits, as sentences: of the pressure angle, rad, and of the smallest convex radius, m."""
+        given = {"pressure_angle": pressure_angle, "curvature_radius": curvature_radius}
+        checks.singles("exceeded", **{name: (x, POSITIVE) for name, x in given.items() if x is not None})
+        found, peak, sharpest = [], self.largest_pressure_angle, self.smallest_curvature_radius
+        if pressure_angle is not None and peak.value > pressure_angle:
+            found.append(
+                f"the pressure angle reaches {np.degrees(peak.value):.6g} deg at crank angle "
+                f"{np.degrees(peak.angle):.6g} deg, more than {np.degrees(pressure_angle):.6g}"
+            )
+        if curvature_radius is not None and sharpest is not None and sharpest.value < curvature_radius:
+            found.append(
+                f"the working curve is as sharp as {sharpest.value:.6g} m at crank angle "
+                f"{np.degrees(sharpest.angle):.6g} deg, less than {curvature_radius:.6g}"
+            )
+        return tuple(found)
+
+    def _surface_curvature(self, angle):
+        return surface_curvature(curvature(self.cam, angle), self.roller_radius, SIDES[self.side])
+
+
+def curvature(cam, angle):
+    """Curvature of the pitch curve, 1/m, positive where it is convex seen from outside."""
+    r, slope, second = cam.radius(angle)
+    square = r * r + slope * slope
+    return (square + slope * slope - r * second) / (square * np.sqrt(square))
+
+
+def surface_curvature(bend, roller_radius, side):
+    """Curvature of the working curve on a side of the pitch curve, 1/m, positive where it is convex to the roller."""
+    return -side * bend / (1.0 + side * bend * roller_radius)
+
+
+def _bend(cam, angle, side):
+    """Curvature of the pitch curve toward the side of the cam, which the roller must fit into, 1/m."""
+    return -SIDES[side] * curvature(cam, angle)
+
+
+def profile(cam, roller_radius, angle, side="disk"):
+    """Working curve of a cam; what ``cam.profile`` returns, where it is told."""
+    radius = checks.singles(
+        "cam profile", checks.choice("side", side, tuple(SIDES)), roller_radius=(roller_radius, POSITIVE)
+    )["roller_radius"]
+    angle = _angles(angle)
+    checks.require("cam profile", *_cut_away(cam, radius, side))
+    pitch, normal, made = _curves(cam, radius, angle, side)
+    r, slope, _ = cam.radius(angle)
+    with np.errstate(divide="ignore"):
+        bend = 1.0 / surface_curvature(curvature(cam, angle), radius, SIDES[side])
+    return Profile(cam, radius, angle, side, pitch, made, normal, np.arctan2(slope, r), bend)
+
+
+def _curves(cam, radius, angle, side):
+    """Pitch curve, outward normal and working curve at crank angles."""
+    r, slope, _ = cam.radius(angle)
+    x, y = ray_at(angle)
+    length = np.hypot(r, slope)
+    normal = np.stack([r * x + slope * y, r * y - slope * x]) / length
+    pitch = np.stack([r * x, r * y])
+    return pitch, normal, pitch + SIDES[side] * radius * normal
+
+
+def _angles(angle):
+    if isinstance(angle, int | np.integer) and not isinstance(angle, bool):
+        checks.require("cam profile", checks.count("angle", angle, size=checks.ANGLE))
+        return np.linspace(0.0, TURN, int(angle), endpoint=False)
+    checks.require("cam profile", checks.table("angle", angle))
+    return np.atleast_1d(np.asarray(angle, dtype=float))
+
+
+def _cut_away(cam, radius, side):
+    """Why a roller cannot run on this side of the pitch curve, as sentences, with the crank angles."""
+    grid = np.linspace(0.0, TURN, SAMPLES, endpoint=False)
+    least = lowest(lambda angle: cam.radius(angle)[0])
+    if not least.value > 0:
+        yield (
+            f"the pitch curve must go around O, but its radius falls to {least.value:.6g} m at crank angle "
+            f"{np.degrees(least.angle):.6g} deg"
+        )
+        return
+    sharpest = highest(lambda angle: _bend(cam, angle, side))
+    if sharpest.value * radius >= 1.0:
+        where = " and ".join(_intervals(grid, _bend(cam, grid, side) * radius >= 1.0)) or "there alone"
+        yield (
+            f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
+            f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "
+            "the roller's must be less"
+        )
+        return
+    pitch, _, made = _curves(cam, radius, grid, side)
+    from scipy.spatial import cKDTree
+
+    distance, _ = cKDTree(pitch.T).query(made.T)
+    if np.min(distance) < radius * (1.0 - CUT):
+        worst = int(np.argmin(distance))
+        yield (
+            f"a roller of radius {radius:.6g} m cuts into another part of the {side}: where it touches at crank angle "
+            f"{np.degrees(grid[worst]):.6g} deg its centre comes as near as {distance[worst]:.6g} m later; "
+            "take a smaller"
+        )
+    elif side == "disk" and least.value <= radius:
+        yield (
+            f"a roller of radius {radius:.6g} m covers O, as its centre comes as near as {least.value:.6g} m at crank "
+            f"angle {np.degrees(least.angle):.6g} deg; take a smaller"
+        )
+
+
+def _intervals(grid, marked):
+    """Crank angles between which samples around the turn are marked, in degrees, as texts."""
+    if marked.all():
+        return ["all over the turn"]
+    order = np.roll(np.arange(grid.size), -int(np.argmin(marked)))
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], marked[order].astype(int), [0]])))
+    return [
+        f"from {np.degrees(grid[order[start]]):.4g} to {np.degrees(grid[order[stop - 1]]):.4g} deg"
+        for start, stop in zip(edges[::2], edges[1::2], strict=True)
+    ]
+
+
+def base_radius(cam, pressure_angle):
+    """Smallest base circle of a cam of the same rise; what ``cam.base_radius`` returns, where it is told."""
+    rule = {**POSITIVE, "high": np.pi / 2}
+    largest = checks.singles("base_radius", pressure_angle=(pressure_angle, rule))["pressure_angle"]
+
+    def lacking(angle):
+        r, slope, _ = cam.radius(angle)
+        return np.abs(slope) / np.tan(largest) - r
+
+    return lowest(lambda angle: cam.radius(angle)[0]).value + highest(lacking).value

@@ -1,0 +1,151 @@
+"""Rises from 0 to 1 with dwells before and behind: the standard curves of cam design, with three exact derivatives.
+
+Accelerations made of sine arcs and constants, the sine-constant-cosine family of Norton, *Cam Design and Manufacturing
+Handbook* (2009), chapter 3, hold the harmonic, cycloidal, modified sine (Neklutin) and modified trapezoid curve; powers
+hold the 3-4-5 and 4-5-6-7 polynomials (Rothbart, *Cam Design Handbook*, 2004, chapter 3).
+"""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+
+class Motion(NamedTuple):
+    """A position and its derivatives: by the crank angle m, m/rad, m/rad2, m/rad3; of a rise pure numbers."""
+
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    jerk: np.ndarray
+
+
+class Coefficients(NamedTuple):
+    """Peak velocity, acceleration and jerk of a rise of 1 over 1, without sign."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+@dataclass(frozen=True)
+class SineConstantCosine:
+    """A rise whose acceleration is a quarter sine, a constant, half a cosine, a constant, and a quarter sine.
+
+    `sines` is the part of the rise that both quarter sines take together, 0 or more; `cosine` that of the half cosine.
+    """
+
+    sines: float
+    cosine: float
+
+    @property
+    def breaks(self):
+        """Where the jerk may jump, from 0 to 1."""
+        first, second = self.sines / 2, (1.0 - self.cosine) / 2
+        return (0.0, *sorted({first, second, 1.0 - second, 1.0 - first} - {0.0, 1.0}), 1.0)
+
+    @property
+    def coefficients(self):
+        b, d = self.sines, self.cosine
+        top, shortest = self._acceleration, min(b or d, d)
+        return Coefficients(top * ((b + d) / math.pi + (1.0 - b - d) / 2), top, top * math.pi / shortest)
+
+    @property
+    def _acceleration(self):
+        b, d, pi = self.sines, self.cosine, math.pi
+        return 4 * pi**2 / ((pi**2 - 8) * (b * b - d * d) - 2 * pi * (pi - 2) * b + pi**2)
+
+    def __call__(self, u):
+        """The second half is the first, turned about the middle."""
+        late = u > 0.5
+        position, velocity, acceleration, jerk = self._first_half(np.where(late, 1.0 - u, u))
+        return Motion(
+            np.where(late, 1.0 - position, position), velocity, np.where(late, -acceleration, acceleration), jerk
+        )
+
+    def _first_half(self, u):
+        b, d, pi, top = self.sines, self.cosine, math.pi, self._acceleration
+        start, speed = (1.0 - d) / 2, b / pi + (1.0 - b - d) / 2
+        base = b * b * (0.125 - 1.0 / pi**2)
+        rising, falling = pi / b * u if b else u, pi / d * (u - start)
+        zones = [
+            lambda: (
+                b / pi * (u - b / pi * np.sin(rising)),
+                b / pi * (1.0 - np.cos(rising)),
+                np.sin(rising),
+                pi / b * np.cos(rising),
+            ),
+            lambda: (u * u / 2 + b * (1.0 / pi - 0.5) * u + base, u + b * (1.0 / pi - 0.5), 1.0 + 0.0 * u, 0.0 * u),
+            lambda: (
+                speed * u + (d / pi) ** 2 * (1.0 - np.cos(falling)) + base - start * start / 2,
+                speed + d / pi * np.sin(falling),
+                np.cos(falling),
+                -pi / d * np.sin(falling),
+            ),
+        ]
+        found = np.zeros((4, *np.shape(u)))
+        within = [u < b / 2, (u >= b / 2) & (u < start), u >= start]
+        for inside, zone in zip(within, zones, strict=True):
+            if np.any(inside):
+                found = np.where(inside, zone(), found)
+        return top * found
+
+
+@dataclass(frozen=True)
+class Powers:
+    """A rise that is a sum of powers of what has passed of it: as many derivatives vanish at its end as can.
+
+    The coefficient of one power is the product, over the others, of other / (other - one).
+    """
+
+    powers: tuple[int, ...]
+
+    breaks: ClassVar = (0.0, 1.0)
+
+    @property
+    def _polynomial(self):
+        found = [0.0] * (max(self.powers) + 1)
+        for one in self.powers:
+            others = [other for other in self.powers if other != one]
+            found[one] = math.prod(others) / math.prod(other - one for other in others)
+        return np.polynomial.Polynomial(found)
+
+    @property
+    def coefficients(self):
+        return Coefficients(*(self._peak(order) for order in (1, 2, 3)))
+
+    def _peak(self, order):
+        curve = self._polynomial.deriv(order)
+        roots = curve.deriv().roots()
+        inner = roots.real[(abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
+        return float(np.max(np.abs(curve(np.concatenate([[0.0, 1.0], inner])))))
+
+    def __call__(self, u):
+        """The second half from its own end, so that what vanishes there does."""
+        curve, late = self._polynomial, u > 0.5
+        mirrored = curve(1.0) - curve(np.polynomial.Polynomial([1.0, -1.0]))
+        found = []
+        for order, sign in zip(range(4), (-1.0, 1.0, -1.0, 1.0), strict=True):
+            first = curve.deriv(order) if order else curve
+            second = mirrored.deriv(order) if order else mirrored
+            value = np.where(late, sign * second(np.where(late, 1.0 - u, 0.0)), first(np.where(late, 0.0, u)))
+            found.append(np.where(late, value + 1.0, value) if order == 0 else value)
+        return Motion(*found)
+
+
+@dataclass(frozen=True)
+class Rest:
+    """No rise at all."""
+
+    breaks: ClassVar = (0.0, 1.0)
+    coefficients: ClassVar = Coefficients(0.0, 0.0, 0.0)
+
+    def __call__(self, u):
+        return Motion(*(0.0 * u for _ in range(4)))
+
+
+HARMONIC = SineConstantCosine(0.0, 1.0)
+CYCLOIDAL = SineConstantCosine(0.5, 0.5)
+MODIFIED_SINE = SineConstantCosine(0.25, 0.75)
+MODIFIED_TRAPEZOID = SineConstantCosine(0.25, 0.25)

@@ -1,0 +1,65 @@
+"""What all items of one structure have in common: found once, and kept by structure."""
+
+import itertools
+import threading
+from collections import OrderedDict
+from typing import Any
+
+from .lazy import cached_property
+from .leaves import put_together
+
+MOST = 256
+"""Structures that are known at a time; the longest unused goes first."""
+
+
+class Numbered(int):
+    """Place of a number among the leaves of an item."""
+
+
+class Kind:
+    """A structure, as `leaves.taken_apart` gives it, and what is known of all items that have it.
+
+    Attributes
+    ----------
+    structure : tuple
+    known : dict
+        Whatever was found to hold for all of them, by the question.
+    """
+
+    def __init__(self, structure):
+        self.structure, self.known = structure, {}
+
+    def __reduce__(self):
+        return Kind, (self.structure,)
+
+    @cached_property
+    def numbered(self) -> Any:
+        """The item with the place of each number among its leaves, a `Numbered`, instead of it."""
+        places = itertools.count()
+        return put_together(self.structure, lambda: Numbered(next(places)), lambda: None, lambda: None)
+
+    def answer(self, question):
+        """What ``question(kind)`` found, asked once."""
+        if question not in self.known:
+            self.known[question] = question(self)
+        return self.known[question]
+
+
+_kinds: OrderedDict[Any, Kind] = OrderedDict()
+_lock = threading.Lock()
+
+
+def of(structure) -> Kind:
+    """Kind of a structure that tells all."""
+    found = _kinds.get(structure) or Kind(structure)
+    with _lock:
+        _kinds[structure] = found
+        _kinds.move_to_end(structure)
+        while len(_kinds) > MOST:
+            _kinds.popitem(last=False)
+    return found
+
+
+def forget():
+    """Find all anew."""
+    _kinds.clear()

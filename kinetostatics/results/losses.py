@@ -1,0 +1,230 @@
+"""Where the power of a machine goes over its period: friction by joint, dampers, loads, drive; mechanical efficiency.
+
+Over a period in which the machine comes back to its state, masses, weight and springs take as much as they give. What
+the drive and the other loads put in, they take out again or it is lost:
+
+    given = taken + lost        efficiency = taken / given = taken / (taken + lost)
+
+(Artobolevskii, *Theory of Mechanisms and Machines*: the work of the useful resistances over that of the driving forces,
+in a period of steady motion.) Drive and loads are each judged by their work in the whole period: an engine's gas force
+gives and its drive takes, a pump's the other way round. A machine that idles takes nothing, so its efficiency is 0; so
+is that of one whose load and drive both give, as where friction holds a weight that is let down.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..errors import ConditionWarning, ParameterError
+from ..machine.loads import TURN
+from ..mechanics.energy import work_of
+from ..mechanics.pushes import title_of
+from ..numbers.lazy import cached_property
+from ..numbers.planar import number
+from .extremes import extrema
+from .means import FLOOR, PRECISE, closed_turn, means
+
+NOTHING = 1e-12
+"""Mean power, relative to the largest power that flows, that is rounding of what goes to and fro."""
+
+
+@dataclass(frozen=True, eq=False)
+class Losses:
+    """Mean powers over time of one design over its period, W; made by `losses`.
+
+    Attributes
+    ----------
+    solution : Solution
+    friction : dict of str to float
+        Lost by joint.
+    dampers : dict of str to float
+        Lost by damper.
+    loads : dict of str to float
+        Taken by each load that neither stores energy, as weight and springs, nor is a damper; negative if it gives.
+    drive : float
+        Given by the drive; negative if it takes, as of an engine.
+    turn_time : float
+        Duration of a turn of the crank, s.
+    powers : dict of str to function
+        By joint and damper: from a solution to the power lost over its crank angles.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+    >>> pressing = ks.ProcessForce(ks.Table([0.15, 0.25], [0.0, 0.0], over="travel", back=[1000.0, 1000.0]))
+    >>> friction = {"O": ks.PinFriction(0.05, 0.02), "guide": ks.GuideFriction(0.1)}
+    >>> s = ks.solve(pump, 0.0, crank_speed=30.0, loads=pressing, friction=friction)
+    >>> found = s.losses
+    >>> print(f"{found.drive:.1f} W in, {found.taken:.1f} W out, {found.friction['O']:.1f} W lost at O")
+    503.4 W in, 477.5 W out, 15.9 W lost at O
+    >>> print(f"{s.efficiency:.4f}")
+    0.9485
+    """
+
+    solution: Any = field(repr=False)
+    friction: dict[str, float]
+    dampers: dict[str, float]
+    loads: dict[str, float]
+    drive: float
+    turn_time: float
+    powers: dict[str, Callable[[Any], Any]]
+
+    @property
+    def lost(self):
+        """Lost by joint and damper, W."""
+        return self.friction | self.dampers
+
+    @property
+    def total(self):
+        """Lost by friction and dampers, W."""
+        return sum(self.lost.values())
+
+    @property
+    def given(self):
+        """Put in by the drive and those loads that give, W."""
+        return sum(power for power in self._ports if power > 0)
+
+    @property
+    def taken(self):
+        """Taken out by those loads that take, and by the drive if it does, W: what the machine is for."""
+        return -sum(power for power in self._ports if power < 0)
+
+    @property
+    def efficiency(self):
+        """Mechanical efficiency: of what is taken and lost together, the part that is taken; NaN where neither is."""
+        whole = self.taken + self.total
+        return self.taken / whole if whole > 0 else np.nan
+
+    @property
+    def _ports(self):
+        return [self.drive, *(-power for power in self.loads.values())]
+
+    @cached_property
+    def peaks(self):
+        """Largest power lost, W, with its crank angle, rad, by joint and damper, and of "all" together."""
+        found = {name: _largest(extrema(self.solution, power)) for name, power in self.powers.items()}
+        return found | {"all": _largest(extrema(self.solution, self._power))}
+
+    def frame(self):
+        """What is lost where, a pandas DataFrame: mean, share of all losses, largest and where, energy per turn."""
+        import pandas as pd
+
+        mean = np.array([*self.lost.values(), self.total])
+        names = [*self.lost, "all"]
+        largest, angle = np.transpose([self.peaks[name] for name in names])
+        with np.errstate(invalid="ignore"):
+            share = 100.0 * mean / self.total
+        columns = {"mean [W]": mean, "share [%]": share, "largest [W]": largest, "largest at [deg]": np.degrees(angle)}
+        return pd.DataFrame(columns | {"per turn [J]": mean * self.turn_time}, pd.Index(names, name="lost at"))
+
+    def _power(self, at):
+        return sum(power(at) for power in self.powers.values())
+
+    def __str__(self):
+        if np.isnan(self.efficiency):
+            return "no power is taken or lost"
+        return (
+            f"of {self.taken + self.total:.6g} W put in, {self.taken:.6g} W are taken and {self.total:.6g} W lost: "
+            f"efficiency {self.efficiency:.6g}"
+        )
+
+    def __repr__(self):
+        return f"<Losses: {self}>"
+
+
+def lose(*solutions):
+    """Whether any machine has friction, and all turn, so that there is a power to tell."""
+    return any(s.friction for s in solutions) and all(np.all(np.asarray(s.crank_speed)) for s in solutions)
+
+
+def losses(solution) -> Losses:
+    """Mean powers over time that a machine takes, gives and loses over the period of a solution.
+
+    By Gauss quadrature between the crank angles where friction jumps or has a kink (`means`).
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design; its own crank angles do not matter.
+
+    Raises
+    ------
+    ParameterError
+        The solution is a batch of designs, does not close all round, or its crank stands still.
+    JammingError
+        Friction jams somewhere in the turn.
+
+    Warns
+    -----
+    ConditionWarning
+        A load is so uneven that fewer digits of the powers are right.
+    """
+    turn = closed_turn(solution, "losses")
+    at = turn.at.at(turn.angle[turn.usable])
+    if not np.all(np.asarray(at.crank_speed)):
+        raise ParameterError("losses: the crank stands still, so no power flows; give a crank_speed")
+    items = _named(item for item in solution.loads if not hasattr(item, "potential"))
+    dampers = {name: item for name, item in items.items() if getattr(item, "DISSIPATES", False)}
+    loads = {name: item for name, item in items.items() if name not in dampers}
+    lost: dict[str, Callable[[Any], Any]] = {joint: partial(_friction_loss, joint) for joint in solution.friction}
+    lost |= {name: partial(_taken, item) for name, item in dampers.items()}
+    powers: list[Callable[[Any], Any]] = [_drive, *lost.values(), *(partial(_taken, item) for item in loads.values())]
+
+    def by_angle(angle):
+        there = turn.at.at(turn.clear(angle))
+        speed = np.broadcast_to(np.abs(there.crank_speed), angle.shape)
+        return np.array([np.ones(angle.shape), *(power(there) for power in powers)]) / speed
+
+    sizes = np.abs(by_angle(turn.angle)).max(axis=-1)
+    floor = FLOOR * np.array([sizes[0], *[max(at.largest_torque_term, *sizes[1:])] * len(powers)])
+    found, wrong = means(by_angle, turn, floor)
+    if np.any(wrong > PRECISE * sizes + floor):
+        error = np.max(wrong[1:]) / found[0]
+        text = f"losses: powers are right to about {error:.2g} W only, so uneven are the loads"
+        warnings.warn(text, ConditionWarning, stacklevel=3)
+    drive, *rest = np.where(np.abs(found) <= NOTHING * sizes, 0.0, found)[1:] / found[0]
+    mean = dict(zip((*lost, *loads), map(float, rest), strict=True))
+    return Losses(
+        solution,
+        {name: mean[name] for name in solution.friction},
+        {name: mean[name] for name in dampers},
+        {name: mean[name] for name in loads},
+        float(drive),
+        TURN * float(found[0]),
+        lost,
+    )
+
+
+def _drive(at):
+    return at.crank_speed * at.balancing_torque
+
+
+def _friction_loss(joint, at):
+    return at.friction_loss_at(joint)
+
+
+def _taken(item, at):
+    """Power that a load takes of the machine."""
+    return np.broadcast_to(-at.crank_speed * number(work_of(item, at)), at.crank_angle.shape)
+
+
+def _named(items):
+    """Loads by what messages call them, those of one name numbered."""
+    found: dict[str, Any] = {}
+    for item in items:
+        title = title_of(item)
+        taken = sum(name.partition(" #")[0] == title for name in found)
+        found[f"{title} #{taken + 1}" if taken else title] = item
+    return found
+
+
+def _largest(found):
+    if not len(found):
+        return found.constant, np.nan
+    place = int(np.argmax(found.value))
+    return float(found.value[place]), float(found.angle[place])

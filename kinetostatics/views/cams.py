@@ -1,0 +1,209 @@
+"""Cams: their curves with the roller, pressure angle and curvature over the turn, pressure of the contact."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.patches import Circle
+
+from ..numbers import checks
+from .canvas import ACCENT, INK, STEEL, axes, closed, styled
+
+POINTS = 1440
+"""Crank angles a turn at which curves are drawn."""
+
+
+def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_radius=None, ax=None):
+    """A cam: pitch curve, working curve, the roller at some crank angles, and the path of a cutter.
+
+    Parameters
+    ----------
+    cam : Cam
+        One of ``ks.cams``.
+    roller_radius : float
+        m.
+    side : "disk" or "ring"
+    angles : sequence of float
+        Crank angles at which the roller is drawn, degrees.
+    cutter_radius : float, optional
+        m.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+        With equal scales on both axes.
+    """
+    checks.require("cam_profile", _cam_problem(cam), checks.table("angles", list(angles)))
+    ax = axes(ax)
+    made = cam.profile(roller_radius, POINTS, side)
+    surface = closed(made.surface)
+    if side == "disk":
+        ax.fill(*surface, color=STEEL, alpha=0.25, lw=0)
+    ax.plot(*surface, color=INK, lw=1.5, label="working curve")
+    ax.plot(*closed(made.pitch), color=ACCENT, lw=0.8, ls="-.", label="pitch curve")
+    if cutter_radius is not None:
+        ax.plot(
+            *closed(made.cutter_path(cutter_radius)), color="tab:green", lw=0.8, ls="--", label="path of the cutter"
+        )
+    posed = cam.profile(roller_radius, np.radians(np.asarray(angles, dtype=float)), side)
+    for degrees, centre, touch in zip(angles, posed.pitch.T, posed.surface.T, strict=True):
+        ax.add_patch(Circle(tuple(centre), roller_radius, fc="none", ec=STEEL, lw=1.2))
+        ax.plot(*np.stack([np.zeros(2), centre], axis=1), color=STEEL, lw=0.5, ls=":")
+        ax.plot(*touch, ".", color=INK, ms=4)
+        ax.annotate(f"{degrees:g}°", centre, ha="center", va="center", fontsize="x-small")
+    ax.plot(0.0, 0.0, "+", color=INK, ms=8)
+    ax.annotate("O", (0.0, 0.0), xytext=(4, -10), textcoords="offset points", fontsize="small")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.08)
+    ax.set(xlabel="x [m]", ylabel="y [m]")
+    ax.legend(frameon=False, fontsize="small", loc="upper right")
+    return ax
+
+
+def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
+    """Curvature of pitch curves over the crank angle, and what a roller may be fitted to.
+
+    Parameters
+    ----------
+    cams : Cam or mapping of label to Cam
+    roller_radius : float, optional
+        m; a line shows the curvature from which the cam is undercut.
+    side : "disk" or "ring"
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    named = _named(cams, "cam_curvature", _cam_problem)
+    checks.require(
+        "cam_curvature",
+        checks.choice("side", side, ("disk", "ring")),
+        None if roller_radius is None else checks.positive("roller_radius", roller_radius),
+    )
+    ax = axes(ax)
+    angle = np.linspace(0.0, 2 * np.pi, POINTS + 1)
+    for name, cam, style in styled(named):
+        ax.plot(np.degrees(angle), 1.0 / cam.curvature_radius(angle), linestyle=style, label=name)
+    if roller_radius is not None:
+        limit = (1.0 if side == "disk" else -1.0) / roller_radius
+        ax.axhline(limit, color=ACCENT, lw=1.0, ls="--", label=f"undercut by the roller, {side}")
+    ax.axhline(0.0, color=INK, lw=0.5)
+    return _over_turn(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or roller_radius is not None)
+
+
+def cam_pressure_angle(cams, largest=None, ax=None):
+    """Pressure angle of cams over the crank angle, without a mechanism.
+
+    Parameters
+    ----------
+    cams : Cam or mapping of label to Cam
+    largest : float, optional
+        A limit, rad, drawn on both sides of 0.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    named = _named(cams, "cam_pressure_angle", _cam_problem)
+    checks.require("cam_pressure_angle", None if largest is None else checks.positive("largest", largest))
+    ax = axes(ax)
+    angle = np.linspace(0.0, 2 * np.pi, POINTS + 1)
+    for name, cam, style in styled(named):
+        ax.plot(np.degrees(angle), np.degrees(cam.pressure_angle(angle)), linestyle=style, label=name)
+    for limit in () if largest is None else (-largest, largest):
+        ax.axhline(np.degrees(limit), color=ACCENT, lw=1.0, ls="--")
+    ax.axhline(0.0, color=INK, lw=0.5)
+    return _over_turn(ax, "pressure angle [deg]", len(named) > 1)
+
+
+def contact_pressure(contacts, ax=None):
+    """Hertz pressure of the roller on its cam over the crank angle; lines mark where the roller changes sides.
+
+    Parameters
+    ----------
+    contacts : Contact or mapping of label to Contact
+        As of ``ks.design.contact``.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    named = _named(contacts, "contact_pressure", _contact_problem)
+    ax = axes(ax)
+    for name, contact, style in styled(named):
+        order = np.argsort(contact.crank_angle)
+        (line,) = ax.plot(
+            np.degrees(contact.crank_angle[order]), contact.pressure[order] / 1e6, linestyle=style, label=name
+        )
+        for angle in contact.changes:
+            ax.axvline(np.degrees(angle), color=line.get_color(), lw=0.6, ls=":")
+        if "pressure" in contact.limits:
+            ax.axhline(contact.limits["pressure"] / 1e6, color=ACCENT, lw=1.0, ls="--")
+    ax.set_ylim(bottom=0.0)
+    return _over_turn(ax, "Hertz pressure [MPa]", len(named) > 1)
+
+
+def law_motion(laws, ax=None):
+    """Position of laws over the turn, with velocity, acceleration and jerk by the crank angle below each other.
+
+    Parameters
+    ----------
+    laws : Law or mapping of label to Law
+        Of the whole turn, as of ``ks.laws``.
+    ax : sequence of 4 Axes, optional
+
+    Returns
+    -------
+    sequence of 4 Axes
+    """
+    import matplotlib.pyplot as plt
+
+    named = _named(laws, "law_motion", lambda law: None if callable(law) else f"must be a law, got {checks.shown(law)}")
+    checks.require(
+        "law_motion", None if ax is None or len(np.ravel(ax)) == 4 else f"ax must be 4 Axes, got {checks.shown(ax)}"
+    )
+    four: Any = plt.subplots(4, 1, sharex=True, layout="constrained", figsize=(6.4, 7.2))[1] if ax is None else ax
+    angle = np.linspace(0.0, 2 * np.pi, 2 * POINTS + 1)
+    for name, law, style in styled(named):
+        for part, values in zip(four, law(angle), strict=True):
+            part.plot(np.degrees(angle), values, linestyle=style, label=name)
+    texts = ("position [m]", "velocity [m/rad]", "acceleration [m/rad²]", "jerk [m/rad³]")
+    for part, text in zip(four, texts, strict=True):
+        part.set_ylabel(text)
+    _over_turn(four[-1], texts[-1], False)
+    if len(named) > 1:
+        four[0].legend(frameon=False, fontsize="small")
+    return four
+
+
+def _over_turn(ax, text, legend):
+    ax.set(xlabel="crank angle [deg]", ylabel=text)
+    ax.set_xticks(np.arange(0, 361, 60))
+    if legend:
+        ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+def _named(items, owner, problem):
+    """What is drawn by label, each looked at."""
+    named = dict(items) if isinstance(items, Mapping) else {"": items}
+    wrong = [f"{name or 'it'} {text}" for name, item in named.items() if (text := problem(item))]
+    checks.require(owner, *wrong, None if named else "there is nothing to draw")
+    return named
+
+
+def _cam_problem(cam):
+    """What is wrong with what must be a cam, or None."""
+    if not isinstance(cam, type) and all(hasattr(cam, name) for name in ("radius", "profile", "curvature_radius")):
+        return None
+    return f"must be one of ks.cams, got {checks.shown(cam)}"
+
+
+def _contact_problem(found):
+    if hasattr(found, "largest_pressure"):
+        return None
+    return f"must be a Contact, as of ks.design.contact, got {checks.shown(found)}"

@@ -1,0 +1,83 @@
+"""Figures of lost power: stacks that add up, labels with units, words where nothing rubs."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.views import figures
+
+
+@pytest.fixture(scope="module")
+def saw():
+    case = ks.load_case("sawframe_2r63_friction")
+    return {name: case.solve(name, 180) for name in ("plain", "cam-cosine")}
+
+
+@pytest.fixture
+def axes():
+    figure, ax = plt.subplots()
+    yield ax
+    plt.close(figure)
+
+
+def test_the_stack_over_the_turn_reaches_to_the_whole_loss(saw, axes):
+    solution = saw["plain"]
+    assert ks.plots.lost_power(solution, ax=axes) is axes
+    top = np.max([path.vertices[:, 1].max() for item in axes.collections for path in item.get_paths()])
+    assert top == pytest.approx(1e-3 * solution.friction_loss.max(), rel=1e-12)
+    assert axes.get_ylabel() == "power lost [kW]"
+    assert axes.get_xlabel() == "crank angle [deg]"
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mean", "guide", "B", "A", "O"]
+    (mean,) = (line for line in axes.get_lines() if line.get_label() == "mean")
+    assert mean.get_ydata()[0] == pytest.approx(1e-3 * solution.losses.total, rel=1e-12)
+
+
+def test_bars_stand_on_each_other_up_to_the_mean_loss(saw, axes):
+    ks.plots.losses(saw, ax=axes)
+    tops = [max(bar.get_y() + bar.get_height() for bar in bars) for bars in zip(*axes.containers, strict=True)]
+    assert tops == pytest.approx([1e-3 * s.losses.total for s in saw.values()], rel=1e-12)
+    assert [text.get_text() for text in axes.texts] == ["42.9", "11.7"]
+    assert axes.get_ylabel() == "mean power lost [kW]"
+    assert axes.get_ylim()[1] > max(tops) * 1.1
+    assert [text.get_text() for text in axes.get_xticklabels()] == list(saw)
+
+
+def test_one_solution_is_one_bar_and_watts_stay_watts_where_they_are_few(axes):
+    pump = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
+    solution = ks.solve(
+        pump, [0.0, 1.0], crank_speed=3.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(0.1)}
+    )
+    ks.plots.losses(solution, ax=axes)
+    assert len(axes.containers) == len(axes.containers[0]) == 1
+    assert axes.get_ylabel() == "mean power lost [W]"
+
+
+@pytest.mark.parametrize("name", ["friction_loss", "guide_friction", "O_friction_loss"])
+def test_quantities_of_friction_are_drawn_over_the_turn(saw, axes, name):
+    ks.plots.over_turn(saw, name, ax=axes)
+    assert axes.get_ylabel().startswith("friction" if name != "guide_friction" else "friction guide")
+
+
+@pytest.mark.parametrize("draw", [ks.plots.losses, ks.plots.lost_power])
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (lambda s: ks.solve(s.mechanism, [0.0], crank_speed=1.0), "nothing rubs; give friction"),
+        (lambda s: s.at(np.zeros((1,))).losses, "must be a Solution"),
+        (lambda s: None, "must be a Solution"),
+        (lambda s: ks.solve(s.mechanism, [0.0], crank_speed=np.ones((3, 1)), friction=s.friction), "one design"),
+    ],
+    ids=["frictionless", "losses", "none", "batch"],
+)
+def test_what_has_no_losses_to_draw_says_why(saw, draw, given, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        draw(given(saw["plain"]))
+
+
+def test_figures_of_a_case_with_friction_have_both_and_of_one_without_none(tmp_path):
+    case = ks.load_case("sawframe_2r63_friction")
+    (path,) = figures.draw_case(case, tmp_path, "svg", "losses")
+    assert "mean power lost [kW]" in path.read_text(encoding="utf-8") or path.stat().st_size > 5000
+    with pytest.raises(ks.ParameterError, match="lost_power"):
+        figures.draw_case(ks.load_case("sawframe_2r63"), tmp_path, "svg", "lost_power")
