@@ -109,6 +109,11 @@ def test_several_starts_reach_the_same_design_and_the_seed_repeats_them():
     assert_allclose(one.starts, one.starts[0], rtol=1e-6)
 
 
+def test_what_starts_came_to_is_told_as_asked():
+    found = ks.design.optimise(SAW, SPRING, maximise=RATIO, variant="cam-circle", angles=360)
+    assert_allclose(found.starts, [found.report().loc[f"{RATIO} [1]", "after"]], rtol=1e-5)
+
+
 def test_the_same_optimum_under_an_independent_solution(bound):
     compared = ks.compare(SAW.solve("plain"), bound.scene.solve(720)).frame()
     assert_allclose(compared.iloc[0]["ratio"], bound.report().loc[f"{RATIO} [1]", "after"], rtol=1e-6)
