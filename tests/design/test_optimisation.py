@@ -130,6 +130,23 @@ def test_any_machine_can_be_improved():
     assert table["largest_absolute balancing_torque [N m]"] <= 12.0 * (1 + 1e-9)
 
 
+def test_losses_and_pressure_angle_are_outputs_too():
+    """No design of a grid that keeps the limit loses less."""
+    friction = {"O": ks.PinFriction(0.1, 0.1), "guide": ks.GuideFriction(0.1)}
+    scene = ks.Scene(CIRCLE.mechanism, CIRCLE.crank_speed, loads=CIRCLE.loads, friction=friction)
+    vary = {"spring.stiffness": (6e5, 9e5), "cam.centre.x": (-0.03, -0.01)}
+    found = ks.design.optimise(
+        scene, vary, "mean friction_loss", "largest_absolute pressure_angle <= 3.7 deg", angles=180
+    )
+    after = found.report()["after"]
+    assert after["largest_absolute pressure_angle [rad]"] <= np.radians(3.7) * (1 + 1e-9)
+    for stiffness in np.linspace(6e5, 9e5, 5):
+        for centre in np.linspace(-0.03, -0.01, 5):
+            other = scene.varied({"spring.stiffness": stiffness, "cam.centre.x": centre}).solve(180)
+            if np.abs(other.pressure_angle).max() <= np.radians(3.7):
+                assert np.mean(other.friction_loss) >= after["mean friction_loss [W]"] * (1 - 1e-6)
+
+
 def test_demands_end_with_how_near_the_best_comes():
     with pytest.raises(ks.DesignError, match=r"nearest misses ratio .* >= 100, where it comes to 52\.8") as error:
         ks.design.optimise(SAW, SPRING, TORQUE, limits=f"{RATIO} >= 100", variant="cam-circle", angles=180)
