@@ -135,6 +135,45 @@ class Pair:
 
 
 @dataclass(frozen=True)
+class Series:
+    """Coefficients of a series, a tuple of numbers called by their order, from `start`; the `first` by its own rule."""
+
+    unit: str = ""
+    letter: str = "a"
+    start: int = 0
+    first: Number | None = None
+    rule: Number = dataclass_field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "rule", Number(self.unit))
+
+    def quick(self, value):
+        if type(value) is not tuple or (self.first is not None and not value):
+            return UNSURE
+        found = tuple(self._rule(place).quick(part) for place, part in enumerate(value))
+        return UNSURE if any(part is UNSURE for part in found) else found
+
+    def taken(self, value, field=""):
+        several = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim == 1)
+        if not several or (self.first is not None and not len(value)):
+            terms = f"({self.letter}{self.start}, {self.letter}{self.start + 1}, ...)"
+            return value, f"{field} must be a tuple of numbers {terms}, got {shown(value)}"
+        found = [
+            self._rule(place).taken(part, f"{field}.{place + self.start}".strip("."))
+            for place, part in enumerate(value)
+        ]
+        return tuple(part for part, _ in found), next((problem for _, problem in found if problem), None)
+
+    def numbers(self, value):
+        """Name, steps and rule of each number, for paths."""
+        for place in range(len(value)):
+            yield str(place + self.start), (place,), self._rule(place)
+
+    def _rule(self, place):
+        return self.rule if place or self.first is None else self.first
+
+
+@dataclass(frozen=True)
 class Optional:
     """What another rule says, or None."""
 
