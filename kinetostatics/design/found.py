@@ -56,6 +56,11 @@ class Found:
     starts: list[float] = field(default_factory=list)
     bound: float = np.inf
 
+    def __repr__(self):
+        numbers = f"{len(self.values)} numbers of {self.scene.mechanism.name} varied"
+        binds = f"{', '.join(self.active)} binds" if self.active else "nothing binds"
+        return f"<Found: {self.goal}; {numbers}, {binds}; {self.evaluations} evaluations>"
+
     def report(self):
         """Outputs before and after, with their limits and what these cost; a pandas DataFrame."""
         import pandas as pd
