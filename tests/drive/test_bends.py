@@ -29,7 +29,6 @@ def test_pieces_are_parted_where_a_force_changes_its_sign():
 
 
 def test_places_are_found_until_they_stay():
-    """Beside an edge the zero is read from a series to rounding, so that a second look is the last but one."""
     pieces, bends = parted_at(EVEN, 1.3)
     for _ in range(4):
         again = parted_at(pieces, 1.3, bends)

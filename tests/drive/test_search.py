@@ -35,7 +35,7 @@ def test_none_is_needed_where_the_machine_runs_evenly_enough():
 
 def test_where_any_flywheel_with_which_it_runs_is_even_enough_the_lightest_is_given():
     inertia, running = flywheel_for(0.5, machine(least=3.0, own=60.0), 8.0)
-    assert inertia == pytest.approx(3.0, rel=0.1)
+    assert inertia == pytest.approx(3.0, rel=1e-12)
     assert running.fluctuation < 0.5
     tiny, _ = flywheel_for(0.5, machine(least=1e-9, own=60.0), 8.0)
     assert tiny < 2 * LIGHTEST * 8.0
