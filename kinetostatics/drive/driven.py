@@ -130,7 +130,7 @@ class Driven:
     def here(self, angle, speed, direction=None):
         """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats.
 
-        The crank turns, or is about to, in the `direction` of the motor unless told.
+        Friction is that of turning in the `direction` of the motor unless told.
         """
         found = self.program(angle, {"crank_speed": speed}) if self.loads_by_speed else self.program(angle)
         inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))

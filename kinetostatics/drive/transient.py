@@ -5,7 +5,7 @@ of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations 
 of motor and loads beside it: what kinetic energy and work differ by at the end is the drift.
 """
 
-import contextlib
+import itertools
 import math
 
 import numpy as np
@@ -15,17 +15,21 @@ from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.elementary import read_only
 from .motor import Motor, single
+from .operating import require_known
 from .periodic import steady
 from .rubbing import RubbingDriven, driven_by
+from .standstill import require_a_standstill
 from .stretches import ABSOLUTE, RELATIVE, followed
 from .trajectory import Event, Trajectory
 
 READY = 0.99
 """Share of the mean speed of steady running at which a machine has started."""
 LONGEST = 1e5
-"""Turns after which a start or coast is given up."""
-ROUGH = 1e-9
-"""Tolerance of the turn by which it is judged whether a machine comes to standstill at all."""
+"""Turns after which a start is given up."""
+MOST_EVALUATIONS = 1_000_000
+"""Evaluations of the acceleration after which a motion is given up: some thousand turns."""
+FARTHEST = 1e6
+"""Crank angle, rad, beyond which too many digits are lost to begin there."""
 SMALL = 1e-9
 """Torque, relative to the largest, that moves nothing."""
 
@@ -75,7 +79,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     elif speed == 0.0:
         checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
     else:
-        _require_standstill(driven, angle, speed)
+        require_a_standstill(driven, angle, speed)
     return _followed(driven, scene, angle, speed, until)
 
 
@@ -138,6 +142,8 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
 def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     """The machine and where it begins, looked at."""
     angle, wrong_angle = single(from_angle, name="from_angle")
+    if not wrong_angle and abs(angle) > FARTHEST:
+        wrong_angle = f"from_angle must be at most {FARTHEST:g} rad in size, got {angle:g}; take whole turns off"
     speed, wrong_speed = single(from_speed, name="from_speed")
     inertia, wrong_inertia = single(flywheel, name="flywheel", low=0.0)
     checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
@@ -150,50 +156,6 @@ def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
             crank_angle=angle,
         )
     return driven, inertia, angle, speed
-
-
-def _require_standstill(driven, angle, speed):
-    """Refuse a coast that does not end, or not within `LONGEST` turns.
-
-    Motions of one degree of freedom do not cross: none falls below periodic running under the motor, and what is not
-    slower after a period never is.
-    """
-    way, why = math.copysign(1.0, speed), None
-    if driven.motor is not None and way == driven.direction:
-        kept = _kept_speed(driven, angle)
-        if kept is not None and abs(kept) <= abs(speed):
-            why = "its motor keeps it running"
-    if why is None and (left := _energy_after_a_period(driven, angle, speed, way)) >= 1.0 - 1.0 / LONGEST:
-        why = f"after a period it has {left:.6g} times the kinetic energy of before"
-    if why is not None:
-        raise DriveError(f"{driven.scene.mechanism.name}: does not come to standstill: {why}; give a time as until")
-
-
-def _kept_speed(driven, angle):
-    """Speed at a crank angle of periodic running under the motor, None where there is none."""
-    with contextlib.suppress(DriveError):
-        running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
-        return float(running.motion(np.array([angle]))[0][0])
-    return None
-
-
-def _energy_after_a_period(driven, angle, speed, way):
-    """Kinetic energy a period on, over that at the start; 0 where the machine does not come so far."""
-    from scipy.integrate import solve_ivp
-
-    def net(place, energy):
-        place = float(place)
-        size = math.sqrt(2.0 * max(float(energy[0]), 0.0) * start / driven.inertia_here(place))
-        return driven.here(place, way * size, way)[2] / start
-
-    def still(place, energy):
-        return energy[0] - ROUGH
-
-    vars(still)["terminal"] = True
-    start = 0.5 * driven.inertia_here(angle) * speed * speed
-    ends = angle, angle + way * driven.period
-    found = solve_ivp(net, ends, [1.0], "LSODA", rtol=ROUGH, atol=ROUGH, events=still)
-    return float(found.y[0, -1]) if found.status == 0 else 0.0
 
 
 def _most_torque(driven):
@@ -211,11 +173,10 @@ def _no_start(driven, angle, what):
     here, friction = rest - spare * driven.direction, friction * driven.direction
     rubbing = f", {friction:.6g} N m of them to overcome friction" if friction else ""
     missing, most = here - rest, int(np.argmax(asked))
-    better = np.flatnonzero(asked < rest)
     remedies = [f"a motor with {asked[most] / rest:.3g} times the torque at rest" if rest > 0.0 else "another motor"]
-    if better.size:
-        easiest = math.degrees(places[int(np.argmin(asked))])
-        remedies.append(f"another crank angle (least is asked at {easiest:.6g} deg)")
+    easy = _easiest(places, asked - rest, driven.direction)
+    if easy is not None:
+        remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which the loads help it round")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
         f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "
@@ -227,13 +188,35 @@ def _no_start(driven, angle, what):
     )
 
 
+def _easiest(places, missing, direction):
+    """Crank angle from which torque at rest carries a machine round, or None where it does no work over the turn.
+
+    It lies behind the place up to which most energy is asked: from there on more is given than taken.
+    """
+    step = int(direction)
+    missing = missing[::step]  # in the order of motion
+    energy = np.cumsum(missing)
+    if energy[-1] >= 0.0:
+        return None
+    high = int(np.argmax(energy)) + 1
+    return float(places[::step][high % places.size])
+
+
 def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     """The motion from an angle and speed until a time, a standstill, or a target speed."""
     if isinstance(driven, RubbingDriven):
         return _rubbing(driven, scene, angle, speed, until, target, one_way)
     from scipy.integrate import solve_ivp
 
+    evaluations = itertools.count()
+
     def change(time, state):
+        if next(evaluations) > MOST_EVALUATIONS:
+            raise DriveError(
+                f"{scene.mechanism.name}: the motion is too long to follow: {time:.6g} s, to crank angle "
+                f"{math.degrees(state[0]):.6g} deg, took {MOST_EVALUATIONS} evaluations; give an earlier time as until",
+                crank_angle=float(state[0]),
+            )
         angle, speed = float(state[0]), float(state[1])
         inertia, slope, spare = driven.here(angle, speed)
         return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed
@@ -263,6 +246,8 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     if found.status == 0 and not isinstance(until, float):
         raise _never(driven, target, end)
     time, (angles, speeds, work) = found.t, found.y
+    if driven.motor is not None:
+        require_known(driven, speeds)
     energy = 0.5 * driven.inertia(angles) * speeds * speeds
     drift = float(np.abs(energy - energy[0] - work).max())
     last = ("end", "standstill" if until == "standstill" else "reversal", "end")[_which(found)]
