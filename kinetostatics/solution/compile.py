@@ -156,6 +156,14 @@ class Program:
         rows = self._program.run(state, leaves, self._compiled)
         return self._program.recording.named(read_only(rows))
 
+    def unlooked(self, angle, values):
+        """The same where the caller sees to it that the values are right, and looks at friction himself."""
+        numbers = list(self._leaves.numbers)
+        for path, value in values.items():
+            numbers[self._numbers[path][0]] = value
+        state, leaves = self._state(angle, values, self._leaves.with_numbers(numbers))
+        return self._program.recording.named(self._program.run(state, leaves, self._compiled))
+
     def derivatives(self, angle, by=None, values=MappingProxyType({})):
         """Exact derivatives of every quantity by parameters, from the recorded arithmetic.
 
@@ -223,7 +231,11 @@ class Program:
             checks.require("program", wrong)
         if values and not isinstance(values, Mapping):
             checks.require("program", f"values must be a dict of parameter to number, got {checks.shown(values)}")
-        leaves = self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
+        return self._state(
+            angle, values, self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
+        )
+
+    def _state(self, angle, values, leaves):
         shape = _shape(angle, leaves)
         if self._refuses or self._program.recording.tables:
             scene = self.scene.varied(values) if values else self.scene

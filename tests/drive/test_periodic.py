@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 import kinetostatics as ks
 from support import DATA
@@ -71,14 +70,6 @@ def test_the_true_motion_balances_motor_machine_and_flywheel(mechanism, loads, f
     whole = run.solution.at(np.linspace(0.0, TURN, 40 * 64, endpoint=False) + TURN / 5120)
     work = TURN * np.mean(whole.load_torque)
     assert run.energy_per_turn == pytest.approx(work, rel=2e-4, abs=1e-11 * TURN * scale)
-
-
-def test_speed_is_the_integral_of_acceleration_and_time_that_of_slowness():
-    run = ks.drive.steady(saw(FAN), MOTOR, 100.0, angles=[0.4, 2.9])
-    change = quad(lambda angle: float(np.divide(*run.motion(np.array(angle))[::-1])), 0.4, 2.9, epsrel=1e-13)[0]
-    assert change == pytest.approx(run.speed[1] - run.speed[0], rel=1e-11)
-    time = quad(lambda angle: 1.0 / float(run.motion(np.array(angle))[0]), 0.4, 2.9, epsrel=1e-13)[0]
-    assert time == pytest.approx(run.time[1] - run.time[0], rel=1e-12)
 
 
 def test_a_motor_line_in_the_square_of_speed_gives_the_closed_form():
@@ -163,36 +154,6 @@ def test_a_load_that_jumps_where_nobody_told_is_resolved_at_its_jump():
     pushed = ks.Torque(lambda motion: np.where(np.mod(motion.crank_angle, TURN) < jump, -800.0, 0.0), on="crank")
     run = ks.drive.steady(saw(pushed), MOTOR, 100.0)
     assert run.energy_per_turn == pytest.approx(800.0 * jump, rel=1e-11)
-
-
-def test_rotor_loss_is_slip_times_air_gap_power():
-    run = ks.drive.steady(saw(CUT, FAN), MOTOR, 100.0, angles=4096)
-    weight = 1.0 / np.abs(run.speed)
-    slip = 1.0 - run.motor_speed / 157.0
-    loss = TURN * np.mean(slip * run.motor_torque * 157.0 * weight)
-    assert run.rotor_loss_per_turn == pytest.approx(loss, rel=1e-4)
-    assert run.peak_power >= np.abs(run.motor_power).max()
-    assert run.mean_power == pytest.approx(np.sum(run.motor_power * weight) / np.sum(weight), rel=1e-4)
-
-
-def test_extremes_frames_and_comparison_take_running_as_any_solution():
-    run = ks.drive.steady(saw(CUT), MOTOR, 1000.0)
-    other = ks.drive.steady(saw(CUT), MOTOR, 50.0)
-    found = ks.extremes(run.solution, "balancing_torque")
-    assert found.range[1] >= run.solution.balancing_torque.max() - 1e-9
-    assert ks.compare(run.solution, other.solution).mean_torque_ratio > 1.0
-    assert len(run.frame()) == 720
-    assert len(run.solution.frame()) == 720
-
-
-def test_figures_show_speed_and_the_torques_at_the_crank():
-    run = ks.drive.steady(saw(CUT), MOTOR, 1000.0)
-    speed, torques = run.plot()
-    assert speed.get_ylabel() == "crank speed [rad/s]"
-    drive, machine = (line.get_ydata() for line in torques.get_lines())
-    assert drive[:-1:2].shape == (360,)
-    assert machine[:-1] == pytest.approx(run.solution.balancing_torque, abs=1e-6)
-    assert drive[:-1] == pytest.approx(MOTOR.transmission * run.motor_torque)
 
 
 def test_without_motor_a_constant_torque_keeps_the_mean_speed_of_the_scene():
