@@ -38,7 +38,7 @@ class Found:
     evaluations : int
         Of all derivatives, by all starts.
     starts : list of float
-        The goal that each start came to, infinite where it kept not its limits.
+        The goal that each start came to; infinite, or a ratio of 0, where it kept not its limits.
     bound : float
         Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
     """

@@ -10,7 +10,7 @@ from ..results.extremes import extrema
 from .demands import TOPS, Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
-from .problem import SHARED, Problem, chosen, true_value
+from .problem import SHARED, Problem, chosen, own, true_value
 from .robust import Sampled
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
 
@@ -105,7 +105,7 @@ def optimise(
         dict.fromkeys(asked),
         f"{'least' if sign > 0 else 'greatest'} {text}",
         evaluations=problem.evaluations,
-        starts=ends,
+        starts=as_asked(problem, output, goal, ends),
     )
 
 
@@ -147,6 +147,14 @@ def without_ratios(problem, goal, limits):
     if callable(goal.output) or not goal.output.ratio:
         return goal, found
     return Goal(plain(goal.output), -goal.sign), found
+
+
+def as_asked(problem, output, goal, ends):
+    """What starts came to, as ratios where these were asked for and the number below them was the goal."""
+    if callable(goal.output) or goal.output.ratio == output.ratio:
+        return ends
+    above = true_value(own(output), scene_of(problem.reference))
+    return [above / end for end in ends]
 
 
 def starting(problem, count, seed, begin=None):

@@ -22,7 +22,7 @@ from .cam_start import begun
 from .demands import demands, wanted
 from .derived import scene_of
 from .found import Found, found_of, known
-from .optimisation import aim, aimed, held, multiple, require_reference, without_ratios
+from .optimisation import aim, aimed, as_asked, held, multiple, require_reference, without_ratios
 from .problem import Problem, chosen, true_value
 from .search import Goal
 
@@ -164,7 +164,7 @@ def torque_free_cam(
         _shown(start.scene, compared, outputs),
         f"{'least' if sign > 0 else 'greatest'} {text}",
         evaluations=problem.evaluations,
-        starts=came_to,
+        starts=as_asked(problem, output, goal, came_to),
     )
     return replace(found, before=given, bound=bound(start, found.scene, compared))
 

@@ -109,6 +109,11 @@ def test_several_starts_reach_the_same_design_and_the_seed_repeats_them():
     assert_allclose(one.starts, one.starts[0], rtol=1e-6)
 
 
+def test_what_starts_came_to_is_told_as_asked():
+    found = ks.design.optimise(SAW, SPRING, maximise=RATIO, variant="cam-circle", angles=360)
+    assert_allclose(found.starts, [found.report().loc[f"{RATIO} [1]", "after"]], rtol=1e-5)
+
+
 def test_the_same_optimum_under_an_independent_solution(bound):
     compared = ks.compare(SAW.solve("plain"), bound.scene.solve(720)).frame()
     assert_allclose(compared.iloc[0]["ratio"], bound.report().loc[f"{RATIO} [1]", "after"], rtol=1e-6)
@@ -123,6 +128,23 @@ def test_any_machine_can_be_improved():
     table = found.report()["after"]
     assert table["largest O [N]"] < 0.8 * found.report()["before"]["largest O [N]"]
     assert table["largest_absolute balancing_torque [N m]"] <= 12.0 * (1 + 1e-9)
+
+
+def test_losses_and_pressure_angle_are_outputs_too():
+    """No design of a grid that keeps the limit loses less."""
+    friction = {"O": ks.PinFriction(0.1, 0.1), "guide": ks.GuideFriction(0.1)}
+    scene = ks.Scene(CIRCLE.mechanism, CIRCLE.crank_speed, loads=CIRCLE.loads, friction=friction)
+    vary = {"spring.stiffness": (6e5, 9e5), "cam.centre.x": (-0.03, -0.01)}
+    found = ks.design.optimise(
+        scene, vary, "mean friction_loss", "largest_absolute pressure_angle <= 3.7 deg", angles=180
+    )
+    after = found.report()["after"]
+    assert after["largest_absolute pressure_angle [rad]"] <= np.radians(3.7) * (1 + 1e-9)
+    for stiffness in np.linspace(6e5, 9e5, 5):
+        for centre in np.linspace(-0.03, -0.01, 5):
+            other = scene.varied({"spring.stiffness": stiffness, "cam.centre.x": centre}).solve(180)
+            if np.abs(other.pressure_angle).max() <= np.radians(3.7):
+                assert np.mean(other.friction_loss) >= after["mean friction_loss [W]"] * (1 - 1e-6)
 
 
 def test_demands_end_with_how_near_the_best_comes():
