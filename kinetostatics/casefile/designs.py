@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..design import case_text
 from ..design.cam_start import begun
 from ..design.demands import demand, wanted
 from ..design.fronts import Front, pareto
@@ -67,6 +68,30 @@ class Design:
         return torque_free_cam(source, vary=table.vary, **own, **shared)
 
 
+def write_found(path, case, found):
+    """Write a case file of what designs of a case found, by their names: ready to run, and to be found again.
+
+    Besides what is found, of a front one by one, it has what the searches began with, what ratios refer to, and the
+    tables of the designs.
+
+    Raises
+    ------
+    ParameterError
+        A part of a scene is a table or an object that case files have no text for.
+    """
+    designs = [case.designs[name] for name in found]
+    names = dict.fromkeys([case.reference, *(name for item in designs for name in (item.reference, item.source))])
+    scenes = {name: case.variant(name).scene for name in names}
+    for name, result in found.items():
+        if isinstance(result, Front):
+            scenes |= {f"{name}-{number}": item.scene for number, item in enumerate(result.designs, 1)}
+        else:
+            scenes[name] = result.scene
+    raw = {item.name: item.raw for item in designs}
+    comment = f"Found by: kinetostatics design {case.path.name}"
+    return case_text.write(path, case.title, scenes, case.source, comment=comment, designs=raw)
+
+
 def designs_of(tables, reference, variants, problems):
     """Designs by name, of tables as they stand in the file; what is wrong with them is added to the problems."""
     found = {}
@@ -78,9 +103,10 @@ def designs_of(tables, reference, variants, problems):
         table = read.design
         first = next((other for other in variants if other not in (reference, name)), reference)
         chosen = table.variant or first, table.reference or reference
-        for key in ("variant", "reference"):
-            word = getattr(table, key)
-            problems += [checks.choice(f"design.{name}.{key}", word, tuple(variants))] if word not in (None, *variants) else []
+        given = {f"design.{name}.{key}": getattr(table, key) for key in ("variant", "reference")}
+        wrong = [checks.choice(key, word, tuple(variants)) for key, word in given.items() if word is not None]
+        wrong += [f"{key} is what it is to find: give another" for key, word in given.items() if word == name]
+        problems += [problem for problem in wrong if problem]
         if all(map(variants.get, chosen)):
             problems += [f"design.{name}{text}" for text in _problems(table, *map(variants.get, chosen))]
         found[name] = Design(name, *chosen, table, raw, variants)
