@@ -6,8 +6,8 @@ from typing import Any
 from ..design import case_text
 from ..design.cam_start import begun
 from ..design.demands import demand, wanted
-from ..design.fronts import Front, pareto
 from ..design.found import Found
+from ..design.fronts import Front, pareto
 from ..design.optimisation import optimise
 from ..design.problem import bounds
 from ..design.torque_free import torque_free_cam
@@ -146,7 +146,9 @@ def _problems(table, source, reference):
 def _outputs(table):
     """Texts of what is made least or greatest, by key."""
     if isinstance(table, schema.FrontTable):
-        return [(f".minimise[{number}]", text.strip().removeprefix("-")) for number, text in enumerate(table.minimise, 1)]
+        return [
+            (f".minimise[{number}]", text.strip().removeprefix("-")) for number, text in enumerate(table.minimise, 1)
+        ]
     pairs = [(f".{key}", getattr(table, key)) for key in ("minimise", "maximise")]
     return [(key, text) for key, text in pairs if text is not None]
 

@@ -20,7 +20,9 @@ SAME = 1e-4
 def design(options):
     case = load_case(options.case)
     if not case.designs:
-        raise CaseError(case.path, ["has nothing to find; say what as [design.NAME], with a kind, what varies and limits"])
+        raise CaseError(
+            case.path, ["has nothing to find; say what as [design.NAME], with a kind, what varies and limits"]
+        )
     names = list(dict.fromkeys(options.design)) if options.design else list(case.designs)
     wrong = [checks.choice("design", name, tuple(case.designs)) for name in names]
     if any(wrong):

@@ -37,7 +37,7 @@ def page(found):
         pitch_curves(cams, ax=parts["cam"])
         parts["cam"].set_title("pitch curve of the cam")
         cam_radius(cams, ax=parts["radius"])
-        parts["radius"].set_title("its distance from O")
+        parts["radius"].set_title("its distance from O, over the turn")
     else:
         plots.mechanism(solutions["after"], ax=parts["mechanism"])
         parts["mechanism"].set_title("after")
@@ -73,7 +73,7 @@ def pitch_curves(cams, ax=None):
     ax.annotate("O", (0.0, 0.0), xytext=(4, 4), textcoords="offset points")
     ax.set_aspect("equal", adjustable="datalim")
     ax.set(xlabel="x [mm]", ylabel="y [mm]")
-    ax.legend(frameon=False, fontsize="small", loc="center right")
+    ax.legend(frameon=False, fontsize="small", loc="center", bbox_to_anchor=(0.5, 0.3))
     return ax
 
 

@@ -3,7 +3,7 @@
 Outputs, limits and bounds stay texts here: what they name depends on the variant, so `designs` reads them.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
