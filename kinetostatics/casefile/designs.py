@@ -15,8 +15,7 @@ from ..errors import DesignError, KinetostaticsError
 from ..numbers import checks
 from . import reading, schema
 
-BEGUN = ("cosine", "sine", "ends")
-ONLY_CAM = ("guide_offset", "coupler_spring", "counterweight", "cubic")
+CAM = ("cosine", "sine", "ends", "guide_offset", "coupler_spring", "counterweight", "cubic")
 """Keys of a torque-free cam as `torque_free_cam` takes them."""
 
 
@@ -38,7 +37,7 @@ class Design:
     name: str
     source: str
     reference: str
-    table: schema.DesignTable = field(repr=False)
+    table: Any = field(repr=False)
     raw: dict = field(repr=False)
     _variants: Any = field(repr=False)
 
@@ -64,7 +63,7 @@ class Design:
         shared |= {"robust": None if table.robust is None else table.robust.spread}
         if isinstance(table, schema.OptimumTable):
             return optimise(source, table.vary, angles=table.angles, **shared)
-        own = {name: getattr(table, name) for name in (*BEGUN, *ONLY_CAM)}
+        own = {name: getattr(table, name) for name in CAM}
         return torque_free_cam(source, vary=table.vary, **own, **shared)
 
 
@@ -122,8 +121,8 @@ def _problems(table, source, reference):
     scene, vary, varied = source.scene, table.vary, source
     if isinstance(table, schema.TorqueFreeCamTable):
         try:
-            given = [getattr(table, name) for name in (*BEGUN, *ONLY_CAM)]
-            start = begun(scene, *given[:3], True, *given[3:])
+            cosine, sine, ends, *others = (getattr(table, name) for name in CAM)
+            start = begun(scene, cosine, sine, ends, True, *others)
         except DesignError:  # the search says so, with the numbers
             return
         except KinetostaticsError as error:

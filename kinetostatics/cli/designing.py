@@ -2,6 +2,7 @@
 
 import os
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -65,8 +66,8 @@ def _found(item, options):
 def _print(item, found):
     if isinstance(found, Front):
         print(f"\n{item.name}: front of {' and '.join(found.outputs)}, from {item.source}\n")
-        table = found.table.set_axis(range(1, len(found.table) + 1))
-        print_table(table.rename_axis("design"))
+        table: Any = found.table
+        print_table(table.set_axis(range(1, len(table) + 1)).rename_axis("design"))
         return
     print(f"\n{item.name}: {found.goal}, from {item.source}; ratios to {item.reference}\n")
     report = found.report()

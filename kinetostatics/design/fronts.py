@@ -112,7 +112,7 @@ def _table(found, outputs, pair):
     units = found[0].scene.units
     rows = [
         dict(zip(columns, outputs(design.scene), strict=True))
-        | {f"{path} [{units[path]}]": value for path, value in design.values.items()}
+        | {f"{path} [{units[path]}]": value for path, value in dict(design.values).items()}
         for design in found
     ]
     return pd.DataFrame(rows)

@@ -2,6 +2,7 @@
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -31,7 +32,7 @@ def page(found):
     solutions = {name: scene.solve(POINTS) for name, scene in scenes.items()}
     cams = {name: cam for name, scene in scenes.items() if (cam := cam_of(scene)) is not None}
     upper = ["cam", "torque", "torque after"] if cams else ["torque", "torque", "torque after"]
-    rows = [upper, ["radius" if cams else "mechanism", *scenes]]
+    rows: Any = [upper, ["radius" if cams else "mechanism", *scenes]]
     figure, parts = plt.subplot_mosaic(rows, figsize=(11.5, 6.8), layout="constrained")
     if cams:
         pitch_curves(cams, ax=parts["cam"])

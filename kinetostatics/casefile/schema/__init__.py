@@ -8,7 +8,7 @@ designs     what is to be found: what varies, what must hold
 variants    mechanisms, and the head of a file
 """
 
-from .designs import DesignTable, FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
+from .designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
 from .drives import TorqueTable
 from .parts import MADE_OF
 from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable, kinds
@@ -40,7 +40,6 @@ __all__ = [
     "ChainVariant",
     "CosineLawTable",
     "CrankSliderVariant",
-    "DesignTable",
     "FourBarVariant",
     "FrontTable",
     "HarmonicTable",
