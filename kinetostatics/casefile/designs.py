@@ -45,6 +45,12 @@ class Design:
     def kind(self):
         return self.table.kind
 
+    @property
+    def spread(self):
+        """How numbers spread if a quantile is the goal, a `ks.design.Spread`; else None."""
+        robust = getattr(self.table, "robust", None)
+        return None if robust is None else robust.spread
+
     def find(self, *, starts=None, progress=False) -> "Found | Front":
         """Search for it; `starts` is how many searches, as the file says unless told.
 
@@ -60,7 +66,7 @@ class Design:
         if isinstance(table, schema.FrontTable):
             return pareto(source, table.vary, table.minimise, points=table.points, angles=table.angles, **shared)
         shared |= {"minimise": table.minimise, "maximise": table.maximise}
-        shared |= {"robust": None if table.robust is None else table.robust.spread}
+        shared |= {"robust": self.spread}
         if isinstance(table, schema.OptimumTable):
             return optimise(source, table.vary, angles=table.angles, **shared)
         own = {name: getattr(table, name) for name in CAM}

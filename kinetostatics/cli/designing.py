@@ -10,10 +10,13 @@ from ..casefile.case import load_case
 from ..casefile.designs import write_found
 from ..design import case_text
 from ..design.fronts import Front
+from ..design.robust import over_spread
 from ..errors import CaseError, DesignError
 from ..numbers import checks, files
 from .printed import print_table, tell
 
+SAMPLES = 2048
+"""Machines of a spread that are looked at in the end."""
 SAME = 1e-4
 """Relative difference of ends of searches that count as one."""
 
@@ -77,6 +80,16 @@ def _print(item, found):
     print()
     print_table(found.numbers().rename(columns={"price": gain}))
     print(f"\n{_told(found)}")
+    if item.spread is not None:
+        print(_of_the_spread(item, found))
+
+
+def _of_the_spread(item, found):
+    """The quantile that a robust design keeps, over more machines than it was searched with."""
+    output = item.table.minimise or item.table.maximise
+    values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SAMPLES)
+    quantile = item.spread.quantile
+    return f"quantile {quantile:g} of {output} over the spread, {SAMPLES} machines: {np.quantile(values, quantile):.6g}"
 
 
 def _told(found):
