@@ -92,7 +92,7 @@ def write_found(path, case, found):
             scenes |= {f"{name}-{number}": item.scene for number, item in enumerate(result.designs, 1)}
         else:
             scenes[name] = result.scene
-    raw = {item.name: item.raw for item in designs}
+    raw = {item.name: item.raw | {"variant": item.source, "reference": item.reference} for item in designs}
     comment = f"Found by: kinetostatics design {case.path.name}"
     return case_text.write(path, case.title, scenes, case.source, comment=comment, designs=raw)
 
