@@ -113,8 +113,8 @@ class RubbingDriven(Driven):
         friction = np.concatenate([block[FRICTION] for block in blocks])
         return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
 
-    def here(self, angle, speed):
-        senses = {name: float(sense) for name, sense in self.senses.at(angle, self.direction).items()}
+    def here(self, angle, speed, direction=None):
+        senses = {name: float(sense) for name, sense in self.senses.at(angle, direction or self.direction).items()}
         return self.moving(angle, speed, senses)[:3]
 
     def moving(self, angle, speed, senses):
