@@ -28,11 +28,18 @@ def without(table, wrong):
         keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)
     }
     values |= {keys: None for keys in wrong if isinstance(parameters.value(table, keys), schema.ProcessForceTable)}
+    values |= {keys[:1]: None for keys in wrong if isinstance(parameters.value(table, keys), schema.TorqueTable)}
     return None if len(values) < len(set(wrong)) else parameters.with_values(table, values)
 
 
 def _read(path, part, table, keys):
-    """Cam or values in a file that a part of a table names."""
+    """Cam, motor or values in a file that a part of a table names."""
+    if isinstance(part, schema.TorqueTable):
+        columns = read_columns(path, {"speed": "rad/s", "torque": "N m"})
+        try:
+            return part.of(*columns)
+        except ParameterError as error:
+            raise CaseError(path, [str(error)]) from None
     if isinstance(part, schema.SampledTable):
         angle, radius = read_columns(path, {"angle": "rad", "radius": "m"})
         try:

@@ -12,7 +12,11 @@ resolution  pieces that resolve a machine's inertia and load torque
 operating   the speed at which mean torques agree
 newton      Newton's iteration on the energy of running
 following   running found by following a machine from above
-running     a machine in periodic running, and its solution, for all that looks at solutions
+energy_flow where the energy of a turn goes
+search      the flywheel with which a machine runs as evenly as is asked
+saving      two machines in periodic running compared: what balancing saves
+running_solution its solution at the true speed, for all that looks at solutions
+running     a machine in periodic running
 periodic    exact periodic running, by all of these
 summary     what running comes to, in one table
 sizing      flywheels for a coefficient of fluctuation

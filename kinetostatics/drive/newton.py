@@ -42,7 +42,7 @@ def settled(driven, pieces, guess):
 def _yielding(driven, pieces, guess):
     """Pieces divided where the motor is stiff, as near a guess."""
     _, _, _, growth = looked_at(driven, pieces, guess(pieces))
-    parts = np.ceil(np.abs(pieces.whole(growth)) / STIFF).astype(int)
+    parts = np.ceil(np.fmin(np.abs(pieces.whole(growth)) / STIFF, MOST_PIECES + 1.0)).astype(int)
     if parts.max() <= 1 or parts.sum() > MOST_PIECES:
         return pieces
     spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)

@@ -46,7 +46,8 @@ def operating_speed(driven):
     if spare[-1] > 0.0:
         raise DriveError(
             f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest speed of the motor that is looked "
-            f"at, {spare[-1]:.6g} N m are left over at its shaft"
+            f"at, {spare[-1]:.6g} N m are left over at its shaft; give more load, a motor that brakes beyond its speed"
+            f"{', more rows to its table' * math.isfinite(motor.limits[1])}, or another transmission"
         )
     best = int(np.argmax(spare))
     missing = float(-spare[best] * abs(motor.transmission))
@@ -61,7 +62,18 @@ def operating_speed(driven):
 
 def _times(load, motor, speed):
     most = float(motor.torque(speed).max())
-    return f"{load / most:.3g} times as strong " if most > 0.0 else "that drives "
+    return f"{math.ceil(1e3 * load / most) / 1e3:.6g} times as strong " if most > 0.0 else "that drives "
+
+
+def require_known(driven, speed):
+    """Refuse crank speeds at which a table of the motor tells nothing."""
+    own = driven.motor.transmission * speed
+    low, high = driven.motor.limits
+    if own.min() < low or own.max() > high:
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: the motor runs at {own.min():.6g} to {own.max():.6g} rad/s, but its table "
+            f"knows {low:.6g} to {high:.6g} rad/s only; give more rows"
+        )
 
 
 def _mean_load(driven, speed):

@@ -1,6 +1,7 @@
 """Exact periodic running of a machine under its motor, or under the constant torque that textbooks assume."""
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from .bends import parted
 from .following import from_above
 from .motor import single
 from .newton import interpolated, looked_at, settled, unresolved
-from .operating import operating_speed
+from .operating import operating_speed, require_known
 from .pieces import LEVELS, MOST_PIECES, TAIL
 from .resolution import require_inertia, resolved_with_bends
 from .rubbing import driven_by
@@ -72,7 +73,8 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
     checks.require("steady", _angles_problem(angles))
     pieces, energy = (_prescribed if motor is None else _driven_running)(driven, scene)
     angle = np.linspace(0.0, driven.period, angles, endpoint=False) if _is_count(angles) else crank_angles(angles)
-    return Running(scene, motor, driven.flywheel, angle, driven, pieces, energy)
+    again = partial(steady, scene, motor, angles=angles, engine=engine)
+    return Running(scene, motor, driven.flywheel, angle, driven, pieces, energy, again)
 
 
 def _driven_running(driven, scene):
@@ -93,7 +95,7 @@ def _driven_running(driven, scene):
             finer, bends = moved
         found = settled(driven, finer, interpolated(pieces, energy))
         pieces, energy = found or from_above(driven, finer, start)
-    _require_known(driven, pieces, energy)
+    require_known(driven, looked_at(driven, pieces, energy)[2])
     return pieces, energy
 
 
@@ -101,18 +103,6 @@ def _finer(driven, pieces, energy):
     """Pieces halved where series are not done; None where all are, or there are too many."""
     marked = unresolved(driven, pieces, energy)
     return pieces.split(marked) if marked.any() and len(pieces.half) <= MOST_PIECES else None
-
-
-def _require_known(driven, pieces, energy):
-    """Refuse running at speeds of which a table of the motor knows nothing."""
-    _, _, speed, _ = looked_at(driven, pieces, energy)
-    own = driven.motor.transmission * speed
-    low, high = driven.motor.limits
-    if own.min() < low or own.max() > high:
-        raise DriveError(
-            f"{driven.scene.mechanism.name}: the motor runs at {own.min():.6g} to {own.max():.6g} rad/s, but its table "
-            f"knows {low:.6g} to {high:.6g} rad/s only; give more rows"
-        )
 
 
 def _prescribed(driven, scene):

@@ -133,6 +133,10 @@ class Pieces:
         angle = 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place
         return float(chebyshev.chebval(place, series)), float(angle)
 
+    def peak(self, values):
+        """Largest value by size of a function given at the points, with its sign."""
+        return max(self.largest(values)[0], -self.largest(-values)[0], key=abs)
+
     def split(self, marked):
         """Pieces with those marked halved."""
         middle = 0.5 * (self.edges[:-1] + self.edges[1:])[marked]

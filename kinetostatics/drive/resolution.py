@@ -17,6 +17,8 @@ ROUNDS = 8
 """How often kinks of friction are looked for anew, at most."""
 JUMP = 1e-9
 """Difference of values, relative to the largest, from both sides of an edge that is a jump."""
+UNRESOLVED = 1e-6
+"""Share of a torque in pieces that are not done with which no running can be trusted."""
 VANISHING = 1e-10
 """Smallest inertia, relative to the largest, with which there is a speed."""
 
@@ -32,7 +34,8 @@ def resolved_with_bends(driven, speed):
     pieces, bends = _bent(driven, Pieces(edges, FEW_POINTS if len(edges) > MANY else POINTS), speed)
     pieces = _refined(driven, pieces, speed)
     width = 2.0 * pieces.half[:, 0]
-    if np.any(width < 1e-6 * driven.period):
+    if np.any(width < 1e-6 * driven.period) or len(width) > MOST_PIECES:
+        _require_resolved(driven, pieces, _state_at(driven, pieces.angle, speed).torque)
         jumps = 0.5 * (pieces.edges[:-1] + pieces.edges[1:])[~pieces.can_split]
         edges = _edges(np.unique(np.concatenate([[0.0], driven.kinks, bends, jumps, [driven.period]])))
         again = _refined(driven, Pieces(edges, pieces.count), speed)
@@ -96,6 +99,21 @@ def _edges(breaks):
     """Edges at breaks, and between them where they are far apart."""
     parts = [np.linspace(a, b, math.ceil((b - a) / WIDEST - 1e-9) + 1)[:-1] for a, b in itertools.pairwise(breaks)]
     return np.concatenate([*parts, breaks[-1:]])
+
+
+def _require_resolved(driven, pieces, torque):
+    """Refuse a load torque that pieces do not resolve, as one that grows without bound."""
+    size = np.abs(pieces.whole(np.abs(torque)))
+    lost = pieces.half[:, 0] * np.abs(pieces.series(torque)[-3:]).max(axis=0)
+    if lost.sum() > UNRESOLVED * size.sum():
+        worst = int(np.argmax(lost))
+        angle = float(pieces.edges[worst : worst + 2].mean())
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: the torque of the loads cannot be resolved near crank angle "
+            f"{math.degrees(angle):.6g} deg, where it reaches {np.abs(torque[worst]).max():.3g} N m: it grows without "
+            "bound there, or changes too wildly; give loads that stay finite",
+            crank_angle=angle,
+        )
 
 
 def require_inertia(driven, pieces):

@@ -302,7 +302,7 @@ def test_drive_prints_running_and_start_up_or_why_there_is_none(pump, capsys):
     assert rows["smallest speed"][-2] == f"{run.speed_range[0]:.6g}"
     at = np.radians(float(rows["crank angle of the smallest"][-2]))
     assert run.motion(np.array([at]))[0][0] == pytest.approx(run.speed_range[0], rel=1e-9)
-    assert rows["start-up time from crank angle 0"][-1] == f"{begun.time[-1]:.6g}"  # the other does not start
+    assert rows["start-up time from crank angle 0 deg"][-1] == f"{begun.time[-1]:.6g}"  # the other does not start
     assert "sprung: crank-slider: it starts and stops after" in printed
     assert "overloaded: crank-slider: the motor is too weak" in printed
 
@@ -310,13 +310,42 @@ def test_drive_prints_running_and_start_up_or_why_there_is_none(pump, capsys):
 def test_drive_writes_a_table_and_figures_with_units(pump, tmp_path, capsys):
     folder = tmp_path / "drive"
     assert main(["drive", str(pump), "--variant", "pump", "--out", str(folder)]) == 0
-    names = ["pump_drive.csv", "pump_drive_speed.png", "pump_drive_torque.png"]
+    names = ["pump_drive.csv", "pump_drive_energy.png", "pump_drive_speed.png", "pump_drive_torque.png"]
     assert sorted(path.name for path in folder.iterdir()) == names
     table = pd.read_csv(folder / "pump_drive.csv")
     assert len(table) == 720
     assert {"variant", "crank_speed [rad/s]", "motor_torque [N m]", "motor_power [W]"} <= set(table.columns)
     printed = capsys.readouterr().out
     assert all(str(folder / name) in printed for name in names)
+
+
+def test_drive_starts_from_the_angle_asked_for_and_tells_where_energy_goes(pump, capsys):
+    assert main(["drive", str(pump), "--variant", "pump", "--start", "40 deg"]) == 0
+    printed = capsys.readouterr().out
+    variant = ks.load_case(pump).variants["pump"]
+    begun = ks.drive.start(variant.scene, variant.motor, variant.flywheel, np.radians(40.0))
+    flow = ks.drive.steady(variant.scene, variant.motor, variant.flywheel).energy_flow
+    rows = {line.split("  ")[0]: line.split() for line in printed.splitlines()}
+    assert rows["start-up time from crank angle 40 deg"][-1] == f"{begun.time[-1]:.6g}"
+    for part in flow.parts:
+        name, value = (
+            (part.name, part.energy)
+            if part.swing != part.swing
+            else (f"{part.name}, largest less smallest", part.swing)
+        )
+        assert rows[name][-1] == f"{value:.6g}"
+    lost = flow["rotor, by slip"] / flow.turn_time
+    assert float(rows["lost in the rotor by slip, mean"][-1]) == pytest.approx(lost, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("angle", "message"),
+    [("40", "has no unit"), ("40 m", "does not measure the same"), ("nan deg", "must be text"), ("", "must be text")],
+)
+def test_a_start_angle_without_unit_is_refused(angle, message, capsys):
+    with pytest.raises(SystemExit):
+        main(["drive", "sawframe_2r63", "--start", angle])
+    assert message in capsys.readouterr().err
 
 
 def test_drive_says_why_nothing_runs_and_where_there_is_no_drive(pump, capsys):

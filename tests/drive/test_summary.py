@@ -20,6 +20,6 @@ def test_machines_stand_side_by_side_with_units():
         assert table.loc["mean speed of the crank", name] == run.mean_speed
         assert table.loc["energy per turn, at the shaft", name] == pytest.approx(2 * math.pi * 40.0, rel=1e-9)
     assert table.loc["mean motor power", "unit"] == "W"
-    for row in ("lost in the rotor per turn, by slip", "start-up time from crank angle 0"):
+    for row in ("lost in the rotor by slip, mean", "start-up time from crank angle 0 deg"):
         assert math.isnan(table.loc[row, "line"])
         assert table.loc[row, "Kloss"] > 0.0

@@ -113,10 +113,3 @@ def test_a_load_that_is_no_number_somewhere_is_refused(value):
 
     with pytest.raises((ks.ParameterError, ks.DriveError)):
         ks.drive.steady(ks.Scene(SCENE.mechanism, 1.0, loads=ks.Torque(torque, on="crank")), MOTOR, 1.0)
-
-
-def test_a_scene_with_friction_is_refused_rather_than_run_without_it():
-    saw = ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0))
-    scene = ks.Scene(saw, 33.5, friction={"O": ks.PinFriction(0.05, 0.03)})
-    with pytest.raises(ks.ParameterError, match="friction is not taken yet"):
-        ks.drive.steady(scene, None, 100.0)

@@ -7,6 +7,7 @@ drives      motors and flywheels
 variants    mechanisms, and the head of a file
 """
 
+from .drives import TorqueTable
 from .parts import MADE_OF
 from .tables import TAGS, CosineLawTable, LinkTable, SampledTable, Table, ValuesTable, kinds
 from .texts import BALANCE_THE_SLIDER, MID_LENGTH
@@ -46,6 +47,7 @@ __all__ = [
     "ScotchYokeVariant",
     "SlottedLeverVariant",
     "Table",
+    "TorqueTable",
     "ValuesTable",
     "kinds",
 ]

@@ -48,6 +48,51 @@ def test_each_kind_of_motor_is_that_of_python(tmp_path, text, motor):
     np.testing.assert_allclose(variant.motor.torque_at_crank(speed), motor.torque_at_crank(speed), rtol=1e-13)
 
 
+CSV = "speed [rpm], torque [kN m]\n0, 0.3\n1000, 0.5\n1450, 0.2\n1500, 0\n"
+
+
+def test_a_motor_in_a_csv_file_is_that_of_its_columns_with_their_units(tmp_path):
+    (tmp_path / "motor.csv").write_text(CSV)
+    text = 'motor = { kind = "table", file = "motor.csv", transmission = -2, inertia = "0.1 kg m^2" }'
+    path = case_file(tmp_path, f"{PUMP}[variants.pump.drive]\n{text}\n[variants.still]\n")
+    case = ks.load_case(path)
+    variant = case.variants["pump"]
+    rows = np.array([0.0, 1000.0, 1450.0, 1500.0]) * RPM
+    by_hand = Motor.table(rows, [300.0, 500.0, 200.0, 0.0], transmission=-2.0, inertia=0.1)
+    speed = np.linspace(0.0, rows[-1], 50)
+    np.testing.assert_allclose(variant.motor.torque(speed), by_hand.torque(speed), rtol=1e-13)
+    assert variant.motor.inertia_at_crank == by_hand.inertia_at_crank
+    assert variant.motor.direction == -1.0
+    assert tmp_path / "motor.csv" in variant.files
+    assert variant.content == case.variants["still"].content
+    assert variant.varied({"slider.mass": 2.0}).motor is variant.motor
+
+
+@pytest.mark.parametrize(
+    ("csv", "text", "message"),
+    [
+        (None, 'file = "motor.csv"', "motor.csv: cannot be read"),
+        ("speed [rpm], torque [N]\n0, 1\n1, 0\n", 'file = "motor.csv"', '"N" does not measure the same as "N m"'),
+        ("speed, torque [N m]\n0, 1\n1, 0\n", 'file = "motor.csv"', "has no unit"),
+        ("speed [rpm], torque [N m]\n5, 1\n1, 0\n", 'file = "motor.csv"', "speeds must rise"),
+        ("speed [rpm], torque [N m]\n5, 1\n", 'file = "motor.csv"', "of one length, 2 at least, got 1 and 1"),
+        ("angle [rad], torque [N m]\n5, 1\n", 'file = "motor.csv"', "no column 'speed'"),
+        (CSV, 'file = "motor.csv", torque = ["1 N m"]', "has a file and torque: give either rows here or a CSV file"),
+        (CSV, 'torque = ["1 N m"]', "needs speed and torque, lists of texts, or file"),
+        (CSV, "", "needs speed and torque, lists of texts, or file"),
+        (CSV, "file = 3", "drive.motor.file"),
+        (CSV, 'file = "../motor.csv"', "cannot be read"),
+    ],
+)
+def test_a_motor_in_a_file_that_is_wrong_is_told_with_the_rest(tmp_path, csv, text, message):
+    if csv:
+        (tmp_path / "motor.csv").write_text(csv)
+    drive = f'[variants.pump.drive]\nmotor = {{ kind = "table"{", " * bool(text)}{text} }}\n'
+    found = problems(tmp_path, f'{PUMP}[variants.pump]\n{drive}[variants.other]\ncoupler = {{ mass = "-1 kg" }}\n')
+    assert message in "\n".join(found)
+    assert "variants.other.coupler.mass" in "\n".join(found)
+
+
 def test_a_machine_of_a_case_runs_as_the_one_built_in_python(tmp_path):
     variant = ks.load_case(case_file(tmp_path, f"{PUMP}{KLOSS}[variants.pump]\n")).variants["pump"]
     pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0))
