@@ -39,7 +39,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Parameters
     ----------
     source, vary, limits, variant, reference, starts, seed
-        As for `optimise`, as other options are.
+        As for `optimise`, as are `angles` and `engine`.
     minimise : (str, str)
         Two outputs; a "-" in front of one makes it greatest: ("largest_absolute cam_force", "-ratio mean_absolute
         balancing_torque").
@@ -61,12 +61,14 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     >>> bool((front.table.iloc[:, 0].diff().dropna() > 0).all())
     True
     """
-    pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
+    texts = isinstance(minimise, list | tuple) and all(isinstance(text, str) for text in minimise)
     checks.require(
         "pareto",
-        None if len(pair) == 2 else f"minimise must be two outputs, got {minimise!r}",
+        None if texts and len(minimise) == 2 else f"minimise must be two outputs, got {checks.shown(minimise)}",
         checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}"),
+        *(checks.choice("option", name, ("angles", "engine")) for name in options),
     )
+    pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
     item, compared = chosen(source, variant, reference)
     shared = {"reference": compared, "seed": seed, "starts": starts, "angles": ANGLES} | options
     first, second = (wanted(text, scene_of(item)) for text, _ in pair)

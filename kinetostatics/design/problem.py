@@ -144,13 +144,27 @@ def chosen(source, variant, reference):
         name = reference or source.reference
         first = next((other for other in source.variants if other != name), name)
         return source.variant(variant or first), source.variant(name)
-    problem = (
+    checks.require(
+        "design",
+        None if _varies(source) else f"source must be a Case, as of ks.load_case, or a Scene, got {checks.shown(source)}",
+        None if variant is None else "variant is for cases; a Scene has none",
         None
-        if hasattr(source, "varied") and hasattr(source, "units")
-        else (f"source must be a Case, as of ks.load_case, or a Scene, got {checks.shown(source)}")
+        if reference is None or _varies(reference)
+        else f"reference of a Scene must be a Scene too, got {checks.shown(reference)}",
     )
-    checks.require("design", problem, None if variant is None else "variant is for cases; a Scene has none")
+    checks.require("design", _several("source", source), _several("reference", reference))
     return source, reference
+
+
+def _varies(item):
+    return hasattr(item, "varied") and hasattr(item, "units")
+
+
+def _several(name, item):
+    """What is wrong with a scene of many designs, as a sentence, or None."""
+    own = {} if item is None else scene_of(item).parameters
+    batch = [path for path, value in own.items() if np.size(value) > 1]
+    return f"{name} must be one design, but has several values of {', '.join(batch)}" if batch else None
 
 
 def true_value(output, scene, angles=5760):

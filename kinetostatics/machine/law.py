@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import ParameterError
 from ..numbers import checks
 from .rises import Motion
 
@@ -57,4 +58,7 @@ def knots_of(law):
 
 def angles(phi):
     """Crank angles as an array, one for a single number."""
-    return np.asarray(phi, dtype=float)
+    try:
+        return np.asarray(phi, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(f"law: crank angles must be numbers, rad, got {checks.shown(phi)}") from None

@@ -65,6 +65,12 @@ def count(name, value, *, size=None):
     return None
 
 
+def seed(name, value):
+    """What is wrong with what random numbers begin with, or None."""
+    whole = isinstance(value, numbers.Integral) and not isinstance(value, bool) and value >= 0
+    return None if whole or value is None else f"{name} must be a whole number of at least 0, got {shown(value)}"
+
+
 def solution(name, value):
     """What is wrong with what must be a `Solution`, or None."""
     if hasattr(type(value), "power_residual"):
