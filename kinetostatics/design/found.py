@@ -115,10 +115,11 @@ class Found:
         """
         from .case_text import write
 
+        known = isinstance(name, str) and name not in TAKEN
         checks.require(
             "case file",
             None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
-            None if isinstance(name, str) and name not in TAKEN else f"name must be a text, not one of {TAKEN}, got {name!r}",
+            None if known else f"name must be a text, not one of {TAKEN}, got {name!r}",
             None if title is None or isinstance(title, str) else f"title must be a text, got {checks.shown(title)}",
         )
         scenes = {} if self.reference is None else {"reference": self.reference}

@@ -146,25 +146,19 @@ def chosen(source, variant, reference):
         return source.variant(variant or first), source.variant(name)
     checks.require(
         "design",
-        None if _varies(source) else f"source must be a Case, as of ks.load_case, or a Scene, got {checks.shown(source)}",
+        _no_design("source", source, "a Case, as of ks.load_case, or a Scene"),
         None if variant is None else "variant is for cases; a Scene has none",
-        None
-        if reference is None or _varies(reference)
-        else f"reference of a Scene must be a Scene too, got {checks.shown(reference)}",
+        None if reference is None else _no_design("reference", reference, "a Scene, as the source is"),
     )
-    checks.require("design", _several("source", source), _several("reference", reference))
     return source, reference
 
 
-def _varies(item):
-    return hasattr(item, "varied") and hasattr(item, "units")
-
-
-def _several(name, item):
-    """What is wrong with a scene of many designs, as a sentence, or None."""
-    own = {} if item is None else scene_of(item).parameters
-    batch = [path for path, value in own.items() if np.size(value) > 1]
-    return f"{name} must be one design, but has several values of {', '.join(batch)}" if batch else None
+def _no_design(name, item, kinds):
+    """What is wrong with what must be one design, as a sentence, or None."""
+    if not hasattr(item, "varied") or not hasattr(item, "units"):
+        return f"{name} must be {kinds}, got {checks.shown(item)}"
+    several = [path for path, value in scene_of(item).parameters.items() if np.size(value) > 1]
+    return f"{name} must be one design, but has several values of {', '.join(several)}" if several else None
 
 
 def true_value(output, scene, angles=5760):

@@ -67,8 +67,11 @@ def count(name, value, *, size=None):
 
 def seed(name, value):
     """What is wrong with what random numbers begin with, or None."""
-    whole = isinstance(value, numbers.Integral) and not isinstance(value, bool) and value >= 0
-    return None if whole or value is None else f"{name} must be a whole number of at least 0, got {shown(value)}"
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 0:
+        return f"{name} must be a whole number of at least 0, got {shown(value)}"
+    return None
 
 
 def solution(name, value):
