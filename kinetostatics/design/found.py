@@ -10,7 +10,7 @@ from ..mechanics.quantities import of_scene
 from ..numbers import checks
 from .demands import Demand
 from .derived import scene_of
-from .problem import true_value
+from .problem import compared_value
 from .search import side_of
 
 TAKEN = ("reference", "before")
@@ -129,8 +129,7 @@ class Found:
     def _of(self, output, scene):
         if output.quantity not in known(scene):
             return np.nan
-        own = true_value(output, scene)
-        return true_value(output, self.reference) / own if output.ratio else own
+        return compared_value(output, scene, self.reference)
 
 
 def known(scene):

@@ -10,7 +10,7 @@ from .demands import Demand, demands, wanted
 from .derived import scene_of
 from .found import Found
 from .optimisation import ANGLES, optimise
-from .problem import chosen, true_value
+from .problem import chosen, compared_value
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
         return optimise(item, vary, limits=(*kept, *more), begin=begin, **goal, **shared)
 
     def outputs(scene):
-        return [_value(output, scene, compared) for output in (first, second)]
+        return [compared_value(output, scene, scene_of(compared)) for output in (first, second)]
 
     ends = [best(0), best(1)]
     levels = [outputs(end.scene)[1] for end in ends]
@@ -100,11 +100,6 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     return Front(
         (str(first), str(second)), _table(found, outputs, (first, second)), tuple(found), tuple(outputs(scene_of(item)))
     )
-
-
-def _value(output, scene, compared):
-    own = true_value(output, scene)
-    return true_value(output, scene_of(compared)) / own if output.ratio else own
 
 
 def _table(found, outputs, pair):

@@ -104,11 +104,11 @@ def optimise(
     best = held(problem, goal, plain, best)
     return found_of(
         problem,
-        Goal(goal.output, goal.sign) if robust is not None else Goal(output, sign),
+        goal if robust is not None else Goal(output, sign),
         limits,
         best,
         dict.fromkeys(asked),
-        f"{'least' if sign > 0 else 'greatest'} {text}",
+        label(sign, text, robust),
         evaluations=problem.evaluations,
         starts=as_asked(problem, output, goal, ends),
     )
@@ -118,6 +118,12 @@ def aim(minimise, maximise):
     if (minimise is None) == (maximise is None):
         raise ParameterError('design: give either minimise or maximise, an output such as "largest O"')
     return (1.0, minimise) if maximise is None else (-1.0, maximise)
+
+
+def label(sign, text, robust):
+    """What is asked for, in words."""
+    of = "" if robust is None else f"{robust.quantile:g} quantile of "
+    return f"{'least' if sign > 0 else 'greatest'} {of}{text}"
 
 
 def aimed(problem, output, sign, robust):

@@ -16,7 +16,7 @@ from .derived import Derived, scene_of
 
 SHARED = ("crank_speed", "crank_acceleration")
 """Numbers that a reference takes from the design."""
-KEPT = 8
+REMEMBERED = 8
 """Designs whose curves are remembered."""
 
 
@@ -65,7 +65,7 @@ class Problem:
         """Curve by quantity of a design; NaN where it cannot be built."""
         key = values.tobytes()
         if key not in self._curves:
-            while len(self._curves) >= KEPT:
+            while len(self._curves) >= REMEMBERED:
                 self._curves.pop(next(iter(self._curves)))
             self._curves[key] = self._computed(values)
         return self._curves[key]
@@ -159,6 +159,12 @@ def _no_design(name, item, kinds):
         return f"{name} must be {kinds}, got {checks.shown(item)}"
     several = [path for path, value in scene_of(item).parameters.items() if np.size(value) > 1]
     return f"{name} must be one design, but has several values of {', '.join(several)}" if several else None
+
+
+def compared_value(output, scene, reference):
+    """Value of an output of a scene, of a ratio to that of the reference."""
+    found = true_value(output, scene)
+    return true_value(output, reference) / found if output.ratio else found
 
 
 def true_value(output, scene, angles=5760):

@@ -27,6 +27,7 @@ from .optimisation import (
     aimed,
     as_asked,
     held,
+    label,
     multiple,
     require_reference,
     require_resolved,
@@ -181,7 +182,7 @@ def torque_free_cam(
         asked,
         best,
         _shown(start.scene, compared, outputs),
-        f"{'least' if sign > 0 else 'greatest'} {text}",
+        label(sign, text, robust),
         evaluations=problem.evaluations,
         starts=as_asked(problem, output, goal, came_to),
     )

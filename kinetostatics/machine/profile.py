@@ -15,8 +15,8 @@ from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .crank import ray as ray_at
+from .law import TURN
 
-TURN = 2 * np.pi
 SAMPLES = 1440
 """Crank angles a turn at which extremes are bracketed."""
 RIVALS = 4
