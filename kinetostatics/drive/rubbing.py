@@ -94,7 +94,7 @@ class RubbingDriven(Driven):
         given = {"crank_speed": speed, "crank_acceleration": acceleration}
         given |= {f"friction.{name}.sense": sense for name, sense in senses.items()}
         if not shape:
-            found = self._program.unlooked(np.array(angle), given, self._engine != "numpy")
+            found = self._program.unlooked(float(angle), given, self._engine != "numpy")
             return {name: float(value) for name, value in found.items()}
         columns = {path: np.broadcast_to(value, shape).reshape(-1, 1) for path, value in given.items()}
         rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns, self._engine == "compiled")

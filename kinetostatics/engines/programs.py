@@ -141,6 +141,12 @@ class Program:
             self._computed = -math.inf
         return self._computed > PAYS
 
+    def at_one(self, angle, numbers, compiled):
+        """Outputs at one crank angle, all floats; of a program without tables."""
+        if compiled and self._has_paid(1):
+            return self._by_short_loop(np.array([[angle]]), numbers, (1,))[:, 0].tolist()
+        return self._by_numbers(np.array([angle]), numbers, (1,))[:, 0].tolist()
+
     def _by_short_loop(self, angle, numbers, shape):
         angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
         parameters = np.array([_plain_numbers(numbers)], dtype=float)

@@ -161,7 +161,9 @@ class Program:
         numbers = list(self._leaves.numbers)
         for path, value in values.items():
             numbers[self._numbers[path][0]] = value
-        state, leaves = self._state(angle, values, self._leaves.with_numbers(numbers))
+        if type(angle) is float and not (self._refuses or self._program.recording.tables):
+            return self._program.recording.named(self._program.at_one(angle, numbers, compiled))
+        state, leaves = self._state(np.asarray(angle), values, self._leaves.with_numbers(numbers))
         return self._program.recording.named(self._program.run(state, leaves, compiled))
 
     def derivatives(self, angle, by=None, values=MappingProxyType({})):
