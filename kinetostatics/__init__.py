@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from .machine.mechanism import Mechanism
     from .machine.pin import Pin
     from .machine.rocker_group import RockerGroup
+    from .machine.roller_follower import RollerFollower
     from .machine.slider_group import SliderGroup
     from .machine.yoke_group import YokeGroup
     from .mechanics.principal_points import principal_points
@@ -120,6 +121,7 @@ __all__ = [
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
+    "RollerFollower",
     "RollerFriction",
     "Scene",
     "SliderGroup",
@@ -185,6 +187,7 @@ _WHERE = {
     ],
     "machine.mechanism": ["Mechanism"],
     "machine.rocker_group": ["RockerGroup"],
+    "machine.roller_follower": ["RollerFollower"],
     "machine.pin": ["Pin"],
     "machine.slider_group": ["SliderGroup"],
     "machine.yoke_group": ["YokeGroup"],

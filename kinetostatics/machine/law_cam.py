@@ -232,7 +232,7 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     """
     values = checks.singles(
         "from_law",
-        _law_problem(law),
+        law_problem(law),
         guide_angle=(guide_angle, {}),
         guide_offset=(guide_offset, {}),
         coupler_length=(1.0 if coupler_length is None else coupler_length, {"low": 0.0, "strict": True}),
@@ -308,7 +308,7 @@ def _degrees(turning):
     return f"{np.degrees(turning.angle) % 360:.6g}"
 
 
-def _law_problem(law):
+def law_problem(law):
     """What is wrong with a law, as a sentence, or None."""
     if not callable(law) or isinstance(law, type):
         return f"law must be one of ks.laws, or a function of the crank angle, got {checks.shown(law)}"
