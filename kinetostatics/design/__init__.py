@@ -9,6 +9,8 @@ hertz           line contact of two cylinders
 cam_rollers     the roller itself: spin and sliding, load and life of its pin
 hardness        the pressure that steel bears
 followers       lift-off, surge of springs, torque to start
+torque_balancing   spring-loaded follower on a cam on the crank that leaves the mean torque alone
+spring_follower    how far its spring is stretched at each crank angle
 """
 
 from importlib import import_module
@@ -16,29 +18,36 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from .cam_contact import Contact, contact
-    from .followers import Surge, lift_off_speed, spring_surge, starting_torque
+    from .followers import Surge, lift_off_speed, lifted, spring_surge, starting_torque
     from .hardness import hardness_from_pressure, pressure_from_hardness
+    from .torque_balancing import TorqueBalancing, torque_balancing_cam
 
 __all__ = [
     "Contact",
     "Surge",
+    "TorqueBalancing",
     "contact",
     "hardness_from_pressure",
     "lift_off_speed",
+    "lifted",
     "pressure_from_hardness",
     "spring_surge",
     "starting_torque",
+    "torque_balancing_cam",
 ]
 
 _WHERE = {
     "Contact": "cam_contact",
     "Surge": "followers",
+    "TorqueBalancing": "torque_balancing",
     "contact": "cam_contact",
     "hardness_from_pressure": "hardness",
     "lift_off_speed": "followers",
+    "lifted": "followers",
     "pressure_from_hardness": "hardness",
     "spring_surge": "followers",
     "starting_torque": "followers",
+    "torque_balancing_cam": "torque_balancing",
 }
 """Names by their module: loaded when first used."""
 

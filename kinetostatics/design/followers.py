@@ -108,6 +108,54 @@ def _by_search(solution, fast, side, angle):
     return np.inf
 
 
+def lifted(solution, force="cam_force"):
+    """Crank angles between which a force of contact pulls, so that what it presses on would lift off.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design.
+    force : str
+        Positive where it presses: "contact_force" of a follower, with its label.
+
+    Returns
+    -------
+    tuple of (float, float)
+        Start and stop of each interval, rad; a stop beyond the period lies in the next one.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> follower = ks.RollerFollower(ks.laws.cosine(0.01, 0.05), follower=ks.Link(2.0))
+    >>> machine = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
+    >>> spring = ks.Spring(5e3, 0.04, on="follower")
+    >>> ks.design.lifted(ks.solve(machine, 0.0, crank_speed=40.0, loads=spring), "contact_force")
+    ()
+    >>> ((start, stop),) = ks.design.lifted(ks.solve(machine, 0.0, crank_speed=90.0, loads=spring), "contact_force")
+    >>> round(float(start), 6), round(float(stop), 6)
+    (-1.106539, 1.106539)
+    """
+    from scipy.optimize import brentq
+
+    checks.require("lifted", checks.solution("solution", solution))
+    require_single(solution, "lifted", force)
+    checks.require("lifted", checks.choice("force", force, tuple(solution.scalars)))
+
+    def value(angle):
+        return solution.at(np.atleast_1d(np.mod(angle, solution.period))).scalar(force)
+
+    angle = np.linspace(0.0, solution.period, SAMPLES + 1)
+    pressing = value(angle) >= 0.0
+    if np.all(pressing) or not np.any(pressing):
+        return () if pressing[0] else ((0.0, solution.period),)
+    places = np.flatnonzero(pressing[1:] != pressing[:-1])
+    ends = [(brentq(lambda x: float(value(x)[0]), angle[n], angle[n + 1], xtol=1e-14), pressing[n]) for n in places]
+    starts, stops = ([float(end) for end, leaves in ends if leaves == wanted] for wanted in (True, False))
+    if stops[0] < starts[0]:
+        starts = [starts[-1] - solution.period, *starts[:-1]]
+    return tuple(zip(starts, stops, strict=True))
+
+
 def starting_torque(solution):
     """Largest torque on the crank that turns the machine at rest through some crank angle, N m, and where.
 

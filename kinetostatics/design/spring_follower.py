@@ -35,9 +35,10 @@ _RATE = np.array([chebyshev.chebval(_T, chebyshev.chebder(row)) for row in _FIT.
 """Derivative at the points _T by values there."""
 
 
-def least_level(energy, lows, mass, stiffness):
-    """Level C above which contact can be kept at the least energies; `mass` is m omega^2."""
-    return max(float(energy(low)) + 2.0 * mass * _bend(energy, low) / stiffness for low in lows)
+def reserve(energy, low, level, mass, stiffness):
+    """Force of the spring at a least energy over what contact needs there, 2 sqrt(mu E''); `mass` is m omega^2."""
+    force = np.sqrt(2.0 * stiffness * (level - float(energy(low))))
+    return float(force / (2.0 * np.sqrt(mass * _bend(energy, low))))
 
 
 def _bend(energy, angle, beside=1e-9):
@@ -46,7 +47,7 @@ def _bend(energy, angle, beside=1e-9):
 
 
 def stretched(energy, level, mass, stiffness):
-    """Stretch x of the spring by crank angle, as `Panels`, for an energy with panels; `mass` is m omega^2.
+    """Stretch x of the spring by crank angle, as `Panels`, for an energy in panels; `mass` is m omega^2.
 
     Raises
     ------
@@ -62,6 +63,8 @@ def stretched(energy, level, mass, stiffness):
         if values[place] > values[place - 1]:
             after = after + energy.period * (after <= angle)
             before = before - energy.period * (before >= angle)
+            if reserve(energy, after, level, mass, stiffness) <= 1.0:
+                raise ParameterError(_lifting(after))
             for stop in (before, after):
                 found += _marched(energy, slope, angle, stop, level, mass, stiffness)
     first = turns[int(np.argmax(values))]
@@ -94,11 +97,7 @@ def _marched(energy, slope, start, stop, level, mass, stiffness):
         x = _collocated(rest, marks[0] - at, mass / stiffness, value)
         if x is None:
             if abs(marks[0] - at) < NARROWEST:
-                raise ParameterError(
-                    f"the roller would lift off near crank angle {np.degrees(at) % 360:.6g} deg: there is no motion of "
-                    "the follower that balances and stays in contact; preload the spring more, or make the follower "
-                    "lighter or its travel shorter"
-                )
+                raise ParameterError(_lifting(at))
             marks.insert(0, (at + marks[0]) / 2)
             continue
         rows = _FIT @ x
@@ -112,9 +111,7 @@ def _marched(energy, slope, start, stop, level, mass, stiffness):
 def _collocated(rest, width, share, value):
     """Stretch at the points of a panel, by x^2 + share x'^2 = rest and its `value` at the start; None: not resolved."""
     rate = 2.0 / width * _RATE
-    slow = np.sqrt(np.maximum(rest, 0.0))
-    slow = np.sqrt(np.maximum(rest - share * (rate @ slow) ** 2, 0.0))
-    x = slow if value is None else slow + (value - slow[0]) * np.linspace(1.0, 0.0, slow.size) ** 8
+    x = _stepped(rest, width, share, value)
     for _ in range(NEWTON):
         fast = rate @ x
         off = (x * x + share * fast * fast - rest) / 2.0
@@ -135,13 +132,27 @@ def _collocated(rest, width, share, value):
     return None
 
 
+def _stepped(rest, width, share, value):
+    """The same by implicit Euler steps from point to point: roughly, but from anywhere."""
+    x = [np.sqrt(max(rest[0], 0.0)) if value is None else value]
+    for step, there in zip(np.diff(_T) * width / 2.0, rest[1:], strict=True):
+        q = share / (step * step)
+        square = (1.0 + q) * there - q * x[-1] * x[-1]
+        x.append((q * x[-1] + np.sqrt(max(square, 0.0))) / (1.0 + q))
+    return np.array(x)
+
+
 def _require_contact(nodes, x, width, slope, forth):
     """Raise if the spring is let out where the energy rises."""
     rate = 2.0 / width * (_RATE @ x)
     wrong = rate * slope
     worst = int(np.argmax(wrong))
     if wrong[worst] > ROUNDED * np.max(np.abs(rate)) * np.max(np.abs(slope)):
-        raise ParameterError(
-            f"the roller would lift off near crank angle {np.degrees(nodes[worst]) % 360:.6g} deg; preload the spring "
-            "more, or make the follower lighter or its travel shorter"
-        )
+        raise ParameterError(_lifting(nodes[worst]))
+
+
+def _lifting(angle):
+    return (
+        f"the roller would lift off near crank angle {np.degrees(angle) % 360:.6g} deg: no motion of the follower "
+        "balances and stays in contact; preload the spring more, or make the follower lighter or its travel shorter"
+    )

@@ -6,6 +6,7 @@ between the curves that continue from both sides.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -19,6 +20,8 @@ DEPTH = 14
 """How many times one is halved before it is taken to hold a kink."""
 RESOLVED = 1e-12
 """Last coefficients, relative to the largest value, from which on a panel is narrow enough."""
+MOST = 400
+"""Panels at once that may be too wide; a function with more of them is rough everywhere."""
 TAIL = 3
 BESIDE = 0.01
 """Width of the panels, relative to the period, that continue a curve up to a kink."""
@@ -44,7 +47,7 @@ class Panels:
         """
         edges = np.unique([*np.linspace(0.0, period, FIRST + 1), *np.mod(breaks, period)])
         found, rough = _refined(function, edges)
-        if rough:
+        if rough and len(rough) <= MOST:
             kinks = [_kink(function, low, high, period) for low, high in rough]
             found, rough = _refined(function, np.unique([*edges, *np.mod(kinks, period)]), 4 * DEPTH)
         if rough:
@@ -125,7 +128,7 @@ def places(low, high):
 
 def _refined(function, edges, depth=DEPTH):
     """Coefficients by the start of each panel, and those that stay rough, neighbours as one."""
-    waiting = list(zip(edges[:-1], edges[1:], strict=True))
+    waiting = list(pairwise(edges))
     found, rough, size = {}, [], 0.0
     for level in range(depth + 1):
         if not waiting:
@@ -135,9 +138,9 @@ def _refined(function, edges, depth=DEPTH):
         size = max(size, float(np.max(np.abs(values))))
         coefficients = values @ _FIT.T
         smooth = np.max(np.abs(coefficients[:, -TAIL:]), axis=1) <= RESOLVED * size
-        found |= {start: row for start, row in zip(low[smooth], coefficients[smooth], strict=True)}
+        found |= dict(zip(low[smooth], coefficients[smooth], strict=True))
         left = [pair for pair, done in zip(waiting, smooth, strict=True) if not done]
-        if level == depth:
+        if level == depth or len(left) > MOST:
             rough = left
             break
         waiting = [half for a, b in left for half in ((a, (a + b) / 2), ((a + b) / 2, b))]

@@ -1,0 +1,351 @@
+"""A spring-loaded follower on a cam on the crank that evens out the torque of any machine at its design speed.
+
+What the machine stores and gives back over a turn, E = integral of T - mean(T), a spring can store instead: the cam
+lets it out as E rises, so that the motor sees the mean alone. `spring_follower` has the equation, which counts the
+follower's own inertia in and so needs no iteration.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..machine.guide import Guide
+from ..machine.links import Link
+from ..machine.loads import Gravity, Spring
+from ..machine.mechanism import Mechanism
+from ..machine.panel_law import PanelLaw
+from ..machine.profile import POSITIVE, Peak, highest, lowest
+from ..machine.roller_follower import RollerFollower
+from ..numbers import checks
+from ..numbers.lazy import cached_property
+from ..numbers.panels import Panels
+from ..numbers.planar import dot
+from ..results.turn import Turn, require_single
+from ..solution.scene import Scene
+from . import spring_follower
+from .followers import lifted
+
+OWNER, TURN = "torque_balancing_cam", 2 * np.pi
+COUNT = 4096
+ANGLES = (np.arange(COUNT) + 0.382) * TURN / COUNT
+"""Crank angles at which torques are compared; at none of them anything is likely to jump."""
+EVEN = 1e-12
+"""Unevenness of the torque, relative to its size, that counts as none."""
+CORNER = 1e-6
+"""Jump of the torque across its mean, relative to the largest, that counts as one."""
+BESIDE = 1e-9
+STEEP = np.radians(30.0)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TorqueBalancing:
+    """A machine with a torque-balancing cam on its crank; made by `torque_balancing_cam`.
+
+    Attributes
+    ----------
+    scene : Scene
+        With the follower and its spring.
+    reference : Scene
+        As it was.
+    follower : RollerFollower
+    spring : Spring
+    mean_torque : float
+        What the motor gives all the way, N m.
+    energy : float
+        What the spring takes up and gives back, J.
+    stretch : (float, float)
+        Of the spring, least and largest, m; weight of the follower counted in.
+    reserve : float
+        Times the force with which the spring must pull for contact, 2 omega sqrt(m E''), at least; above 1.
+    """
+
+    scene: Scene
+    reference: Scene
+    follower: RollerFollower
+    spring: Spring
+    mean_torque: float
+    energy: float
+    stretch: tuple[float, float]
+    reserve: float
+
+    @property
+    def travel(self):
+        """Of the follower, m."""
+        return self.stretch[1] - self.stretch[0]
+
+    @property
+    def preload(self):
+        """Force of the spring where it is stretched least, N."""
+        return float(self.spring.stiffness * self.stretch[0])
+
+    @cached_property
+    def uneven(self):
+        """Mean of ``abs(T - mean(T))`` before and after, N m, each from a solution of its scene."""
+        found = []
+        for scene in (self.reference, self.scene):
+            torque = scene.solve(ANGLES).balancing_torque
+            found.append(float(np.mean(np.abs(torque - np.mean(torque)))))
+        return tuple(found)
+
+    @property
+    def remaining(self):
+        """What is left of the unevenness."""
+        return self.uneven[1] / self.uneven[0]
+
+    @cached_property
+    def _solution(self):
+        return self.scene.solve(ANGLES)
+
+    def _contact_force(self, angle):
+        return self._solution.at(angle).scalar("contact_force" + self.follower.label)
+
+    @cached_property
+    def least_contact_force(self) -> Peak:
+        """N, and the crank angle."""
+        return lowest(self._contact_force)
+
+    @cached_property
+    def largest_contact_force(self) -> Peak:
+        return highest(self._contact_force)
+
+    @property
+    def lifts_off(self):
+        """Crank angles (start, stop) between which the roller would leave the cam, rad; none as designed."""
+        return lifted(self._solution, "contact_force" + self.follower.label)
+
+    @cached_property
+    def pressure_angle(self) -> Peak:
+        """Largest size, rad."""
+        name = "pressure_angle" + self.follower.label
+        return highest(lambda angle: np.abs(self._solution.at(angle).measure(name)))
+
+    @cached_property
+    def curvature_radius(self) -> Peak:
+        """Smallest radius of the pitch curve where it is convex, m, by polar angle of the cam."""
+        sharpest = highest(lambda angle: 1.0 / self.follower.disk.curvature_radius(angle))
+        return Peak(1.0 / sharpest.value, sharpest.angle)
+
+    def table(self):
+        """Torque and bearing force before and after, as a DataFrame."""
+        import pandas as pd
+
+        rows = {}
+        for name, scene in (("before", self.reference), ("after", self.scene)):
+            s = scene.solve(ANGLES)
+            torque = s.balancing_torque
+            rows[name] = {
+                "mean torque [N m]": np.mean(torque),
+                "mean |T - mean| [N m]": np.mean(np.abs(torque - np.mean(torque))),
+                "largest |T| [N m]": np.max(np.abs(torque)),
+                "largest reaction at O [N]": np.max(np.hypot(*s.reaction("O"))),
+            }
+        return pd.DataFrame(rows)
+
+    def report(self):
+        """What it is and what it costs, as text."""
+        low, high = self.stretch
+        before, after = self.uneven
+        mean = self.mean_torque if abs(self.mean_torque) > EVEN * before else 0.0
+        forces = self.least_contact_force, self.largest_contact_force
+        lost = ", ".join(f"{np.degrees(a):.4g} to {np.degrees(b):.4g} deg" for a, b in self.lifts_off)
+        return "\n".join(
+            [
+                f"Torque-balancing cam on the crank of {self.reference.mechanism.name}",
+                f"  torque              {mean:.6g} N m mean; uneven by {before:.4g} N m before, "
+                f"{after:.3g} after ({self.remaining:.2g})",
+                f"  spring              {self.spring.stiffness:.6g} N/m, free at {self.spring.free_position:.6g} m, "
+                f"stretched {low * 1e3:.4g} to {high * 1e3:.4g} mm, preload {self.preload:.4g} N",
+                f"  energy              {self.energy:.4g} J to and fro",
+                f"  follower            {self.follower.follower.mass:.4g} kg, travel {self.travel * 1e3:.4g} mm",
+                f"  contact             the spring pulls at least {self.reserve:.3g} times as much as it must",
+                f"  contact force       {forces[0].value:.4g} N at {np.degrees(forces[0].angle):.4g} deg, to "
+                f"{forces[1].value:.4g} N at {np.degrees(forces[1].angle):.4g}; "
+                + (f"lifts off from {lost}" if lost else "positive all the way"),
+                f"  pressure angle      {np.degrees(self.pressure_angle.value):.4g} deg at most",
+                f"  pitch curve         smallest radius of curvature {self.curvature_radius.value * 1e3:.4g} mm",
+            ]
+        )
+
+    def __repr__(self):
+        return f"<TorqueBalancing: {self.reference.mechanism.name}, {self.remaining:.2g} of the unevenness left>"
+
+
+def torque_balancing_cam(
+    scene,
+    *,
+    mass,
+    travel,
+    stiffness=None,
+    guide_angle=0.0,
+    guide_offset=0.0,
+    base_radius=None,
+    pressure_angle=STEEP,
+    roller_radius=None,
+    pin="R",
+    label="_cam",
+    switches=(),
+):
+    """Cam on the crank with a spring-loaded roller follower that leaves the mean of the torque alone.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any machine, of one design at constant crank speed; its loads may switch, at any power that does not jump
+        across the mean.
+    mass : float
+        Of the follower with roller, and a third of the spring, kg.
+    travel : float
+        Of the follower, m. A longer one needs a softer spring and less force.
+    stiffness : float, optional
+        N/m; unless told that with which the spring is stretched twice as far at most as at least.
+    guide_angle, guide_offset : float
+        Of the follower's guide, from O outward; rad and m.
+    base_radius : float, optional
+        Least coordinate of the roller centre along the guide, m; unless told the least that keeps to `pressure_angle`.
+    pressure_angle : float
+        Largest, rad; a limit where `base_radius` is given too.
+    roller_radius : float, optional
+        m; refused where it would undercut the cam.
+    pin, label : str
+        Of the `RollerFollower`.
+    switches : sequence of float
+        Crank angles at which a load switches, rad; those not told are found.
+
+    Returns
+    -------
+    TorqueBalancing
+
+    Raises
+    ------
+    ParameterError
+        The torque is even as it is, jumps across its mean, or the scene has several designs or no constant speed; the
+        spring is too soft for contact or too stiff for the travel, with the bounds; the pressure angle or the roller
+        does not fit; friction at O, which the contact force would add to.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> drive = ks.load_case("chain_unit").variants["rho-0.1"].scene
+    >>> found = ks.design.torque_balancing_cam(drive, mass=0.3, travel=0.01)
+    >>> found.remaining < 1e-9, found.lifts_off
+    (True, ())
+    """
+    given = {"mass": mass, "travel": travel, "stiffness": stiffness, "pressure_angle": pressure_angle}
+    given |= {"base_radius": base_radius, "roller_radius": roller_radius}
+    values = checks.singles(
+        OWNER,
+        _scene_problem(scene),
+        **{name: (value, POSITIVE) for name, value in given.items() if value is not None},
+        guide_angle=(guide_angle, {}),
+        guide_offset=(guide_offset, {}),
+    )
+    torque, energy = _energy(scene, switches)
+    guide = Guide.at(values["guide_angle"], values["guide_offset"])
+    moving = values["mass"] * float(scene.crank_speed) ** 2
+    swing, peak, lows = _swing(torque, energy)
+    stiffness, least = _spring(values, swing)
+    level = peak + 0.5 * stiffness * least * least
+    reserves = {low: spring_follower.reserve(energy, low, level, moving, stiffness) for low in lows}
+    reserve = min(reserves.values())
+    if reserve <= 1.0:
+        raise ParameterError(_no_contact(values, min(reserves, key=reserves.__getitem__), reserve))
+    stretch = spring_follower.stretched(energy, level, moving, stiffness)
+    base = _base(stretch, least, values)
+    shift = base - least
+    weight = sum(float(dot(guide.direction, item.vector)) for item in scene.loads if isinstance(item, Gravity))
+    spring = Spring(stiffness, shift - values["mass"] * weight / stiffness, on="follower" + label)
+    link = Link(values["mass"])
+    follower = RollerFollower(PanelLaw(stretch.plus(shift)), guide, link, pin=pin, label=label)
+    if roller_radius is not None:
+        follower.disk.profile(values["roller_radius"], 360)
+    old = scene.mechanism
+    mechanism = Mechanism(f"{old.name} with torque-balancing cam", old.crank, (*old.groups, follower))
+    loaded = replace(scene, mechanism=mechanism, loads=(*scene.loads, spring))
+    ends = least, least + values["travel"]
+    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve)
+
+
+def _scene_problem(scene):
+    """What is wrong with a scene, as a sentence, or None."""
+    if not isinstance(scene, Scene):
+        return f"takes a Scene, as of a case's variant, got {checks.shown(scene)}"
+    if np.ndim(scene.crank_speed) or np.ndim(scene.crank_acceleration) or scene.crank_acceleration:
+        return "the crank must turn at one constant speed, its design speed"
+    if not scene.crank_speed:
+        return "the crank stands; give it its design speed"
+    if abs(scene.period - TURN) > 1e-9:
+        return f"motion and loads must repeat after a turn, but do after {scene.period / TURN:.6g}: a cam cannot"
+    if "O" in scene.friction.acting:
+        return "friction at O grows with the force of the cam; leave it out, and look at it in the scene that is made"
+    return None
+
+
+def _energy(scene, switches):
+    """Torque as panels, and the integral of what it is above its mean."""
+    solution = scene.solve(720)
+    require_single(solution, OWNER, "balancing_torque")
+    kinks = Turn.of(solution).kinks
+    try:
+        torque = Panels.of(lambda angle: solution.at(angle).balancing_torque, TURN, [*kinks, *switches])
+    except ParameterError as error:
+        raise ParameterError(f"{OWNER}: of the torque: {error}") from None
+    return torque, torque.plus(-torque.mean).integral
+
+
+def _swing(torque, energy):
+    """Range of the machine's energy, its peak, and the crank angles where it is least."""
+    mean = torque.mean
+    size = float(np.max(np.abs(torque(np.linspace(0.0, TURN, COUNT)))))
+    turns = torque.plus(-mean).roots
+    values = energy(turns) if turns.size else np.zeros(1)
+    swing, peak = float(np.ptp(values)), float(np.max(values))
+    if not swing > EVEN * size:
+        raise ParameterError(f"{OWNER}: the torque is even as it is, {mean:.6g} N m all the way")
+    for angle in turns:
+        beside = np.abs(torque(angle + np.array([-BESIDE, BESIDE])) - mean)
+        if np.max(beside) > CORNER * size:
+            raise ParameterError(
+                f"{OWNER}: the torque jumps across its mean of {mean:.6g} N m at {np.degrees(angle):.6g} deg, where "
+                "the follower would have to turn back at once; let the load that switches there take some degrees"
+            )
+    return swing, peak, [angle for place, angle in enumerate(turns) if values[place] < values[place - 1]]
+
+
+def _spring(values, swing):
+    """Stiffness, and least stretch, by the energy between both ends of the travel."""
+    travel = values["travel"]
+    stiffness = values.get("stiffness", 2.0 * swing / (3.0 * travel * travel))
+    least = swing / (stiffness * travel) - travel / 2.0
+    if least <= 0.0:
+        raise ParameterError(
+            f"{OWNER}: a spring of {stiffness:.6g} N/m takes up more than the {swing:.6g} J of the machine on a travel "
+            f"of {travel:.6g} m without any preload; take less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
+            f"below {np.sqrt(2.0 * swing / stiffness):.6g} m"
+        )
+    return stiffness, least
+
+
+def _no_contact(values, low, reserve):
+    """Why the follower does not stay on the cam: (k x)^2 must exceed 4 m omega^2 E'' where E is least."""
+    mass = values["mass"]
+    return (
+        f"{OWNER}: the follower would lift off at {np.degrees(low) % 360:.6g} deg, where the spring pulls with "
+        f"{reserve:.4g} times the force 2 omega sqrt(m E'') that contact needs; make the travel shorter than "
+        f"{values['travel'] * reserve:.6g} m, or the follower lighter than {mass * reserve**2:.6g} kg"
+    )
+
+
+def _base(stretch, least, values):
+    """Least coordinate of the roller centre; that which keeps to the pressure angle, unless given."""
+    angle = np.linspace(0.0, TURN, COUNT)
+    x, rate = stretch.at(angle, 1)
+    steep = np.tan(values["pressure_angle"])
+    needed = float(np.max(np.abs(rate + values["guide_offset"]) / steep - (x - least)))
+    base = values.get("base_radius", needed)
+    if base < needed * (1.0 - 1e-9):
+        raise ParameterError(
+            f"{OWNER}: with a base radius of {base:.6g} m the pressure angle exceeds "
+            f"{np.degrees(values['pressure_angle']):.6g} deg; take at least {needed:.6g} m"
+        )
+    return base
