@@ -114,7 +114,7 @@ def test_a_roller_that_undercuts_is_refused():
 
 def test_scenes_that_no_cam_can_balance_are_refused():
     scene = drive()
-    still = ks.Scene(ks.Mechanism("wheel", ks.Crank(0.1, ks.Link(1.0)), ()), 10.0)
+    still = ks.Scene(ks.crank_slider(0.1, 0.3), 10.0)
     jump = ks.Torque(lambda m: np.where(np.sin(m.crank_angle) > 0, 5.0, -5.0), on="crank")
     cases = {
         "even as it is": still,
@@ -125,7 +125,7 @@ def test_scenes_that_no_cam_can_balance_are_refused():
         "friction at O": ks.Scene(scene.mechanism, 10.0, friction={"O": ks.PinFriction(0.1, 0.01)}),
     }
     table = ks.Table([0.0, 3.0, 6.0, 9.0], [0.0, 9.0, 3.0, 1.0], period=4 * np.pi)
-    cases["after a turn, but do after 2"] = ks.Scene(scene.mechanism, 10.0, loads=ks.Torque(table, "rocker"))
+    cases["after a turn, but do after 2"] = ks.Scene(scene.mechanism, 10.0, loads=ks.Torque(table, on="rocker"))
     for text, item in cases.items():
         with pytest.raises(ks.ParameterError, match=text):
             balanced(item)
