@@ -107,10 +107,10 @@ class Panels:
             t = chebyshev.chebroots(chebyshev.chebtrim(coefficients, 1e-14 * np.max(np.abs(self.coefficients))))
             t = np.real(t[(np.abs(np.imag(t)) < 1e-7) & (np.abs(np.real(t)) <= 1.0 + 1e-7)])
             found += [*(start + (np.clip(t, -1.0, 1.0) + 1.0) / 2.0 * (stop - start)), start]
-        found = np.unique(found)
-        middles = (found + np.append(found[1:], found[0] + self.period)) / 2.0
+        places = np.unique(found)
+        middles = (places + np.append(places[1:], places[0] + self.period)) / 2.0
         signs = np.sign(self(middles))
-        return found[signs != np.roll(signs, 1)]
+        return places[signs != np.roll(signs, 1)]
 
 
 def _sum(coefficients, t):
@@ -129,7 +129,8 @@ def places(low, high):
 def _refined(function, edges, depth=DEPTH):
     """Coefficients by the start of each panel, and those that stay rough, neighbours as one."""
     waiting = list(pairwise(edges))
-    found, rough, size = {}, [], 0.0
+    found: dict[float, np.ndarray] = {}
+    rough, size = [], 0.0
     for level in range(depth + 1):
         if not waiting:
             break

@@ -39,11 +39,12 @@ def gap(at, item, rates=None):
     k = at.model.size
     spins = [0.0 if rates is None else rates[..., 2 * k + place] for place in (item.crank, item.link)]
     ray, axis = (at.cosine[..., place] + 1j * at.sine[..., place] for place in (item.crank, item.link))
-    plane, moving = at._plane(at.q), 0.0 if rates is None else at._plane(rates)
+    plane = at._plane(at.q)
     arm = item.along * axis
     apart = plane[..., item.link] + arm - plane[..., item.crank]
-    speed = 0.0
+    speed: Any = 0.0
     if rates is not None:
+        moving = at._plane(rates)
         speed = moving[..., item.link] + 1j * spins[1] * arm - moving[..., item.crank]
     turned = at.q[..., 2 * k + item.crank]
     if isinstance(item.group, FlatFollower):
