@@ -11,6 +11,7 @@ Call first
     compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
     sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
     balancing, linkage, needs                   counterweights; classes of four-bars; how much model a quantity needs
+    design.optimise, design.torque_free_cam     the best machine within bounds and limits; a cam that needs no torque
     laws, cams, design                          laws of motion; cams that make them; contact of the roller, lift-off ...
     plots, precision, stability, check          figures; every method's time and error; a test of a group of one's own
 
@@ -22,7 +23,7 @@ Rooms, in the order in which they build on each other
     results     extremes, means, reductions, comparison, tables
     solution    what users hold: scene, solution, solve, compile
     drive       motors, periodic running, flywheels, starting and coasting
-    design      static balancing, four-bar classes
+    design      counterweights, four-bar classes, contact of cams, optimisation under limits, torque-free cams
     sweeps      designs, sweep, workers, datasets, tolerances
     studies     needs, precision, stability, the methods under study
     casefile    case files: schema, reading, building
@@ -36,6 +37,7 @@ from .errors import (
     AssemblyError,
     CaseError,
     ConditionWarning,
+    DesignError,
     DriveError,
     HintWarning,
     JammingError,
@@ -102,6 +104,7 @@ __all__ = [
     "ConditionWarning",
     "Crank",
     "CylinderGroup",
+    "DesignError",
     "DriveError",
     "Dyad",
     "FlatFollower",

@@ -28,11 +28,18 @@ def without(table, wrong):
         keys: 0.0 for keys in wrong if isinstance(parameters.value(table, keys), schema.ValuesTable)
     }
     values |= {keys: None for keys in wrong if isinstance(parameters.value(table, keys), schema.ProcessForceTable)}
+    values |= {keys[:1]: None for keys in wrong if isinstance(parameters.value(table, keys), schema.TorqueTable)}
     return None if len(values) < len(set(wrong)) else parameters.with_values(table, values)
 
 
 def _read(path, part, table, keys):
-    """Cam or values in a file that a part of a table names."""
+    """Cam, motor or values in a file that a part of a table names."""
+    if isinstance(part, schema.TorqueTable):
+        columns = read_columns(path, {"speed": "rad/s", "torque": "N m"})
+        try:
+            return part.of(*columns)
+        except ParameterError as error:
+            raise CaseError(path, [str(error)]) from None
     if isinstance(part, schema.SampledTable):
         angle, radius = read_columns(path, {"angle": "rad", "radius": "m"})
         try:
@@ -135,10 +142,10 @@ def _loads(table, tabulated):
         yield Gravity(table.gravity.acceleration, table.gravity.direction)
     spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)
     if spring is not None:
-        if isinstance(spring.stiffness, str):
-            yield Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position)
-        else:
-            yield Spring(spring.stiffness, spring.free_position)
+        stiffness = spring.stiffness
+        if isinstance(stiffness, str):
+            stiffness = Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position).stiffness
+        yield Spring(stiffness, spring.free_position, cubic=spring.cubic)
     if force is not None:
         read = tabulated.get(("process_force",)) or tabulated.get(("process_force", "force"))
         yield ProcessForce(force.force) if read is None else ProcessForce(read, period=read.period)

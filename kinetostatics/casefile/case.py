@@ -39,7 +39,7 @@ class Variant:
     table: schema.MechanismVariant = field(repr=False)
     balanced: balancing.Balanced | None = None
     folder: Path = field(default=Path(), repr=False)
-    tabulated: typing.Mapping[str, typing.Any] = field(default_factory=dict, repr=False)
+    tabulated: typing.Mapping[tuple[str | int, ...], typing.Any] = field(default_factory=dict, repr=False)
     """By the keys that lead there what was read from a file in the folder: cams, tables. It is not read again."""
 
     @property
@@ -65,7 +65,9 @@ class Variant:
     @cached_property
     def motor(self) -> Motor | None:
         """Motor of its drive, None if the file gives none."""
-        return None if self.table.drive is None else self.table.drive.motor.motor
+        if self.table.drive is None:
+            return None
+        return self.tabulated.get(("drive", "motor")) or self.table.drive.motor.motor
 
     @property
     def flywheel(self):
@@ -96,7 +98,7 @@ class Variant:
         Without its drive, which no solution depends on.
         """
         return self.table.model_dump_json(exclude={"drive"}).encode() + b"".join(
-            _bytes(part) for part in self.tabulated.values()
+            _bytes(part) for keys, part in self.tabulated.items() if keys[0] != "drive"
         )
 
     def varied(self, values) -> "Variant":

@@ -3,7 +3,7 @@
 import typing
 from typing import Any, NamedTuple
 
-from .schema import MADE_OF, SampledTable, Table, ValuesTable
+from .schema import MADE_OF, Table
 
 PARTS = {"x": 0, "y": 1, "along": 0, "across": 1}
 """Names of the components of a pair."""
@@ -69,9 +69,15 @@ def _of_value(table, name, value, field, path):
     return {path: Place((), meant)}
 
 
+def _file_of(table):
+    """Name of the file in which the numbers are that a table stands for, or None."""
+    found = (getattr(table, key, None) for key in ("file", "table"))
+    return next((name for name in found if name is not None), None)
+
+
 def _is_in_file(table):
     """Whether a table stands for numbers in a file."""
-    return isinstance(table, SampledTable | ValuesTable) or getattr(table, "table", None) is not None
+    return _file_of(table) is not None
 
 
 def _meant(field):
@@ -114,6 +120,6 @@ def files(table, keys=()):
             yield from files(part, (*keys, number))
     elif isinstance(table, Table):
         if _is_in_file(table):
-            yield keys, table, getattr(table, "file" if isinstance(table, ValuesTable) else "table")
+            yield keys, table, _file_of(table)
         for name in type(table).model_fields:
             yield from files(getattr(table, name), (*keys, name))

@@ -111,7 +111,7 @@ def plot(options):
 def drive(options):
     from ..casefile.case import load_case
     from ..drive.periodic import steady
-    from ..drive.summary import summary
+    from ..drive.summary import energy_table, summary
     from ..drive.transient import start
 
     case = load_case(options.case)
@@ -127,13 +127,15 @@ def drive(options):
         machine = variant.scene, variant.motor, variant.flywheel
         try:
             runs[name], starts[name] = steady(*machine), None
-            starts[name] = start(*machine)
+            starts[name] = start(*machine, from_angle=options.start)
         except DriveError as error:
             reasons.append(f"{name}: {error}")
     if not runs:
         raise DriveError("\n".join(reasons))
     print(f"{case.title}\n\nin periodic running under the motor of the case\n")
     print_table(summary(runs, starts).rename_axis("over the period"))
+    print("\nwhere the energy of a turn goes\n")
+    print_table(energy_table(runs).rename_axis("energy per turn"))
     for reason in reasons:
         print(f"\n{reason}")
     if options.out:

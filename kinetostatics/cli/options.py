@@ -4,6 +4,7 @@ import argparse
 
 from .. import __version__
 from ..numbers import checks
+from ..numbers.units import to_si
 from . import commands
 
 DESIGN = 100
@@ -34,6 +35,9 @@ def parser():
 
     drive = _command(group, "drive", commands.drive, "speed, power and start-up under the motor of the case")
     drive.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
+    drive.add_argument(
+        "--start", type=_angle, default=0.0, metavar="ANGLE", help='crank angle to start from, "90 deg" (0 deg)'
+    )
     drive.add_argument("--out", type=_text, metavar="DIR", help="folder for the CSV and the figures")
 
     plot = _command(group, "plot", commands.plot, "draw the figures of the case")
@@ -110,6 +114,13 @@ def _count(text, size=None):
 
 def _angles(text):
     return _count(text, checks.ANGLE)
+
+
+def _angle(text):
+    try:
+        return to_si(text, "rad")
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _designs(text):

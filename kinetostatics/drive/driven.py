@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import DriveError, NotGivenError
+from ..machine.friction import NONE
 from ..machine.loads import TURN, is_given, value_of
 from ..mechanics.pushes import title_of
 from ..numbers import checks
@@ -24,7 +25,6 @@ SAME = 1e-12
 """Crank angles this near, rad, are the same."""
 STEP = 1e-6
 """Relative step of speed by which functions that cannot be recorded are differentiated, for the iteration alone."""
-FRICTION = "friction is not taken yet; what it costs at constant speed is told by solve(...).friction_loss"
 
 
 class State(NamedTuple):
@@ -51,13 +51,15 @@ class Driven:
             wrong,
             None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         )
-        checks.require(owner, *_load_problems(scene), FRICTION if scene.friction else None)
+        checks.require(owner, *_load_problems(scene))
         self.motor = motor
         self.direction = motor.direction if motor is not None else direction or 1.0
         self.flywheel = flywheel + (motor.inertia_at_crank if motor is not None else 0.0)
         self.scene = with_fields(scene, crank_speed=self.direction, crank_acceleration=0.0)
         checks.require(owner, _batch_problem(self.scene))
-        self.program = compiled(self.scene, QUANTITIES, parameters=("crank_speed",), engine=engine or "numpy")
+        free = with_fields(self.scene, friction=NONE)
+        self.program = compiled(free, QUANTITIES, parameters=("crank_speed",), engine=engine or "numpy")
+        self.torque_given = 0.0
         self._kept: tuple[Any, State] | None = None
         self._require_no_acceleration(owner)
 
@@ -70,9 +72,19 @@ class Driven:
     def turns(self):
         return round(self.period / TURN)
 
-    @cached_property
+    @property
     def by_speed(self):
-        """Whether the load torque depends on the speed."""
+        """Whether the torque that is asked depends on the speed."""
+        return self.loads_by_speed
+
+    @property
+    def smooth_by_speed(self):
+        """Whether that dependence is known to be smooth."""
+        return False
+
+    @cached_property
+    def loads_by_speed(self):
+        """Whether the torque of the loads depends on the speed."""
         functions = (item for item in self.scene.loads if not is_given(item) and not hasattr(value_of(item), "kinks"))
         return self.program.depends_on("crank_speed") or any(
             title_of(one) in self.program.unrecorded for one in functions
@@ -88,13 +100,28 @@ class Driven:
                 kinks, jumps = value.kinks(motion)
                 repeats = np.arange(round(self.period / value.period))[:, None]
                 found.append(np.ravel(np.concatenate([kinks, jumps]) + value.period * repeats))
-        kinks = np.unique(np.mod(np.concatenate(found), self.period))
-        apart = np.diff(kinks, prepend=0.0) > SAME
-        return kinks[apart & (kinks < self.period - SAME)]
+        return apart(np.concatenate(found), self.period)
 
     def at(self, angle, speed=None) -> State:
-        """State at crank angles, at crank speeds if loads depend on them; kept for the same angles if they do not."""
-        if self._kept and self._kept[0] is angle and not self.by_speed:
+        """State at crank angles, at crank speeds if it depends on them."""
+        return self.unrubbed(angle, speed)
+
+    def at_constant_speed(self, angle, speed) -> State:
+        """State at crank angles and speeds without acceleration."""
+        return self.at_acceleration(angle, speed, 0.0)
+
+    def at_acceleration(self, angle, speed, acceleration) -> State:
+        """State at crank angles, speeds and accelerations that are given."""
+        return self.at(angle, speed)
+
+    @property
+    def jumps(self):
+        """Crank angles in [0, period) at which the torque is known to jump, exactly."""
+        return np.empty(0)
+
+    def unrubbed(self, angle, speed=None) -> State:
+        """State without friction; kept for the same angles where loads do not depend on the speed."""
+        if self._kept and self._kept[0] is angle and not self.loads_by_speed:
             return self._kept[1]
         found = self._checked(angle, State(*self._values(angle, speed)))
         self._kept = angle, found
@@ -102,14 +129,25 @@ class Driven:
 
     def here(self, angle, speed):
         """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats."""
-        found = self.program(angle, {"crank_speed": speed}) if self.by_speed else self.program(angle)
+        found = self.program(angle, {"crank_speed": speed}) if self.loads_by_speed else self.program(angle)
         inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
-        drive = 0.0 if self.motor is None else float(self.motor.torque_at_crank(speed))
-        return self.flywheel + inertia, slope, drive - load
+        return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
+
+    def inertia_here(self, angle):
+        """All inertia that the crank feels at one crank angle, kg m2, as a float."""
+        return Driven.here(self, angle, self.direction)[0]
+
+    def forces_on(self, angle, speed):
+        """What is zero where the torque has kinks that hang on the motion, each over the crank angles."""
+        return []
+
+    def forces_at(self, angle, speed, acceleration):
+        """The same with accelerations that are given."""
+        return []
 
     def torque_by_speed(self, angle, speed, torque):
-        """Derivative of the load torque by the crank speed, for a torque known there."""
-        if not self.by_speed:
+        """Derivative of the torque by the crank speed, for a torque known there."""
+        if not self.loads_by_speed:
             return 0.0
         shape = angle.shape
         try:
@@ -121,23 +159,31 @@ class Driven:
 
     def inertia(self, angle):
         """All inertia that the crank feels, kg m2."""
-        return self.flywheel + self.at(angle, self._any_speed(angle)).inertia
+        return self.flywheel + self.unrubbed(angle, self._any_speed(angle)).inertia
 
     def motor_torque(self, speed):
-        """Torque of the motor on the crank, N m; none without one."""
-        return 0.0 * speed if self.motor is None else self.motor.torque_at_crank(speed)
+        """Torque of the motor on the crank, N m; without one that given for it."""
+        return 0.0 * speed + self.torque_given if self.motor is None else self.motor.torque_at_crank(speed)
 
     def acceleration(self, state, speed):
         """Crank acceleration, rad/s2."""
         turning = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
         return turning / (self.flywheel + state.inertia)
 
+    def acceleration_along(self, angle, speed):
+        """Crank acceleration at crank angles and speeds of a motion, which may go either way, rad/s2."""
+        return self.acceleration(self.at(angle, speed), speed)
+
+    def at_rest(self, angle, direction):
+        """Torque left over at the crank at rest, about to move one way, and friction in it, N m."""
+        return Driven.here(self, angle, 0.0)[2], 0.0
+
     def _any_speed(self, angle):
-        return np.full(np.shape(angle), self.direction) if self.by_speed else None
+        return np.full(np.shape(angle), self.direction) if self.loads_by_speed else None
 
     def _values(self, angle, speed):
         angle = np.asarray(angle, dtype=float)
-        if not self.by_speed:
+        if not self.loads_by_speed:
             found = self.program(angle)
             return tuple(found[name] for name in QUANTITIES)
         found = self.program(angle.reshape(-1, 1), {"crank_speed": np.asarray(speed, dtype=float).reshape(-1, 1)})
@@ -167,6 +213,12 @@ class Driven:
                 "a load is a function that depends on the crank acceleration, which follows from the loads; let it "
                 "depend on angle, position and velocity alone",
             )
+
+
+def apart(angles, period):
+    """Crank angles in (0, period), rising, those that are the same once."""
+    angles = np.unique(np.mod(angles, period))
+    return angles[(np.diff(angles, prepend=0.0) > SAME) & (angles < period - SAME)]
 
 
 def _load_problems(scene):

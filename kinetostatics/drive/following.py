@@ -5,10 +5,12 @@ import math
 import numpy as np
 
 from ..errors import DriveError
-from .newton import settled
+from .newton import looked_at, settled
 
 FOLLOWED = 1e-6
 """Tolerance to which a machine is followed from above."""
+LOOSE, RIGID = 1e-10, 1e6
+"""Relative change of the energy of motion over a turn, by its own, of motors that cannot be followed to running."""
 TURNS = 100
 """Turns that are followed."""
 
@@ -23,7 +25,7 @@ def from_above(driven, pieces, start):
     period, direction = driven.period, driven.direction
 
     def net(angle, energy):
-        angle, inertia = float(angle), driven.here(float(angle), direction)[0]
+        angle, inertia = float(angle), driven.inertia_here(float(angle))
         return driven.here(angle, direction * math.sqrt(2.0 * max(float(energy[0]), 0.0) / inertia))[2]
 
     most = 0.5 * driven.inertia(pieces.angle).max() * (2.0 * start) ** 2
@@ -57,8 +59,26 @@ def from_above(driven, pieces, start):
                 break
     raise DriveError(
         f"{driven.scene.mechanism.name}: no periodic running was found in {turn + 1} turns from "
-        f"{2.0 * abs(start):.6g} rad/s; give a larger flywheel"
+        f"{2.0 * abs(start):.6g} rad/s; {_remedy(driven, pieces, start)}"
     )
+
+
+def _remedy(driven, pieces, start):
+    """What keeps running from being found, by how the motor answers to speed."""
+    inertia = driven.inertia(pieces.angle)
+    *_, growth = looked_at(driven, pieces, 0.5 * inertia * start * start)
+    share = float(np.abs(pieces.whole(growth)).sum())
+    if share < LOOSE:
+        return (
+            f"motor and loads hold the speed by {share:.1e} of the energy of motion a turn only, against an inertia of "
+            f"{inertia.max():.6g} kg m2 at the crank; give a stronger motor, or less inertia"
+        )
+    if share > RIGID:
+        return (
+            f"the motor is so rigid that its torque changes by {share:.1e} times the energy of motion, a turn, with "
+            "the speed; give it its true slip, or a larger flywheel"
+        )
+    return "give a larger flywheel"
 
 
 def _on_path(pieces, path, least):

@@ -42,7 +42,7 @@ def settled(driven, pieces, guess):
 def _yielding(driven, pieces, guess):
     """Pieces divided where the motor is stiff, as near a guess."""
     _, _, _, growth = looked_at(driven, pieces, guess(pieces))
-    parts = np.ceil(np.abs(pieces.whole(growth)) / STIFF).astype(int)
+    parts = np.ceil(np.fmin(np.abs(pieces.whole(growth)) / STIFF, MOST_PIECES + 1.0)).astype(int)
     if parts.max() <= 1 or parts.sum() > MOST_PIECES:
         return pieces
     spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)
@@ -75,7 +75,8 @@ def looked_at(driven, pieces, energy, state=None):
         inertia = driven.flywheel + state.inertia
         speed = driven.direction * np.sqrt(2.0 * energy / inertia)
     by_speed = driven.motor.slope_at_crank(speed) - driven.torque_by_speed(angle, speed, state.torque)
-    return state, inertia, speed, by_speed / (inertia * speed)
+    growth = by_speed / (inertia * speed)
+    return state, inertia, speed, pieces.smoothed(growth) if driven.smooth_by_speed else growth
 
 
 def _newton(driven, pieces, energy):

@@ -11,6 +11,8 @@ SAMPLED = 96
 """Crank angles by which mean load torques are judged."""
 SEEN = 512
 """Speeds at which the mean torques of motor and loads are compared."""
+FEW = 16
+"""Speeds at which mean torques of friction are computed, those between found from these."""
 
 
 def operating_speed(driven):
@@ -44,7 +46,8 @@ def operating_speed(driven):
     if spare[-1] > 0.0:
         raise DriveError(
             f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest speed of the motor that is looked "
-            f"at, {spare[-1]:.6g} N m are left over at its shaft"
+            f"at, {spare[-1]:.6g} N m are left over at its shaft; give more load, a motor that brakes beyond its speed"
+            f"{', more rows to its table' * math.isfinite(motor.limits[1])}, or another transmission"
         )
     best = int(np.argmax(spare))
     missing = float(-spare[best] * abs(motor.transmission))
@@ -59,7 +62,18 @@ def operating_speed(driven):
 
 def _times(load, motor, speed):
     most = float(motor.torque(speed).max())
-    return f"{load / most:.3g} times as strong " if most > 0.0 else "that drives "
+    return f"{math.ceil(1e3 * load / most) / 1e3:.6g} times as strong " if most > 0.0 else "that drives "
+
+
+def require_known(driven, speed):
+    """Refuse crank speeds at which a table of the motor tells nothing."""
+    own = driven.motor.transmission * speed
+    low, high = driven.motor.limits
+    if own.min() < low or own.max() > high:
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: the motor runs at {own.min():.6g} to {own.max():.6g} rad/s, but its table "
+            f"knows {low:.6g} to {high:.6g} rad/s only; give more rows"
+        )
 
 
 def _mean_load(driven, speed):
@@ -67,5 +81,8 @@ def _mean_load(driven, speed):
     angle = (np.arange(SAMPLED) + 0.5) * driven.period / SAMPLED
     if not driven.by_speed:
         return driven.at(angle).torque.mean() + 0.0 * speed
+    if driven.smooth_by_speed and speed.size > FEW:
+        few = np.linspace(0, speed.size - 1, FEW).astype(int)
+        return np.interp(np.arange(speed.size), few, _mean_load(driven, speed[few]))
     grid = np.broadcast_arrays(angle[None, :], speed[:, None])
-    return driven.at(*grid).torque.mean(axis=1)
+    return driven.at_constant_speed(*grid).torque.mean(axis=1)

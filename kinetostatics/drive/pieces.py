@@ -25,9 +25,13 @@ SMALLEST = 1e-13
 
 
 class Rule(NamedTuple):
-    """Matrices on values at the points in [-1, 1]: to series, to integrals from -1, to slopes, to values between."""
+    """Matrices on values at the points in [-1, 1]: to series, to integrals from -1, to slopes, to values between.
+
+    `vander` goes from series to values.
+    """
 
     points: np.ndarray
+    vander: np.ndarray
     series: np.ndarray
     integral: np.ndarray
     weights: np.ndarray
@@ -45,6 +49,7 @@ def rule(count) -> Rule:
     places = np.cos(np.linspace(np.pi, 0.0, DENSE * count))
     return Rule(
         points,
+        vander,
         series,
         chebyshev.chebvander(points, count) @ whole,
         whole.sum(axis=0),
@@ -91,6 +96,17 @@ class Pieces:
         """Chebyshev coefficients (points, pieces)."""
         return rule(self.count).series @ values.T
 
+    def smoothed(self, values):
+        """Values of the lower half of each series: what hangs on the upper half of differences is noise."""
+        count = self.count // 2
+        return (rule(self.count).vander[:, :count] @ self.series(values)[:count]).T
+
+    def with_ends(self, values):
+        """Values at both ends of each piece beside those at its points, read from its series: (pieces, points + 2)."""
+        series = self.series(values)
+        starts = ((-1.0) ** np.arange(self.count)) @ series
+        return np.column_stack([starts, values, series.sum(axis=0)])
+
     def tail(self, values):
         """Size of the last coefficients of each piece, relative to the largest value of all."""
         size = np.abs(values).max()
@@ -116,6 +132,10 @@ class Pieces:
                 place = np.clip(place - chebyshev.chebval(place, slope) / curved, -1.0, 1.0)
         angle = 0.5 * (self.edges[piece] + self.edges[piece + 1]) + self.half[piece, 0] * place
         return float(chebyshev.chebval(place, series)), float(angle)
+
+    def peak(self, values):
+        """Largest value by size of a function given at the points, with its sign."""
+        return max(self.largest(values)[0], -self.largest(-values)[0], key=abs)
 
     def split(self, marked):
         """Pieces with those marked halved."""

@@ -1,8 +1,8 @@
 """A machine in periodic running, and its solution at the true speed and acceleration, whatever the crank angles."""
 
 import math
-from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,12 +10,13 @@ from ..errors import DriveError
 from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
-from ..solution.angles import crank_angles
 from ..solution.scene import Scene
-from ..solution.solution import Solution
 from .driven import Driven
+from .energy_flow import energy_flow, without_noise
 from .motor import Motor
 from .pieces import Pieces
+from .running_solution import RunningSolution
+from .search import fluctuation_wanted, flywheel_for
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +40,7 @@ class Running:
     _driven: Driven = field(repr=False)
     _pieces: Pieces = field(repr=False)
     _energy: np.ndarray = field(repr=False)
+    _again: Callable[[float], "Running"] = field(repr=False)
 
     def __repr__(self):
         lines = [
@@ -145,6 +147,21 @@ class Running:
         """`Solution` at the crank angles with the true speed and acceleration, for tables, extremes, plots, compare."""
         return RunningSolution.of(self)
 
+    @property
+    def crank_flywheel(self):
+        """Flywheel on the crank without the rotor of the motor, kg m2."""
+        return self.flywheel - (0.0 if self.motor is None else self.motor.inertia_at_crank)
+
+    def with_flywheel(self, inertia):
+        """Running of the same machine under the same motor with another flywheel on the crank, kg m2."""
+        return self._again(inertia)
+
+    def flywheel_for(self, fluctuation):
+        """Flywheel on the crank with which the same machine has a coefficient of fluctuation, kg m2, or 0."""
+        wanted = fluctuation_wanted("flywheel_for", fluctuation)
+        unit = self.flywheel + self._state.inertia.max()
+        return flywheel_for(wanted, self.with_flywheel, unit)[0]
+
     def plot(self, ax=None):
         """Crank speed over the crank angle, and on a second axis the torques of motor and machine at the crank.
 
@@ -180,6 +197,7 @@ class Running:
             "motor_power [W]": self.motor_power,
             "balancing_torque [N m]": self.solution.balancing_torque,
             "load_torque [N m]": self.solution.load_torque,
+            **({"friction_loss [W]": self.solution.friction_loss} if self.scene.friction.acting else {}),
             "kinetic_energy [J]": self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2,
         }
         return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
@@ -189,17 +207,30 @@ class Running:
     @cached_property
     def energy_per_turn(self):
         """Energy that the motor gives at its shaft in a turn, J."""
-        return self._pieces.total(self._powers / np.abs(self._speed)) / self.turns
+        torque = self._transmission * self._motor_torque(self._speed)
+        energy = self._pieces.total(self._driven.direction * torque)
+        flowing = self._pieces.total(np.abs(torque) + np.abs(self._state.torque))
+        return without_noise(energy, flowing) / self.turns
+
+    @cached_property
+    def energy_flow(self):
+        """Where the energy of a turn goes: an `EnergyFlow`, with a table by `.frame()`."""
+        return energy_flow(self)
 
     @cached_property
     def air_gap_energy_per_turn(self):
         """Energy through the air gap of an induction motor in a turn, J: torque times speed of the field."""
-        if self.motor is None or self.motor.field_speed is None:
+        if not self.has_air_gap:
             raise DriveError(
                 "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
             )
-        power = self._motor_torque(self._speed) * self.motor.field_speed
+        power = self._motor_torque(self._speed) * (self.motor.field_speed if self.motor else 0.0)
         return self._pieces.total(power / np.abs(self._speed)) / self.turns
+
+    @property
+    def has_air_gap(self):
+        """Whether the motor is an induction motor, whose losses by slip are known."""
+        return self.motor is not None and self.motor.field_speed is not None
 
     @property
     def rotor_loss_per_turn(self):
@@ -212,6 +243,12 @@ class Running:
         return self.energy_per_turn * self.turns / self.duration
 
     @cached_property
+    def rms_motor_torque(self):
+        """Root of the mean over time of the square of the motor's torque at its shaft, N m: what heats it."""
+        square = self._motor_torque(self._speed) ** 2
+        return math.sqrt(self._pieces.total(square / np.abs(self._speed)) / self.duration)
+
+    @cached_property
     def rms_power(self):
         """Root of the mean over time of the square of the motor's power, W."""
         return math.sqrt(self._pieces.total(self._powers**2 / np.abs(self._speed)) / self.duration)
@@ -219,17 +256,59 @@ class Running:
     @cached_property
     def peak_power(self):
         """Largest power of the motor, with its sign, W."""
-        high, low = self._pieces.largest(self._powers)[0], -self._pieces.largest(-self._powers)[0]
-        return max(high, low, key=abs)
+        return self._pieces.peak(self._powers)
 
     @cached_property
     def peak_motor_torque(self):
         """Largest torque of the motor at its shaft, with its sign, N m."""
-        torque = self._motor_torque(self._speed)
-        high, low = self._pieces.largest(torque)[0], -self._pieces.largest(-torque)[0]
-        return max(high, low, key=abs)
+        return self._pieces.peak(self._motor_torque(self._speed))
+
+    @cached_property
+    def load_energy_per_turn(self):
+        """Energy that weight and loads take of the crank in a turn, friction left out, J."""
+        return self._pieces.total(self._driven.unrubbed(self._pieces.angle, self._speed).torque) * self._forward
+
+    @property
+    def friction_energy_per_turn(self):
+        """Energy that friction takes at all joints in a turn, J."""
+        return sum(self.friction_energy_per_turn_at(joint) for joint in self.scene.friction)
+
+    def friction_energy_per_turn_at(self, joint):
+        """Energy that friction takes at a joint, named as in `friction`, in a turn, J; 0 where nothing rubs."""
+        lost = self._at_points.friction_loss_at(joint).reshape(self._speed.shape)
+        return self._pieces.total(lost / self._speed) * self._forward
+
+    @property
+    def mean_friction_loss(self):
+        """Mean over time of the power lost by friction at all joints, W."""
+        return self.friction_energy_per_turn * self.turns / self.duration
+
+    def mean_friction_loss_at(self, joint):
+        """Mean over time of the power lost by friction at a joint, W."""
+        return self.friction_energy_per_turn_at(joint) * self.turns / self.duration
 
     # on the points of the pieces
+
+    @property
+    def on_pieces(self):
+        """Pieces of the period; speed, acceleration and inertia of the links at their points."""
+        return self._pieces, self._speed, self.motion(self._pieces.angle)[1], self._state.inertia
+
+    @property
+    def direction(self):
+        """+1 if the crank turns counter-clockwise, else -1."""
+        return self._driven.direction
+
+    @property
+    def _forward(self):
+        """Direction of the crank, by the turns of the period."""
+        return self._driven.direction / self.turns
+
+    @cached_property
+    def _at_points(self):
+        speed, acceleration = (part.ravel() for part in self.motion(self._pieces.angle))
+        moving = with_fields(self.scene, crank_speed=speed, crank_acceleration=acceleration)
+        return moving.solve(self._pieces.angle.ravel())
 
     @cached_property
     def _slowest_and_fastest(self):
@@ -268,37 +347,3 @@ class Running:
     def _time_at(self, angle):
         slowness = 1.0 / np.abs(self._speed)
         return self._pieces.evaluate(self._pieces.series(self._pieces.integrated(slowness)), angle)
-
-
-@dataclass(frozen=True, eq=False)
-class RunningSolution(Solution):
-    """A `Solution` whose crank speed and acceleration are those of periodic running.
-
-    `running` gives them at any crank angles, so that extremes, means and tables look between the angles given.
-    """
-
-    running: Any = None
-
-    @classmethod
-    def of(cls, running):
-        """Solution of a `Running` at its crank angles."""
-        scene = with_fields(running.scene, crank_speed=running.speed, crank_acceleration=running.acceleration)
-        plain = scene.solve(running.crank_angle)
-        return cls(**{field.name: getattr(plain, field.name) for field in fields(Solution)}, running=running)
-
-    def __repr__(self):
-        return super().__repr__().replace("<Solution", "<RunningSolution").split(", crank_speed=")[0] + (
-            f", mean speed {self.running.mean_speed:.9g} rad/s>"
-        )
-
-    def at(self, crank_angle):
-        """The same machine in the same running at other crank angles."""
-        angle = crank_angles(crank_angle)
-        motion = self.running.motion(angle)
-        speed, acceleration = (float(part[0]) if part.shape == (1,) else np.asarray(part) for part in motion)
-        return replace(self, crank_angle=angle, crank_speed=speed, crank_acceleration=acceleration)
-
-    @property
-    def period(self):
-        """Crank angle after which running repeats, rad."""
-        return self.running.period

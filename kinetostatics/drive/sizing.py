@@ -2,23 +2,17 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from functools import partial
 
 import numpy as np
 
-from ..errors import DriveError
 from ..numbers import checks
-from .driven import Driven
 from .motor import single
 from .periodic import steady
 from .resolution import resolved
+from .rubbing import driven_by
 from .running import Running
-
-LARGEST = 60
-"""How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""
-PRECISION = 1e-13
-LIGHTEST = 1e-3
-"""Flywheel, relative to the machine's own inertia, below which no lighter one is looked for."""
+from .search import fluctuation_wanted, flywheel_for
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,20 +75,17 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     >>> print(f"{ks.drive.flywheel(pump, 0.01).inertia:.6f} kg m2")
     0.259863 kg m2
     """
-    wanted, wrong = single(fluctuation, name="fluctuation", low=0.0, strict=True)
-    if not wrong and not wanted < 2.0:
-        wrong = f"fluctuation must be less than 2, got {wanted:g}"
-    checks.require("flywheel", wrong)
+    wanted = fluctuation_wanted("flywheel", fluctuation)
     return _textbook(scene, wanted, engine) if motor is None else _true(scene, wanted, motor, engine)
 
 
 def _textbook(scene, wanted, engine):
-    driven = Driven("flywheel", scene, None, 0.0, engine)
-    speed, wrong = single(scene.crank_speed, name="crank_speed of the scene", unequal=0.0)
+    speed, wrong = single(getattr(scene, "crank_speed", 1.0), name="crank_speed of the scene", unequal=0.0)
     checks.require("flywheel", wrong)
+    driven = driven_by("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
     pieces = resolved(driven, speed)
     angle = pieces.angle
-    state = driven.at(angle, 0.0 * angle + speed if driven.by_speed else None)
+    state = driven.at_constant_speed(angle, 0.0 * angle + speed if driven.by_speed else None)
     spare = pieces.total(state.torque) / driven.period - state.torque
     gained = pieces.integrated(spare) - 0.5 * speed * speed * state.inertia
     energy = pieces.largest(gained)[0] + pieces.largest(-gained)[0]
@@ -102,42 +93,11 @@ def _textbook(scene, wanted, engine):
 
 
 def _true(scene, wanted, motor, engine):
-    """The flywheel with which periodic running has the fluctuation, between one too small and one too large."""
-    from scipy.optimize import brentq
-
-    driven = Driven("flywheel", scene, motor, 0.0, engine)
+    driven = driven_by("flywheel", scene, motor, 0.0, engine)
     unit = float(driven.inertia(np.linspace(0.0, driven.period, 64)).max()) or 1.0
-    runs: dict[float, Any] = {}
-
-    def excess(inertia):
-        """Logarithm of the fluctuation over the one wanted; large where the machine does not run."""
-        try:
-            runs[inertia] = steady(scene, motor, inertia, engine=engine)
-        except DriveError:
-            runs[inertia] = None
-            return math.inf
-        return math.log(max(runs[inertia].fluctuation, 1e-300) / wanted)
-
-    if excess(0.0) <= 0.0:
-        return _found(runs[0.0], 0.0)
-    size, low, high = unit, 0.0, None
-    for _ in range(LARGEST):
-        if excess(size) <= 0.0:
-            high = size
-            break
-        low, size = size, 2.0 * size
-    if high is None:
-        steady(scene, motor, size, engine=engine)  # says why the machine does not run
-        raise DriveError(f"flywheel: even {size:.3g} kg m2 do not bring the fluctuation to {wanted:g}")
-    while not math.isfinite(excess(low)):  # too light to run at all
-        if high < LIGHTEST * unit:
-            return _found(runs[high], high)
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if excess(middle) <= 0.0 else (middle, high)
-    inertia = float(brentq(excess, low, high, xtol=PRECISION * high, rtol=PRECISION))
-    return _found(runs.get(inertia) or steady(scene, motor, inertia, engine=engine), inertia)
+    return _found(*flywheel_for(wanted, partial(steady, scene, motor, engine=engine), unit))
 
 
-def _found(running, inertia):
+def _found(inertia, running):
     low, high = running.speed_range
     return Flywheel(inertia, 0.5 * inertia * (high - low) * (high + low), running.fluctuation, running)

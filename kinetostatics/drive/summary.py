@@ -1,8 +1,8 @@
-"""What running comes to, in one table: speeds, fluctuation, powers, energies, start-up."""
+"""What running comes to, in tables: speeds, fluctuation, powers, losses, start-up; and where the energy goes."""
 
 import math
 
-from .motor import Kloss
+from .energy_flow import HELD, ROTOR
 
 
 def summary(runs, starts):
@@ -14,9 +14,28 @@ def summary(runs, starts):
     starts : mapping of label to Trajectory or None
         From rest, None where a machine does not start.
     """
+    columns = {name: _rows(run, starts[name]) for name, run in runs.items()}
+    return _table(columns)
+
+
+def energy_table(runs):
+    """Where the energy of a turn goes, a pandas DataFrame with a column for each of a mapping of label to Running."""
+    columns = {
+        name: {
+            (f"{part.name}, largest less smallest" if part.kind == HELD else part.name, "J"): (
+                part.swing if part.kind == HELD else part.energy
+            )
+            for part in run.energy_flow.parts
+        }
+        for name, run in runs.items()
+    }
+    return _table(columns)
+
+
+def _table(columns):
+    """Values by what they are and their unit, of each column, in one table with NaN for what a column lacks."""
     import pandas as pd
 
-    columns = {name: _rows(run, starts[name]) for name, run in runs.items()}
     rows = {row: None for column in columns.values() for row in column}
     table = pd.DataFrame({"unit": [unit for _, unit in rows]}, index=[row for row, _ in rows])
     return table.assign(**{name: [column.get(row, math.nan) for row in rows] for name, column in columns.items()})
@@ -38,10 +57,19 @@ def _rows(run, start):
         ("rms motor power", "W"): run.rms_power,
         ("peak motor power", "W"): run.peak_power,
         ("peak motor torque, at its shaft", "N m"): run.peak_motor_torque,
+        ("rms motor torque, at its shaft", "N m"): run.rms_motor_torque,
         ("energy per turn, at the shaft", "J"): run.energy_per_turn,
     }
-    if isinstance(run.motor, Kloss):
-        rows["lost in the rotor per turn, by slip", "J"] = run.rotor_loss_per_turn
+    flow = run.energy_flow
+    if run.has_air_gap:
+        rows["lost in the rotor by slip, mean", "W"] = flow[ROTOR] / flow.turn_time
+    if run.scene.friction.acting:
+        rows["lost by friction, mean", "W"] = run.mean_friction_loss
+        rows |= {
+            (f"lost by friction at {joint}, mean", "W"): run.mean_friction_loss_at(joint)
+            for joint in run.scene.friction
+        }
     if start is not None:
-        rows["start-up time from crank angle 0", "s"] = float(start.time[-1])
+        angle = math.degrees(start.crank_angle[0])
+        rows[f"start-up time from crank angle {angle + 0.0:.6g} deg", "s"] = float(start.time[-1])
     return rows

@@ -15,6 +15,9 @@ from ..solution.scene import Scene
 from .driven import Driven
 from .motor import Motor
 
+STANDING = 1e-150
+"""Crank speed that stands for none, with the sign of the motion, rad/s."""
+
 
 class Event(NamedTuple):
     """What happens at a time, s, and crank angle, rad: "start", "reversal", "standstill" or "end"."""
@@ -76,14 +79,23 @@ class Trajectory:
                 "at", f"time must lie between {low:.9g} and {high:.9g} s, got {time.min():.9g} to {time.max():.9g}"
             )
         angle, speed = self._dense(time)[:2]
-        found = map(read_only, (time, angle, speed, acceleration_at(self._driven, angle, speed)))
+        found = map(read_only, (time, angle, speed, self._driven.acceleration_along(angle, speed)))
         return with_fields(self, **dict(zip(("time", "crank_angle", "speed", "acceleration"), found, strict=True)))
 
     @cached_property
     def solution(self):
         """`Solution` along the motion: every reaction and torque at its times."""
-        moving = with_fields(self.scene, crank_speed=self.speed, crank_acceleration=self.acceleration)
+        speed = self.speed
+        if self.scene.friction.acting:  # that at standstill is of the motion before it
+            speed = np.where(speed == 0.0, np.copysign(STANDING, speed), speed)
+        moving = with_fields(self.scene, crank_speed=speed, crank_acceleration=self.acceleration)
         return moving.solve(self.crank_angle)
+
+    @property
+    def friction_energy(self):
+        """Energy that friction has taken since the start, J."""
+        rubs = bool(self.scene.friction.acting)
+        return read_only(self._dense(self.time)[3] if rubs else np.zeros(self.time.shape))
 
     @property
     def motor_torque(self):
@@ -108,6 +120,7 @@ class Trajectory:
                 "motor_torque [N m]": self.motor_torque,
                 "balancing_torque [N m]": self.solution.balancing_torque,
                 "load_torque [N m]": self.solution.load_torque,
+                **({"friction_loss [W]": self.solution.friction_loss} if self.scene.friction.acting else {}),
                 "kinetic_energy [J]": self.kinetic_energy,
                 "potential_energy [J]": self.solution.potential_energy,
             }
@@ -125,7 +138,3 @@ class Trajectory:
         ax.set(xlabel="time [s]", ylabel="crank speed [rad/s]", title=self.scene.mechanism.name)
         ax.grid(alpha=0.3)
         return ax
-
-
-def acceleration_at(driven, angle, speed):
-    return driven.acceleration(driven.at(angle, speed), speed)

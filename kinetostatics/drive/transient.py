@@ -5,6 +5,7 @@ of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations 
 of motor and loads beside it: what kinetic energy and work differ by at the end is the drift.
 """
 
+import itertools
 import math
 
 import numpy as np
@@ -13,18 +14,21 @@ from ..errors import DriveError
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.elementary import read_only
-from .driven import Driven
 from .motor import Motor, single
+from .operating import require_known
 from .periodic import steady
-from .trajectory import Event, Trajectory, acceleration_at
+from .rubbing import RubbingDriven, driven_by
+from .stretches import ABSOLUTE, RELATIVE, followed
+from .trajectory import Event, Trajectory
 
-RELATIVE = 3e-14
-"""Tolerance of a step relative to the value, the smallest that the method takes."""
-ABSOLUTE = 1e-15
 READY = 0.99
 """Share of the mean speed of steady running at which a machine has started."""
 LONGEST = 1e5
 """Turns after which a start is given up."""
+MOST_EVALUATIONS = 1_000_000
+"""Evaluations of the acceleration after which a motion is given up: some thousand turns."""
+FARTHEST = 1e6
+"""Crank angle, rad, beyond which too many digits are lost to begin there."""
 SMALL = 1e-9
 """Torque, relative to the largest, that moves nothing."""
 
@@ -73,6 +77,8 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
         checks.require("coast", 'until must be a time in s, or "standstill"' + f", got {until!r}" if wrong else None)
     elif speed == 0.0:
         checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
+    else:
+        _require_a_standstill(driven, angle, speed)
     return _followed(driven, scene, angle, speed, until)
 
 
@@ -123,7 +129,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     else:
         until, wrong = single(until, name="until", low=0.0, strict=True)
         checks.require("start", wrong)
-    pushing = _pushing(driven, angle)
+    pushing, _ = driven.at_rest(angle, driven.direction)
     if not pushing * driven.direction > SMALL * _most_torque(driven):
         raise _no_start(driven, angle, "it does not start")
     found = _followed(driven, scene, angle, 0.0, until, target, one_way=True)
@@ -135,10 +141,12 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
 def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     """The machine and where it begins, looked at."""
     angle, wrong_angle = single(from_angle, name="from_angle")
+    if not wrong_angle and abs(angle) > FARTHEST:
+        wrong_angle = f"from_angle must be at most {FARTHEST:g} rad in size, got {angle:g}; take whole turns off"
     speed, wrong_speed = single(from_speed, name="from_speed")
     inertia, wrong_inertia = single(flywheel, name="flywheel", low=0.0)
     checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
-    driven = Driven(owner, scene, motor, inertia, engine)
+    driven = driven_by(owner, scene, motor, inertia, engine)
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)
     if not here[0] > 1e-12 * here.max():
         raise DriveError(
@@ -149,45 +157,83 @@ def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     return driven, inertia, angle, speed
 
 
-def _pushing(driven, angle):
-    """Torque at the crank that is left over at rest, N m."""
-    at, rest = np.array([angle]), np.zeros(1)
-    return float((driven.motor_torque(rest) - driven.at(at, rest).torque)[0])
-
-
 def _most_torque(driven):
     rest = np.zeros(96)
     angle = np.linspace(0.0, driven.period, 96, endpoint=False)
-    return max(float(np.abs(driven.at(angle, rest).torque).max()), abs(float(driven.motor_torque(0.0))))
+    return max(float(np.abs(driven.at_constant_speed(angle, rest).torque).max()), abs(float(driven.motor_torque(0.0))))
 
 
 def _no_start(driven, angle, what):
     """Why a machine does not start, and what would help."""
     rest = float(driven.motor_torque(0.0)) * driven.direction
     places = np.linspace(0.0, driven.period, 720, endpoint=False)
-    asked = driven.at(places, 0.0 * places).torque * driven.direction
-    here = float(driven.at(np.array([angle]), np.zeros(1)).torque[0]) * driven.direction
+    asked = driven.at_constant_speed(places, 0.0 * places).torque * driven.direction
+    spare, friction = driven.at_rest(angle, driven.direction)
+    here, friction = rest - spare * driven.direction, friction * driven.direction
+    rubbing = f", {friction:.6g} N m of them to overcome friction" if friction else ""
     missing, most = here - rest, int(np.argmax(asked))
-    better = np.flatnonzero(asked < rest)
     remedies = [f"a motor with {asked[most] / rest:.3g} times the torque at rest" if rest > 0.0 else "another motor"]
-    if better.size:
-        easiest = math.degrees(places[int(np.argmin(asked))])
-        remedies.append(f"another crank angle (least is asked at {easiest:.6g} deg)")
+    easy = _easiest(places, asked - rest, driven.direction)
+    if easy is not None:
+        remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which the loads help it round")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
         f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "
-        f"N m at rest, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing; over the turn the loads ask up "
-        f"to {asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: {', '.join(remedies)}",
+        f"N m at rest{rubbing}, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing; over the turn the "
+        f"loads ask up to {asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: "
+        f"{', '.join(remedies)}",
         missing,
         angle,
     )
 
 
+def _easiest(places, missing, direction):
+    """Crank angle from which torque at rest carries a machine round, or None where it does no work over the turn.
+
+    It lies behind the place up to which most energy is asked: from there on more is given than taken.
+    """
+    step = int(direction)
+    missing = missing[::step]  # in the order of motion
+    energy = np.cumsum(missing)
+    if energy[-1] >= 0.0:
+        return None
+    high = int(np.argmax(energy)) + 1
+    return float(places[::step][high % places.size])
+
+
+def _require_a_standstill(driven, angle, speed):
+    """Refuse to wait for the standstill of a machine whose loads give back in a turn all that they take."""
+    if driven.motor is not None or driven.by_speed:  # friction and dampers take energy
+        return
+    way = math.copysign(1.0, speed)
+    places = angle + way * np.linspace(0.0, driven.period, 721)
+    state = driven.at(np.mod(places, driven.period))
+    between = 0.5 * (state.torque[1:] + state.torque[:-1]) * np.diff(places)
+    taken = np.cumsum(between)
+    motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed
+    if taken[-1] <= SMALL * np.abs(between).sum() and taken.max() < (1.0 - SMALL) * motion:
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: never comes to a standstill: of {motion:.6g} J of motion the loads take "
+            f"{max(taken.max(), 0.0):.6g} J at most, and give back all that they take in a turn; give a time as until, "
+            "or a load that resists"
+        )
+
+
 def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     """The motion from an angle and speed until a time, a standstill, or a target speed."""
+    if isinstance(driven, RubbingDriven):
+        return _rubbing(driven, scene, angle, speed, until, target, one_way)
     from scipy.integrate import solve_ivp
 
+    evaluations = itertools.count()
+
     def change(time, state):
+        if next(evaluations) > MOST_EVALUATIONS:
+            raise DriveError(
+                f"{scene.mechanism.name}: the motion is too long to follow: {time:.6g} s, to crank angle "
+                f"{math.degrees(state[0]):.6g} deg, took {MOST_EVALUATIONS} evaluations; give an earlier time as until",
+                crank_angle=float(state[0]),
+            )
         angle, speed = float(state[0]), float(state[1])
         inertia, slope, spare = driven.here(angle, speed)
         return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed
@@ -213,17 +259,12 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
         events=events,
     )
     if found.status < 0 or not np.isfinite(found.y).all():
-        at = math.degrees(found.y[0, -1])
-        driven.scene.solve(found.y[0, -1:] + found.y[1, -1:] * 1e-6)
-        raise DriveError(
-            f"{scene.mechanism.name}: the motion cannot be followed beyond {found.t[-1]:.6g} s, at crank angle "
-            f"{at:.6g} deg and {found.y[1, -1]:.6g} rad/s: the mechanism may stand in a limit position there",
-            crank_angle=float(found.y[0, -1]),
-        )
+        raise _lost(driven, found.t[-1], *found.y[:2, -1])
     if found.status == 0 and not isinstance(until, float):
-        what = "standstill" if target is None else f"{target:.6g} rad/s"
-        raise DriveError(f"{scene.mechanism.name}: does not come to {what} within {end:.6g} s; give a time as until")
+        raise _never(driven, target, end)
     time, (angles, speeds, work) = found.t, found.y
+    if driven.motor is not None:
+        require_known(driven, speeds)
     energy = 0.5 * driven.inertia(angles) * speeds * speeds
     drift = float(np.abs(energy - energy[0] - work).max())
     last = ("end", "standstill" if until == "standstill" else "reversal", "end")[_which(found)]
@@ -236,9 +277,48 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     named.append(Event(last, float(time[-1]), float(angles[-1])))
     for array in (time, angles, speeds):
         read_only(array)
-    alpha = read_only(acceleration_at(driven, angles, speeds))
+    alpha = read_only(driven.acceleration_along(angles, speeds))
     return Trajectory(
         scene, driven.motor, driven.flywheel, time, angles, speeds, alpha, tuple(named), drift, driven, found.sol
+    )
+
+
+def _rubbing(driven, scene, angle, speed, until, target, one_way):
+    """The same with friction."""
+    driven.prepare(max(abs(speed), abs(target or 0.0)))
+    end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
+    found = followed(driven, angle, speed, end, target, until == "standstill" or one_way)
+    time, (angles, speeds, work, _) = found.time, map(read_only, found.rows)
+    if found.end == "lost":
+        raise _lost(driven, time[-1], angles[-1], speeds[-1])
+    if found.end == "end" and not isinstance(until, float):
+        raise _never(driven, target, end)
+    energy = 0.5 * driven.inertia(angles) * speeds * speeds
+    drift = float(np.abs(energy - energy[0] - work).max())
+    stopped = "reversal" if one_way else "standstill"
+    last = stopped if found.end in ("standstill", "stuck") else "end"
+    turns = (Event("reversal", *turn) for turn in found.reversals)
+    named = Event("start", 0.0, angle), *turns, Event(last, float(time[-1]), float(angles[-1]))
+    alpha = read_only(driven.acceleration_along(angles, speeds))
+    return Trajectory(
+        scene, driven.motor, driven.flywheel, read_only(time), angles, speeds, alpha, named, drift, driven, found.path
+    )
+
+
+def _lost(driven, time, angle, speed):
+    """Why a motion cannot go on."""
+    driven.scene.solve(np.array([angle + speed * 1e-6]))
+    return DriveError(
+        f"{driven.scene.mechanism.name}: the motion cannot be followed beyond {time:.6g} s, at crank angle "
+        f"{math.degrees(angle):.6g} deg and {speed:.6g} rad/s: the mechanism may stand in a limit position there",
+        crank_angle=float(angle),
+    )
+
+
+def _never(driven, target, end):
+    what = "standstill" if target is None else f"{target:.6g} rad/s"
+    return DriveError(
+        f"{driven.scene.mechanism.name}: does not come to {what} within {end:.6g} s; give a time as until"
     )
 
 

@@ -176,7 +176,7 @@ def _defined(node, inputs=_COMPILED):
 
 def _name(part, inputs=_COMPILED):
     if not isinstance(part, Node):
-        return repr(part)
+        return repr(part.item() if hasattr(part, "item") else part)  # a number of NumPy as a plain one
     return inputs["angle"] if part.operation == "angle" else f"v{part.index}"
 
 

@@ -6,6 +6,7 @@ pushes across the ray. Equilibrium of the block gives both, and what the slot gi
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,8 @@ from .friction import Rolling, Slide, Sliding
 from .group import Group, Output, Point, Resolved, Slot
 from .links import Joint, Link, LinkMotion, Wrench
 
+FINE = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
+"""Crank angles at which the curvature of cams is looked at, rad."""
 GRID = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 """Crank angles at which cams of the user's own are looked at, rad."""
 OUTPUTS = {
@@ -73,7 +76,7 @@ class CamRoller(checks.Checked, Group):
 
     Parameters
     ----------
-    cam : cams.Circle, cams.CosineLaw, cams.Sampled or alike
+    cam : cams.Circle, cams.CosineLaw, cams.Harmonic, cams.Sampled or alike
         Anything with ``polar(angle, ray)`` that returns r, r', r'' in m; taken as it is when the group is made.
     block : Link
         Block with roller; reference joint A, along the crank ray.
@@ -106,6 +109,15 @@ class CamRoller(checks.Checked, Group):
         """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
         found = getattr(self.cam, "smallest_radius", None)
         return (np.min(self.cam.polar(GRID, ray(GRID))[0]) if found is None else found,)
+
+    @cached_property
+    def tightest(self):
+        """Smallest radius of curvature of the pitch curve, on a grid, m; None where the curve is not plain numbers."""
+        r, slope, second = self.cam.polar(FINE, ray(FINE))
+        square = r * r + slope * slope
+        with np.errstate(divide="ignore"):
+            curved = np.abs(square * sqrt(square) / (square + slope * slope - r * second))
+        return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
 
     @property
     def hangs_on(self):

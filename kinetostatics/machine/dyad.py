@@ -164,6 +164,10 @@ class Dyad(checks.Checked, Group):
             self.pin: Turning(self._link2, self.pin, self._link1),
         }
 
+    def rigid_on(self, owners):
+        """Both links on two joints of one link: a triangle that does not move in itself."""
+        return dict.fromkeys(self.links, owners[0]) if len(set(owners)) == 1 else {}
+
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)
         self._set(placement, place(first, second, self.length1, self.length2, self.assembly))

@@ -21,7 +21,10 @@ PASSES = (3, 6, 12)
 
 
 class Turning(NamedTuple):
-    """A pin: `link` turns against another, the one that carries `joint` unless told; the reaction acts on `link`."""
+    """A pin: `link` turns against another, the one that carries `joint` unless told; the reaction acts on `link`.
+
+    What turns against itself never turns: both are parts of one rigid triangle.
+    """
 
     link: str
     joint: str
@@ -152,13 +155,20 @@ def kind_for(pair):
 
 @dataclass(frozen=True, eq=False)
 class Rub(Batched):
-    """Friction at one joint."""
+    """Friction at one joint.
+
+    `sense` is the sign of the motion there where it is known beforehand; of a roller that of the crank. It stays so
+    beyond the dead centre at which the motion turns, which makes one-sided values smooth.
+    """
 
     joint: str
     friction: Any
+    sense: Any = None
 
     PATHS: ClassVar = {"friction": ""}
-    RULES = checks.Rules("friction", friction=checks.Own(("mu",), "friction"))
+    RULES = checks.Rules(
+        "friction", friction=checks.Own(("mu",), "friction"), sense=checks.Optional(checks.Number("1"))
+    )
 
     def __post_init__(self):
         """Checked where it is given, with the mechanism."""
@@ -202,6 +212,11 @@ class Frictions(Mapping, Batched):
         """Friction by joint, without what is zero."""
         return {rub.joint: rub.friction for rub in self.rubs if present(rub.friction.mu) is not None}
 
+    @property
+    def senses(self):
+        """Sign of the motion by joint, where it is known beforehand."""
+        return {rub.joint: rub.sense for rub in self.rubs if rub.sense is not None}
+
 
 NONE = Frictions()
 
@@ -233,3 +248,18 @@ def problems(mechanism, given):
                 type(pairs[name])
             ]
             yield f"friction: {name!r} {what} and takes a {wanted}, got {checks.shown(friction)}"
+        elif isinstance(pairs[name], Rolling):
+            yield from _too_large(mechanism, name, friction)
+
+
+def _too_large(mechanism, name, friction):
+    """Say where a roller is larger than its path is curved."""
+    tightest = next((getattr(group, "tightest", None) for group in mechanism.groups if name in group.pairs), None)
+    if tightest is None or not (checks.known(tightest) and checks.known(friction.roller_radius)):
+        return
+    if np.any(np.asarray(friction.roller_radius) >= tightest):
+        yield (
+            f"friction: roller_radius of {name!r}, {np.max(friction.roller_radius):.6g} m, must be less than the "
+            f"smallest radius of curvature of its path, {np.min(tightest):.6g} m: no cam has such a profile; give a "
+            "smaller roller or a larger cam"
+        )

@@ -216,6 +216,10 @@ class Group:
         """Which links turn or slide against what, by the name of the reaction or force."""
         return {}
 
+    def rigid_on(self, owners):
+        """Link that each of its links never turns against, by name, of `owners`, which carry the joints it hangs on."""
+        return {}
+
     @property
     def lengths(self):
         """All lengths it has, places of mass centres among them, for a first look at the condition."""

@@ -13,6 +13,7 @@ from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .crank import Crank
+from .friction import Turning
 from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved, smaller
 from .links import Wrench, arm, present
 
@@ -144,11 +145,23 @@ class Mechanism(Batched):
     @cached_property
     def pairs(self):
         """Which links turn or slide against what, by reaction; of a pin the link that carries it, unless told."""
-        found = self._collected("pairs")
-        return {
-            name: pair._replace(against=self.joints[pair.joint].link) if getattr(pair, "against", None) == "" else pair
-            for name, pair in found.items()
-        }
+        found, whole = self._collected("pairs"), self._wholes
+        for name, pair in found.items():
+            if isinstance(pair, Turning):
+                against = pair.against or self.joints[pair.joint].link
+                still = whole.get(pair.link, pair.link) == whole.get(against, against)
+                found[name] = pair._replace(against=pair.link if still else against)
+        return found
+
+    @property
+    def _wholes(self):
+        """Link that each link of a rigid triangle is one with, by name."""
+        found: dict[str, str] = {}
+        for group in self.groups:
+            owners = [self.joints[name].link for name in group.hangs_on]
+            owners = [found.get(owner, owner) for owner in owners]
+            found |= group.rigid_on(owners)
+        return found
 
     @cached_property
     def guides(self):

@@ -84,7 +84,7 @@ class Profile:
 
     cam: Any
     roller_radius: float
-    crank_angle: np.ndarray
+    crank_angle: np.ndarray = field(repr=False)
     side: str
     pitch: np.ndarray = field(repr=False)
     surface: np.ndarray = field(repr=False)

@@ -88,6 +88,11 @@ class Dynamics(Motion):
         return self._scalar(product(self.crank_speed, self._work_of_friction))
 
     @property
+    def friction_torque(self):
+        """Torque on the crank that friction takes, its loss over the crank speed, (..., N), N m."""
+        return self._scalar(self._work_of_friction)
+
+    @property
     def _work_of_friction(self):
         return _work_of(self.rubbed)
 
@@ -99,7 +104,7 @@ class Dynamics(Motion):
 
     @property
     def friction_residual(self):
-        """How much friction would change by one more pass of its solution, relative."""
+        """How much forces would change by one more pass over friction, relative to the largest of a group."""
         self.rubbed  # noqa: B018  found with the forces
         return self._scalar(reduce(larger, self.rubbing.residuals, 0.0) if self.rubbing else 0.0)
 

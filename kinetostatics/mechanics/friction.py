@@ -14,13 +14,13 @@ from dataclasses import dataclass, field
 from functools import reduce
 from typing import Any, NamedTuple
 
-from ..machine.friction import Sliding, Turning
+from ..machine.friction import Rolling, Turning
 from ..machine.group import FRAME, Resolved
 from ..machine.links import Wrench, present
 from ..numbers.elementary import held, root, sign, sqrt
 from ..numbers.nothing import NOTHING, absent
 from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
-from .friction_laws import Channel, Law, bends, direction_of, larger, size_of, smaller
+from .friction_laws import Channel, Law, bends, direction_of, larger, rate_of, size_of, smaller
 
 SMALL = 1e-100
 """Friction that need not be found to rounding."""
@@ -76,7 +76,7 @@ class Rubbing:
     bending: list = field(default_factory=list)
 
     def __post_init__(self):
-        self.acting = self.friction.acting
+        self.acting, self.senses = self.friction.acting, self.friction.senses
 
     def __call__(self, part, placement, loads, along):
         rates: dict[str, Any] = {}
@@ -109,33 +109,35 @@ class Rubbing:
     def _laws(self, part, name, placement, rates):
         """Laws of a pair; what it moves at goes into `rates`."""
         pair, friction = self.mechanism.pairs[name], self.acting[name]
-        link = placement.links[pair.link]
+        if isinstance(pair, Rolling):
+            yield from self._of_roller(name, pair, friction, placement, rates)
+            return
+        rate = rate_of(part, name, pair, placement)
+        if rate is None:
+            return
+        rates[name] = rate
+        way = self._way(name, rate)
         if isinstance(pair, Turning):
-            against = None if pair.against == FRAME else placement.links[pair.against].ratio
-            rate = minus(link.ratio, against)
-            if rate is None:
-                return
-            rates[name] = rate
             effects = [(_moment(pair.link), -1)]
             if pair.against != FRAME:
                 effects.append((_moment(pair.against), 1))
-            factor = friction.mu * friction.radius * (self.direction * sign(rate))
+            factor = friction.mu * friction.radius * way
             yield Law(name, factor, lambda found: vector(found.reactions[name]), "length", tuple(effects))
-        elif isinstance(pair, Sliding):
-            slide = part.sliding(name, placement)
-            if slide.rate is None:
-                return
-            rates[name] = slide.rate
-            factor = friction.mu * (self.direction * sign(slide.rate))
-            half = friction.half_length
+        else:
+            slide, half = part.sliding(name, placement), friction.half_length
 
             def watched(found):
                 force = found.scalars[pair.force]
                 return (force,) if half is None else (force, quotient(found.scalars[pair.couple], half))
 
-            yield Law(name, factor, watched, "size" if half is None else "larger", ((_force(name, pair, slide), -1),))
-        else:
-            yield from self._of_roller(name, pair, friction, placement, rates)
+            kind = "size" if half is None else "larger"
+            yield Law(name, friction.mu * way, watched, kind, ((_force(name, pair, slide), -1),))
+
+    def _way(self, name, rate=None):
+        """Sign of the motion of a pair; of a roller that of the crank."""
+        if name in self.senses:
+            return self.senses[name]
+        return self.direction if rate is None else self.direction * sign(rate)
 
     def _of_roller(self, name, pair, friction, placement, rates):
         """A roller rubs on its pin with the whole of its load: cam force and the force along the profile by which the
@@ -144,7 +146,7 @@ class Rubbing:
         first = vector(placement.joints[pair.joint].first)
         speed = length(first)
         lever = friction.mu * friction.pin_radius / friction.roller_radius
-        slope = lever / sqrt(1.0 - lever * lever) * self.direction
+        slope = lever / sqrt(1.0 - lever * lever) * self._way(name)
         rates[name] = speed
         tangent = (first[0] / speed, first[1] / speed)
         force = Channel(f"force of {name}", ((pair.link, Wrench(tangent, None)),))
@@ -240,7 +242,7 @@ class _System:
             unknowns = self._linear(watched) if step else self._totals(amounts)
             watched = [self._at(number, unknowns) for number in range(len(self.laws))]
         amounts = self._amounts(watched)
-        self.residual = self._residual(unknowns, amounts)
+        self.residual = self._residual(unknowns, amounts, watched)
         closed = held(0.0 * root(self.margin + 0.0 * angle, 1.0))
         return [amount + closed for amount in amounts]
 
@@ -294,14 +296,18 @@ class _System:
                 matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
         return reduce(smaller, _pivots(matrix))
 
-    def _residual(self, unknowns, amounts):
-        """Change of friction by one more pass, relative, largest of all channels."""
-        sizes: list[Any] = [None] * self.count
-        for amount, effects in zip(amounts, self.effects, strict=True):
-            for place, _ in effects:
-                sizes[place] = plus(sizes[place], abs(amount))
-        rest = zip(self._totals(amounts), unknowns, sizes, strict=True)
-        return reduce(larger, [abs(total - unknown) / (size + SMALL) for total, unknown, size in rest])
+    def _residual(self, unknowns, amounts, watched):
+        """Change of the forces that friction hangs on by one more pass, over the largest of them."""
+        changes = [minus(total, unknown) for total, unknown in zip(self._totals(amounts), unknowns, strict=True)]
+        moved, sizes = [], []
+        for law, slopes, parts in zip(self.laws, self.slopes, watched, strict=True):
+            shifts = [_weighted(changes, column) for column in zip(*slopes, strict=True)]
+            kind = "size" if law.kind == "itself" else law.kind
+            moved.append(size_of(kind, shifts))
+            sizes.append(size_of(kind, parts))
+        given = [[part for part in found if part is not None] for found in (moved, sizes)]
+        change, largest = (reduce(larger, found, 0.0) for found in given)
+        return change / (largest + SMALL)
 
 
 def _weighted(weights, parts):

@@ -2,8 +2,10 @@
 
 from typing import Any, NamedTuple
 
+from ..machine.friction import Sliding
+from ..machine.group import FRAME
 from ..numbers.elementary import held, sign, sqrt
-from ..numbers.planar import product
+from ..numbers.planar import minus, product
 
 TINY = 1e-290
 """Square of a force that counts as nothing but can be divided by."""
@@ -39,6 +41,16 @@ class Channel(NamedTuple):
     name: str
     wrenches: tuple = ()
     pushes: tuple = ()
+
+
+def rate_of(part, name, pair, placement):
+    """Rate by the crank angle at which a pair of a part turns or slides; None if it never does."""
+    if isinstance(pair, Sliding):
+        return part.sliding(name, placement).rate
+    if pair.against == pair.link:
+        return None
+    against = None if pair.against == FRAME else placement.links[pair.against].ratio
+    return minus(placement.links[pair.link].ratio, against)
 
 
 def direction_of(law, parts):

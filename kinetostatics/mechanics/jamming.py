@@ -10,7 +10,7 @@ from ..machine.friction import PASSES
 from ..numbers.leaves import with_fields
 
 CONVERGED = 1e-13
-"""Relative change of friction by one more pass, times the margin from jamming, from which on it is not found."""
+"""Change of forces by one more pass, relative, times the margin from jamming, from which on they are not found."""
 
 
 def standing(solution):
@@ -80,8 +80,8 @@ def warn(item, margin, residual, stacklevel):
         angle = np.broadcast_to(item.crank_angle, margin.shape)[lost]
         warnings.warn(
             f"{item.mechanism.name}: friction and reactions are not found to rounding at {lost.sum()} of "
-            f"{lost.size} crank angles, {_degrees(angle)} deg; one more pass would change friction by up to "
-            f"{np.max(residual[lost]):.1g} of itself",
+            f"{lost.size} crank angles, {_degrees(angle)} deg; one more pass would change them by up to "
+            f"{np.max(residual[lost]):.1g} of the largest",
             ConditionWarning,
             stacklevel=stacklevel,
         )

@@ -104,6 +104,7 @@ def of_scene(scene) -> dict[str, Quantity]:
         read = methodcaller("friction_loss_at", joint)
         found[f"{joint}_friction_loss"] = Quantity("W", f"friction loss {joint}", read, kind="friction")
     found["friction_loss"] = Quantity("W", "friction loss", attrgetter("friction_loss"), kind="friction")
+    found["friction_torque"] = Quantity("N m", "friction torque", attrgetter("friction_torque"), kind="energy")
     for name in CHECKS:
         found[name] = Quantity("1", name.replace("_", " "), attrgetter(name), kind="check")
     return found

@@ -129,17 +129,25 @@ def compare(reference, balanced):
 
     Parameters
     ----------
-    reference, balanced : Solution
+    reference, balanced : Solution, or Running as `ks.drive.steady` returns it
         Of one design each; their own crank angles do not matter.
 
     Returns
     -------
     Comparison
         Ratios reference / balanced: `.torque_extremum_ratios`, `.mean_torque_ratio`, `.peak_reaction_ratio(joint)`,
-        `.lost_power_ratio` with friction; ranges of cam and inertia force, `.frame()`.
+        `.lost_power_ratio` with friction; ranges of cam and inertia force, `.frame()`. Of machines in periodic running
+        also what their drives take: see `drive.saving.DrivenComparison`.
     """
+    reference, balanced = _solution(reference), _solution(balanced)
     checks.require("compare", checks.solution("reference", reference), checks.solution("balanced", balanced))
-    return Comparison(reference, balanced)
+    kinds = {getattr(solution, "COMPARISON", Comparison) for solution in (reference, balanced)}
+    return (kinds.pop() if len(kinds) == 1 else Comparison)(reference, balanced)
+
+
+def _solution(given):
+    """The solution of what `ks.drive.steady` returns; all else as it is."""
+    return given.solution if hasattr(given, "energy_flow") else given
 
 
 def _matched(reference, balanced):

@@ -232,27 +232,32 @@ def _friction_changes(solution):
     """Crank angles at which friction jumps, as a rate changes its sign, or has a kink, as a force does."""
     if not solution.friction.acting:
         return np.empty(0)
+    _, angles = sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period)
+    return np.unique(angles)
+
+
+def sign_changes(function, period):
+    """Where functions of the crank angle change their signs over a period: which of the functions, and crank angles."""
     from scipy.optimize import elementwise
 
     def signs(angle):
         with np.errstate(all="ignore"):
-            return np.array([np.broadcast_to(row, angle.shape) for row in solution.at(angle).dynamics.friction_signs])
+            return np.array([np.broadcast_to(row, angle.shape) for row in function(angle)])
 
-    grid = ASIDE + np.linspace(0.0, solution.period, SAMPLES + 1)
+    grid = ASIDE + np.linspace(0.0, period, SAMPLES + 1)
     found = signs(grid)
     if not found.size:
-        return np.empty(0)
+        return np.empty(0, dtype=int), np.empty(0)
     row, place = np.nonzero(np.signbit(found[:, :-1]) != np.signbit(found[:, 1:]))
     if not row.size:
-        return np.empty(0)
+        return row, np.empty(0)
 
     def own(angle, row):
         return signs(angle)[row, np.arange(row.size)] if angle.ndim == 1 else own(angle.ravel(), row.ravel())
 
     root = elementwise.find_root(own, (grid[place], grid[place + 1]), args=(row,))
     ends = np.where(found[row, place] == 0.0, grid[place], grid[place + 1])
-    angles = np.where(np.isfinite(root.x), root.x, ends)
-    return np.unique(np.mod(angles, solution.period))
+    return row, np.mod(np.where(np.isfinite(root.x), root.x, ends), period)
 
 
 def _beside(angle, others):

@@ -244,7 +244,7 @@ def unchecked(scene, crank_angle, engine=None):
     _, leaves = solution.apart
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
-    _, odd = solution.first_look
+    _, odd = solution.first_look or (None, True)
     for text in (*(mechanism.hints if odd else ()), *hints.of_angles(angle)):
         warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=4)
     vars(solution)["engine"] = _engine(engine, angle, solution)

@@ -40,15 +40,14 @@ class Solution(Energies, Motion):
 
     @cached_property
     def first_look(self):
-        """Sum of all lengths over the shortest, and whether hints may be due."""
+        """Sum of all lengths over the shortest, and whether hints may be due; None unless all numbers are plain."""
         _, leaves = self.apart
         look = self.kind.answer(first_look) if leaves.are_plain and not leaves.parts else None
-        return look(leaves.numbers) if look else (self.mechanism.proportion, True)
+        return look and look(leaves.numbers)
 
     @property
     def proportion(self):
-        found, _ = self.first_look
-        return found
+        return self.first_look[0] if self.first_look else self.mechanism.proportion
 
     def check(self):
         """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""
@@ -133,6 +132,11 @@ class Solution(Energies, Motion):
         """Power lost by friction at all joints, (..., N), W, not negative."""
         return self._of_friction("friction_loss")
 
+    @property
+    def friction_torque(self):
+        """Torque on the crank that friction takes, its loss over the crank speed, (..., N), N m."""
+        return self._of_friction("friction_torque")
+
     def friction_loss_at(self, joint):
         """Power lost by friction at a joint, named as in `friction`, (..., N), W; 0 where nothing rubs."""
         self._look_up("joint that rubs", joint, self.mechanism.pairs)
@@ -162,7 +166,7 @@ class Solution(Energies, Motion):
 
     @property
     def friction_residual(self):
-        """How much friction would change by one more pass of its solution, relative."""
+        """How much forces would change by one more pass over friction, relative to the largest of a group."""
         return self._of_friction("friction_residual")
 
     def _of_friction(self, name):

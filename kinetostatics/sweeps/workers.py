@@ -52,6 +52,16 @@ class Workers:
         """From now on: processes that must be started anew are one."""
         self._count = self._count and 1
 
+    def give_up(self, futures):
+        """Nobody waits for these calls any longer: an executor that was given leaves out those not yet begun.
+
+        Processes of our own are stopped with all that they have: to cancel calls under them as well breaks the thread
+        that serves them, which tells of it.
+        """
+        if self._count is None:
+            for future in futures:
+                future.cancel()
+
     def survived(self, *call):
         """Result of a call in a tuple; an empty one if the worker died."""
         try:
@@ -120,11 +130,11 @@ def _end_with(parent):
 
 @contextmanager
 def _without_interrupts():
-    """Ctrl-C waits, where there are signal masks."""
+    """Ctrl-C and SIGTERM wait, where there are signal masks."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
     try:
         yield
     finally:
@@ -166,8 +176,7 @@ def computed(job, rows_of, numbers, workers):
         for number in suspects:
             yield number, _narrowed(job, rows_of(number), workers)
     finally:
-        for future in running:
-            future.cancel()
+        workers.give_up(running)
 
 
 def _narrowed(job, frame, workers):

@@ -1,5 +1,6 @@
 """Charts of the studies: error over time, error over the distance from where it hurts, error over the model's cost."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -35,31 +36,36 @@ def _styles(table):
     return styles
 
 
-def work_precision(table, ax=None):
-    """Error over time per crank angle, both logarithmic: a curve for each method with a setting, else a point.
+def work_precision(table, ax=None, like=None):
+    """Error over time, both logarithmic: a curve for each method with a setting, else a point.
 
     Parameters
     ----------
     table : pandas.DataFrame
-        One quantity of one scene, from `precision.study`.
+        One quantity of one scene, from `precision.study`; or running and motions, from `studies.driving`.
     ax : Axes, optional
+    like : pandas.DataFrame, optional
+        A study of more methods, whose colours and marks are taken.
 
     Returns
     -------
     Axes
     """
-    require_columns("work_precision", table, ("method", "ours", "setting", "error", "time [ns/angle]"))
+    whole = "time [ms]" in getattr(table, "columns", ())
+    time = "time [ms]" if whole else "time [ns/angle]"
+    require_columns("work_precision", table, ("method", "ours", "setting", "error", time))
     ax = axes(ax)
     given = table.dropna(subset=["error"])
-    for name, style in _styles(table).items():
+    for name, style in _styles(table if like is None else like).items():
         rows = given[given["method"] == name]
         if len(rows):
             setting = rows["setting"].iloc[0]
             text = f"{name} ({setting})" if setting else name
-            ax.plot(rows["time [ns/angle]"], np.maximum(rows["error"], EXACT), label=text, **style)
+            ax.plot(rows[time], np.maximum(rows["error"], EXACT), label=text, **style)
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 30))
-    ax.set_xlabel("time [ns per crank angle]")
-    ax.set_ylabel("largest error over the turn, relative to largest value [1]")
+    ax.set_xlabel("time [ms]" if whole else "time [ns per crank angle]")
+    text = "largest error over the turn, relative to largest value [1]"
+    ax.set_ylabel(f"error of the {table['label'].iloc[0]} [{table['unit'].iloc[0]}]" if whole else text)
     ax.grid(visible=True, which="major", alpha=0.3)
     return ax
 
@@ -221,6 +227,13 @@ def precision_page(table, path):
         for (variant, _), part in table.groupby(["variant", "quantity"], sort=False)
     }
     return _page(work_precision, panels, path)
+
+
+def drive_page(tables, path):
+    """Chart of studies of the drive, a panel for each of a mapping of title to table, saved as PNG and SVG."""
+    import pandas as pd
+
+    return _page(partial(work_precision, like=pd.concat(tables.values())), tables, path)
 
 
 def stability_page(table, path):

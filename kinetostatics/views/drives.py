@@ -1,8 +1,8 @@
-"""Figures of machines in periodic running: speed, and torque of the motor against that of the loads."""
+"""Figures of machines in periodic running: speed, torque of the motor against that of the loads, where energy goes."""
 
 import numpy as np
 
-from .canvas import axes, display, styled
+from .canvas import INK, axes, display, styled
 
 
 def speed(runs, ax=None):
@@ -28,7 +28,42 @@ def torques(run, ax=None):
     for name, values, style in styled(curves):
         ax.plot(*_closed(run, factor * values), linestyle=style, label=name)
     ax.set_ylabel(f"torque at the crank [{unit}]")
-    return _finished(ax)
+    ax.margins(y=0.2)  # room for the legend
+    _finished(ax).legend(loc="upper center", ncols=3, frameon=False, fontsize="small", columnspacing=1.0)
+    return ax
+
+
+def energy_flow(runs, ax=None):
+    """Energy per turn, a bar for each part that gives or takes any; of a mapping of label to Running."""
+    ax = axes(ax)
+    shown = parts_that_move_energy(runs)
+    flows = {name: {part.name: part.energy for part in run.energy_flow.parts} for name, run in runs.items()}
+    energies = {name: [flow.get(part, 0.0) for part in shown] for name, flow in flows.items()}
+    largest = max((abs(value) for values in energies.values() for value in values), default=0.0)
+    factor, unit = (1e-3, "kJ") if largest >= 1e4 else (1.0, "J")
+    height = 0.8 / len(flows)
+    for row, name in enumerate(flows):
+        values = [factor * value for value in energies[name]]
+        places = np.arange(len(shown)) + (row - 0.5 * (len(flows) - 1)) * height
+        bars = ax.barh(places, values, 0.92 * height, label=name)
+        ax.bar_label(bars, [f"{value:.4g}" if value else "" for value in values], padding=3, fontsize="small")
+    ax.set_yticks(range(len(shown)), shown)
+    ax.invert_yaxis()
+    ax.axvline(0.0, color=INK, lw=0.8)
+    ax.set_xlabel(f"energy per turn [{unit}]")
+    ax.margins(x=0.14)
+    ax.grid(axis="x", alpha=0.3)
+    ax.set_axisbelow(True)
+    if len(flows) > 1:
+        ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+def parts_that_move_energy(runs):
+    """Names of the parts that give or take energy in a turn of any of the runs, in order."""
+    parts = {part.name: None for run in runs.values() for part in run.energy_flow.parts}
+    moving = {part.name for run in runs.values() for part in run.energy_flow.parts if part.energy}
+    return [name for name in parts if name in moving]
 
 
 def _closed(run, values):

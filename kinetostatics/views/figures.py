@@ -51,10 +51,12 @@ def draw_case(case, folder, file_format="png", only=None):
 
 
 def draw_drive(case, runs, folder):
-    """Draw speed and torques of a case's variants in periodic running into a folder; returns the paths."""
+    """Draw speed, torques and energy flow of a case's variants in periodic running into a folder; returns the paths."""
+    bars = len(drives.parts_that_move_energy(runs)) * (1 + len(runs))
     figures = {
         "speed": _single(drives.speed),
         "torque": partial(_one_each, drives.torques, width=6.4, height=3.2, columns=1),
+        "energy": _single(drives.energy_flow, 7.2, 1.2 + 0.19 * bars),
     }
     paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}
     checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))

@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 
 import kinetostatics as ks
 from kinetostatics.drive.driven import Driven
+from kinetostatics.studies.driving import study_running
 from support import DATA
 from support.speed import PLAIN, SPEED
 
@@ -93,3 +94,17 @@ def test_periodic_running_against_stepping_and_shooting(benchmark, tell):
     assert 1e3 * times["ours"] < MOST["ours [ms]"]
     for name, ratio in LEAST.items():
         assert times[name] > ratio * times["ours"], name
+
+
+def test_every_method_for_periodic_running_at_every_accuracy(benchmark, tell):
+    """How long the fastest of each method takes to come within 1e-6 and 1e-11, in times of ours (compiled)."""
+    table = study_running(SCENE, MOTOR, 1000.0)
+    mine = table.set_index("method").loc["ours, compiled"]
+    assert mine["error"] < 1e-13
+    for wanted in (1e-6, 1e-11):
+        fine = table[(table["error"] <= wanted) & ~table["ours"]]
+        for method, part in fine.groupby("method", sort=False):
+            ratio = part["time [ms]"].min() / mine["time [ms]"]
+            tell(f"within {wanted:g}: {method} takes {ratio:.2f} times as long as ours, {mine['time [ms]']:.3g} ms")
+            benchmark.extra_info[f"{method}, {wanted:g}"] = ratio
+    benchmark(ours)

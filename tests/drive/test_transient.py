@@ -164,6 +164,8 @@ def test_the_balanced_saw_does_not_start_against_its_springs(angle, words):
         ks.drive.start(BALANCED, MOTOR, 1000.0, from_angle=angle)
     assert "What helps: a motor with" in str(caught.value)
     assert caught.value.missing > 0.0
+    easy = math.radians(float(str(caught.value).partition("another crank angle, ")[2].partition(" deg")[0]))
+    assert ks.drive.start(BALANCED, MOTOR, 1000.0, from_angle=easy).events[-1].name == "end"
     rest = MOTOR.torque_at_crank(0.0)
     held = ks.Scene(BALANCED.mechanism, 1e-9, loads=BALANCED.loads).solve(caught.value.crank_angle)
     if angle == 2.3:

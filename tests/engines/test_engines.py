@@ -1,18 +1,16 @@
 """`ks.solve(engine=...)`: the compiled engine gives what NumPy gives, and says what it does not take."""
 
-import sys
-import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import loops
 from kinetostatics.engines.engines import COMPILED, FASTEST, NUMPY
 from kinetostatics.errors import NotGivenError
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.solution import scene as scenes
+from support.both_engines import SHIPPED, ULP, VARIANTS, again, assert_same, engine
 from support.scenes import (
     ANGLES,
     BATCHES,
@@ -26,40 +24,6 @@ from support.scenes import (
     solve,
     with_group,
 )
-
-ULP = 2.0**-52
-SHIPPED = {name: ks.load_case(name) for name in ("sawframe_2r63", "chain_unit", "mower_drive")}
-VARIANTS = [(case, name) for case in SHIPPED for name in SHIPPED[case].variants]
-
-
-@pytest.fixture
-def numba():
-    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-
-
-def again(solution, angles=None, engine="compiled", **options):
-    """The same problem solved by another engine."""
-    return ks.solve(
-        solution.mechanism,
-        solution.crank_angle if angles is None else angles,
-        crank_speed=solution.crank_speed,
-        crank_acceleration=solution.crank_acceleration,
-        loads=solution.loads,
-        engine=engine,
-        **options,
-    )
-
-
-def assert_same(found, expected):
-    """Every result has the same NaN, and differs by a few ulp of its largest value."""
-    assert (found.engine, expected.engine) == (COMPILED, NUMPY)
-    assert found.shape == expected.shape
-    assert (found.reactions, found.scalars) == (expected.reactions, expected.scalars)
-    for name in everything(expected):
-        for one, other in zip(components(found, name), components(expected, name), strict=True):
-            assert one.shape == other.shape, name
-            assert np.array_equal(np.isnan(one), np.isnan(other)), name
-            assert np.nanmax(np.abs(one - other)) <= 8 * ULP * np.nanmax(np.abs(other)), name
 
 
 @pytest.mark.parametrize(("case", "name"), VARIANTS)
@@ -144,18 +108,6 @@ def test_loads_without_a_hash_are_the_same_by_both_engines(interpreted):
     assert_same(again(expected), expected)
 
 
-def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeypatch):
-    """Of many designs each thread takes some, of a single one some angles."""
-    expected = solve(SCENES["plain"], SAMPLES + SIZES), solve(SCENES["plain"], ANGLES)
-    alone = [again(s).reaction("O") for s in expected]
-    monkeypatch.setattr(loops, "cores", lambda: 3)
-    monkeypatch.setattr(loops, "SHARE", 20)
-    for s, before in zip(expected, alone, strict=True):
-        found = again(s).reaction("O")
-        assert np.array_equal(found, before)
-        assert np.abs(found - s.reaction("O")).max() <= 8 * ULP * np.abs(before).max()
-
-
 # What hangs on a solution
 
 
@@ -191,35 +143,6 @@ def test_a_compiled_solution_is_told_in_a_line(interpreted):
     assert repr(replace(expected)) == repr(expected)
 
 
-# What is refused, and what is warned of
-
-
-def too_short(engine, **options):
-    mechanism = ks.crank_slider(0.3, 0.25, slider=ks.Link(1.0))
-    return ks.solve(mechanism, ANGLES, crank_speed=3.0, engine=engine, **options)
-
-
-def test_gaps_are_refused_with_the_same_words_or_left_open(interpreted):
-    messages = []
-    for engine in ("numpy", "compiled"):
-        with pytest.raises(ks.AssemblyError) as caught:
-            too_short(engine)
-        messages.append((str(caught.value), caught.value.intervals))
-    assert messages[0] == messages[1]
-    assert_same(too_short("compiled", on_gap="nan"), too_short("numpy", on_gap="nan"))
-
-
-def test_a_limit_position_is_warned_of_with_the_same_words_from_the_same_place(interpreted):
-    found = []
-    for engine in ("numpy", "compiled"):
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            ks.solve(ks.crank_slider(0.3, 0.3), [0.2, np.pi / 2], crank_speed=1.0, engine=engine)
-        found.append([(item.category, str(item.message), item.filename) for item in caught])
-    assert found[0] == found[1]
-    assert [(kind, file) for kind, _, file in found[0]] == [(ks.ConditionWarning, __file__)]
-
-
 @pytest.mark.parametrize("name", ["cam_force", "slot_force", "pressure_angle"])
 def test_unknown_quantities_are_refused_with_the_same_words(interpreted, name):
     expected = solve(SCENES["plain"], SAMPLES)
@@ -241,32 +164,11 @@ def test_unknown_engine_is_refused_with_those_there_are():
         solve(SCENES["plain"], SAMPLES, engine="fortran")
 
 
-def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
-    monkeypatch.setitem(sys.modules, "numba", None)
-    with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]".*engine="numpy"'):
-        solve(SCENES["plain"], SAMPLES, engine="compiled")
-
-
-def test_single_precision_is_refused_by_the_compiled_engine(interpreted):
-    with (
-        pytest.warns(UserWarning, match="single precision"),
-        pytest.raises(ks.ParameterError, match='double precision; use engine="numpy"'),
-    ):
-        solve(SCENES["plain"], SAMPLES.astype(np.float32), engine="compiled")
-
-
 def test_a_group_that_looks_at_values_is_refused_with_the_reason(interpreted):
     scene = with_group(OneSided(ks.Link(3.0, 0.1)))
     assert solve(scene, SAMPLES).scalar("pan moment").shape == SAMPLES.shape
     with pytest.raises(NotGivenError, match=r"cannot take crank with a pan.*kernels must not branch on values"):
         solve(scene, SAMPLES, engine="compiled")
-
-
-# Which engine is taken
-
-
-def engine(angles, **options):
-    return solve(SCENES["plain"], angles, **options).engine
 
 
 @pytest.fixture

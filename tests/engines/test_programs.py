@@ -11,8 +11,6 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import compiled, loops, programs
 from kinetostatics.engines.engines import KERNELS
-from kinetostatics.engines.trace import Node
-from kinetostatics.errors import NotGivenError
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components, magnitude
 from kinetostatics.numbers import kinds
@@ -26,10 +24,8 @@ from support.scenes import (
     SAMPLES,
     SCENES,
     SPEED,
-    Pan,
     everything,
     solve,
-    with_group,
 )
 
 LOOP = 8 * 2.0**-52
@@ -277,19 +273,6 @@ def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
     assert s.condition[pin.argmax()] == np.inf
 
 
-# What users bring
-
-
-class Stop(Pan):
-    """A group that looks at values."""
-
-    def place(self, placement):
-        """Turn with the crank on one side."""
-        super().place(placement)
-        if placement.joints["A"].position[0] > 0:
-            placement.links["pan"] = placement.links["crank"]
-
-
 @pytest.mark.parametrize("name", OWN)
 def test_program_of_a_users_own_cam_or_group_equals_solve(interpreted, name):
     """What takes plain numbers only is computed by NumPy beforehand."""
@@ -382,27 +365,6 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
     there = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     assert there.stdout == here
     assert files() == compiled_here
-
-
-# What cannot be
-
-
-def test_kernel_that_branches_on_values_is_refused_with_the_reason():
-    s = solve(with_group(Stop(ks.Link(3.0, 0.1))), np.array([0.3]), on_gap="nan")
-    with pytest.raises(NotGivenError, match="kernels must not branch on values"):
-        program(s, ["O"])
-
-
-def test_values_of_recorded_numbers_cannot_be_looked_at():
-    recorded = []
-    force = ks.ProcessForce(lambda motion: recorded.append(motion.travel()[0]) or motion.travel())
-    program(ks.solve(SCENES["plain"].mechanism, [0.1], crank_speed=1.0, loads=force), ["A"])
-    node = next(value for value in recorded if isinstance(value, Node))
-    for look in (bool, float, int, lambda x: x == 0, lambda x: x != 0, lambda x: x > 0, lambda x: x <= 0.0):
-        with pytest.raises(TypeError, match="not known yet"):
-            look(node)
-    with pytest.raises(TypeError, match="only squares"):
-        node**3
 
 
 def test_program_of_a_table_at_other_angles_is_refused():

@@ -1,10 +1,11 @@
 """Hostile input ends at once: within two seconds and a gigabyte, whatever is handed in."""
 
 import resource
-import signal
 import sys
 
 import pytest
+
+from support.every import limited
 
 SECONDS = 2
 BYTES = 10**9
@@ -17,17 +18,11 @@ def _memory():
 
 @pytest.fixture(autouse=True)
 def soon_and_small(request):
-    """Stops a test after two seconds, unless it is marked `slow_start`, and fails it for taking a gigabyte."""
+    """Stops a test, or an input of it, after two seconds, and fails it for taking a gigabyte.
 
-    def late(*_):
-        raise TimeoutError(f"took more than {SECONDS} s")
-
-    allowed = 60 if request.node.get_closest_marker("slow_start") else SECONDS
-    before, held = signal.signal(signal.SIGALRM, late), _memory()
-    signal.setitimer(signal.ITIMER_REAL, allowed)
-    try:
+    One that is marked `slow_start` has a minute.
+    """
+    held = _memory()
+    with limited(60 if request.node.get_closest_marker("slow_start") else SECONDS):
         yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
     assert _memory() - held < BYTES

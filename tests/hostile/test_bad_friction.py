@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 PUMP = ks.crank_slider(0.1, 0.3, slider=ks.Link(2.0))
 CAM = ks.cam_crank_slider(ks.cams.Circle(0.1, (0.01, 0.0)), 0.4, slider=ks.Link(2.0))
@@ -43,8 +44,8 @@ NUMBERS = [
 ]
 
 
-@pytest.mark.parametrize(("friction", "words"), WRONG)
-@pytest.mark.parametrize("door", ["solve", "scene"])
+@every(("friction", "words"), WRONG)
+@every("door", ["solve", "scene"])
 def test_friction_that_no_joint_has_is_refused(friction, words, door):
     through = {"solve": lambda: ks.solve(PUMP, ANGLES, crank_speed=1.0, friction=friction)}
     through["scene"] = lambda: ks.Scene(PUMP, 1.0, friction=friction)
@@ -59,8 +60,8 @@ def test_all_that_is_wrong_is_said_at_once():
     assert all(words in str(caught.value) for words in ("SlotFriction", "RollerFriction", "'Q'"))
 
 
-@pytest.mark.parametrize(("make", "name"), NUMBERS)
-@pytest.mark.parametrize("value", [-0.1, np.nan, np.inf, -np.inf, "0.1", [0.1], 1e200, 1j, object()])
+@every(("make", "name"), NUMBERS)
+@every("value", [-0.1, np.nan, np.inf, -np.inf, "0.1", [0.1], 1e200, 1j, object()])
 def test_coefficients_and_sizes_that_no_machine_has_are_refused(make, name, value):
     with pytest.raises(ks.ParameterError, match=name):
         make(value)
@@ -95,8 +96,8 @@ def test_unknown_paths_and_joints_are_refused():
         scene.solve(4).pin_load("Z")
 
 
-@pytest.mark.parametrize("mu", [1e-300, 1e-12, 0.999, 5.0, 1e6, 1e140])
-@pytest.mark.parametrize("name", ["O", "A", "B", "guide"])
+@every("mu", [1e-300, 1e-12, 0.999, 5.0, 1e6, 1e140])
+@every("name", ["O", "A", "B", "guide"])
 def test_any_coefficient_gives_numbers_or_is_said_to_jam(mu, name):
     friction = ks.GuideFriction(mu) if name == "guide" else ks.PinFriction(mu, 0.01)
     try:

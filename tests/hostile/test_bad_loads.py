@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.scenes import six_bar
 
 NO_NUMBERS = {
@@ -42,7 +43,7 @@ NO_NUMBER_CASES = [
 """("3 N", 0.0) is a place on a link called "3 N", which no mechanism has."""
 
 
-@pytest.mark.parametrize(("field", "what"), NO_NUMBER_CASES)
+@every(("field", "what"), NO_NUMBER_CASES)
 def test_what_is_no_number_is_refused_by_the_name_of_its_field(field, what):
     name = field.partition(".")[2].partition(" ")[0]
     with pytest.raises(ks.ParameterError, match=name):
@@ -72,14 +73,14 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize("what", PLACES)
+@every("what", PLACES)
 def test_what_is_no_point_is_refused_with_the_forms_of_points(what):
     for make in (lambda at: ks.Force(1.0, at=at), lambda at: ks.PointForce(1.0, between=("A", at))):
         with pytest.raises(ks.ParameterError, match=r"(at|between 2) must be a"):
             make(PLACES[what])
 
 
-@pytest.mark.parametrize("what", ["AB", ("A",), ("A", "B", "C"), None, 3.0, {"A": "B"}])
+@every("what", ["AB", ("A",), ("A", "B", "C"), None, 3.0, {"A": "B"}])
 def test_what_is_no_pair_of_points_is_refused(what):
     with pytest.raises(ks.ParameterError, match="between must be a pair of points"):
         ks.PointDamper(1.0, between=what)
@@ -103,7 +104,7 @@ MISPLACED = {
 }
 
 
-@pytest.mark.parametrize("what", MISPLACED)
+@every("what", MISPLACED)
 def test_a_load_on_what_is_not_there_names_what_is(what):
     make, words = MISPLACED[what]
     with pytest.raises(ks.ParameterError, match=words):
@@ -123,8 +124,8 @@ FORCES = {
 }
 
 
-@pytest.mark.parametrize("what", FORCES)
-@pytest.mark.parametrize("kind", ["Force", "Torque", "ProcessForce"])
+@every("what", FORCES)
+@every("kind", ["Force", "Torque", "ProcessForce"])
 def test_a_function_of_the_motion_that_reads_a_force_is_told_what_it_may_read(kind, what):
     item = {
         "Force": lambda: ks.Force(FORCES[what], at="B"),
@@ -169,7 +170,7 @@ TABLES = {
 }
 
 
-@pytest.mark.parametrize("what", TABLES)
+@every("what", TABLES)
 def test_bad_tables_are_refused(what):
     make, words = TABLES[what]
     with pytest.raises(ks.ParameterError, match=words):

@@ -4,6 +4,7 @@ import pytest
 
 import kinetostatics as ks
 from support.case_files import problems
+from support.every import every
 
 HEAD = """
 title = "t"
@@ -73,7 +74,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("text", "message"), WRONG.values(), ids=WRONG)
+@every(("text", "message"), WRONG.values(), ids=WRONG)
 def test_a_wrong_drive_is_named_with_its_key(tmp_path, text, message):
     assert message in "\n".join(problems(tmp_path, HEAD + text))
 

@@ -6,6 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from support.case_files import case_file, problems
+from support.every import every
 
 HEAD = 'title = "t"\nreference = "a"\n'
 CHAIN = """
@@ -169,7 +170,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
+@every("name", WRONG)
 def test_a_wrong_group_or_load_is_named_by_its_key_with_what_is_allowed(tmp_path, name):
     text, message = WRONG[name]
     found = problems(tmp_path, HEAD + CHAIN + text + "\n")
@@ -278,7 +279,7 @@ WRONG_TABLES = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG_TABLES)
+@every("name", WRONG_TABLES)
 def test_a_wrong_table_is_refused_with_key_file_and_row(tmp_path, name):
     content, options, message = WRONG_TABLES[name]
     (tmp_path / "t.csv").write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -299,7 +300,7 @@ GOOD_TABLES = {
 }
 
 
-@pytest.mark.parametrize("name", GOOD_TABLES)
+@every("name", GOOD_TABLES)
 def test_a_table_as_programs_write_them_is_read(tmp_path, name):
     content, options = GOOD_TABLES[name]
     (tmp_path / "t.csv").write_bytes(content)

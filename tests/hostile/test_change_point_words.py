@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 ROCKER = {"coupler_length": 2.0, "rocker_length": 1.0, "pivot": (2.0, 0.0)}
 WORDS = (
@@ -26,8 +27,8 @@ WORDS = (
 )
 
 
-@pytest.mark.parametrize("word", WORDS, ids=repr)
-@pytest.mark.parametrize("group", ["rocker", "slider", "lever"])
+@every("word", WORDS, ids=repr)
+@every("group", ["rocker", "slider", "lever"])
 def test_other_words_are_refused(group, word):
     make = {
         "rocker": lambda: ks.RockerGroup(**ROCKER, assembly=word),
@@ -38,8 +39,8 @@ def test_other_words_are_refused(group, word):
         make[group]()
 
 
-@pytest.mark.parametrize("word", ["open", "crossed"])
-@pytest.mark.parametrize("on", ["O", "B", "O2"])
+@every("word", ["open", "crossed"])
+@every("on", ["O", "B", "O2"])
 def test_words_are_refused_on_joints_that_no_crank_carries(on, word):
     chain = (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.SliderGroup(0.5, assembly=word, on=on, pin="C", label="2"))
     with pytest.raises(ks.ParameterError, match=f"it hangs on '{on}'; give"):
@@ -62,8 +63,8 @@ def test_batches_of_several_kinds_are_refused(changes):
         ks.four_bar(**given, assembly="open")
 
 
-@pytest.mark.parametrize("path", ["crank_length", "coupler_length", "rocker_length", "rocker_pivot.x"])
-@pytest.mark.parametrize("factor", [1.0 - 1e-14, 1.0 + 1e-14, 0.5, 3.0])
+@every("path", ["crank_length", "coupler_length", "rocker_length", "rocker_pivot.x"])
+@every("factor", [1.0 - 1e-14, 1.0 + 1e-14, 0.5, 3.0])
 def test_programs_refuse_every_length_that_leaves_the_kind(path, factor):
     made = ks.four_bar(1.0, 3.0, 2.0, rocker_pivot=(4.0, 0.0), assembly="crossed", rocker=ks.Link(1.0))
     program = ks.compile(ks.Scene(made, 1.0), "balancing_torque", engine="numpy")
@@ -87,8 +88,8 @@ def test_linkage_without_ground_has_no_change_point():
 # Slotted levers
 
 
-@pytest.mark.parametrize("word", ["open", "crossed"])
-@pytest.mark.parametrize("on", ["O", "B", "O2"])
+@every("word", ["open", "crossed"])
+@every("on", ["O", "B", "O2"])
 def test_words_of_levers_are_refused_on_joints_that_no_crank_carries(on, word):
     lever = ks.LeverGroup((0.5, 0.2), on=on, assembly=word, pivot_name="O3", label="2")
     with pytest.raises(ks.ParameterError, match=f"lever group: assembly '{word}' is for .* it hangs on '{on}'; give"):
@@ -112,15 +113,15 @@ MIXED_LEVERS = [
 ]
 
 
-@pytest.mark.parametrize("changes", MIXED_LEVERS, ids=repr)
+@every("changes", MIXED_LEVERS, ids=repr)
 def test_batches_of_levers_of_several_kinds_are_refused(changes):
     given = {"crank_length": 1.0, "pivot": (1.0, 0.0)} | changes
     with pytest.raises(ks.ParameterError, match="must be of one kind"):
         ks.slotted_lever(**given, assembly="open")
 
 
-@pytest.mark.parametrize("path", ["crank_length", "lever_pivot.x", "slot_offset"])
-@pytest.mark.parametrize("factor", [1.0 - 1e-14, 1.0 + 1e-14, 0.5, 3.0, -1.0])
+@every("path", ["crank_length", "lever_pivot.x", "slot_offset"])
+@every("factor", [1.0 - 1e-14, 1.0 + 1e-14, 0.5, 3.0, -1.0])
 def test_programs_of_levers_refuse_every_length_that_leaves_the_kind(path, factor):
     made = ks.slotted_lever(1.0, pivot=(2.0, 0.0), offset=1.0, assembly="crossed", lever=ks.Link(1.0, (0.2, 0.0), 0.1))
     program = ks.compile(ks.Scene(made, 1.0), "balancing_torque", engine="numpy")

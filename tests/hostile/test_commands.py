@@ -20,6 +20,7 @@ import kinetostatics as ks
 from kinetostatics.cli import main
 from kinetostatics.numbers import files
 from kinetostatics.views.figures import draw_case
+from support.every import every
 
 mpl.use("agg")
 TEXT = """
@@ -175,12 +176,13 @@ def test_a_folder_without_permission_is_refused(saw, idle, capsys):
     assert "may not be written to" in refused(["run", saw, "--csv", saw.parent / "locked" / "x.csv"], capsys)
 
 
-@pytest.mark.parametrize("mode", [0o600, 0o640, 0o644, 0o664, 0o777, 0o200])
 @pytest.mark.parametrize("link", [False, True])
+@every("mode", [0o600, 0o640, 0o644, 0o664, 0o777, 0o200])
 def test_a_file_that_is_replaced_keeps_its_permissions_and_links_to_it_stay(tmp_path, mode, link):
     file, name = tmp_path / "x.csv", tmp_path / "link.csv"
     file.write_text("old")
     file.chmod(mode)
+    name.unlink(missing_ok=True)
     name.symlink_to("x.csv")
     with files.written_whole(name if link else file) as temporary:
         assert Path(temporary).stat().st_mode & 0o077 == 0
@@ -290,7 +292,7 @@ SHORT = {
 }
 
 
-@pytest.mark.parametrize("name", SHORT)
+@every("name", SHORT)
 def test_options_that_cannot_be_are_refused_in_a_line(name, capsys):
     arguments, message = SHORT[name]
     with pytest.raises(SystemExit) as caught:
@@ -439,7 +441,7 @@ def assert_gone(group):
 COUNTS = [-1, 0, 2.5, True, "many", None, math.nan, np.float64(3.0), np.int64(0), [3], 10**9, 10**400, 10**5000]
 
 
-@pytest.mark.parametrize("count", COUNTS, ids=map(str, range(len(COUNTS))))
+@every("count", COUNTS, ids=map(str, range(len(COUNTS))))
 def test_numbers_of_crank_angles_that_cannot_be_are_refused(count):
     for solve in (SAW.variant("plain").solve, lambda angles: SAW.solve("plain", angles=angles)):
         with pytest.raises(ks.ParameterError, match=r"^solve: angles must be (a whole number of at least 1|at most 1)"):
@@ -483,8 +485,8 @@ WANTED = {
 }
 
 
-@pytest.mark.parametrize("other", OTHERS)
-@pytest.mark.parametrize("name", WANTED)
+@every("other", OTHERS)
+@every("name", WANTED)
 def test_what_is_no_solution_is_refused_with_what_is_wanted(name, other):
     function, message = WANTED[name]
     with pytest.raises(ks.ParameterError) as caught:
@@ -575,7 +577,7 @@ CALLS = {
 }
 
 
-@pytest.mark.parametrize("name", CALLS)
+@every("name", CALLS)
 def test_calls_that_cannot_be_answered_are_refused(name):
     call, message = CALLS[name]
     with pytest.raises(ks.ParameterError) as caught:

@@ -15,6 +15,7 @@ from pyarrow import parquet
 import kinetostatics as ks
 from kinetostatics.errors import CacheWarning, KinetostaticsError
 from kinetostatics.sweeps.dataset import MANIFEST, Dataset
+from support.every import every
 
 DESIGNS = pd.DataFrame({"crank": np.linspace(0.1, 0.3, 9)}, index=[f"design {row}" for row in range(9)])
 OUTPUT = "rms O"
@@ -113,7 +114,7 @@ DAMAGE = {
 }
 
 
-@pytest.mark.parametrize("name", DAMAGE)
+@every("name", DAMAGE)
 def test_a_part_that_is_not_as_it_was_written_is_made_anew(folder, expected, name):
     DAMAGE[name](part(folder))
     with warnings.catch_warnings(record=True) as caught:

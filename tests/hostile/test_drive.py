@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 SCENE = ks.Scene(ks.crank_slider(0.05, 0.2, crank=ks.Link(1.0, 0.0, 0.1), slider=ks.Link(1.0)), 100.0)
 MOTOR = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
@@ -39,8 +40,8 @@ CALLS = {
 }
 
 
-@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
-@pytest.mark.parametrize("value", NO_NUMBERS, ids=[str(value)[:20] for value in NO_NUMBERS])
+@every("call", CALLS.values(), ids=CALLS)
+@every("value", NO_NUMBERS, ids=[str(value)[:20] for value in NO_NUMBERS])
 def test_what_is_no_plain_number_is_refused(call, value):
     with pytest.raises(ks.ParameterError):
         call(value)
@@ -49,8 +50,8 @@ def test_what_is_no_plain_number_is_refused(call, value):
 NO_SCENES = [None, 3.0, "saw", SCENE.mechanism, ks.Scene, [SCENE]]
 
 
-@pytest.mark.parametrize("scene", NO_SCENES, ids=[str(scene)[:20] for scene in NO_SCENES])
-@pytest.mark.parametrize(
+@every("scene", NO_SCENES, ids=[str(scene)[:20] for scene in NO_SCENES])
+@every(
     "call",
     [
         lambda scene: ks.drive.steady(scene, MOTOR, 1.0),
@@ -69,8 +70,8 @@ def test_what_is_no_scene_is_refused(call, scene):
 NO_MOTORS = [3.0, "kloss", ks.drive.Motor, SCENE, [MOTOR]]
 
 
-@pytest.mark.parametrize("motor", NO_MOTORS, ids=[str(motor)[:20] for motor in NO_MOTORS])
-@pytest.mark.parametrize(
+@every("motor", NO_MOTORS, ids=[str(motor)[:20] for motor in NO_MOTORS])
+@every(
     "call",
     [
         lambda motor: ks.drive.steady(SCENE, motor, 1.0),
@@ -84,7 +85,7 @@ def test_what_is_no_motor_is_refused(call, motor):
         call(motor)
 
 
-@pytest.mark.parametrize("angles", [0, -3, True, 1.5e300, math.nan, [], [math.inf], "720", 10**12, None])
+@every("angles", [0, -3, True, 1.5e300, math.nan, [], [math.inf], "720", 10**12, None])
 def test_crank_angles_that_are_none_are_refused(angles):
     with pytest.raises(ks.ParameterError):
         _ = ks.drive.steady(SCENE, MOTOR, 1.0, angles=angles).speed
@@ -112,10 +113,3 @@ def test_a_load_that_is_no_number_somewhere_is_refused(value):
 
     with pytest.raises((ks.ParameterError, ks.DriveError)):
         ks.drive.steady(ks.Scene(SCENE.mechanism, 1.0, loads=ks.Torque(torque, on="crank")), MOTOR, 1.0)
-
-
-def test_a_scene_with_friction_is_refused_rather_than_run_without_it():
-    saw = ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0))
-    scene = ks.Scene(saw, 33.5, friction={"O": ks.PinFriction(0.05, 0.03)})
-    with pytest.raises(ks.ParameterError, match="friction is not taken yet"):
-        ks.drive.steady(scene, None, 100.0)

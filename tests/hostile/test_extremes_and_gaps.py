@@ -11,6 +11,7 @@ import kinetostatics as ks
 from kinetostatics.mechanics import assembly, quantities
 from kinetostatics.results.comparison import mean_absolute_torque
 from kinetostatics.results.tables import extremes_frame
+from support.every import every
 
 GRAVITY = (ks.Gravity(),)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
@@ -145,8 +146,8 @@ def swept(function, designs, outputs, **options):
     return ks.sweep(function, pd.DataFrame(designs), outputs, progress=False, **options)
 
 
-@pytest.mark.parametrize("coupler", [0.5, 0.8, 0.99, 0.99999, 0.9999999])
-@pytest.mark.parametrize("guide", [0.0, 0.1, 77.0])
+@every("coupler", [0.5, 0.8, 0.99, 0.99999, 0.9999999])
+@every("guide", [0.0, 0.1, 77.0])
 def test_extremes_reach_to_the_ends_of_the_closed_intervals(coupler, guide):
     """Under the ends the slider stands at the foot of the crank pin, where its velocity grows without bound."""
     mechanism = ks.crank_slider(1.0, coupler, guide_angle=np.radians(guide), slider=ks.Link(1.0))
@@ -179,8 +180,8 @@ HIDDEN = {
 }
 
 
-@pytest.mark.parametrize("short", [1e-5, 1e-7, 1e-9])
-@pytest.mark.parametrize("name", HIDDEN)
+@every("short", [1e-5, 1e-7, 1e-9])
+@every("name", HIDDEN)
 def test_gaps_between_samples_are_found(name, short):
     make, place = HIDDEN[name]
     with pytest.raises(ks.AssemblyError, match="cannot be assembled all round the turn") as caught:
@@ -242,8 +243,8 @@ ways = {
 }
 
 
-@pytest.mark.parametrize("way", ways)
-@pytest.mark.parametrize("name", WRONG)
+@every("way", ways)
+@every("name", WRONG)
 def test_what_is_no_force_is_refused_by_name(name, way):
     function, message = WRONG[name]
     solution = ks.solve(SAW, np.linspace(0, 6, 24), crank_speed=33.5, loads=[ks.ProcessForce(function)])
@@ -251,7 +252,7 @@ def test_what_is_no_force_is_refused_by_name(name, way):
         ways[way](solution)
 
 
-@pytest.mark.parametrize("name", WRONG)
+@every("name", WRONG)
 def test_sweeps_give_what_is_no_force_as_the_reason(name):
     function, _ = WRONG[name]
     made = lambda mass: ks.Scene(SAW, 33.5, 0.0, (ks.ProcessForce(function),))  # noqa: E731
@@ -352,7 +353,7 @@ def test_a_noisy_table_is_compared_in_bounded_time():
 SHARP = (0.283648, 0.616619, 0.657347), (0.345486, -0.001611)
 
 
-@pytest.mark.parametrize("angles", [12, 37, 72, 180, 360, 720])
+@every("angles", [12, 37, 72, 180, 360, 720])
 def test_sweeps_take_as_many_angles_as_peaks_need(angles):
     lengths, pivot = SHARP
 

@@ -13,6 +13,7 @@ from kinetostatics.mechanics import assembly
 from kinetostatics.numbers.units import to_si
 from kinetostatics.results.comparison import _ratio
 from kinetostatics.results.reductions import FOUND, parsed
+from support.every import every
 
 TURN = 2 * np.pi * np.arange(72) / 72
 UNITS = pint.UnitRegistry()
@@ -75,7 +76,7 @@ def test_loads_must_repeat_together_soon():
         ks.solve(crank_slider(), TURN, crank_speed=5.0, loads=loads)
 
 
-@pytest.mark.parametrize(
+@every(
     ("reference", "balanced", "ratio"),
     [
         (0.0, 0.0, np.nan),

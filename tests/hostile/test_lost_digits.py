@@ -4,9 +4,9 @@ import re
 import warnings
 
 import numpy as np
-import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 BODY = ks.Link(3.0, 0.5, 2.0)
 ROD = ks.Link(2.0, 0.5, 1.0)
@@ -43,7 +43,7 @@ def cases():
 CASES = list(cases())
 
 
-@pytest.mark.parametrize(
+@every(
     ("mechanism", "angle", "distance"), [case[1:] for case in CASES], ids=[f"{case[0]} {case[3]:g}" for case in CASES]
 )
 def test_lost_digits_are_warned_of_with_their_number(mechanism, angle, distance):

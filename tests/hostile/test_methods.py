@@ -9,6 +9,7 @@ import kinetostatics as ks
 from kinetostatics.machine.group import Group, Resolved
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.studies.methods import METHODS
+from support.every import every
 
 TURN = 2 * np.pi * np.arange(24) / 24
 BODIES = {"coupler": ks.Link(2.0, 0.2, 0.03), "slider": ks.Link(5.0)}
@@ -125,19 +126,19 @@ def refused(name, solution, quantity, words):
         method.prepare(solution, quantity, method.settings[0])()
 
 
-@pytest.mark.parametrize("batch", BATCHES)
-@pytest.mark.parametrize("name", OF_ONE_DESIGN)
+@every("batch", BATCHES)
+@every("name", OF_ONE_DESIGN)
 def test_a_batch_is_refused_by_what_computes_one_design(name, batch):
     refused(name, BATCHES[batch], "O", "one mechanism at crank angles|circular cam|no spring")
 
 
-@pytest.mark.parametrize("own", FOREIGN)
-@pytest.mark.parametrize("name", OF_KNOWN_GROUPS)
+@every("own", FOREIGN)
+@every("name", OF_KNOWN_GROUPS)
 def test_a_group_of_the_users_own_is_refused_by_what_cannot_know_it(name, own):
     refused(name, FOREIGN[own], "O", "own|OwnSlider")
 
 
-@pytest.mark.parametrize(("name", "solution", "quantity", "words"), MIXED)
+@every(("name", "solution", "quantity", "words"), MIXED)
 def test_what_has_no_formulas_is_refused_with_the_reason(name, solution, quantity, words):
     refused(name, solution, quantity, words)
 

@@ -8,6 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.machine.group import RESERVED
 from kinetostatics.mechanics.quantities import of_mechanism
+from support.every import every
 
 NAMES = (
     *(
@@ -49,7 +50,7 @@ def group(kind, choose):
     return make[kind]()
 
 
-@pytest.mark.parametrize("seed", range(6))
+@every("seed", range(6))
 def test_no_name_is_lost_in_silence(seed):
     random.seed(seed)
     made = refused = 0
@@ -69,7 +70,7 @@ def test_no_name_is_lost_in_silence(seed):
     assert refused
 
 
-@pytest.mark.parametrize(
+@every(
     ("parts", "words"),
     [
         ((ks.Dyad(0.4, 0.3, ("A", "O"), "dyad1_A"),), "adds reaction 'dyad1_A' a second time"),
@@ -88,7 +89,7 @@ def test_what_two_things_would_be_called_is_refused(parts, words):
         ks.Mechanism("chain", ks.Crank(0.1), parts)
 
 
-@pytest.mark.parametrize("kind", sorted({*COUNTS} - {"pin"}))
+@every("kind", sorted({*COUNTS} - {"pin"}))
 def test_a_group_on_a_link_is_told_to_hang_on_a_pin_of_it(kind):
     made = group(kind, random.Random(1).choice)
     on = ("crank", "A") if kind == "dyad" else "crank"

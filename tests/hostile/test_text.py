@@ -14,6 +14,7 @@ from kinetostatics.cli import main
 from kinetostatics.numbers.files import read_columns
 from kinetostatics.numbers.units import factor, to_si
 from kinetostatics.sweeps import designs
+from support.every import every
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -49,16 +50,16 @@ BADLY_WRITTEN = {  # with what to write in its place
 }
 
 
-@pytest.mark.parametrize("unit", ["m", "kN/mm", "kg m^2"])
-@pytest.mark.parametrize("number", BADLY_WRITTEN)
+@every("unit", ["m", "kN/mm", "kg m^2"])
+@every("number", BADLY_WRITTEN)
 def test_a_badly_written_number_is_refused_with_what_would_be_right(number, unit):
     with pytest.raises(ValueError, match=r"must be text of a number and a unit") as caught:
         to_si(f"{number} {unit}", unit)
     assert all(f'"{right} {unit}"' in str(caught.value) for right in BADLY_WRITTEN[number])
 
 
-@pytest.mark.parametrize("number", BADLY_WRITTEN)
-@pytest.mark.parametrize("form", ["0..{} m:3", "{}..9e9 m", "normal 1 m +- {} m", "triangular 0..{}..9e9 m"])
+@every("number", BADLY_WRITTEN)
+@every("form", ["0..{} m:3", "{}..9e9 m", "normal 1 m +- {} m", "triangular 0..{}..9e9 m"])
 def test_a_badly_written_number_in_a_spread_is_refused_with_what_would_be_right(number, form):
     made = designs.grid if ":" in form else designs.distributions
     with pytest.raises(ks.ParameterError, match=r"cannot read") as caught:
@@ -73,7 +74,7 @@ NO_NUMBER = [
 ]
 
 
-@pytest.mark.parametrize("text", NO_NUMBER, ids=lambda text: repr(text)[:20])
+@every("text", NO_NUMBER, ids=lambda text: repr(text)[:20])
 def test_what_holds_no_number_is_refused(text):
     with pytest.raises(
         ValueError, match=r'must be text of a number and a unit that converts to m, found .*"1.5 m"|write'
@@ -115,13 +116,13 @@ BAD_UNITS = [
 ]
 
 
-@pytest.mark.parametrize("unit", BAD_UNITS, ids=lambda text: repr(text)[:20])
+@every("unit", BAD_UNITS, ids=lambda text: repr(text)[:20])
 def test_a_unit_outside_the_grammar_or_of_no_length_is_refused(unit):
     with pytest.raises(ValueError, match=r"is not known|does not measure the same|must be text of a number"):
         to_si(f"5 {unit}", "m")
 
 
-@pytest.mark.parametrize(
+@every(
     ("unit", "value"),
     [
         *(("m", 1.0), ("mm", 1e-3), ("km", 1e3), ("in", 0.0254), ("m^1", 1.0), ("m**1", 1.0), ("m^2/m", 1.0)),
@@ -133,7 +134,7 @@ def test_a_unit_within_the_grammar_is_read(unit, value):
     assert to_si(f"1 {unit}", "m") == pytest.approx(value, rel=1e-15)
 
 
-@pytest.mark.parametrize("space", ["", " ", "  ", "\t", "\u00a0", "\u2009", "\u202f"])
+@every("space", ["", " ", "  ", "\t", "\u00a0", "\u2009", "\u202f"])
 def test_any_space_or_none_may_stand_between_number_and_unit(space):
     assert to_si(f"5{space}mm", "m") == 0.005
 
@@ -144,7 +145,7 @@ def test_columns_of_designs_take_units_of_the_same_grammar(unit):
         factor(unit, "m")
 
 
-@pytest.mark.parametrize(
+@every(
     ("spreads", "message"),
     [
         ({"a": "0..1 m:1000000000"}, "1000000000 values are too many"),
@@ -163,8 +164,8 @@ def test_grids_that_are_too_large_or_no_text_are_refused(spreads, message):
         designs.grid(spreads)
 
 
-@pytest.mark.parametrize("count", [0, -1, 1.5, True, "8", None, 10**12])
-@pytest.mark.parametrize("kind", [designs.latin_hypercube, designs.sobol, designs.random])
+@every("count", [0, -1, 1.5, True, "8", None, 10**12])
+@every("kind", [designs.latin_hypercube, designs.sobol, designs.random])
 def test_samples_of_no_or_too_many_designs_are_refused(kind, count):
     with pytest.raises(ks.ParameterError, match=r"how many must be|too many for one table"):
         kind({"a": "0..1 m"}, count)
@@ -256,7 +257,7 @@ BAD_TABLES = {
 }
 
 
-@pytest.mark.parametrize("name", BAD_TABLES)
+@every("name", BAD_TABLES)
 def test_a_table_that_is_none_is_refused_with_its_line(tmp_path, name):
     content, message = BAD_TABLES[name]
     with pytest.raises(ks.CaseError, match=message) as caught:
@@ -264,7 +265,7 @@ def test_a_table_that_is_none_is_refused_with_its_line(tmp_path, name):
     assert str(caught.value).startswith(f"{tmp_path / 'table.csv'}: ")
 
 
-@pytest.mark.parametrize(
+@every(
     "content",
     [
         "\ufeff" + GOOD,
@@ -287,7 +288,7 @@ def test_a_table_written_otherwise_is_read_alike(tmp_path, content):
 
 
 def special(folder, kind):
-    path = folder / "special"
+    path = folder / kind
     if kind == "pipe":
         os.mkfifo(path)
     elif kind == "folder":
@@ -305,19 +306,19 @@ def special(folder, kind):
 KINDS = ["pipe", "device", "folder", "loop", "sparse", "large", "zero", "long", "missing"]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@every("kind", KINDS)
 def test_a_pipe_device_folder_or_giant_is_no_table(tmp_path, kind):
     with pytest.raises(ks.CaseError, match=r"cannot be read"):
         forces(special(tmp_path, kind))
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@every("kind", KINDS)
 def test_a_pipe_device_folder_or_giant_is_no_case(tmp_path, kind):
     with pytest.raises(ks.CaseError, match=r"cannot be read|no such file"):
         ks.load_case(special(tmp_path, kind))
 
 
-@pytest.mark.parametrize("name", ["a\0b", "x" * 300, "x" * 100_000, "a/" * 3000, "\ud800", "~/saw", "", ".", "\n"])
+@every("name", ["a\0b", "x" * 300, "x" * 100_000, "a/" * 3000, "\ud800", "~/saw", "", ".", "\n"])
 def test_a_name_that_no_file_can_have_is_no_case(name):
     with pytest.raises(ks.CaseError, match=r"cannot be read|no such file"):
         ks.load_case(name)
@@ -339,7 +340,7 @@ NO_PATHS = [
 ]
 
 
-@pytest.mark.parametrize("thing", NO_PATHS, ids=range(len(NO_PATHS)))
+@every("thing", NO_PATHS, ids=range(len(NO_PATHS)))
 def test_what_is_neither_path_nor_name_is_no_case(thing):
     with pytest.raises(ks.ParameterError, match=r"^load_case: takes a path or the name of a shipped case, got "):
         ks.load_case(thing)
@@ -372,7 +373,7 @@ def case_file(folder, text):
     return path
 
 
-@pytest.mark.parametrize("number", BADLY_WRITTEN)
+@every("number", BADLY_WRITTEN)
 def test_a_badly_written_number_in_a_case_file_is_refused_with_what_would_be_right(tmp_path, number):
     path = case_file(tmp_path, CASE.replace('"2 m"', f'"{number} m"'))
     with pytest.raises(ks.CaseError, match=r"variants.a.coupler_length must be text") as caught:
@@ -417,7 +418,7 @@ BAD_CASES = {
 }
 
 
-@pytest.mark.parametrize("name", BAD_CASES)
+@every("name", BAD_CASES)
 def test_a_case_file_that_is_none_is_refused_with_its_key(tmp_path, name):
     text, message = BAD_CASES[name]
     with pytest.raises(ks.CaseError, match=message) as caught:
@@ -450,7 +451,7 @@ NOT_A_TURN = {
 }
 
 
-@pytest.mark.parametrize("name", NOT_A_TURN)
+@every("name", NOT_A_TURN)
 def test_a_table_of_force_that_is_not_over_its_period_is_refused(tmp_path, name):
     angles, period, message = NOT_A_TURN[name]
     rows = (f"{angle}, {1 + place}" for place, angle in enumerate(angles))
@@ -462,9 +463,7 @@ def test_a_table_of_force_that_is_not_over_its_period_is_refused(tmp_path, name)
     assert message in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    "period", [0, -1, 1.0, np.pi, 3 * np.pi, -2 * np.pi, np.nan, np.inf, True, None, "720 deg", [1]]
-)
+@every("period", [0, -1, 1.0, np.pi, 3 * np.pi, -2 * np.pi, np.nan, np.inf, True, None, "720 deg", [1]])
 def test_a_period_that_is_not_whole_turns_is_refused(period):
     with pytest.raises(ks.ParameterError, match=r"period must be 2 pi or a whole multiple of it"):
         ks.ProcessForce(1.0, period=period)
@@ -474,7 +473,7 @@ def test_a_period_that_is_not_whole_turns_is_refused(period):
 
 
 @pytest.mark.slow_start
-@pytest.mark.parametrize(
+@every(
     ("vary", "message"),
     [
         (["spring.stiffness=600,5..900 kN/m:4"], 'write "600.5..900 kN/m:4"'),

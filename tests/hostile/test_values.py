@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 TURN = 2 * np.pi * np.arange(72) / 72
 LINK = ks.Link(2.0, (0.1, 0.02), 0.05)
@@ -115,15 +116,15 @@ def made(kind, **changes):
 FIELDS = [(kind, field) for kind, (_, fields) in CONSTRUCTORS.items() for field in fields]
 
 
-@pytest.mark.parametrize("bad", BAD)
-@pytest.mark.parametrize(("kind", "field"), FIELDS, ids=map(".".join, FIELDS))
+def possible(kind, field, bad):
+    """Whether it is right in the end: a table may have a shape, and a force be a function."""
+    return (kind, field) in TABLES and (bad in SHAPES or (kind == "ProcessForce" and callable(BAD[bad][0])))
+
+
+@every("kind, field, bad", [(*at, bad) for at in FIELDS for bad in BAD if not possible(*at, bad)])
 def test_every_field_refuses_what_is_no_number_of_it(kind, field, bad):
     """With the name of the field, and what is wrong; a pair is told by its name alone."""
     value, words = BAD[bad]
-    if (kind, field) in TABLES and bad in SHAPES:
-        pytest.skip("a table may have this shape")
-    if kind == "ProcessForce" and callable(value):
-        pytest.skip("a force may be a function")
     with pytest.raises(ks.ParameterError) as caught:
         made(kind, **{field: value})
     text = str(caught.value)
@@ -146,22 +147,22 @@ LENGTHS = [
 SIZES = [("Link", "mass"), ("Link", "inertia"), ("Gravity", "acceleration"), ("Spring", "stiffness")]
 
 
-@pytest.mark.parametrize("value", [0, -0.0, -0.3, np.int16(-1), np.array([[1.0], [-1.0]]), 1e-200, 1e90])
-@pytest.mark.parametrize(("kind", "field"), LENGTHS, ids=map(".".join, LENGTHS))
+@every("value", [0, -0.0, -0.3, np.int16(-1), np.array([[1.0], [-1.0]]), 1e-200, 1e90])
+@every(("kind", "field"), LENGTHS, ids=map(".".join, LENGTHS))
 def test_lengths_must_be_greater_than_zero_and_computable(kind, field, value):
     with pytest.raises(ks.ParameterError, match=r"must be greater than 0|in double precision"):
         made(kind, **{field: value})
 
 
-@pytest.mark.parametrize("value", [-1e-300, -5e-324, -1, np.float32(-2), Decimal("-0.1")])
-@pytest.mark.parametrize(("kind", "field"), SIZES, ids=map(".".join, SIZES))
+@every("value", [-1e-300, -5e-324, -1, np.float32(-2), Decimal("-0.1")])
+@every(("kind", "field"), SIZES, ids=map(".".join, SIZES))
 def test_sizes_must_not_be_negative(kind, field, value):
     with pytest.raises(ks.ParameterError, match=f"{field} must be at least 0, got -"):
         made(kind, **{field: value})
 
 
-@pytest.mark.parametrize("bad", [None, 3, "", "two\nlines", b"B", ("B",), object()])
-@pytest.mark.parametrize(
+@every("bad", [None, 3, "", "two\nlines", b"B", ("B",), object()])
+@every(
     "make",
     [
         lambda bad: ks.SliderGroup(1.0, on=bad),
@@ -182,8 +183,8 @@ def test_names_are_texts(make, bad):
         make(bad)
 
 
-@pytest.mark.parametrize("bad", [0, 2, -1.5, True, "+1", None, np.array([1, -1]), "open up", [1]])
-@pytest.mark.parametrize(
+@every("bad", [0, 2, -1.5, True, "+1", None, np.array([1, -1]), "open up", [1]])
+@every(
     "make",
     [
         lambda bad: ks.SliderGroup(1.0, assembly=bad),
@@ -196,8 +197,8 @@ def test_assembly_is_a_sign(make, bad):
         make(bad)
 
 
-@pytest.mark.parametrize("bad", [None, 3.0, "link", {}, ks.Link, ks.Gravity(), (2.0, 0.1, 0.05)])
-@pytest.mark.parametrize(
+@every("bad", [None, 3.0, "link", {}, ks.Link, ks.Gravity(), (2.0, 0.1, 0.05)])
+@every(
     "make",
     [
         lambda bad: ks.Crank(0.1, bad),
@@ -215,7 +216,7 @@ def test_links_are_links(make, bad):
         make(bad)
 
 
-@pytest.mark.parametrize("bad", [None, 0.3, "circle", ks.cams.Circle, ks.Link(), {}])
+@every("bad", [None, 0.3, "circle", ks.cams.Circle, ks.Link(), {}])
 def test_a_cam_is_made_and_has_a_pitch_curve(bad):
     with pytest.raises(ks.ParameterError, match=r"cam must be one of ks\.cams or alike"):
         ks.cam_crank_slider(bad, 2.0)
@@ -236,7 +237,7 @@ def test_a_guide_is_a_guide(bad):
         ks.SliderGroup(1.0, bad)
 
 
-@pytest.mark.parametrize(
+@every(
     "given",
     [
         (None, 0.0, (1.0, np.nan)),
@@ -254,10 +255,8 @@ def test_a_guide_has_a_direction_and_an_offset(given):
         ks.Guide(*given)
 
 
-@pytest.mark.parametrize(
-    "bad", [5.0, None, "AB", {}, (0.1,), (0.1, 0.2, 0.3), np.ones((2, 2)), np.ones((3, 1)), {0.1, 0.2}]
-)
-@pytest.mark.parametrize(
+@every("bad", [5.0, None, "AB", {}, (0.1,), (0.1, 0.2, 0.3), np.ones((2, 2)), np.ones((3, 1)), {0.1, 0.2}])
+@every(
     "make",
     [
         lambda bad: ks.RockerGroup(0.4, 0.3, bad),
@@ -273,7 +272,7 @@ def test_a_point_is_a_pair_of_numbers(make, bad):
         make(bad)
 
 
-@pytest.mark.parametrize(
+@every(
     ("bad", "words"),
     [
         (None, "groups must be a tuple"),
@@ -298,7 +297,7 @@ def test_groups_in_a_list_become_a_tuple():
 # solve
 
 
-@pytest.mark.parametrize("bad", [None, 3.0, "m", {}, ks.Mechanism, ks.Crank(0.1)])
+@every("bad", [None, 3.0, "m", {}, ks.Mechanism, ks.Crank(0.1)])
 def test_solve_wants_a_mechanism(bad):
     with pytest.raises(ks.ParameterError, match="mechanism must be a Mechanism"):
         ks.solve(bad, TURN, crank_speed=1.0)
@@ -312,18 +311,14 @@ def test_a_variant_of_a_case_is_solved_by_itself():
             ks.solve(whole, TURN, crank_speed=1.0)
 
 
-@pytest.mark.parametrize(
-    "bad", [None, 9.81, "gravity", {}, ks.Gravity, ks.Spring, (g for g in ()), object(), ks.Link()]
-)
-@pytest.mark.parametrize("wrapped", [False, True])
+@every("bad", [None, 9.81, "gravity", {}, ks.Gravity, ks.Spring, (g for g in ()), object(), ks.Link()])
+@every("wrapped", [False, True])
 def test_loads_are_loads(bad, wrapped):
     with pytest.raises(ks.ParameterError, match=r"loads must be Gravity, Spring, .* or TorsionDamper, got"):
         solve(loads=[bad] if wrapped else bad)
 
 
-@pytest.mark.parametrize(
-    "angles", [[], (), np.empty(0), np.empty((3, 0)), "0.1", ["0.1", "0.2"], [True, False], [None], {}]
-)
+@every("angles", [[], (), np.empty(0), np.empty((3, 0)), "0.1", ["0.1", "0.2"], [True, False], [None], {}])
 def test_angles_are_angles(angles):
     with pytest.raises(ks.ParameterError, match=r"crank_angle|no crank angles"):
         solve(crank_angle=angles)
@@ -332,7 +327,7 @@ def test_angles_are_angles(angles):
 THREE, TWO = np.array([[1.0], [1.1], [1.2]]), np.array([[1.0], [1.1]])
 
 
-@pytest.mark.parametrize(
+@every(
     "make",
     [
         lambda: ks.Link(TWO, THREE),
@@ -357,7 +352,7 @@ def test_batches_of_unequal_length_do_not_fit_together(make):
 # What passes, as what it is
 
 
-@pytest.mark.parametrize(
+@every(
     "value",
     [
         2,
@@ -373,7 +368,7 @@ def test_batches_of_unequal_length_do_not_fit_together(make):
     ],
     ids=lambda value: type(value).__name__ + str(np.shape(value)),
 )
-@pytest.mark.parametrize(("kind", "field"), [case for case in FIELDS if case[1] not in PAIRS and case[0] != "solve"])
+@every(("kind", "field"), [case for case in FIELDS if case[1] not in PAIRS and case[0] != "solve"])
 def test_any_real_number_becomes_a_float(kind, field, value):
     if "Circle" in kind or (kind, field) == ("CosineLaw", "amplitude"):
         value = value / type(value)(16) if isinstance(value, Fraction | Decimal) else value / 16.0
@@ -435,7 +430,7 @@ def test_quantities_of_pint_and_columns_of_pandas_are_refused_with_the_remedy():
 ROCKER = ks.RockerGroup(0.4, 0.3, (0.35, 0.1))
 
 
-@pytest.mark.parametrize(
+@every(
     ("groups", "words"),
     [
         ((ROCKER, ks.SliderGroup(0.5, on="B", label="2")), "SliderGroup adds joint 'B' a second time"),

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 DATA = {"crank": (2.0, 0.3, 0.1, 0.2), "coupler": (1.5, 0.7, -0.2, 0.1), "rocker": (3.0, 0.4, 0.25, 0.5)}
 LINKS = {name: ks.Link(mass, (along, across), inertia) for name, (mass, along, across, inertia) in DATA.items()}
@@ -25,7 +26,7 @@ LINKAGES = {
 SINGLE = {"deltoid": "near", "4/1/3/2": "far", "near": "near"}
 """Those with one change point, nearest to O2 or farthest from it."""
 SIDES = {"open": 1, "crossed": -1}
-every = pytest.mark.parametrize(("name", "assembly"), list(product(LINKAGES, SIDES)))
+each = pytest.mark.parametrize(("name", "assembly"), list(product(LINKAGES, SIDES)))
 SPEED, ACCELERATION, WEIGHT = 2.0, 1.5, 9.81
 DIGITS = 240
 """Carried; differences over a step of 1e-80 leave more than 60, also 1e-17 rad from a change point."""
@@ -133,7 +134,7 @@ def errors(solution, place, expected):
 NEAR = [sign * 10.0**-power for power in (1, 2, 4, 6, 8, 11, 14, 17) for sign in (1, -1)]
 
 
-@every
+@each
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 def test_motion_forces_and_torque_are_exact_on_both_sides_of_a_change_point_however_near(name, assembly):
     """The change point lies at crank angle 0, near which angles are as fine as they can be."""
@@ -150,7 +151,7 @@ def test_motion_forces_and_torque_are_exact_on_both_sides_of_a_change_point_howe
     assert not wrong
 
 
-@every
+@each
 def test_torque_and_motion_at_the_exact_angle_are_what_both_sides_tend_to_and_reactions_are_infinite(name, assembly):
     behind = SINGLE.get(name) == "far"
     made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
@@ -169,7 +170,7 @@ def test_torque_and_motion_at_the_exact_angle_are_what_both_sides_tend_to_and_re
     assert np.isinf(np.hypot(*solution.reaction("O"))[1])
 
 
-@every
+@each
 def test_engines_agree(name, assembly, interpreted):
     scene = ks.Scene(four_bar(name, assembly, (1.2, -0.9)) if name == "near" else four_bar(name, assembly), SPEED)
     angles = np.array([0.3, 2.0, 5.0, 8.0, 11.0])
@@ -220,14 +221,14 @@ def test_folded_kite_and_folded_rhombus_leave_the_rocker_at_rest():
         assert not solution.rate("rocker").any()
 
 
-@every
+@each
 def test_open_is_left_of_the_line_from_the_crank_pin_to_the_pivot_in_the_first_half_turn(name, assembly):
     solution = solve(four_bar(name, assembly), np.linspace(0.1, 3.0, 9))
     along, reach = (solution.position(joint) - solution.position("A") for joint in ("O2", "B"))
     assert np.all(SIDES[assembly] * (along[0] * reach[1] - along[1] * reach[0]) > -1e-12)
 
 
-@every
+@each
 def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
     """The crank angle counts from the direction O -> O2, whose own angle lies between -pi and pi."""
     psi, ground = np.linspace(-7.0, 7.0, 29), LINKAGES[name][3]
@@ -244,7 +245,7 @@ def test_group_on_a_crank_is_checked_as_on_its_own():
     assert ks.check(four_bar("4/1/3/2", "open").groups[0]).ok
 
 
-@every
+@each
 def test_motion_goes_on_through_every_change_point_and_closes_after_its_turns(name, assembly):
     """Positions by cubic interpolation of what is around them: no side is left, and no velocity jumps."""
     made = four_bar(name, assembly, (LINKAGES[name][3] * 0.6, LINKAGES[name][3] * 0.8))
@@ -350,7 +351,7 @@ def test_change_points_just_below_zero_lie_in_the_turn():
 # What follows from it
 
 
-@every
+@each
 def test_a_turn_is_solved_without_a_warning_until_reactions_are_read(name, assembly):
     """Warnings are errors in the tests."""
     solution = ks.Scene(four_bar(name, assembly), SPEED, loads=ks.Gravity()).solve(72)
@@ -413,9 +414,9 @@ def hung(kind, assembly, on):
     return ks.RockerGroup(b, h, (-0.8 * d, 0.6 * d), assembly, LINKS["coupler"], LINKS["rocker"], on=on)
 
 
-@pytest.mark.parametrize("assembly", SIDES)
-@pytest.mark.parametrize("ahead", [(0.0, 0.5), (-0.5, 0.0), (0.3, 0.4), (-0.4, -0.3), (0.5, 0.0)])
-@pytest.mark.parametrize("kind", [*LINKAGES, "slider", "lever"])
+@every("assembly", SIDES)
+@every("ahead", [(0.0, 0.5), (-0.5, 0.0), (0.3, 0.4), (-0.4, -0.3), (0.5, 0.0)])
+@every("kind", [*LINKAGES, "slider", "lever"])
 def test_group_on_a_second_throw_moves_and_bears_as_on_the_pin_of_a_crank_turned_ahead(kind, ahead, assembly):
     """Both count the crank angle from where the pin points to the pivot, or along the guide's right normal."""
     radius = LINKAGES[kind][0] * 0.5 if kind in LINKAGES else 0.5
@@ -480,7 +481,7 @@ def test_enclosures_of_a_second_throw_hold_what_other_formulas_give(at):
     assert found.agreement < 1e-25
 
 
-@every
+@each
 def test_engines_agree_on_a_second_throw(name, assembly, interpreted):
     scene = ks.Scene(thrown(hung(name, assembly, "C"), (0.6 * 0.5 * LINKAGES[name][0], 0.4 * LINKAGES[name][0])), SPEED)
     angles = np.array([0.3, 2.0, 5.0, 8.0, 11.0])

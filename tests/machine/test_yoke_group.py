@@ -7,6 +7,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import ParameterError
 from kinetostatics.studies.methods.independent import Machine
+from support.every import every
 
 R, SPEED = 0.07, 12.0
 ANGLES = np.linspace(0.0, 2 * np.pi, 16, endpoint=False)
@@ -28,8 +29,8 @@ def test_its_shaking_force_is_one_harmonic_along_the_guide():
     assert np.max(np.abs(spectrum)) < 1e-14 * 5.0 * R * SPEED**2
 
 
-@pytest.mark.parametrize("slot", [0.01, 1.2, 2.0, 3.1, -1.0, 4.0])
-@pytest.mark.parametrize(("tilt", "offset"), [(0.0, 0.0), (0.4, 0.03), (np.pi / 2, -0.02), (2.5, 0.0)])
+@every("slot", [0.01, 1.2, 2.0, 3.1, -1.0, 4.0])
+@every(("tilt", "offset"), [(0.0, 0.0), (0.4, 0.03), (np.pi / 2, -0.02), (2.5, 0.0)])
 def test_motion_is_that_of_intersecting_lines_to_rounding(slot, tilt, offset):
     made = ks.scotch_yoke(R, guide_angle=tilt, guide_offset=offset, slot_angle=slot, slider=ks.Link(1.0))
     s = ks.solve(made, ANGLES, crank_speed=SPEED, crank_acceleration=3.0)

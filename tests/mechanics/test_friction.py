@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.rubbing import Pin, Roller
-from support.rubbing_machines import KINDS, Drawn
+from support import multipliers
+from support.rubbing_machines import KINDS, Drawn, differences
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
 CENTRIC = ks.crank_slider(0.1, 0.3)
@@ -31,34 +31,6 @@ ALL = {
 DRIVE = {"crank_speed": 30.0, "crank_acceleration": 5.0, "loads": (ks.Gravity(), ks.ProcessForce(200.0))}
 
 
-def differences(kind, seed, scale=1.0, changed=None):
-    """Largest difference of forces, friction, losses and torque from the full system, relative; and the solution."""
-    drawn = Drawn(kind, seed, scale)
-    if changed is not None:
-        changed(drawn)
-    angle = float(np.random.default_rng(seed).uniform(0.0, 2 * np.pi))
-    solution = drawn.scene.solve(angle)
-    with mp.workdps(40):
-        forces, torque, friction, loss = drawn.system.solved(angle)
-        pins = {name: complex(forces[name]) for name, joint in drawn.joints.items() if isinstance(joint, Pin)}
-        size = max(map(abs, pins.values()))
-        found = [abs(complex(*solution.reaction(name)) - force) for name, force in pins.items()]
-        for name, joint in drawn.joints.items():
-            if isinstance(joint, Roller):
-                found.append(abs(float(solution.cam_force - forces[name])))
-            elif not isinstance(joint, Pin):
-                head, label = next((head, name[len(head) :]) for head in ("guide", "slot", "cylinder") if head in name)
-                found.append(abs(float(solution.scalar(f"{head}_force{label}") - mp.re(forces[name]))))
-                if f"{head}_moment{label}" in solution.scalars:
-                    found.append(abs(float(solution.scalar(f"{head}_moment{label}") - mp.im(forces[name]))) / drawn.r)
-            found.append(abs(float(solution.friction_at(name) - friction[name])))
-            found.append(
-                abs(float(solution.friction_loss_at(name) - loss[name])) / max(1.0, abs(drawn.speed) * drawn.r)
-            )
-        found.append(abs(float(solution.balancing_torque - torque)) / drawn.r)
-    return max(found) / size, solution
-
-
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", [1, 2])
 def test_all_forces_are_those_of_newtons_equations_of_all_bodies(kind, seed):
@@ -71,6 +43,11 @@ def test_all_forces_are_those_of_newtons_equations_of_all_bodies(kind, seed):
 @pytest.mark.parametrize("kind", KINDS)
 def test_so_they_are_with_four_times_the_friction(kind):
     assert differences(kind, 100, 4.0)[0] < 1e-13
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_all_forces_are_those_of_virtual_power_and_multipliers(kind):
+    assert differences(kind, 200, solver=multipliers.solved)[0] < 1e-13
 
 
 def _from_rest(drawn):
@@ -322,6 +299,39 @@ def test_a_program_with_stronger_friction_than_its_scenes_says_where_it_is_not_f
         program(TURN, strong)
     with pytest.raises(ks.ParameterError, match="crank_speed and crank_acceleration are both 0"):
         program(TURN, {"crank_speed": 0.0, "crank_acceleration": 0.0})
+
+
+# What never moves, and what cannot be made
+
+
+def test_a_rigid_triangle_does_not_rub_at_its_corners():
+    """Two bars of a dyad on pins of one link do not turn against it; rounding decides no sign of friction there."""
+    crank = ks.Crank(0.1, ks.Link(1.0, 0.05, 0.01))
+    bars = {name: ks.Link(1.0, (0.1, 0.02), 0.01) for name in ("dyad1", "dyad2")}
+    parts = ks.Pin(on="crank", at=(0.02, 0.1), name="C"), ks.Dyad(0.3, 0.4, on=("A", "C"), **bars)
+    further = ks.Dyad(0.3, 0.35, on=("D", "C"), pin="E", label="_2")
+    triangle = ks.Mechanism("rigid", crank, (*parts, further))
+    pins = ("O", "dyad1_A", "dyad2_C", "D", "dyad1_2_D", "dyad2_2_C", "E")
+    friction = {name: ks.PinFriction(0.2, 0.02) for name in pins}
+    s = ks.solve(triangle, TURN, crank_speed=10.0, crank_acceleration=3.0, loads=ks.Gravity(), friction=friction)
+    for name in pins[1:]:
+        assert not s.friction_at(name).any()
+    alone = ks.solve(
+        triangle,
+        TURN,
+        crank_speed=10.0,
+        crank_acceleration=3.0,
+        loads=ks.Gravity(),
+        friction={"O": ks.PinFriction(0.2, 0.02)},
+    )
+    assert np.array_equal(s.balancing_torque, alone.balancing_torque)
+
+
+def test_a_roller_larger_than_its_path_is_curved_is_refused():
+    cam = ks.cam_crank_slider(ks.cams.Circle(0.1, (0.02, 0.0)), 0.4, slider=ks.Link(10.0))
+    ks.Scene(cam, 1.0, friction={"cam": ks.RollerFriction(0.01, 0.02, 0.0999)})
+    with pytest.raises(ks.ParameterError, match=r"roller_radius of 'cam', 0\.1 m, must be less than .* 0\.1 m"):
+        ks.Scene(cam, 1.0, friction={"cam": ks.RollerFriction(0.01, 0.02, 0.1 + 1e-12)})
 
 
 OPEN = {"coupler": ks.Link(2.0, 0.1, 0.01), "rocker": ks.Link(1.0, 0.05)}

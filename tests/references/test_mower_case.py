@@ -11,6 +11,7 @@ import kinetostatics as ks
 from kinetostatics.cli import main
 from kinetostatics.views.figures import draw_case
 from support.case_files import case_file, problems
+from support.every import every
 
 BARE = """
 title = "test"
@@ -221,7 +222,7 @@ def test_four_bar_in_a_case_file_is_fully_balanced_by_crank_and_rocker(tmp_path)
     assert rocker["counterweight arm [mm]"] == pytest.approx(-150.0)
 
 
-@pytest.mark.parametrize(
+@every(
     ("table", "words"),
     [
         ('method = "ful"', "variants.x.balancing.method"),

@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import brentq
 
 import kinetostatics as ks
+from support.every import every
 from support.machines import ANGLES, KINDS, Machine, largest
 
 
@@ -14,9 +15,9 @@ def turn_distance(found, expected):
     return np.abs(np.angle(np.exp(1j * (np.asarray(found) - np.asarray(expected)))))
 
 
-@pytest.mark.parametrize("guide_angle", [0.0, 0.3, np.pi, -2.2])
-@pytest.mark.parametrize("offset", [0.0, 0.13, -0.4])
-@pytest.mark.parametrize("assembly", [1, -1])
+@every("guide_angle", [0.0, 0.3, np.pi, -2.2])
+@every("offset", [0.0, 0.13, -0.4])
+@every("assembly", [1, -1])
 def test_slider_turns_back_where_crank_and_coupler_lie_in_line(guide_angle, offset, assembly):
     """At sine = offset / (l + r), stretched, and offset / (l - r), folded, of the angle of the line to the guide.
 

@@ -1,6 +1,5 @@
 """What is handed in is kept as it was, groups of one's own are tested, and slips of units are hinted at."""
 
-import warnings
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,6 +10,7 @@ from numpy.testing import assert_array_equal
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS
 from kinetostatics.machine.links import Joint, Wrench
+from support.every import every
 from support.scenes import Pan
 
 TURN = 2 * np.pi * np.arange(72) / 72
@@ -49,8 +49,8 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize("shape", [(), (1,), (1, 1)])
-@pytest.mark.parametrize("name", PLACES)
+@every("shape", [(), (1,), (1, 1)])
+@every("name", PLACES)
 def test_an_array_that_the_caller_fills_again_leaves_what_was_made_of_it(name, shape):
     """Each in a loop over one buffer, read only when the loop is over."""
     buffer, made = np.empty(shape), []
@@ -249,9 +249,9 @@ def test_the_joint_that_a_group_of_ones_own_hangs_on_is_named_by_text_and_there(
         ks.Mechanism("pan", ks.Crank(0.1), (Pan(ROD, on=on),))
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("on_gap", ["raise", "nan"])
-@pytest.mark.parametrize("shape", [(72,), (2, 36), (72, 1)])
+@every("bad", [np.nan, np.inf, -np.inf])
+@every("on_gap", ["raise", "nan"])
+@every("shape", [(72,), (2, 36), (72, 1)])
 def test_crank_angles_that_are_not_finite_are_refused_whatever_gaps_do(bad, on_gap, shape):
     angle = TURN.copy()
     angle[40] = bad
@@ -269,64 +269,3 @@ def test_a_group_that_is_not_derived_from_group_is_refused():
     lone = type("Lone", (), dict.fromkeys(MEMBERS))()
     with pytest.raises(ks.ParameterError, match=r"Lone is not derived from kinetostatics\.machine\.group\.Group"):
         ks.Mechanism("lone", ks.Crank(0.1), (lone,))
-
-
-# Hints
-
-
-@pytest.mark.parametrize(
-    "angles",
-    [
-        np.arange(0, 360, 5),
-        np.arange(0, 360, 10.0),
-        np.linspace(0, 360, 73),
-        np.linspace(0, 360, 720, endpoint=False),
-        np.arange(-180, 181, 1),
-        np.arange(360, -1, -1),
-        [0, 90, 180, 270],
-        np.linspace(0, 720, 145),
-    ],
-)
-def test_angles_in_degrees_are_hinted_at(angles):
-    with pytest.warns(ks.HintWarning, match="look like degrees; they are taken as radians") as caught:
-        solve(angle=angles)
-    assert [item.filename for item in caught] == [__file__]
-
-
-@pytest.mark.parametrize(
-    "angles",
-    [TURN, 10 * TURN, np.arange(7.0), np.arange(0, 100, 0.1), np.linspace(0, 50, 101), 90.0, [3.0, 90.0], TURN - 100],
-)
-def test_angles_in_radians_are_not(angles):
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", ks.HintWarning)
-        solve(angle=angles, on_gap="nan")
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"coupler": ks.Link(2.0, 200.0)}, "mass centre of the coupler is 200 m .* 500 times the longest link .*mm?"),
-        ({"slider": ks.Link(2.0, (0.0, 9.0))}, "mass centre of the slider is 9 m"),
-        ({"coupler": ks.Link(150.0, 0.2, 1e-3)}, "inertia of the coupler, 0.001 kg m2, is less than a thousandth"),
-        ({"coupler": ks.Link(np.array([[1.0], [150.0]]), 0.2, 1e-3)}, "inertia of the coupler"),
-        ({"coupler": ks.Link(1.0, np.array([[1.0], [150.0]]))}, "mass centre of the coupler is 150 m"),
-    ],
-)
-def test_slips_of_units_in_links_are_hinted_at_by_solve_and_not_by_constructors(changes, words):
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        made = mechanism(**changes)
-    with pytest.warns(ks.HintWarning, match=words):
-        solve(made)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ks.HintWarning)
-        solve(made)
-
-
-@pytest.mark.parametrize("name", ["sawframe_2r63", "mower_drive", "chain_unit"])
-def test_shipped_cases_are_free_of_hints(name):
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", ks.HintWarning)
-        for variant in ks.load_case(name).variants.values():
-            variant.solve(36)

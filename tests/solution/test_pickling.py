@@ -10,6 +10,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import errors
+from support.every import every
 
 WAYS = {
     "pickle": lambda thing: pickle.loads(pickle.dumps(thing)),
@@ -28,8 +29,8 @@ ERRORS = ONE_MESSAGE | {
 }
 
 
-@pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("name", ERRORS)
+@every("way", WAYS)
+@every("name", ERRORS)
 def test_errors_come_back_with_message_and_attributes(name, way):
     error = ERRORS[name]
     found = WAYS[way](error)
@@ -106,8 +107,8 @@ HELD = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("name", HELD)
+@every("way", WAYS)
+@every("name", HELD)
 def test_what_users_hold_comes_back(name, way):
     if name == "compiled solution":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")

@@ -36,49 +36,9 @@ def test_results_are_kept():
     assert solution.placement is solution.placement
 
 
-def test_frame_has_a_row_for_each_angle_and_a_unit_in_every_column():
-    table = solved().frame()
-    assert len(table) == TURN.size
-    assert all(name.endswith("]") for name in table.columns)
-    np.testing.assert_allclose(table["crank_angle [deg]"], np.arange(0, 360, 15))
-    np.testing.assert_array_equal(table["balancing_torque [N m]"], solved().balancing_torque)
-    np.testing.assert_array_equal(table["reaction_O_x [N]"], solved().reaction("O")[0])
-
-
-def test_frame_of_a_batch_numbers_its_designs():
-    batch = ks.solve(ks.crank_slider(np.array([[0.2], [0.3]]), 2.0, slider=ks.Link(600)), TURN, crank_speed=33.5)
-    table = batch.frame()
-    assert len(table) == 2 * TURN.size
-    np.testing.assert_array_equal(table["design"], np.repeat([0, 1], TURN.size))
-    np.testing.assert_array_equal(table["A_x [m]"], batch.position("A")[0].ravel())
-
-
 def test_other_angles_give_the_same_as_a_new_solution():
     elsewhere = np.array([0.1, 0.2])
     np.testing.assert_array_equal(solved().at(elsewhere).balancing_torque, solved(elsewhere).balancing_torque)
-
-
-def test_a_table_over_the_angles_cannot_be_moved_to_others():
-    solution = solved(loads=[ks.ProcessForce(np.linspace(0, 1, TURN.size))])
-    with pytest.raises(ks.ParameterError, match="ProcessForce is a table"):
-        solution.at([0.0])
-
-
-def test_a_process_force_may_follow_the_motion():
-    def cut(motion):
-        return np.where(motion.slider_velocity < 0, 1000.0, 0.0)
-
-    with_cut = solved(loads=[ks.Gravity(), ks.ProcessForce(cut)])
-    difference = with_cut.balancing_torque - solved().balancing_torque
-    expected = np.where(with_cut.slider_velocity < 0, -1000.0 * with_cut.slider_velocity / 33.5, 0.0)
-    np.testing.assert_allclose(difference, expected, atol=1e-9)
-
-
-def test_a_single_crank_angle_gives_single_values():
-    solution = solved(0.5)
-    assert solution.balancing_torque.shape == ()
-    assert solution.reaction("O").shape == (2,)
-    assert solution.power_residual < 1e-14
 
 
 def test_a_standing_mechanism_is_held_by_the_statics_of_its_loads():
@@ -96,87 +56,12 @@ def test_power_residual_shows_a_torque_that_is_wrong(monkeypatch):
     assert 1e-5 < solution.power_residual < 1e-4
 
 
-def test_results_cannot_be_written_to_and_follow_no_later_change_of_the_angles():
-    turn = TURN.copy()
-    solution = solved(turn)
-    before = solution.guide_force.copy()
-    turn[:] = 0.0
-    np.testing.assert_array_equal(solution.at(TURN).guide_force, before)
-    with pytest.raises(ValueError, match="read-only"):
-        solution.guide_force[0] = 0.0
-
-
-def test_whole_numbers_as_crank_angles_do_not_cut_results_off():
-    np.testing.assert_array_equal(solved(np.arange(4)).rate("crank"), np.full(4, 33.5))
-
-
-def test_spring_acts_on_the_slider_it_names():
-    spring = ks.Spring.balancing(10.0, 3.0, 0.5, on="slider2")
-    assert (spring.stiffness, spring.free_position, spring.on) == (90.0, 0.5, "slider2")
-
-
-def test_groups_that_do_not_hang_together_are_refused():
-    with pytest.raises(ks.ParameterError, match="SliderGroup hangs on joint 'D'"):
-        ks.Mechanism("loose", ks.Crank(0.1), (ks.SliderGroup(0.5, on="D"),))
-    with pytest.raises(ks.ParameterError, match="adds joint 'B' a second time"):
-        ks.Mechanism("twice", ks.Crank(0.1), (ks.SliderGroup(0.5), ks.SliderGroup(0.5, label="2")))
-    with pytest.raises(ks.ParameterError, match="adds joint 'A' a second time"):
-        ks.Mechanism("both", ks.Crank(0.1), (ks.CamRoller(ks.cams.Circle(0.1)), ks.SliderGroup(0.5)))
-    with pytest.raises(ks.ParameterError, match="direction must have length 1"):
-        ks.SliderGroup(0.5, ks.Guide(None, 0.0, (2.0, 0.0)))
-
-
 def test_cosine_law_cam_warns_of_a_mechanism_that_breaks_the_law():
     law = ks.cams.CosineLaw(0.3, 2.0)
     with pytest.warns(UserWarning, match=r"coupler_length 2.0 m is not the cam's 2.02"):
         ks.cam_crank_slider(law, 2.0)
     with pytest.warns(UserWarning, match="guide_offset 0.1 m is not 0"):
         ks.cam_crank_slider(law, law.coupler_length, guide_offset=0.1)
-
-
-def test_scene_and_solution_show_themselves_in_a_line_however_long_their_tables():
-    speed = np.linspace(30.0, 40.0, TURN.size)
-    scene = ks.Scene(SAW, speed, loads=[ks.Gravity(), ks.ProcessForce(speed)])
-    drive = "crank_speed=<array of shape (24,)>, crank_acceleration=0.0, Gravity, ProcessForce>"
-    assert repr(scene) == f"<Scene: crank-slider, {drive}"
-    assert repr(scene.solve(TURN)) == f"<Solution: crank-slider, shape (24,), {drive}"
-    assert repr(ks.Scene(SAW, 33.5)) == "<Scene: crank-slider, crank_speed=33.5, crank_acceleration=0.0, no loads>"
-
-
-def two_sliders(*labels):
-    """A crank that drives a slider of each label."""
-    sliders = (ks.SliderGroup(0.4, ks.Guide.at(turn), pin=f"B{turn}", label=label) for turn, label in enumerate(labels))
-    return ks.solve(ks.Mechanism("engine", ks.Crank(0.1), tuple(sliders)), ANGLES_OF_SLIDERS, crank_speed=5.0)
-
-
-ANGLES_OF_SLIDERS = np.linspace(0.1, 6.0, 5)
-
-
-@pytest.mark.parametrize(("labels", "meant"), [(("2",), "slider2"), (("", "2"), "slider"), (("2", ""), "slider")])
-def test_the_only_slider_and_the_one_without_a_label_need_no_name(labels, meant):
-    s = two_sliders(*labels)
-    assert np.array_equal(s.slider_position, s.travel(meant))
-    assert np.array_equal(s.slider_velocity, s.travel_velocity(meant))
-    assert np.array_equal(s.slider_acceleration, s.travel_acceleration(meant))
-    assert np.array_equal(s.elongation(0.2), s.elongation(0.2, meant))
-
-
-def test_which_of_several_sliders_is_meant_must_be_said():
-    with pytest.raises(
-        ks.QuantityError, match=r'engine has 2 sliders, slider1, slider2; say which, .*travel\("slider1"\)'
-    ):
-        two_sliders("1", "2").slider_position  # noqa: B018
-    with pytest.raises(ks.QuantityError, match="four-bar has no slider"):
-        ks.solve(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), 0.1, crank_speed=1.0).slider_velocity  # noqa: B018
-
-
-def test_the_frame_holds_travel_velocity_and_acceleration_of_every_slider_with_units():
-    s = two_sliders("1", "2")
-    table = s.frame()
-    for slider in ("slider1", "slider2"):
-        assert np.array_equal(table[f"{slider}_position [m]"], s.travel(slider))
-        assert np.array_equal(table[f"{slider}_velocity [m/s]"], s.travel_velocity(slider))
-        assert np.array_equal(table[f"{slider}_acceleration [m/s2]"], s.travel_acceleration(slider))
 
 
 def rockers_slider(length, assembly=1):

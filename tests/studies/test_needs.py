@@ -1,7 +1,6 @@
 """How much model a scene needs: known answers, every combination tried, and the smallest model run again here."""
 
 import itertools
-from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -9,48 +8,15 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import programs
-from kinetostatics.engines.engines import Kernels
-from kinetostatics.engines.series import harmonic_series
-from kinetostatics.mechanics.quantities import components
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
-from kinetostatics.studies.simplifications import two_mass_coupler
-
-TURN = np.linspace(0.0, 2 * np.pi, 72, endpoint=False)
-SPEED = 30.0
-COUPLER = ks.Link(4.0, (0.5, 0.06), 0.3)
-
-
-def cranked(**options):
-    links = {"crank": ks.Link(2.0, 0.1, 0.02), "coupler": COUPLER, "slider": ks.Link(5.0, (0.02, 0.01), 0.1)}
-    return ks.crank_slider(0.2, 1.3, **links | options)
-
-
-MECHANISMS = {
-    "crank-slider": cranked(guide_angle=0.3, guide_offset=0.05),
-    "cam": ks.cam_crank_slider(
-        ks.cams.Circle(0.2, (-0.02, 0.01)), 1.3, block=ks.Link(1.0), coupler=COUPLER, slider=ks.Link(5.0)
-    ),
-    "four-bar": ks.four_bar(
-        0.2, 1.3, 0.7, rocker_pivot=(1.2, 0.2), coupler=COUPLER, rocker=ks.Link(3.0, (0.3, 0.02), 0.2)
-    ),
-}
+from support.needed import MECHANISMS, SPEED, TURN, alone, change, cranked, solved
 
 
 def operations(solution, quantity):
     """Number of operations of a quantity at each crank angle, as recorded."""
     program, _ = programs.of(solution.dynamics, (quantity,))
     return program.recording.operations
-
-
-def solved(mechanism, loads=(ks.Gravity(),), angle=TURN, **options):
-    return ks.solve(mechanism, angle, crank_speed=SPEED, loads=loads, **options)
-
-
-def change(solution, full, quantity):
-    """Largest difference of a quantity, relative to its largest value in the full scene."""
-    found, exact = (np.array(components(s, quantity)) for s in (solution, full))
-    return np.max(np.linalg.norm(found - exact, axis=0)) / np.max(np.linalg.norm(exact, axis=0))
 
 
 @pytest.fixture
@@ -68,10 +34,6 @@ def saw():
 @pytest.fixture(scope="module")
 def mower():
     return ks.load_case("mower_drive").solve("unbalanced", 72)
-
-
-def alone(needs):
-    return {made.name: made for made in needs.alone}
 
 
 # Known answers
@@ -118,22 +80,6 @@ def test_ingredient_of_no_effect_is_dropped_but_the_full_scene_stays_the_measure
     assert needs.smallest.error == 0.0
     assert needs.full.name == "full scene"
     assert needs.full.operations == operations(scene, "balancing_torque") > needs.smallest.operations
-
-
-def test_every_ingredient_of_a_scene_is_offered_and_none_that_is_absent(few_models):
-    mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
-    loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0), ks.Force(5.0, at="B")]
-    loads += [kind(5.0, on="coupler") for kind in (ks.Torque, ks.TorsionSpring, ks.TorsionDamper)]
-    loads += [kind(5.0, between=("A", (3.0, 3.0))) for kind in (ks.PointForce, ks.PointSpring, ks.PointDamper)]
-    rubbing = {"O": ks.PinFriction(0.1, 0.01), "guide": ks.GuideFriction(0.1)}
-    everything = alone(ks.needs(solved(mechanism, loads, crank_acceleration=50.0, friction=rubbing), "O"))
-    offered = simplifications.ingredients(mechanism).values()
-    assert set(everything) == {choice.name for choices in offered for choice in choices}
-    bare = ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))
-    assert set(alone(ks.needs(solved(bare, ()), "O"))) == {"massless slider", "two harmonics", "one harmonic"}
-    rocking = alone(ks.needs(solved(MECHANISMS["four-bar"]), "O"))
-    assert {"no rocker inertia", "massless rocker"} < set(rocking)
-    assert "massless block" in alone(ks.needs(solved(MECHANISMS["cam"]), "O"))
 
 
 def test_simplification_with_which_the_mechanism_does_not_close_is_no_model_of_it():
@@ -240,63 +186,6 @@ def test_a_bar_of_the_models_run_is_shown_unless_it_is_not_wanted(mower, monkeyp
     assert (f"/{tried} " in capsys.readouterr().err) == progress
 
 
-# Simplified models
-
-
-@pytest.mark.parametrize("name", MECHANISMS)
-def test_two_masses_are_a_coupler_with_the_inertia_mass_times_both_distances(name):
-    """Mass m and centre at s along the length l are kept; the moment of inertia becomes m s (l - s)."""
-    mechanism = MECHANISMS[name]
-    bar = ks.Link(4.0, (0.5, 0.0), 4.0 * 0.5 * (1.3 - 0.5))
-    same = solved(mechanism.with_link("coupler", bar), crank_acceleration=-40.0)
-    masses = solved(two_mass_coupler(mechanism), crank_acceleration=-40.0)
-    assert masses.mechanism.links["coupler"].mass == 0
-    total, kept = (sum(link.mass for link in made.links.values()) for made in (mechanism, masses.mechanism))
-    assert kept == pytest.approx(total, rel=1e-15)
-    for quantity in ("balancing_torque", "O", "shaking_force", "shaking_moment"):
-        assert change(masses, same, quantity) < 1e-14, quantity
-    assert change(masses, solved(mechanism, crank_acceleration=-40.0), "balancing_torque") > 1e-3
-
-
-def test_mechanism_without_coupler_mass_has_no_two_masses():
-    assert two_mass_coupler(ks.crank_slider(0.2, 1.3, slider=ks.Link(5.0))) is None
-
-
-@pytest.mark.parametrize(("name", "output"), [("crank-slider", "slider"), ("cam", "slider"), ("four-bar", "rocker")])
-def test_link_without_mass_of_its_own_still_carries_its_share_of_the_coupler(name, output):
-    made = solved(MECHANISMS[name])
-    for choices in simplifications.ingredients(made.mechanism).values():
-        for choice in choices:
-            if choice.name in (f"massless {output}", "two-mass coupler"):
-                made = choice.simplified(made)
-    assert made.mechanism.links[output].mass == pytest.approx(4.0 * 0.5 / 1.3)
-
-
-def by_series(solution, order):
-    return replace(solution, engine=Kernels(harmonic_series(solution, order)))
-
-
-@pytest.mark.parametrize("order", [1, 2, 3])
-def test_truncated_series_has_the_first_harmonics_of_the_slider_motion(order):
-    full = solved(cranked(guide_offset=0.05))
-    series = by_series(full, order)
-    spectrum = np.fft.rfft(full.slider_acceleration)
-    spectrum[order + 1 :] = 0.0
-    expected = np.fft.irfft(spectrum, n=TURN.size)
-    assert np.max(np.abs(series.slider_acceleration - expected)) < 1e-12 * np.max(np.abs(expected))
-
-
-@pytest.mark.parametrize("name", MECHANISMS)
-def test_error_of_truncated_series_falls_with_the_order(few_models, name):
-    full = solved(MECHANISMS[name])
-    errors = [change(by_series(full, order), full, "O") for order in (1, 2, 4, 8, 16)]
-    assert errors == sorted(errors, reverse=True)
-    assert errors[0] > 1e-2
-    assert errors[-1] < 1e-5
-    found = alone(ks.needs(full, "O"))
-    assert [found[name].error for name in ("one harmonic", "two harmonics")] == pytest.approx(errors[:2])
-
-
 # What it gives
 
 
@@ -378,32 +267,6 @@ def test_unknown_quantity_is_refused_with_those_there_are(saw):
         ks.QuantityError, match=r"'torqe', allowed: 'balancing_torque'.*'guide_force'.*'A', 'B', 'guide', 'O'"
     ):
         ks.needs(saw["plain"], "torqe")
-
-
-# What cannot be simplified
-
-BEYOND = {"before A": -0.2, "behind B": 1.5}
-
-
-@pytest.mark.parametrize("place", BEYOND)
-def test_a_coupler_with_its_mass_beyond_its_joints_is_no_two_masses_and_the_result_says_so(place):
-    """One of them would be negative; all else is tried."""
-    found = ks.needs(solved(cranked(coupler=ks.Link(4.0, (BEYOND[place], 0.06), 0.3))), "O")
-    why = found.left_out["two-mass coupler"]
-    assert why == (
-        f"the mass centre of the coupler, {BEYOND[place]} m along its 1.3 m, lies beyond its joints, so one of two "
-        "masses there would be negative"
-    )
-    assert f"two-mass coupler left out: {why}" in str(found)
-    assert {"massless coupler", "no coupler inertia", "one harmonic"} <= set(alone(found))
-    assert "two-mass coupler" not in alone(found)
-
-
-@pytest.mark.parametrize("place", [0.0, 1.3])
-def test_a_coupler_with_its_mass_at_a_joint_is_still_two_masses(place):
-    found = ks.needs(solved(cranked(coupler=ks.Link(4.0, place, 0.3))), "O")
-    assert "two-mass coupler" in alone(found)
-    assert found.left_out == {}
 
 
 def test_simplifications_left_out_for_their_number_are_told(monkeypatch):

@@ -16,6 +16,7 @@ from kinetostatics.studies import precision
 from kinetostatics.studies.methods import METHODS
 from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from kinetostatics.views import charts
+from support.curves import FEW, torque_study
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
@@ -28,20 +29,6 @@ KINDS = [
 ]
 OURS = [method for method in METHODS if method.ours]
 OTHERS = [method for method in METHODS if not method.ours]
-FEW = [
-    method
-    for method in METHODS
-    if method.name
-    in (
-        "ours, NumPy",
-        "ours, torque by powers",
-        "differences, 2nd order",
-        "differences, 4th order",
-        "spectral differentiation",
-        "harmonic series",
-        "two-mass coupler",
-    )
-]
 TIME = "time [ns/angle]"
 
 
@@ -51,15 +38,8 @@ def case():
 
 
 @pytest.fixture(scope="module")
-def torque(case):
-    """The study of one case, the plain sawframe."""
-    return precision.study(case.solve("plain", 48), methods=FEW, repeats=1)
-
-
-def curve(table, method, first, last):
-    """Settings and errors of a method over a stretch of its settings."""
-    rows = table[(table["method"] == method) & table["value"].between(first, last)]
-    return rows["value"].to_numpy(), rows["error"].to_numpy()
+def torque():
+    return torque_study()
 
 
 # A study
@@ -81,45 +61,6 @@ def test_ours_lie_within_5e_15_and_are_marked_as_ours(torque):
     ours = torque[torque["ours"]]
     assert list(ours["method"]) == ["ours, NumPy", "ours, torque by powers"]
     assert np.all(ours["error"] < 5e-15)
-
-
-@pytest.mark.parametrize(
-    ("method", "order", "coarsest", "finest"),
-    [("differences, 2nd order", 2, 1e-1, 1e-3), ("differences, 4th order", 4, 3e-1, 3e-2)],
-)
-def test_error_of_differences_falls_with_the_power_of_the_step_that_is_their_order(
-    torque, method, order, coarsest, finest
-):
-    """At steps from which rounding, which the step squared divides, is less than a hundredth of the error."""
-    step, error = curve(torque, method, finest, coarsest)
-    slopes = np.diff(np.log(error)) / np.diff(np.log(step))
-    assert slopes == pytest.approx(order, abs=0.07)
-
-
-@pytest.mark.parametrize("method", ["differences, 2nd order", "differences, 4th order"])
-def test_error_of_differences_rises_again_as_rounding_over_the_square_of_the_step(torque, method):
-    _, error = curve(torque, method, 0.0, 1e-3)
-    assert error[-1] > 20 * error.min()
-    assert error[-1] < 1e3 * 2.0**-53 / (1e-5 if "2nd" in method else 1e-4) ** 2
-
-
-SINGULARITY = np.arccosh(2.0 / 0.3)
-"""Crank angles pi/2 + i times this make the root in the kinematics zero; Fourier coefficients fall as exp(-k times it)
-(see e.g. Trefethen, *Spectral Methods in MATLAB*, chapter 4).
-"""
-
-
-def test_error_of_spectral_differentiation_falls_geometrically_with_the_samples(torque):
-    samples, error = curve(torque, "spectral differentiation", 8, 24)
-    rates = -np.diff(np.log(error)) / np.diff(samples)
-    assert rates == pytest.approx(SINGULARITY / 2, rel=0.03)
-
-
-def test_error_of_harmonic_series_falls_geometrically_with_the_harmonics(torque):
-    """The plain crank-slider on a guide through O has even harmonics only."""
-    harmonics, error = curve(torque, "harmonic series", 2, 6)
-    rates = -np.diff(np.log(error)) / np.diff(harmonics)
-    assert rates == pytest.approx(SINGULARITY, rel=0.03)
 
 
 # The front
@@ -223,34 +164,6 @@ def test_chart_of_a_case_opens_as_png_and_svg_and_names_every_method_that_gave_a
     assert plt.get_fignums() == []
 
 
-def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_each_setting(torque):
-    figure, ax = plt.subplots()
-    assert charts.work_precision(torque, ax=ax) is ax
-    assert ks.plots.work_precision is charts.work_precision
-    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
-    assert ax.get_xlabel() == "time [ns per crank angle]"
-    assert ax.get_ylabel() == "largest error over the turn, relative to largest value [1]"
-    handles, names = ax.get_legend_handles_labels()
-    assert names == [f"{method.name} ({method.setting})" if method.setting else method.name for method in FEW]
-    for line, method in zip(handles, FEW, strict=True):
-        rows = torque[(torque["method"] == method.name) & torque["error"].notna()]
-        np.testing.assert_array_equal(line.get_xydata(), rows[[TIME, "error"]].to_numpy())
-    figure.canvas.draw()
-    plt.close(figure)
-
-
-def test_error_of_zero_is_drawn_below_rounding_and_a_method_that_gives_nothing_is_not_drawn(torque):
-    table = torque.assign(error=torque["error"].where(torque["method"] != "two-mass coupler"))
-    table.loc[table["method"] == "ours, NumPy", "error"] = 0.0
-    figure, ax = plt.subplots()
-    charts.work_precision(table, ax=ax)
-    curves = {line.get_label(): line.get_ydata() for line in ax.lines}
-    assert list(curves["ours, NumPy"]) == [charts.EXACT]
-    assert ax.get_ylim()[0] < charts.EXACT
-    assert "two-mass coupler" not in curves
-    plt.close(figure)
-
-
 def test_table_that_cannot_be_written_leaves_the_old_one_whole(few, case, tmp_path, monkeypatch):
     target = tmp_path / "sawframe_2r63_precision.csv"
     target.write_text("old")
@@ -341,14 +254,3 @@ def test_sampled_cam_and_force_by_interpolation_are_named_as_what_cannot_be_cert
     loaded = ks.solve(case.variant("plain").mechanism, turn, crank_speed=3.0, loads=[ks.Gravity(), force])
     with pytest.raises(ks.errors.NotGivenError, match="load 2, ProcessForce on 'slider'"):
         precision.study(loaded)
-
-
-def test_two_masses_are_no_method_for_a_coupler_with_its_mass_beyond_its_joints():
-    """One of them would be negative, and the table says so."""
-    mechanism = ks.crank_slider(0.3, 1.0, coupler=ks.Link(10.0, (-0.2, 0.0), 1.0), slider=ks.Link(5.0))
-    solution = ks.solve(mechanism, np.linspace(0, 2 * np.pi, 12, endpoint=False), crank_speed=10.0)
-    methods = [method for method in METHODS if method.name.startswith("two-mass")]
-    table = precision.study(solution, methods=methods, repeats=1)
-    assert len(table) == 2
-    assert table["error"].isna().all()
-    assert table["not given"].str.contains("lies beyond its joints, so one of two masses there would be negative").all()

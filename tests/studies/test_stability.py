@@ -15,6 +15,7 @@ from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies import stability
 from kinetostatics.studies.methods import METHODS, Method
 from kinetostatics.views import charts
+from support.every import every
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
@@ -128,7 +129,7 @@ def test_condition_grows_toward_a_place_where_the_problem_itself_is_hard(table, 
 # The others
 
 
-@pytest.mark.parametrize(("place", "method", "how"), EXPECTED)
+@every(("place", "method", "how"), EXPECTED)
 def test_failure_of_another_method_is_reproduced_and_counted(summary, place, method, how):
     row = summary.loc[(place, method)]
     assert 0 < row[how] <= row["of angles"]

@@ -249,3 +249,35 @@ class Drawn:
         self.applied.append(("slider", lambda phi: force * u, slider))
         self.loads = (ks.ProcessForce(force),)
         self.mechanism = ks.Mechanism("yoke", crank, (group,))
+
+
+def by_newton(drawn, angle):
+    return drawn.system.solved(angle)
+
+
+def differences(kind, seed, scale=1.0, changed=None, solver=by_newton):
+    """Largest difference of forces, friction, losses and torque from a full system, relative; and the solution."""
+    drawn = Drawn(kind, seed, scale)
+    if changed is not None:
+        changed(drawn)
+    angle = float(np.random.default_rng(seed).uniform(0.0, 2 * np.pi))
+    solution = drawn.scene.solve(angle)
+    with mp.workdps(40):
+        forces, torque, friction, loss = solver(drawn, angle)
+        pins = {name: complex(forces[name]) for name, joint in drawn.joints.items() if isinstance(joint, Pin)}
+        size = max(map(abs, pins.values()))
+        found = [abs(complex(*solution.reaction(name)) - force) for name, force in pins.items()]
+        for name, joint in drawn.joints.items():
+            if isinstance(joint, Roller):
+                found.append(abs(float(solution.cam_force - forces[name])))
+            elif not isinstance(joint, Pin):
+                head, label = next((head, name[len(head) :]) for head in ("guide", "slot", "cylinder") if head in name)
+                found.append(abs(float(solution.scalar(f"{head}_force{label}") - mp.re(forces[name]))))
+                if f"{head}_moment{label}" in solution.scalars:
+                    found.append(abs(float(solution.scalar(f"{head}_moment{label}") - mp.im(forces[name]))) / drawn.r)
+            found.append(abs(float(solution.friction_at(name) - friction[name])))
+            found.append(
+                abs(float(solution.friction_loss_at(name) - loss[name])) / max(1.0, abs(drawn.speed) * drawn.r)
+            )
+        found.append(abs(float(solution.balancing_torque - torque)) / drawn.r)
+    return max(found) / size, solution

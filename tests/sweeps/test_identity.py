@@ -7,10 +7,10 @@ import types
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 import kinetostatics as ks
 from kinetostatics.sweeps.identity import digest
+from support.every import every
 
 BASE = """
 from dataclasses import dataclass
@@ -157,7 +157,7 @@ CHANGES = [
 ]
 
 
-@pytest.mark.parametrize(("before", "after", "names"), CHANGES)
+@every(("before", "after", "names"), CHANGES)
 def test_a_change_is_seen_wherever_it_is(before, after, names):
     assert before in BASE
     one, other = items(), items(BASE.replace(before, after))
@@ -165,7 +165,7 @@ def test_a_change_is_seen_wherever_it_is(before, after, names):
         assert digest(one[name]) != digest(other[name]), name
 
 
-@pytest.mark.parametrize("name", items())
+@every("name", items())
 def test_what_does_the_same_is_the_same(name):
     """Elsewhere in its file, with other comments, and another object each time."""
     assert digest(items()[name]) == digest(items("\n\n" + BASE.replace("# a word", "# another"))[name])

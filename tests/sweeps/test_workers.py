@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 
@@ -204,6 +205,23 @@ def test_workers_leave_signals_to_all_processes_to_their_parent(tidy):
     with dispatch.Workers(count=1) as workers:
         found = [workers.submit(signal.getsignal, number).result() for number in (signal.SIGINT, signal.SIGTERM)]
     assert found == [signal.SIG_IGN, signal.SIG_IGN]
+
+
+def test_calls_that_wait_when_a_sweep_is_stopped_are_dropped_without_a_word(tidy, monkeypatch, caplog, capfd):
+    """The thread of a library that serves the processes must not fail, and tell of it, before we say our line."""
+
+    def stopped():
+        with dispatch.Workers(count=1) as workers:
+            workers.capacity = 9  # more than the processes are handed at a time
+            with closing(dispatch.computed(None, lambda number: 60 * number, range(9), workers)) as found:
+                next(found)
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(dispatch, "run_chunk", lambda job, seconds: time.sleep(seconds))
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    assert caplog.records == []
+    assert capfd.readouterr() == ("", "")
 
 
 def waited(look, enough, seconds=60):

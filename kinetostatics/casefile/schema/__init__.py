@@ -7,8 +7,9 @@ drives      motors and flywheels
 variants    mechanisms, and the head of a file
 """
 
+from .drives import TorqueTable
 from .parts import MADE_OF
-from .tables import TAGS, CosineLawTable, LinkTable, SampledTable, Table, ValuesTable, kinds
+from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable, kinds
 from .texts import BALANCE_THE_SLIDER, MID_LENGTH
 from .variants import (
     VARIANTS,
@@ -38,6 +39,7 @@ __all__ = [
     "CosineLawTable",
     "CrankSliderVariant",
     "FourBarVariant",
+    "HarmonicTable",
     "LinkTable",
     "MechanismVariant",
     "ProcessForceTable",
@@ -46,6 +48,7 @@ __all__ = [
     "ScotchYokeVariant",
     "SlottedLeverVariant",
     "Table",
+    "TorqueTable",
     "ValuesTable",
     "kinds",
 ]

@@ -29,7 +29,7 @@ def _row(unit):
             raise ValueError(f'must be a list such as ["0 {unit}", "1 {unit}"], found {shown(value)}')
         return tuple(to_si(part, unit) for part in value)
 
-    return Annotated[tuple[float, ...], BeforeValidator(read)]
+    return Annotated[tuple[float, ...] | None, BeforeValidator(read)]
 
 
 class MotorTable(Table):
@@ -73,9 +73,30 @@ class ConstantTable(MotorTable):
 
 
 class TorqueTable(MotorTable):
+    """Torque over speed, in rows here or in columns of a CSV file."""
+
     kind: Literal["table"]
-    speed: _row("rad/s")  # type: ignore[valid-type]
-    torque: _row("N m")  # type: ignore[valid-type]
+    speed: _row("rad/s") = None  # type: ignore[valid-type]
+    torque: _row("N m") = None  # type: ignore[valid-type]
+    file: str | None = None
+
+    @property
+    def motor(self):
+        return None if self.file is not None else self.of(self.speed, self.torque)
+
+    def of(self, speed, torque):
+        """The motor with rows of speed, rad/s, and torque, N m."""
+        return Motor.table(speed, torque, transmission=self.transmission, inertia=self.inertia)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _rows_or_a_file(cls, raw):
+        rows = [key for key in ("speed", "torque") if key in raw]
+        if "file" in raw and rows:
+            raise ValueError(f"has a file and {' and '.join(rows)}: give either rows here or a CSV file")
+        if "file" not in raw and len(rows) < 2:
+            raise ValueError("needs speed and torque, lists of texts, or file, a CSV with columns speed and torque")
+        return raw
 
 
 MotorOfKind: Any = one_of(

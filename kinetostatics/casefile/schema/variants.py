@@ -18,6 +18,7 @@ from .texts import (
     Angle,
     AngularAcceleration,
     Coordinate,
+    CubicStiffness,
     GuidePoints,
     Length,
     Period,
@@ -36,6 +37,7 @@ Name = Annotated[Any, BeforeValidator(by(checks.Name()))]
 class SpringTable(Table):
     stiffness: Stiffness
     free_position: Coordinate
+    cubic: CubicStiffness = 0.0
 
 
 class ProcessForceTable(Table):

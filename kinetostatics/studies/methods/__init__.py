@@ -10,6 +10,9 @@ kane        SymPy's Kane method, lambdified
 enclosures  the library's kernels on arb numbers
 independent other formulas by mpmath
 certified   both in agreement: what all are measured against
+running     periodic running under a motor: stepping, shooting, fixed steps, collocation
+motion      published motions over time: reduced inertia and constraint equations
+exact_running   periodic running at many digits, what those are measured against
 
 Nothing in the library's numeric path calls them; where they fail is counted by the tests.
 """

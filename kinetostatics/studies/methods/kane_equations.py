@@ -120,7 +120,7 @@ class Equations:
         active, inertial = method.kanes_equations(self.bodies, self.loads)
         for (speed, unknown), equation in zip(self.unknowns.items(), active + inertial, strict=True):
             absent = self.unknowns.values() if speed in self.alone else [unknown]
-            self.steps[unknown] = -equation.subs(dict.fromkeys(absent, 0)) / equation.diff(unknown)
+            self.steps[unknown] = -equation.xreplace(dict.fromkeys(absent, sp.S.Zero)) / equation.diff(unknown)
         return self
 
 

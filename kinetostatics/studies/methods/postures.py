@@ -6,7 +6,7 @@ import numpy as np
 
 from ...errors import NotGivenError
 from ...machine.cam_roller import CamRoller
-from ...machine.cams import Circle, CosineLaw
+from ...machine.cams import Circle, CosineLaw, Harmonic
 from ...machine.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parted
 from ...machine.cylinder_group import CylinderGroup
 from ...machine.dyad import Dyad
@@ -166,6 +166,11 @@ class Posture:
             root = mp.sqrt(length**2 - (slider * mp.sin(from_guide)) ** 2)
             side = mp.sign(mp.cos(from_guide) - mp.cos(turning))
             return (slider * mp.cos(from_guide) - side * root) * mp.expj(angle)
+        if isinstance(cam, Harmonic):
+            from_guide = angle - self.number(cam.guide_angle)
+            cosine = mp.fsum(self.number(a) * mp.cos(k * from_guide) for k, a in enumerate(cam.cosine))
+            sine = mp.fsum(self.number(b) * mp.sin(k * from_guide) for k, b in enumerate(cam.sine, 1))
+            return (cosine + sine) * mp.expj(angle)
         raise NotGivenError(f"there is no independent formula for cam {type(cam).__name__}")
 
 

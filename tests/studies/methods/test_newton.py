@@ -8,43 +8,12 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS, Group
-from kinetostatics.mechanics import quantities
 from kinetostatics.studies.methods import configurations, constraints, integration, newton
 from kinetostatics.studies.methods.method import NotGivenError
-from support.machines import CLOSE, KINDS, LINKS, Machine, largest
+from support.constrained import CHAINS, TURN, error, solved
+from support.machines import CLOSE, KINDS
 
 (NEWTON,) = newton.METHODS
-TURN = np.linspace(0.2, 0.2 + 2 * np.pi, 72, endpoint=False)
-HEAVY = ks.Link(2.0, (0.07, -0.03), 0.04)
-FOUR_BAR = ks.RockerGroup(0.4, 0.3, (0.35, 0.05), -1, HEAVY, HEAVY)
-SLIDER = {"coupler": HEAVY, "slider": ks.Link(5.0, (0.04, 0.02), 0.3)}
-CHAINS = {
-    "four-bar": (FOUR_BAR,),
-    "six-bar": (FOUR_BAR, ks.SliderGroup(0.5, ks.Guide.at(0.3, 0.05), on="B", pin="C", label="2", **SLIDER)),
-    "V engine": (
-        ks.SliderGroup(0.4, ks.Guide.at(0.8), **SLIDER),
-        ks.SliderGroup(0.5, ks.Guide.at(2.3, 0.02), -1, pin="C", label="2", **SLIDER),
-    ),
-}
-
-
-def drag(motion):
-    return -20.0 * motion.slider_velocity
-
-
-def solved(name, angle=TURN, speed=12.0, acceleration=-30.0):
-    """A mechanism in which every link has mass, under loads of every kind it can bear."""
-    if name in KINDS:
-        return Machine(name, assembly=-1).solve(
-            angle,
-            [ks.Gravity(9.81, -1.2), ks.Spring(500.0, 0.8), ks.ProcessForce(40.0), ks.ProcessForce(drag)],
-            crank_speed=speed,
-            crank_acceleration=acceleration,
-        )
-    mechanism = ks.Mechanism(name, ks.Crank(0.1, ks.Link(*LINKS["crank"])), CHAINS[name])
-    sliders = [link for link in mechanism.links if link.startswith("slider")]
-    loads = [kind for on in sliders for kind in (ks.Spring(300.0, 0.4, on), ks.ProcessForce(25.0, on))]
-    return ks.solve(mechanism, angle, crank_speed=speed, crank_acceleration=acceleration, loads=[ks.Gravity(), *loads])
 
 
 def names(s):
@@ -52,13 +21,6 @@ def names(s):
     motions = [link + ending for link in s.mechanism.links for ending in ("_rate", "_angular_acceleration")]
     slides = ["slider_position", "slider_velocity", "slider_acceleration"] if "slider" in s.mechanism.links else []
     return {*s.reactions, *s.scalars, *motions, *slides}
-
-
-def error(s, name, found):
-    """Largest error of a quantity, relative to its largest value."""
-    exact = quantities.components(s, name)
-    assert np.shape(found) == np.shape(exact)
-    return float(largest(np.subtract(found, exact)) / (largest(exact) or 1.0))
 
 
 every_mechanism = pytest.mark.parametrize("name", [*KINDS, *CHAINS])
@@ -82,19 +44,6 @@ def test_each_newton_iteration_squares_the_error(name):
     errors = [error(s, wanted, NEWTON.prepare(s, wanted, count)()) for count in NEWTON.settings[:4]]
     assert errors[0] > 1e-8
     assert all(after < 3 * before**2 + CLOSE for before, after in pairwise(errors)), errors
-
-
-@pytest.mark.parametrize("method", integration.METHODS, ids=lambda method: method.name.split()[-1])
-@pytest.mark.parametrize("name", ["plain", "cosine law", "six-bar"])
-def test_error_of_integration_falls_with_its_tolerance(name, method):
-    s = solved(name, acceleration=0.0)
-    limits = (
-        {1e-4: 0.1, 1e-8: 1e-4, 1e-12: 1e-8} if "Baumgarte" in method.name else {1e-4: 1e-4, 1e-8: 1e-11, 1e-12: CLOSE}
-    )
-    for wanted in ("A", "coupler_rate", "balancing_torque"):
-        errors = [error(s, wanted, method.prepare(s, wanted, tolerance)()) for tolerance in limits]
-        assert all(found < limit for found, limit in zip(errors, limits.values(), strict=True)), (wanted, errors)
-        assert all(after < 0.01 * before + CLOSE for before, after in pairwise(errors)), errors
 
 
 def test_crank_speed_may_vary_over_the_angles_and_these_may_come_in_any_order_beyond_a_turn():
@@ -121,20 +70,6 @@ def test_what_no_constraint_equation_gives_is_refused(method):
     ]:
         with pytest.raises(NotGivenError, match=words):
             method.prepare(refused, wanted, setting)
-
-
-@pytest.mark.parametrize("method", integration.METHODS, ids=lambda method: method.name.split()[-1])
-def test_integration_refuses_all_but_constant_speed_and_angles_that_rise_within_a_turn(method):
-    s = solved("plain", acceleration=0.0)
-    for change in (
-        {"crank_acceleration": 1.0},
-        {"crank_speed": np.full(TURN.size, 12.0)},
-        {"crank_angle": TURN[::-1]},
-        {"crank_angle": 1.1 * TURN},
-        {"crank_angle": TURN[:1]},
-    ):
-        with pytest.raises(NotGivenError, match="integration runs"):
-            method.prepare(replace(s, **change), "O", 1e-6)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.errors.ConditionWarning")

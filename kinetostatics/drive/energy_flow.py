@@ -1,0 +1,142 @@
+"""Where the energy of a turn goes: from the motor through its rotor to loads and joints, and what is held and returned.
+
+An induction motor takes torque times the speed of its field through the air gap and gives torque times its own speed at
+the shaft; the difference heats the rotor. What arrives at the crank, loads take and friction of the joints loses;
+flywheel, links, weights and springs hold energy for a while and give all of it back within the period.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import QuantityError
+from ..machine.friction import NONE
+from ..mechanics.pushes import title_of
+from ..numbers import checks
+from ..numbers.leaves import with_fields
+
+ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
+SOURCE, LOSS, LOAD, JOINT, HELD = "source", "loss", "load", "joint", "held"
+NOISE = 1e-13
+"""Energy, relative to what flows to and fro, that is rounding and taken as 0."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """What gives, takes or holds energy.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+        "source": gives `energy`; "loss", "load" and "joint": take it, negative if they give; "held": kept and returned.
+    energy : float
+        In a turn, J.
+    swing : float
+        Largest less smallest energy held over the period, J; NaN of what keeps nothing.
+    """
+
+    name: str
+    kind: str
+    energy: float
+    swing: float = np.nan
+
+
+@dataclass(frozen=True)
+class EnergyFlow:
+    """Where the energy of a turn goes; made by `Running.energy_flow`."""
+
+    parts: tuple[Part, ...]
+    turn_time: float
+
+    def __getitem__(self, name):
+        """Energy in a turn of a part by its name, J."""
+        found = {part.name: part.energy for part in self.parts}
+        problem = checks.choice("part", name, tuple(found))
+        if problem:
+            raise QuantityError(f"energy flow: {problem}")
+        return found[name]
+
+    @property
+    def residual(self):
+        """What the source gives and nothing takes, relative to all that flows in a turn."""
+        given = sum(part.energy for part in self.parts if part.kind == SOURCE)
+        taken = sum(part.energy for part in self.parts if part.kind != SOURCE)
+        size = sum(abs(part.energy) for part in self.parts)
+        size += sum(part.swing for part in self.parts if part.swing == part.swing)
+        return abs(given - taken) / size if size else 0.0
+
+    def frame(self):
+        """Table with a row for each part, a pandas DataFrame: energy in a turn, mean power, share, energy held."""
+        import pandas as pd
+
+        source = sum(part.energy for part in self.parts if part.kind == SOURCE)
+        rows = [
+            (
+                part.name,
+                part.kind,
+                part.energy,
+                part.energy / self.turn_time,
+                part.energy / source if source > 0.0 else np.nan,
+                part.swing,
+            )
+            for part in self.parts
+        ]
+        columns = ["part", "kind", "energy per turn [J]", "mean power [W]", "share [1]", "swing [J]"]
+        return pd.DataFrame(rows, columns=columns).set_index("part")
+
+
+def energy_flow(run) -> EnergyFlow:
+    """Where the energy of a turn of periodic running goes.
+
+    Every part by an integral of its own; that they balance is told by `residual`.
+    """
+    pieces, speed, acceleration, inertia = run.on_pieces
+    angle, shape = pieces.angle.ravel(), pieces.angle.shape
+    moving = {"crank_speed": speed.ravel(), "crank_acceleration": acceleration.ravel()}
+
+    def solved(**changes):
+        return with_fields(run.scene, **moving, **changes).solve(angle)
+
+    def work(name, kind, torque):
+        torque = np.broadcast_to(torque, angle.shape).reshape(shape)
+        energy = without_noise(pieces.total(torque) * run.direction, pieces.total(np.abs(torque)))
+        held = energy == 0.0 and kind == LOAD and np.any(torque)
+        return Part(name, kind, energy / run.turns, swing(pieces.integrated(torque)) if held else np.nan)
+
+    def swing(energy):
+        return pieces.largest(energy)[0] + pieces.largest(-energy)[0]
+
+    parts = [*_of_motor(run)]
+    for name, item in _named(run.scene.loads).items():
+        parts.append(work(name, LOAD, solved(loads=(item,), friction=NONE).load_torque))
+    for joint in run.scene.friction.acting:
+        parts.append(Part(f"friction {joint}", JOINT, run.friction_energy_per_turn_at(joint)))
+    kinetic = {FLYWHEEL: 0.5 * run.flywheel * speed**2, LINKS: 0.5 * inertia * speed**2}
+    parts += [Part(name, HELD, 0.0, swing(energy)) for name, energy in kinetic.items() if np.any(energy)]
+    return EnergyFlow(tuple(parts), run.duration / run.turns)
+
+
+def without_noise(energy, flowing):
+    """An energy, or 0 where it is rounding of what flows to and fro."""
+    return 0.0 if abs(energy) <= NOISE * flowing else energy
+
+
+def _of_motor(run):
+    if run.has_air_gap:
+        yield Part("through the air gap", SOURCE, run.air_gap_energy_per_turn)
+        yield Part(ROTOR, LOSS, run.rotor_loss_per_turn)
+    else:
+        yield Part("motor" if run.motor is not None else "constant torque", SOURCE, run.energy_per_turn)
+
+
+def _named(loads: tuple[Any, ...]):
+    """Loads by their titles, those of one title numbered."""
+    titles = [title_of(item) for item in loads]
+    counts: dict[str, int] = {}
+    named = {}
+    for title, item in zip(titles, loads, strict=True):
+        counts[title] = counts.get(title, 0) + 1
+        named[f"{title} {counts[title]}" if titles.count(title) > 1 else title] = item
+    return named

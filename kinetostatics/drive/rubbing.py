@@ -1,0 +1,250 @@
+"""A machine whose joints rub as one degree of freedom: its friction depends on the acceleration, and that on friction.
+
+    (J + Jf) alpha + J' omega^2 / 2 + load torque(phi, omega) + friction torque(phi, omega, alpha) = motor torque
+
+is solved for alpha at each crank angle by the secant rule, friction by the scene's own program at the true alpha. Which
+way each joint moves is told beforehand (`senses`), so all is smooth between the angles at which that changes.
+"""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..errors import DriveError
+from ..machine.friction import PASSES, Rolling, Sliding
+from ..mechanics.friction_laws import bends
+from ..mechanics.jamming import converged
+from ..numbers.leaves import with_fields
+from ..solution.compile import compile as compiled
+from .driven import STEP, Driven, State, apart
+from .senses import Senses
+
+FRICTION, *CHECKS = OWN = ("friction_torque", "friction_margin", "friction_residual")
+SOLVES = 30
+"""Solves for the acceleration, at most; three or four are enough unless friction nearly jams."""
+SETTLED = 2e-16
+"""Change of the friction torque, relative to all torques, that is rounding."""
+NOISE = 1e-9
+"""Change of the friction torque, relative, that tells how it hangs on the acceleration."""
+ROUND = 180
+"""Crank angles around the period at which friction is looked at beforehand."""
+AT_ONCE = 4096
+"""Crank angles whose friction is computed together."""
+
+
+def driven_by(owner, scene, motor, flywheel, engine=None, direction=None) -> Driven:
+    """What a scene is to its drive, with friction or without."""
+    friction = getattr(scene, "friction", None)
+    kind = RubbingDriven if friction and friction.acting else Driven
+    return kind(owner, scene, motor, flywheel, engine, direction)
+
+
+class RubbingDriven(Driven):
+    """What a scene with friction is to its drive, the crank turning in `direction` unless told otherwise."""
+
+    def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
+        super().__init__(owner, scene, motor, flywheel, engine, direction)
+        self.senses = Senses.of(self.scene)
+        self._engine, self._passes = engine or "numpy", PASSES[0]
+        self._guess: tuple[Any, ...] = (None,)
+        self._near: Any = ()
+
+    @property
+    def by_speed(self):
+        return True
+
+    @property
+    def smooth_by_speed(self):
+        return not self.loads_by_speed
+
+    @cached_property
+    def kinks(self):
+        """Crank angles in (0, period) at which loads have kinks or friction jumps, rad."""
+        return apart(np.concatenate([super().kinks, self.senses.all_edges]), self.period)
+
+    @property
+    def jumps(self):
+        return self.senses.all_edges
+
+    @cached_property
+    def _program(self):
+        rubs = tuple(with_fields(rub, sense=1.0) for rub in self.scene.friction.rubs)
+        friction = with_fields(self.scene.friction, rubs=rubs, passes=self._passes)
+        scene, kept = with_fields(self.scene, friction=friction), ("crank_speed", "crank_acceleration")
+        return compiled(scene, (*OWN, *self._bending), parameters=kept, engine=self._engine)
+
+    @cached_property
+    def _pressed(self):
+        """Force, couple and half length of the joints whose friction has a kink where these vanish or are equal."""
+        pairs, acting = self.scene.mechanism.pairs, self.scene.friction.acting
+        rolling = [(pairs[name].force, None, None) for name in acting if isinstance(pairs[name], Rolling)]
+        sliding = [name for name in acting if isinstance(pairs[name], Sliding)]
+        return rolling + [(pairs[name].force, pairs[name].couple, acting[name].half_length) for name in sliding]
+
+    @cached_property
+    def _bending(self):
+        """Names of these forces and couples."""
+        names = [name for force, couple, half in self._pressed for name in (force, *[couple] * (half is not None))]
+        return tuple(dict.fromkeys(names))
+
+    def rubbed(self, angle, speed, acceleration, senses):
+        """Values of the program of friction at crank angles, speeds and accelerations, all of one shape."""
+        shape = np.shape(angle)
+        given = {"crank_speed": speed, "crank_acceleration": acceleration}
+        given |= {f"friction.{name}.sense": sense for name, sense in senses.items()}
+        if not shape:
+            found = self._program.unlooked(np.array(angle), given)
+            return {name: float(value) for name, value in found.items()}
+        columns = {path: np.broadcast_to(value, shape).reshape(-1, 1) for path, value in given.items()}
+        rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns)
+        return {name: value.reshape(shape) for name, value in rows.items()}
+
+    def at(self, angle, speed=None) -> State:
+        state = self.unrubbed(angle, speed)
+        friction, _ = self.accelerated(angle, speed, state)
+        return state._replace(torque=state.torque + friction)
+
+    def at_acceleration(self, angle, speed, acceleration) -> State:
+        state = self.unrubbed(angle, speed)
+        parts = [part.ravel() for part in np.broadcast_arrays(angle, speed, acceleration)]
+        starts = range(0, parts[0].size, AT_ONCE)
+        blocks = [self._looked_at(*(part[start : start + AT_ONCE] for part in parts)) for start in starts]
+        friction = np.concatenate([block[FRICTION] for block in blocks])
+        return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
+
+    def here(self, angle, speed):
+        senses = {name: float(sense) for name, sense in self.senses.at(angle, self.direction).items()}
+        return self.moving(angle, speed, senses)[:3]
+
+    def moving(self, angle, speed, senses):
+        """What `here` tells, and the friction torque, with which way joints move told."""
+        inertia, slope, spare = super().here(angle, speed)
+        friction, *self._near = self._settled_here(
+            lambda acceleration: self.rubbed(angle, speed, acceleration, senses),
+            inertia,
+            spare - 0.5 * speed * speed * slope,
+            *self._near,
+        )
+        return inertia, slope, spare - friction, friction
+
+    def at_rest(self, angle, direction):
+        senses, _ = self.senses.stretch(angle % self.period, direction)
+        friction = self.rubbed(angle, 0.0, 0.0, senses)[FRICTION]
+        return super().here(angle, 0.0)[2] - friction, friction
+
+    def prepare(self, speed):
+        """Take as many passes over friction as it takes around the period, from standstill to a speed."""
+        angle = np.linspace(0.0, self.period, ROUND, endpoint=False) + 0.5 * self.period / ROUND
+        for part in (0.0, 0.5, 1.0):
+            self._looked_at(angle, np.full(ROUND, part * speed), 0.0)
+
+    def acceleration_along(self, angle, speed):
+        state, senses = self.unrubbed(angle, speed), self.senses.at(angle, np.copysign(1.0, speed))
+        rest = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
+        return self._settled(
+            lambda acceleration: self._looked_at(angle, speed, acceleration, senses)[FRICTION],
+            self.flywheel + state.inertia,
+            rest,
+        )[1]
+
+    def accelerated(self, angle, speed, state):
+        """Friction torque and crank acceleration at crank angles and speeds, from the state without friction."""
+        rest = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
+        guess = self._guess[1:] if self._guess[0] is angle else ()
+        friction, acceleration, slope = self._settled(
+            lambda acceleration: self._looked_at(angle, speed, acceleration)[FRICTION],
+            self.flywheel + state.inertia,
+            rest,
+            *guess,
+        )
+        self._guess = angle, acceleration, slope
+        return friction, acceleration
+
+    def forces_on(self, angle, speed):
+        """What is zero where friction has a kink, each over the crank angles."""
+        if not self._pressed:
+            return []
+        return self.forces_at(angle, speed, self.accelerated(angle, speed, self.unrubbed(angle, speed))[1])
+
+    def forces_at(self, angle, speed, acceleration):
+        if not self._pressed:
+            return []
+        return self._pressing(self._looked_at(angle, speed, acceleration))
+
+    def torque_by_speed(self, angle, speed, torque):
+        """Derivative of load and friction torque by the crank speed, with the acceleration that follows from it."""
+        _, acceleration, by_acceleration = self._guess
+        state, step = self.unrubbed(angle, speed), STEP * np.abs(speed).max()
+        changed = self._looked_at(angle, speed + step, acceleration)[FRICTION]
+        own = super().torque_by_speed(angle, speed, state.torque) + (changed - torque + state.torque) / step
+        drive = 0.0 if self.motor is None else self.motor.slope_at_crank(speed)
+        rising = (drive - own - speed * state.slope) / (self.flywheel + state.inertia + by_acceleration)
+        return own + by_acceleration * rising
+
+    def _looked_at(self, angle, speed, acceleration, senses=None):
+        """Values of the program of friction with as many passes as it takes, the crank turning in `direction`."""
+        senses = self.senses.at(angle, self.direction) if senses is None else senses
+        found = self.rubbed(angle, speed, acceleration, senses)
+        margin, residual = (found[name] for name in CHECKS)
+        if not np.isfinite(found[FRICTION]).all():
+            self.scene.solve(np.ravel(angle))  # says where it jams
+        if not converged(margin, residual).all() and self._passes < PASSES[-1]:
+            self._passes = next(passes for passes in PASSES if passes > self._passes)
+            del self._program
+            return self._looked_at(angle, speed, acceleration, senses)
+        return found
+
+    def _settled(self, friction_at, inertia, rest, acceleration=None, slope=0.0):
+        """Friction torque, acceleration, and derivative of the one by the other: their sum with inertia is `rest`."""
+        acceleration = rest / inertia if acceleration is None else acceleration
+        friction = friction_at(acceleration)
+        for _ in range(SOLVES):
+            step = (rest - friction - inertia * acceleration) / (inertia + slope)
+            size = np.max(np.abs(rest)) + np.max(np.abs(friction))
+            new = acceleration + step
+            found = friction_at(new)
+            change = found - friction
+            with np.errstate(divide="ignore", invalid="ignore"):
+                slope = np.where(np.abs(change) > NOISE * size, change / step, slope)
+            acceleration, friction = new, found
+            left = (rest - friction - inertia * acceleration) / (inertia + slope)
+            if np.max(np.abs(slope * left)) <= SETTLED * size:
+                return friction + slope * left, acceleration + left, slope
+        raise self._lost()
+
+    def _settled_here(self, values_at, inertia, rest, acceleration=None, slope=0.0):
+        """The same for floats, `values_at` giving all values of the program."""
+        acceleration = rest / inertia if acceleration is None else acceleration
+        friction = values_at(acceleration)[FRICTION]
+        size = abs(rest) + abs(friction)
+        for _ in range(SOLVES):
+            step = (rest - friction - inertia * acceleration) / (inertia + slope)
+            acceleration += step
+            found = values_at(acceleration)
+            change, friction = found[FRICTION] - friction, found[FRICTION]
+            if abs(change) > NOISE * size:
+                slope = change / step
+            left = (rest - friction - inertia * acceleration) / (inertia + slope)
+            if not abs(slope * left) > SETTLED * size:  # also where friction jams
+                self.pressed = self._pressing(found)
+                return friction + slope * left, acceleration + left, slope
+        raise self._lost()
+
+    def _lost(self):
+        return DriveError(
+            f"{self.scene.mechanism.name}: no acceleration was found with friction; friction that grows with the "
+            "acceleration faster than inertia does jams: give a flywheel or lower coefficients"
+        )
+
+    def _pressing(self, found):
+        """What is zero where friction has a kink."""
+        return [
+            row
+            for force, couple, half in self._pressed
+            for row in bends("size" if half is None else "larger", _parts(found, force, couple, half))
+        ]
+
+
+def _parts(found, force, couple, half):
+    return (found[force],) if half is None else (found[force], found[couple] / half)

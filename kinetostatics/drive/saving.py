@@ -1,0 +1,119 @@
+"""What balancing saves: two machines in periodic running under their motors compared."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..numbers import checks
+from ..results.comparison import Comparison
+
+OF_THE_DRIVE = {
+    "energy per turn, at the shaft": ("energy_per_turn", "J"),
+    "energy per turn, through the air gap": ("air_gap_energy_per_turn", "J"),
+    "lost in the rotor per turn, by slip": ("rotor_loss_per_turn", "J"),
+    "mean motor power": ("mean_power", "W"),
+    "peak motor power": ("peak_power", "W"),
+    "peak motor torque, at its shaft": ("peak_motor_torque", "N m"),
+    "rms motor torque, at its shaft": ("rms_motor_torque", "N m"),
+    "mean speed of the crank": ("mean_speed", "rad/s"),
+    "fluctuation, by the mean over time": ("fluctuation", "1"),
+    "fluctuation, by the mean of the extremes": ("fluctuation_arithmetic", "1"),
+}
+"""Names of a `Running`'s figures and their units, by what tables call them."""
+AIR_GAP = ("air_gap_energy_per_turn", "rotor_loss_per_turn")
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenComparison(Comparison):
+    """Dynamic coefficients of two machines in periodic running, and what their drives take; made by `compare`."""
+
+    def of_drives(self, name):
+        """A figure of both machines' `Running` by its name, as "rotor_loss_per_turn"; NaN where there is none."""
+        runs = self.reference.running, self.balanced.running
+        return tuple(np.nan if name in AIR_GAP and not run.has_air_gap else getattr(run, name) for run in runs)
+
+    @property
+    def energies_per_turn(self):
+        """Energy at the motor's shaft in a turn, J."""
+        return self.of_drives("energy_per_turn")
+
+    @property
+    def air_gap_energies_per_turn(self):
+        """Energy through the air gap of induction motors in a turn, J."""
+        return self.of_drives("air_gap_energy_per_turn")
+
+    @property
+    def rotor_losses_per_turn(self):
+        """Energy lost in the rotors of induction motors by slip in a turn, J."""
+        return self.of_drives("rotor_loss_per_turn")
+
+    @property
+    def peak_motor_torques(self):
+        """Largest torque at the motor's shaft, with its sign, N m."""
+        return self.of_drives("peak_motor_torque")
+
+    @property
+    def rms_motor_torques(self):
+        """Root of the mean over time of the square of the motor's torque, N m."""
+        return self.of_drives("rms_motor_torque")
+
+    @property
+    def fluctuations(self):
+        """Coefficients of fluctuation by the mean over time."""
+        return self.of_drives("fluctuation")
+
+    @property
+    def fluctuations_arithmetic(self):
+        """Coefficients of fluctuation by the mean of largest and smallest speed."""
+        return self.of_drives("fluctuation_arithmetic")
+
+    def flywheels(self, fluctuation=None):
+        """Flywheels on the crank with which both have the same coefficient of fluctuation, kg m2.
+
+        Parameters
+        ----------
+        fluctuation : float, optional
+            That of the reference with its own flywheel unless told.
+        """
+        runs = self.reference.running, self.balanced.running
+        wanted = runs[0].fluctuation if fluctuation is None else fluctuation
+        return tuple(
+            run.crank_flywheel if fluctuation is None and run is runs[0] else run.flywheel_for(wanted) for run in runs
+        )
+
+    def flywheel_mass_saved(self, radius, fluctuation=None):
+        """Mass of a rim that the balanced machine's flywheel saves for the same fluctuation, kg; negative if none.
+
+        Parameters
+        ----------
+        radius : float
+            Of the rim, m.
+        fluctuation : float, optional
+            As for `flywheels`.
+        """
+        checks.require("flywheel_mass_saved", checks.Number(name="radius", low=0.0, strict=True).taken(radius)[1])
+        reference, balanced = self.flywheels(fluctuation)
+        return (reference - balanced) / radius**2
+
+    def drive_frame(self, fluctuation=None):
+        """What the drives take, a pandas DataFrame: quantity, unit, its value with each machine, ratio, difference."""
+        import pandas as pd
+
+        figures = {(text, unit): self.of_drives(name) for text, (name, unit) in OF_THE_DRIVE.items()}
+        figures["flywheel for the same fluctuation", "kg m2"] = self.flywheels(fluctuation)
+        rows = [
+            (text, unit, *pair, _ratio(*map(abs, pair)), abs(pair[0]) - abs(pair[1]))
+            for (text, unit), pair in figures.items()
+        ]
+        columns = ["quantity", "unit", *self.names, "ratio", "saved"]
+        return pd.DataFrame(rows, columns=columns).set_index("quantity").dropna(how="all", subset=list(self.names))
+
+    def frame(self):
+        """All coefficients as a pandas DataFrame, those of the drives after those of the mechanisms."""
+        import pandas as pd
+
+        return pd.concat([super().frame(), self.drive_frame().drop(columns="saved")])
+
+
+def _ratio(reference, balanced):
+    return reference / balanced if balanced else (np.inf if reference else np.nan)

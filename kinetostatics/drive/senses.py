@@ -1,0 +1,98 @@
+"""Which way each joint that rubs moves, over the crank angle: friction jumps where that changes."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..machine.friction import Rolling
+from ..mechanics.friction_laws import rate_of
+from ..results.turn import sign_changes
+
+SAME = 1e-12
+"""Crank angles this near to the ends of the period, rad, are there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Senses:
+    """Sign of the motion of each joint that rubs as the crank turns forward.
+
+    Attributes
+    ----------
+    period : float
+    edges : dict of joint to array
+        Crank angles in [0, period) at which the sign changes, rising.
+    signs : dict of joint to array
+        Before the first of these, between each two, and behind the last.
+    rates : function
+        Rates by the crank angle of the joints in `edges`, in order, at crank angles; none of rollers.
+    """
+
+    period: float
+    edges: dict[str, np.ndarray]
+    signs: dict[str, np.ndarray]
+    rates: Any
+
+    @classmethod
+    def of(cls, scene):
+        """Of a scene with friction."""
+        mechanism, period = scene.mechanism, scene.period
+        acting, parts = scene.friction.acting, (*mechanism.groups, mechanism.crank)
+        moving = [
+            (part, name, mechanism.pairs[name])
+            for part in parts
+            for name in part.pairs
+            if name in acting and not isinstance(mechanism.pairs[name], Rolling)
+        ]
+
+        def rates(angle):
+            placement = scene.unsolved(angle).placement
+            found = (rate_of(part, name, pair, placement) for part, name, pair in moving)
+            return [1.0 if rate is None else rate for rate in found]
+
+        row, angle = sign_changes(rates, period)
+        angle = np.where((angle < SAME) | (angle > period - SAME), 0.0, angle)
+        edges = {name: np.unique(angle[row == place]) for place, (_, name, _) in enumerate(moving)}
+        signs = {}
+        for place, (name, own) in enumerate(edges.items()):
+            middle = 0.5 * (np.append(0.0, own) + np.append(own, period))
+            with np.errstate(all="ignore"):
+                rate = np.broadcast_to(rates(middle)[place], middle.shape)
+            signs[name] = np.copysign(1.0, rate)
+        rolling = dict.fromkeys((name for name in acting if name not in edges), np.empty(0))
+        return cls(period, edges | rolling, signs | dict.fromkeys(rolling, np.ones(1)), rates)
+
+    @cached_property
+    def all_edges(self):
+        """Crank angles in [0, period) at which any sign changes, rising."""
+        return np.unique(np.concatenate(list(self.edges.values())))
+
+    def at(self, angle, direction):
+        """Signs of the motion by joint at crank angles, the crank turning forward (+1) or backward (-1)."""
+        inside = np.mod(angle, self.period)
+        found = {
+            name: direction * self.signs[name][np.searchsorted(edges, inside, side="right")]
+            for name, edges in self.edges.items()
+        }
+        own = np.append(self.all_edges, self.period)
+        place = np.searchsorted(own, inside)
+        close = np.minimum(np.abs(inside - own[np.minimum(place, own.size - 1)]), np.abs(inside - own[place - 1]))
+        if np.any(close < SAME) and self.all_edges.size:
+            for name, rate in zip(found, self.rates(angle), strict=False):
+                found[name] = np.where(close < SAME, direction * np.copysign(1.0, rate), found[name])
+        return found
+
+    def stretch(self, angle, direction):
+        """Signs by joint just ahead of a crank angle in [0, period], and the next angle at which one changes."""
+        own = self.all_edges
+        if not own.size:
+            ahead = angle + direction * self.period
+            return {name: direction * float(signs[0]) for name, signs in self.signs.items()}, ahead
+        around = np.concatenate([own - self.period, own, own + self.period])
+        if direction > 0.0:
+            end = float(around[np.searchsorted(around, angle + SAME, side="right")])
+        else:
+            end = float(around[np.searchsorted(around, angle - SAME, side="left") - 1])
+        inside = np.array(0.5 * (angle + end))
+        return {name: float(sign) for name, sign in self.at(inside, direction).items()}, end

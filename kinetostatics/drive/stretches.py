@@ -1,0 +1,155 @@
+"""Motion over time with friction: stretch by stretch, in each of which everything is smooth.
+
+A stretch ends where a joint turns its motion, where a force that rubs changes its sign, and where the crank stands
+still. There the machine goes on, turns back, or sticks: it stays at rest if the torque left over moves it neither way.
+"""
+
+import math
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+RELATIVE = 3e-14
+"""Tolerance of a step relative to the value, the smallest that the method takes."""
+ABSOLUTE = 1e-15
+AHEAD = 1e-6
+"""Crank angle ahead at which the sign of a force is looked at that is nothing at the start, rad."""
+MOST = 20_000
+"""Stretches after which a motion is given up."""
+
+
+class Stretch(NamedTuple):
+    """A part of a motion: times, crank angle that its own are counted from, direction, dense output."""
+
+    start: float
+    end: float
+    shift: float
+    direction: float
+    dense: Any
+
+
+class Path:
+    """Motion over all stretches: rows of crank angle, speed, work of all torques, and work lost by friction."""
+
+    def __init__(self, stretches):
+        self._stretches = stretches
+        self._starts = np.array([stretch.start for stretch in stretches])
+
+    def __call__(self, time):
+        time = np.asarray(time, dtype=float)
+        place = np.clip(np.searchsorted(self._starts, time.ravel(), side="right") - 1, 0, None)
+        found = np.empty((4, place.size))
+        for number in np.unique(place):
+            stretch, own = self._stretches[number], place == number
+            rows = stretch.dense(np.clip(time.ravel()[own], stretch.start, stretch.end) - stretch.start)
+            rows[0] += stretch.shift
+            rows[1] = np.copysign(np.maximum(stretch.direction * rows[1], 0.0), stretch.direction)
+            found[:, own] = rows
+        return found.reshape(4, *time.shape)
+
+
+class Followed(NamedTuple):
+    """A motion that was followed: times, rows as of `Path`, the path, reversals as (time, angle), and what ended it.
+
+    `end` is "end", "ready", "standstill" where that was asked for, "stuck", or "lost" where it cannot be followed.
+    """
+
+    time: np.ndarray
+    rows: np.ndarray
+    path: Any
+    reversals: list
+    end: str
+
+
+def way_from_rest(driven, angle):
+    """Direction in which a machine starts from rest; 0 where it stays."""
+    if driven.at_rest(angle, 1.0)[0] > 0.0:
+        return 1.0
+    return -1.0 if driven.at_rest(angle, -1.0)[0] < 0.0 else 0.0
+
+
+def followed(driven, angle, speed, end, target=None, to_standstill=False) -> Followed:
+    """Motion from a crank angle and speed until a time, a target speed, a standstill if asked for, or it sticks."""
+    state, time, shift = np.array([angle, speed, 0.0, 0.0]), 0.0, 0.0
+    direction = math.copysign(1.0, speed) if speed else way_from_rest(driven, angle)
+    times, rows, reversals = [0.0], [state.copy()], []
+    stretches: list[Stretch] = []
+    rows[0][1] = math.copysign(speed, direction)
+    what, crossed = "stuck", None
+    while direction and len(stretches) < MOST:
+        whole = math.floor(state[0] / driven.period) * driven.period
+        shift, state[0] = shift + whole, state[0] - whole
+        found, what, crossed = _stretch(driven, state, direction, end - time, target, crossed)
+        if what == "lost":
+            break
+        stretches.append(Stretch(time, time + found.t[-1], shift, direction, found.sol))
+        inner = slice(1, -1 if what in ("edge", "bend") else None)
+        times += (time + found.t[inner]).tolist()
+        rows += [np.array([row[0] + shift, *row[1:]]) for row in found.y.T[inner]]
+        time, state = time + found.t[-1], found.y[:, -1].copy()
+        if what == "still":
+            rows[-1][1], state[1] = math.copysign(0.0, direction), 0.0
+            turned = way_from_rest(driven, float(state[0]))
+            what = "standstill" if to_standstill else "still" if turned else "stuck"
+            direction = turned
+            if what == "still":
+                reversals.append((time, float(state[0] + shift)))
+        if what in ("end", "ready", "standstill", "stuck"):
+            break
+    path = Path(stretches) if stretches else lambda time: np.multiply.outer(rows[0], np.ones(np.shape(time)))
+    return Followed(np.array(times), np.array(rows).T, path, reversals, "lost" if what in ("edge", "bend") else what)
+
+
+def _stretch(driven, state, direction, time, target, crossed):
+    """Motion while nothing turns, what ended it, and the sign behind it of a force that crossed zero there, by row."""
+    from scipy.integrate import solve_ivp
+
+    senses, edge = driven.senses.stretch(float(state[0]), direction)
+
+    def change(time, state):
+        angle, speed = float(state[0]), float(state[1])
+        inertia, slope, spare, friction = driven.moving(angle, speed, senses)
+        return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed, friction * speed
+
+    @lru_cache(maxsize=1)
+    def pressed(angle, speed):
+        driven.moving(angle, speed, senses)
+        return driven.pressed
+
+    def bend(row, side):  # at the start that sign which it has just behind, so that no zero is met twice
+        return lambda time, state: pressed(float(state[0]), float(state[1]))[row] if time > 0.0 else side
+
+    events = [
+        _event(lambda time, state: direction * state[1], -1),
+        _event(lambda time, state: direction * (state[0] - edge), 1),
+        _event(lambda time, state: 1.0 if target is None else direction * (state[1] - target), 0),
+    ]
+    names = ["still", "edge", "ready"]
+    here, ahead = (pressed(float(state[0]) + way, float(state[1])) for way in (0.0, AHEAD * direction))
+    for row, pair in enumerate(zip(here, ahead, strict=True)):
+        side = (crossed or {}).get(row) or next((math.copysign(1.0, one) for one in pair if one), 1.0)
+        events.append(_event(bend(row, side), 0))
+        names.append("bend")
+    options = {"rtol": RELATIVE, "atol": ABSOLUTE, "method": "DOP853"}
+    found = solve_ivp(change, (0.0, time), state, dense_output=True, events=events, **options)
+    if found.status < 0 or not np.isfinite(found.y).all():
+        return found, "lost", None
+    if found.status == 0:
+        return found, "end", None
+    which = next(number for number, times in enumerate(found.t_events) if times.size)
+    if found.t.size > 1:  # the last step anew, not read from between steps
+        again = solve_ivp(change, (found.t[-2], found.t[-1]), found.y[:, -2], **options)
+        found.y[:, -1] = again.y[:, -1]
+    if names[which] == "edge":
+        found.y[0, -1] = edge
+    if names[which] != "bend":
+        return found, names[which], None
+    before = events[which](found.t[-2], found.y[:, -2])
+    return found, "bend", {which - 3: math.copysign(1.0, -before)}
+
+
+def _event(function, direction):
+    """Event of scipy that ends an integration."""
+    vars(function).update(terminal=True, direction=direction)
+    return function

@@ -1,0 +1,237 @@
+"""Ways to periodic running under a motor: the library's, and others, each at several accuracies.
+
+All others evaluate the library's inertia and load torque by its compiled program, where numba is there, and find the
+energy U over the crank angle, dU/dphi = motor torque - load torque. So what is compared is how running is found alone.
+
+stepping      the turn integrated again and again until it repeats
+shooting      secant rule on what a turn leaves of the energy at its start
+fixed steps   shooting by Runge and Kutta's four stages, or the twelve of order 8 (Hairer, Nørsett and Wanner,
+              *Solving Ordinary Differential Equations I*, II.5), inertia and load torque at all stages computed at once
+collocation   SciPy's `solve_bvp` with periodic ends; and trigonometric polynomials (Fourier), Newton's iteration
+"""
+
+import math
+from functools import partial
+
+import numpy as np
+
+from ...drive.driven import Driven
+from ...drive.periodic import steady
+from ...engines.compiled import available
+from ...errors import NotGivenError
+from .method import Method
+
+TURNS = 2000
+"""Periods after which stepping is given up."""
+SECANTS = 30
+
+
+class Problem:
+    """A machine under its motor, and the crank angles at which its speed is asked for, rising within its period."""
+
+    def __init__(self, scene, motor, flywheel, angles):
+        self.machine, self.angles = (scene, motor, flywheel), np.asarray(angles, dtype=float)
+        self.driven = Driven("study", *self.machine, "compiled" if available() else "numpy")
+        if self.driven.by_speed:
+            raise NotGivenError("rivals are for loads that do not depend on the speed")
+        self.motor, self.period, self.direction = motor, self.driven.period, self.driven.direction
+        if self.direction < 0.0:
+            raise NotGivenError("rivals are for motors that turn the crank counter-clockwise")
+
+    def energy(self, speed):
+        """Energy at crank angle 0 with a crank speed."""
+        return 0.5 * float(self.inertia(np.zeros(1))[0]) * speed * speed
+
+    @property
+    def guess(self):
+        """Energy to start from, at the speed that the motor has without load."""
+        idle = self.motor.field_speed or 0.5 * self.motor.top
+        return self.energy(idle / abs(self.motor.transmission))
+
+    def inertia(self, angle):
+        return self.driven.flywheel + self.driven.program(angle)["reduced_inertia"]
+
+    def slope(self, angle, energy):
+        """dU/dphi at one crank angle."""
+        found = self.driven.program(angle)
+        inertia = self.driven.flywheel + float(found["reduced_inertia"])
+        return self.motor.torque_at_crank(math.sqrt(2.0 * energy[0] / inertia)) - float(found["load_torque"])
+
+    def slopes(self, angle, energy):
+        """dU/dphi at crank angles, and its derivative by U."""
+        found = self.driven.program(angle)
+        inertia = self.driven.flywheel + found["reduced_inertia"]
+        speed = np.sqrt(2.0 * energy / inertia)
+        by_energy = self.motor.slope_at_crank(speed) / (inertia * speed)
+        return self.motor.torque_at_crank(speed) - found["load_torque"], by_energy
+
+    def speeds(self, energies):
+        """Crank speeds at the angles asked for, with the energies there."""
+        return np.sqrt(2.0 * energies / self.inertia(self.angles))
+
+
+def _ours(engine):
+    def prepare(problem, quantity, setting):
+        if engine == "compiled" and not available():
+            raise NotGivenError("numba is not installed")
+        return lambda: steady(*problem.machine, angles=problem.angles, engine=engine).speed
+
+    return prepare
+
+
+def _integrated(problem, tolerance, method, energy, asked=None):
+    """Energies at crank angles, or at the end of the period, from an energy at its start."""
+    from scipy.integrate import solve_ivp
+
+    ends, scale = (0.0, problem.period), problem.guess
+    found = solve_ivp(problem.slope, ends, [energy], method, asked, rtol=max(tolerance, 3e-14), atol=tolerance * scale)
+    if found.status < 0:
+        raise NotGivenError(f"integration stops: {found.message}")
+    return found.y[0] if asked is not None else float(found.y[0, -1])
+
+
+def _stepping(method):
+    def prepare(problem, quantity, tolerance):
+        def run():
+            energy = problem.guess
+            for _ in range(TURNS):
+                before, energy = energy, _integrated(problem, tolerance, method, energy)
+                if abs(energy - before) < tolerance * energy:
+                    break
+            return problem.speeds(_integrated(problem, tolerance, method, energy, problem.angles))
+
+        return run
+
+    return prepare
+
+
+def shot(after, guess, tolerance):
+    """Energy at the start of the period that a function gives back at its end, by the secant rule."""
+    one, two = guess, 0.999 * guess
+    first, second = after(one) - one, after(two) - two
+    for _ in range(SECANTS):
+        if abs(two - one) <= tolerance * two or second == first:
+            break
+        one, two = two, two - second * (two - one) / (second - first)
+        first, second = second, after(two) - two
+    return two
+
+
+def _shooting(method):
+    def prepare(problem, quantity, tolerance):
+        def run():
+            energy = shot(partial(_integrated, problem, tolerance, method), problem.guess, tolerance)
+            return problem.speeds(_integrated(problem, tolerance, method, energy, problem.angles))
+
+        return run
+
+    return prepare
+
+
+def _tableau(stages):
+    """Places, weights of the stages before, and weights of a step."""
+    if stages == 4:
+        before = [[], [0.5], [0.0, 0.5], [0.0, 0.0, 1.0]]
+        return [0.0, 0.5, 0.5, 1.0], before, [1 / 6, 1 / 3, 1 / 3, 1 / 6]
+    from scipy.integrate import DOP853
+
+    count = DOP853.n_stages
+    before = [DOP853.A[row, :row].tolist() for row in range(count)]
+    return DOP853.C[:count].tolist(), before, DOP853.B.tolist()
+
+
+def _fixed(stages):
+    places, before, weights = _tableau(stages)
+
+    def prepare(problem, quantity, steps):
+        width, count = problem.period / steps, problem.angles.size
+        if steps % count or not np.allclose(problem.angles, problem.period * np.arange(count) / count):
+            raise NotGivenError("fixed steps end at crank angles spread evenly from 0, which divide them")
+
+        def run():
+            angle = width * (np.arange(steps)[:, None] + np.array(places))
+            found = problem.driven.program(angle.ravel())
+            inertia = (problem.driven.flywheel + found["reduced_inertia"]).reshape(angle.shape).tolist()
+            load = found["load_torque"].reshape(angle.shape).tolist()
+            drive, root = problem.motor.torque_at_crank, math.sqrt
+
+            def followed(energy):
+                """Energies at the starts of all steps, and at the end."""
+                path = [energy]
+                for inertias, loads in zip(inertia, load, strict=True):
+                    slopes: list[float] = []
+                    for own, asked, parts in zip(inertias, loads, before, strict=True):
+                        value = energy + width * sum(map(float.__mul__, parts, slopes))
+                        slopes.append(drive(root(2.0 * value / own)) - asked)
+                    energy += width * sum(map(float.__mul__, weights, slopes))
+                    path.append(energy)
+                return path
+
+            path = followed(shot(lambda energy: followed(energy)[-1], problem.guess, 1e-15))
+            return problem.speeds(np.array(path[:-1])[:: steps // count])
+
+        return run
+
+    return prepare
+
+
+def _bvp(problem, quantity, tolerance):
+    from scipy.integrate import solve_bvp
+
+    scale = problem.guess  # energies of the size of 1, as the solver measures its errors
+
+    def slopes(angle, energy):
+        return problem.slopes(angle, scale * energy[0])[0][None] / scale
+
+    def jacobian(angle, energy):
+        return problem.slopes(angle, scale * energy[0])[1][None, None]
+
+    def run():
+        mesh = np.linspace(0.0, problem.period, 25)
+        guess = np.ones((1, mesh.size))
+        found = solve_bvp(
+            slopes, lambda a, b: a - b, mesh, guess, fun_jac=jacobian, tol=tolerance, bc_tol=1e-12, max_nodes=20_000
+        )
+        if not found.success:
+            raise NotGivenError(f"solve_bvp: {found.message}")
+        return problem.speeds(scale * found.sol(problem.angles)[0])
+
+    return run
+
+
+def _fourier(problem, quantity, points):
+    """`points` is odd."""
+    angle = problem.period * np.arange(points) / points
+    apart = np.arange(points)[:, None] - np.arange(points)
+    with np.errstate(divide="ignore"):
+        matrix = np.where(apart, (-1.0) ** apart / (2.0 * np.sin(np.pi * apart / points)), 0.0)
+    matrix *= 2.0 * np.pi / problem.period
+
+    def run():
+        energy = np.full(points, problem.guess)
+        for _ in range(40):
+            slope, by_energy = problem.slopes(angle, energy)
+            change = np.linalg.solve(matrix - np.diag(by_energy), slope - matrix @ energy)
+            energy = energy + change
+            if np.abs(change).max() < 1e-14 * energy.max():
+                break
+        half = np.pi * (problem.angles[:, None] - angle) / problem.period
+        with np.errstate(divide="ignore", invalid="ignore"):
+            weight = np.where(np.abs(np.sin(half)) < 1e-12, 1.0, np.sin(points * half) / (points * np.sin(half)))
+        return problem.speeds(weight @ energy)
+
+    return run
+
+
+TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
+METHODS = (
+    Method("ours, NumPy", _ours("numpy"), ours=True),
+    Method("ours, compiled", _ours("compiled"), ours=True),
+    Method("stepping until it repeats, DOP853", _stepping("DOP853"), "tolerance", TOLERANCES),
+    Method("stepping until it repeats, LSODA", _stepping("LSODA"), "tolerance", TOLERANCES[:-1]),
+    Method("shooting, DOP853", _shooting("DOP853"), "tolerance", TOLERANCES),
+    Method("shooting, fixed steps, RK4", _fixed(4), "steps a turn", (24, 72, 216, 648, 1944)),
+    Method("shooting, fixed steps, RK8", _fixed(12), "steps a turn", (24, 48, 96, 192)),
+    Method("collocation, SciPy solve_bvp", _bvp, "tolerance", (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)),
+    Method("collocation, Fourier", _fourier, "points", (9, 17, 33, 65, 129, 257, 513)),
+)

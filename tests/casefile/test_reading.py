@@ -1,0 +1,111 @@
+"""Reading a case file: every problem at once, each with its key, what was found and what is allowed."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.casefile.case import shipped_cases
+from support.case_files import problems
+from support.plain_case import PLAIN
+
+
+def test_a_path_and_a_shipped_name_read_the_same_case(tmp_path):
+    copy = tmp_path / "mine.toml"
+    shutil.copy(shipped_cases()["sawframe_2r63"], copy)
+    assert list(ks.load_case(copy).variants) == list(ks.load_case("sawframe_2r63").variants)
+
+
+def test_every_problem_of_a_file_is_reported_at_once_with_its_key(tmp_path):
+    text = """
+title = "bad"
+reference = "plane"
+colour = "red"
+[common]
+crank_speed = "320 Hz"
+[common.coupler]
+mass = "-150 kg"
+intertia = "20.5 kg m^2"
+[variants.plain]
+mechanism = "crank-slider"
+crank_length = 0.3
+coupler_lenght = "2 m"
+assembly = 2
+[variants.cam]
+mechanism = "cam-crank-slider"
+coupler_length = "nan m"
+cam = { kind = "ellipse", radius = "300 mm" }
+process_force = {}
+[variants.none]
+[variants.typo]
+mechanism = "crank-slidr"
+crank_length = "300 kg"
+"""
+    found = problems(tmp_path, text)
+    expected = [
+        ("reference", "'plain'"),
+        ("colour", "is not a key here"),
+        ("common.crank_speed", "Hz"),
+        ("common.coupler.mass", "at least 0 kg"),
+        ("common.coupler.intertia", "did you mean 'inertia'?"),
+        ("variants.plain.crank_length", "number and a unit"),
+        ("variants.plain.coupler_length", "is missing"),
+        ("variants.plain.coupler_lenght", "did you mean 'coupler_length'?"),
+        ("variants.plain.assembly", "1 or -1"),
+        ("variants.cam.coupler_length", "nan m"),
+        ("variants.cam.cam.kind", "'cosine-law'"),
+        ("variants.cam.process_force", "needs either force"),
+        ("variants.none.mechanism", "is missing"),
+        ("variants.typo.mechanism", "did you mean 'crank-slider'?"),
+        ("variants.typo.crank_length", '"kg"'),
+        ("variants.typo.coupler_length", "is missing"),
+    ]
+    for key, words in expected:
+        assert [line for line in found if line.startswith(key + " ") or line.startswith(key + ":") if words in line], (
+            key
+        )
+    assert len(found) == len(expected)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            ('crank_speed = "320 rpm"', 'crank_speed = "320"'),
+            'common.crank_speed has no unit; write for example "320 r',
+        ),
+        (('"300 mm"', '"0 mm"'), "variants.plain.crank_length must be greater than 0 m, found '0 mm'"),
+        (('"2 m"', '"2 furlog"'), 'variants.plain.coupler_length unit "furlog" is not known'),
+        (('"600 kg"', '"6e999 kg"'), "common.slider.mass is too large for double precision"),
+        (('"mid-length"', '["1 m"]'), "common.coupler.centre must be a pair"),
+        (('reference = "plain"', ""), "reference is missing"),
+        (("[variants.plain]", "[variants.plain.crank]"), "variants.plain.mechanism is missing"),
+    ],
+)
+def test_one_wrong_entry_is_named_with_what_was_found_and_what_is_allowed(tmp_path, change, words):
+    assert any(line.startswith(words) for line in problems(tmp_path, PLAIN.replace(*change)))
+
+
+def test_missing_unreadable_and_malformed_files_are_case_errors(tmp_path):
+    with pytest.raises(ks.CaseError, match="did you mean 'sawframe_2r63'"):
+        ks.load_case("sawframe_2r36")
+    with pytest.raises(ks.CaseError, match="cannot be read"):
+        ks.load_case(tmp_path)
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ks.CaseError, match="not UTF-8"):
+        ks.load_case(tmp_path / "binary.toml")
+    assert "is not TOML" in problems(tmp_path, 'title = "a\n')[0]
+
+
+def test_the_name_of_a_shipped_case_means_that_case_whatever_lies_here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sawframe_2r63").write_text(PLAIN, encoding="utf-8")
+    with pytest.warns(UserWarning, match=r"read as the shipped case of that name.* write './sawframe_2r63'") as caught:
+        assert ks.load_case("sawframe_2r63").title.startswith("Log frame saw")
+    assert caught[0].filename == __file__
+    for path in ("./sawframe_2r63", Path("sawframe_2r63"), str(tmp_path / "sawframe_2r63")):
+        assert ks.load_case(path).title == "test"
+    (tmp_path / "sawframe_2r63").rename(tmp_path / "sawframe_2r63.toml")
+    assert ks.load_case("sawframe_2r63.toml").title == "test"
+    assert ks.load_case("sawframe_2r63").title.startswith("Log frame saw")

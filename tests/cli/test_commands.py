@@ -1,0 +1,402 @@
+"""The command line, as a user runs it."""
+
+import re
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.casefile.case import shipped_cases
+from kinetostatics.cli import main
+from kinetostatics.cli.commands import STARTERS
+
+
+@pytest.fixture
+def broken(tmp_path):
+    path = tmp_path / "broken.toml"
+    path.write_text('title = "x"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\n')
+    return path
+
+
+def test_compare_prints_ours_and_the_published_figures(capsys):
+    assert main(["compare", "sawframe_2r63"]) == 0
+    printed = capsys.readouterr().out
+    row = next(line for line in printed.splitlines() if line.startswith("mean |balancing torque|") and "3426" in line)
+    assert "6.77829" in row
+    assert "6.77 (ratio)" in row
+    assert printed.count("power residual") == 2
+
+
+def test_run_prints_extremes_and_the_power_check(capsys):
+    assert main(["run", "sawframe_2r63", "--variant", "plain"]) == 0
+    printed = capsys.readouterr().out
+    assert "40578.9" in printed
+    assert "power balance: the torques by equilibrium and by powers differ by" in printed
+    assert "cam" not in printed.split("plain: crank-slider")[1]
+
+
+def test_run_prints_0_for_what_is_rounding_and_groups_in_the_order_of_the_chain(capsys):
+    assert main(["run", "in_line_twin", "--variant", "throws-opposed"]) == 0
+    printed = capsys.readouterr().out.split("\n\npower balance")[0]
+    assert not re.search(r"e-\d", printed)
+    cells = {line[:29].strip(): line[29:].split() for line in printed.splitlines()}
+    assert cells["shaking moment"] == ["N", "m", "0", "0"]
+    assert cells["reaction guide1"][:2] == ["N", "0"]
+    names = list(cells)
+    assert names.index("guide force1") < names.index("guide force2")
+    assert names.index("reaction guide1") < names.index("reaction C2") < names.index("reaction O")
+
+
+def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):
+    path = tmp_path / "new" / "saw.csv"
+    assert main(["run", "sawframe_2r63", "--angles", "36", "--csv", str(path)]) == 0
+    table = pd.read_csv(path)
+    assert len(table) == 3 * 36
+    assert {"variant", "crank_angle [deg]", "balancing_torque [N m]", "cam_force [N]", "B_x [m]"} <= set(table.columns)
+    assert table["cam_force [N]"].isna().sum() == 36
+    assert f"wrote {path}: 108 rows" in capsys.readouterr().out
+
+
+def test_plot_writes_each_figure_of_the_case(tmp_path, capsys):
+    assert main(["plot", "sawframe_2r63", "--out", str(tmp_path)]) == 0
+    written = sorted(path.name for path in tmp_path.iterdir())
+    names = ["acceleration_error", "cam_force", "hodograph", "mechanism", "overview", "pressure_angle", "torque"]
+    assert written == [f"sawframe_2r63_{name}.png" for name in names]
+    assert len(capsys.readouterr().out.splitlines()) == len(names)
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in tmp_path.iterdir())
+
+
+def test_same_figure_is_written_as_svg_byte_for_byte_again(tmp_path):
+    for folder in ("a", "b"):
+        arguments = ["--out", str(tmp_path / folder), "--format", "svg", "--only", "torque"]
+        assert main(["plot", "sawframe_2r63", *arguments]) == 0
+    first, second = (tmp_path / folder / "sawframe_2r63_torque.svg" for folder in ("a", "b"))
+    assert first.read_bytes() == second.read_bytes()
+    assert first.read_bytes().startswith(b"<?xml")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "no_such_case"],
+        ["compare", "sawframe_2r63", "--variant", "cam"],
+        ["plot", "sawframe_2r63", "--out", "unused", "--only", "torqe"],
+    ],
+)
+def test_bad_input_ends_with_status_2_and_one_message(arguments, capsys):
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("kinetostatics: ")
+    assert len(captured.err.splitlines()) < 24
+
+
+def test_a_broken_case_writes_nothing(tmp_path, broken, capsys):
+    target = tmp_path / "out.csv"
+    assert main(["run", str(broken), "--csv", str(target)]) == 2
+    assert not target.exists()
+    assert "variants.a.crank_length is missing" in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(tmp_path, monkeypatch, capsys):
+    target = tmp_path / "saw.csv"
+    target.write_text("old")
+
+    def fails(self, path, **_):
+        with open(path, "w") as stream:  # noqa: PTH123
+            stream.write("half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(pd.DataFrame, "to_csv", fails)
+    assert main(["run", "sawframe_2r63", "--variant", "plain", "--csv", str(target)]) == 2
+    assert target.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [target]
+    assert "disk full" in capsys.readouterr().err
+
+
+def test_module_and_shell_agree_and_show_no_traceback(broken):
+    command = [sys.executable, "-m", "kinetostatics", "compare", str(broken)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert done.stderr.startswith(f"kinetostatics: {broken}: 3 problems")
+
+
+def test_run_puts_each_extremum_beside_its_own_angle(capsys):
+    main(["run", "sawframe_2r63", "--variant", "plain"])
+    row = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("balancing torque  "))
+    assert row.split()[-4:] == ["-40237.5", "320.632", "40578.9", "39.2885"]
+
+
+def test_a_case_of_one_variant_is_run_and_plotted_and_has_nothing_to_compare(tmp_path, capsys):
+    case = tmp_path / "one.toml"
+    case.write_text(
+        'title = "one"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\ncrank_speed = "60 rpm"\n'
+        'crank_length = "0.1 m"\ncoupler_length = "0.4 m"\nslider = { mass = "1 kg" }\n'
+    )
+    assert main(["run", str(case)]) == 0
+    assert main(["plot", str(case), "--out", str(tmp_path)]) == 0
+    assert main(["compare", str(case)]) == 2
+    assert "nothing to compare" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'title = "x"\nreference = ["a"]\n[variants.a]\nmechanism = "crank-slider"\n',
+        'title = "x"\nreference = "a"\n[variants.a]\nmechanism = ["crank-slider"]\n',
+        'title = "x"\nreference = "a"\n[variants.a]\nmechanism = "crank-slider"\ncoupler_length = "2 (m"\n',
+        'title = "x"\nreference = "a"\nvariants = 3\n',
+        'title = "x"\nreference = "a"\ncommon = 3\n[variants.a]\nmechanism = "crank-slider"\n',
+    ],
+)
+def test_values_of_the_wrong_kind_are_problems_not_tracebacks(tmp_path, text, capsys):
+    (tmp_path / "odd.toml").write_text(text)
+    assert main(["run", str(tmp_path / "odd.toml")]) == 2
+    assert capsys.readouterr().err.startswith("kinetostatics: ")
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ('"modulus"', "published: row is 'modulus', allowed: 'modulus h [mm]'"),
+        (
+            '"modulus h [mm]"',
+            "published: column of 'modulus h [mm]' is 'ful crank', allowed: .* did you mean 'full crank'",
+        ),
+    ],
+)
+def test_a_published_figure_without_a_place_in_the_balancing_table_is_refused(tmp_path, capsys, table, message):
+    text = shipped_cases()["mower_drive"].read_text(encoding="utf-8").partition("[published]")[0]
+    path = tmp_path / "mower.toml"
+    path.write_text(f'{text}[published.balancing.{table}]\n"ful crank" = "1"\n', encoding="utf-8")
+    assert main(["compare", str(path), "--variant", "full"]) == 2
+    assert re.search(message.replace("[mm]", ".mm."), capsys.readouterr().err)
+
+
+# Cases that are there, and new ones
+
+
+def test_list_has_a_line_for_each_shipped_case_with_title_and_variants(capsys):
+    assert main(["list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(shipped_cases())
+    mower = next(line for line in lines if line.startswith("mower_drive "))
+    assert "Mower drive: static balancing of an offset crank-slider (unbalanced, full, partial-1" in mower
+
+
+@pytest.mark.parametrize("kind", STARTERS)
+def test_a_new_case_compares_its_variants_as_it_is_written(tmp_path, monkeypatch, capsys, kind):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "my pump", "--kind", kind]) == 0
+    assert capsys.readouterr().out == 'wrote my pump.toml; kinetostatics run "my pump.toml"\n'
+    assert main(["compare", "my pump.toml"]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("my pump\n")
+    assert " / " in printed
+
+
+def test_a_new_case_is_a_crank_slider_unless_told(tmp_path, capsys):
+    assert main(["new", str(tmp_path / "mine")]) == 0
+    assert main(["run", str(tmp_path / "mine.toml"), "--variant", "plain", "--angles", "24"]) == 0
+    assert "plain: crank-slider" in capsys.readouterr().out
+
+
+def test_a_new_case_never_takes_the_place_of_a_file(tmp_path, capsys):
+    path = tmp_path / "pump.toml"
+    path.write_text("old", encoding="utf-8")
+    for name in (path, path.with_suffix("")):
+        assert main(["new", str(name)]) == 2
+        assert f"{path} is there already; give another name" in capsys.readouterr().err
+    assert path.read_text(encoding="utf-8") == "old"
+
+
+@pytest.mark.parametrize("name", ["new\nline", 'say "when"', "b\\c", "\N{GREEK SMALL LETTER OMEGA}.toml"])
+def test_a_new_case_of_an_odd_name_is_read_again(tmp_path, name):
+    assert main(["new", str(tmp_path / name)]) == 0
+    (path,) = tmp_path.iterdir()
+    assert ks.load_case(path).title == path.stem
+
+
+@pytest.mark.parametrize(
+    ("own", "turns"),
+    [
+        ('rocker_length = "2 m"\nrocker_pivot = ["4 m", "0 m"]\nassembly = "open"\n', 2),
+        (
+            'rocker_length = "3 m"\nrocker_pivot = ["3.5 m", "1 m"]\n[[variants.a.loads]]\nkind = "torque"\n'
+            'on = "rocker"\nvalue = { file = "t.csv", period = "720 deg" }\n',
+            2,
+        ),
+    ],
+)
+def test_run_goes_over_the_turns_after_which_a_mechanism_or_its_loads_repeat(tmp_path, own, turns):
+    """A crank 1, coupler 3, rocker 2, ground 4 closes after two; so does a load with a period of two."""
+    (tmp_path / "t.csv").write_text("crank_angle [deg], torque [N m]\n0, 0\n240, 3\n480, 1\n", encoding="utf-8")
+    text = 'title = "turns"\nreference = "a"\n[variants.a]\nmechanism = "four-bar"\ncrank_speed = "60 rpm"\n'
+    text += f'crank_length = "1 m"\ncoupler_length = "{5 - turns if "open" in own else 4} m"\n{own}'
+    path = tmp_path / "turns.toml"
+    path.write_text(text, encoding="utf-8")
+    table = tmp_path / "out.csv"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ks.ConditionWarning)  # of the reactions that are infinite at change points
+        assert main(["run", str(path), "--angles", "30", "--csv", str(table)]) == 0
+    angles = pd.read_csv(table)["crank_angle [deg]"]
+    assert angles.iloc[-1] == pytest.approx(29 / 30 * turns * 360)
+
+
+def test_double_cranks_are_compared_without_the_table_of_swings(tmp_path, capsys):
+    text = 'title = "double crank"\nreference = "a"\n[common]\nmechanism = "four-bar"\ncrank_speed = "60 rpm"\n'
+    text += 'crank_length = "0.35 m"\ncoupler_length = "0.4 m"\nrocker_length = "0.3 m"\n'
+    text += 'rocker_pivot = ["0.1 m", "0 m"]\ncoupler = { mass = "2 kg" }\n'
+    text += (
+        '[[common.loads]]\nkind = "torque"\nvalue = "9 N m"\non = "rocker"\n[variants.a]\n[variants.b]\nassembly = -1\n'
+    )
+    path = tmp_path / "drag.toml"
+    path.write_text(text, encoding="utf-8")
+    assert main(["compare", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert "a / b" in printed
+    assert "swing" not in printed
+
+
+PUMP = """
+title = "Pump"
+reference = "pump"
+[common]
+mechanism = "crank-slider"
+crank_speed = "100 rad/s"
+crank_length = "5 cm"
+coupler_length = "20 cm"
+slider = { mass = "1 kg" }
+[common.drive]
+motor = { kind = "kloss", power = "750 W", speed = "99 rad/s", synchronous_speed = "104.7 rad/s", overload = 2.5 }
+flywheel = "0.05 kg m^2"
+[variants.pump]
+[variants.sprung.spring]
+stiffness = "20 kN/m"
+free_position = "25 cm"
+[variants.overloaded]
+loads = [{ kind = "torque", value = "-50 N m", on = "crank" }]
+"""
+
+
+@pytest.fixture
+def pump(tmp_path):
+    path = tmp_path / "pump.toml"
+    path.write_text(PUMP)
+    return path
+
+
+def test_drive_prints_running_and_start_up_or_why_there_is_none(pump, capsys):
+    assert main(["drive", str(pump)]) == 0
+    printed = capsys.readouterr().out
+    rows = {line.split("  ")[0]: line.split() for line in printed.splitlines()}
+    variant = ks.load_case(pump).variants["pump"]
+    run = ks.drive.steady(variant.scene, variant.motor, variant.flywheel)
+    begun = ks.drive.start(variant.scene, variant.motor, variant.flywheel)
+    assert rows["mean speed of the crank"][-2] == f"{run.mean_speed:.6g}"
+    assert rows["smallest speed"][-2] == f"{run.speed_range[0]:.6g}"
+    at = np.radians(float(rows["crank angle of the smallest"][-2]))
+    assert run.motion(np.array([at]))[0][0] == pytest.approx(run.speed_range[0], rel=1e-9)
+    assert rows["start-up time from crank angle 0 deg"][-1] == f"{begun.time[-1]:.6g}"  # the other does not start
+    assert "sprung: crank-slider: it starts and stops after" in printed
+    assert "overloaded: crank-slider: the motor is too weak" in printed
+
+
+def test_drive_writes_a_table_and_figures_with_units(pump, tmp_path, capsys):
+    folder = tmp_path / "drive"
+    assert main(["drive", str(pump), "--variant", "pump", "--out", str(folder)]) == 0
+    names = ["pump_drive.csv", "pump_drive_energy.png", "pump_drive_speed.png", "pump_drive_torque.png"]
+    assert sorted(path.name for path in folder.iterdir()) == names
+    table = pd.read_csv(folder / "pump_drive.csv")
+    assert len(table) == 720
+    assert {"variant", "crank_speed [rad/s]", "motor_torque [N m]", "motor_power [W]"} <= set(table.columns)
+    printed = capsys.readouterr().out
+    assert all(str(folder / name) in printed for name in names)
+
+
+def test_drive_starts_from_the_angle_asked_for_and_tells_where_energy_goes(pump, capsys):
+    assert main(["drive", str(pump), "--variant", "pump", "--start", "40 deg"]) == 0
+    printed = capsys.readouterr().out
+    variant = ks.load_case(pump).variants["pump"]
+    begun = ks.drive.start(variant.scene, variant.motor, variant.flywheel, np.radians(40.0))
+    flow = ks.drive.steady(variant.scene, variant.motor, variant.flywheel).energy_flow
+    rows = {line.split("  ")[0]: line.split() for line in printed.splitlines()}
+    assert rows["start-up time from crank angle 40 deg"][-1] == f"{begun.time[-1]:.6g}"
+    for part in flow.parts:
+        name, value = (
+            (part.name, part.energy)
+            if part.swing != part.swing
+            else (f"{part.name}, largest less smallest", part.swing)
+        )
+        assert rows[name][-1] == f"{value:.6g}"
+    lost = flow["rotor, by slip"] / flow.turn_time
+    assert float(rows["lost in the rotor by slip, mean"][-1]) == pytest.approx(lost, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("angle", "message"),
+    [("40", "has no unit"), ("40 m", "does not measure the same"), ("nan deg", "must be text"), ("", "must be text")],
+)
+def test_a_start_angle_without_unit_is_refused(angle, message, capsys):
+    with pytest.raises(SystemExit):
+        main(["drive", "sawframe_2r63", "--start", angle])
+    assert message in capsys.readouterr().err
+
+
+def test_drive_says_why_nothing_runs_and_where_there_is_no_drive(pump, capsys):
+    for case, variant, message in (
+        (str(pump), "overloaded", "N m are missing"),
+        (str(pump), "pomp", "did you mean 'pump'?"),
+        ("shaper", None, "has no drive for "),
+    ):
+        assert main(["drive", case, *(["--variant", variant] if variant else [])]) == 2
+        printed = capsys.readouterr()
+        assert message in printed.err
+        assert not printed.out
+
+
+def test_run_prints_what_friction_takes_at_each_joint_and_the_efficiency(capsys):
+    assert main(["run", "sawframe_2r63_friction", "--variant", "cam-cosine", "--angles", "8"]) == 0
+    text = capsys.readouterr().out.split("power lost by friction, exact means over the turn\n\n")[1]
+    cells = {line.split()[0]: line.split()[1:] for line in text.splitlines() if line}
+    assert re.match(r"lost at +mean \[W\] +share \[%\] +largest \[W\] +largest at \[deg\] +per turn \[J\]", text)
+    assert {"O", "A", "B", "guide", "slot", "cam", "all"} < set(cells)
+    assert float(cells["all"][0]) == pytest.approx(11733.0, rel=1e-5)
+    assert "of 11733 W put in, 0 W are taken and 11733 W lost: efficiency 0" in text
+
+
+def test_run_and_compare_say_nothing_of_losses_without_friction(capsys):
+    for command in (["run", "mower_drive", "--variant", "full"], ["compare", "mower_drive", "--variant", "full"]):
+        assert main(command) == 0
+        assert not re.search("lost|efficiency", capsys.readouterr().out)
+
+
+def test_compare_prints_what_balancing_saves_of_friction(capsys):
+    assert main(["compare", "sawframe_2r63_friction", "--variant", "cam-cosine-rolling"]) == 0
+    (row,) = (line for line in capsys.readouterr().out.splitlines() if re.match(r"mean power lost +W", line))
+    assert row.split()[-3:] == ["42948.7", "7325.54", "5.86287"]
+
+
+def test_sweep_of_a_variant_with_friction_tells_what_it_loses_unasked(capsys):
+    arguments = ["sweep", "sawframe_2r63_friction", "--variant", "plain", "--vary", "slider.mass=600..650 kg:2"]
+    assert main(arguments) == 0
+    assert "mean friction_loss [W]" in capsys.readouterr().out
+
+
+def test_run_and_compare_of_a_saw_that_starts_from_rest_have_no_losses(tmp_path, capsys):
+    text = shipped_cases()["sawframe_2r63_friction"].read_text(encoding="utf-8")
+    text = text.replace('crank_speed = "320 rpm"', 'crank_speed = "0 rpm"\ncrank_acceleration = "2 rad/s^2"')
+    text = text.replace('"balance the slider"', '"674 kN/m"')
+    path = tmp_path / "from_rest.toml"
+    path.write_text(text, encoding="utf-8")
+    assert main(["run", str(path), "--variant", "plain"]) == 0
+    assert main(["compare", str(path), "--variant", "cam-cosine"]) == 0
+    assert main(["plot", str(path), "--only", "losses", "--out", str(tmp_path)]) == 2
+    printed = capsys.readouterr().out
+    assert "reaction O" in printed
+    assert not re.search("mean power lost|efficiency", printed)

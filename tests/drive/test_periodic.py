@@ -1,0 +1,235 @@
+"""Periodic running: against 30 digits, closed forms, balances and limits; and where there is none."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from support import DATA
+
+TURN = 2 * math.pi
+MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875)
+SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
+CAM = ks.cams.CosineLaw(0.3, 2.0)
+FAN = ks.Torque(lambda motion: -2.0 * motion.crank_speed * motion.crank_speed, on="crank")
+CUT = ks.ProcessForce(ks.Table(np.linspace(0.0, TURN, 41)[:-1], 4e3 + 4e3 * np.sin(TURN / 40 * np.arange(40))))
+DAMPER = ks.PointDamper(150.0, between=("A", (0.5, 1.0)))
+
+
+def saw(*loads):
+    return ks.Scene(SAW, 33.0, loads=(ks.Gravity(), *loads))
+
+
+@pytest.fixture(scope="module")
+def reference():
+    return json.loads((DATA / "driven_sawframe.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
+def test_the_plain_sawframe_runs_as_30_digits_say(reference, engine):
+    if engine == "compiled":
+        pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+    motor = ks.drive.Motor.kloss(reference["motor"].pop("power", 55e3), **{**reference["motor"], "speed": 153.9})
+    scene = ks.load_case("sawframe_2r63").variants["plain"].scene
+    run = ks.drive.steady(scene, motor, 1000.0, angles=np.radians(reference["angle [deg]"]), engine=engine)
+    for name in ("speed", "acceleration", "motor_torque"):
+        exact = np.array(reference[name], dtype=float)
+        assert np.abs(getattr(run, name) - exact).max() < 1e-11 * np.abs(exact).max(), name
+    for name in ("mean_speed", "fluctuation", "fluctuation_arithmetic"):
+        assert getattr(run, name) == pytest.approx(float(reference[name]), rel=1e-12), name
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "loads", "flywheel"),
+    [
+        (SAW, (ks.Gravity(), CUT), 1000.0),
+        (SAW, (ks.Gravity(), DAMPER, FAN), 30.0),
+        (SAW, (ks.Gravity(),), 0.0),
+        (
+            ks.cam_crank_slider(CAM, CAM.coupler_length, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0)),
+            (ks.Gravity(), ks.Spring(6.7e5, 2.0)),
+            100.0,
+        ),
+        (
+            ks.four_bar(0.3, 0.8, 0.6, rocker_pivot=(0.7, 0.4), rocker=ks.Link(50.0, (0.3, 0.1), 4.0)),
+            (ks.Gravity(), ks.Torque(-400.0, on="rocker")),
+            5.0,
+        ),
+    ],
+    ids=["table", "dampers", "no flywheel", "cam", "four-bar"],
+)
+def test_the_true_motion_balances_motor_machine_and_flywheel(mechanism, loads, flywheel):
+    run = ks.drive.steady(ks.Scene(mechanism, 1.0, loads=loads), MOTOR, flywheel)
+    drive = MOTOR.transmission * run.motor_torque
+    left = run.solution.balancing_torque + flywheel * run.acceleration - drive
+    scale = max(np.abs(drive).max(), np.abs(flywheel * run.acceleration).max(), run.solution.largest_torque_term)
+    assert np.abs(left).max() < 1e-12 * scale
+    # work of the loads in a turn, by quadrature of their torque between the crank angles of tables
+    whole = run.solution.at(np.linspace(0.0, TURN, 40 * 64, endpoint=False) + TURN / 5120)
+    work = TURN * np.mean(whole.load_torque)
+    assert run.energy_per_turn == pytest.approx(work, rel=2e-4, abs=1e-11 * TURN * scale)
+
+
+def test_a_motor_line_in_the_square_of_speed_gives_the_closed_form():
+    """T = a - b omega^2, here as constant torque and a fan: U follows by two quadratures."""
+    torque, fan, flywheel = 1600.0, 2.0, 50.0
+    scene = saw(FAN)
+    run = ks.drive.steady(scene, ks.drive.Motor.constant(torque), flywheel, angles=[0.0])
+    plain = saw()
+
+    def inertia(angle):
+        return flywheel + plain.solve(angle).reduced_inertia
+
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    edges = np.linspace(0.0, TURN, 41)
+    half = np.diff(edges)[:, None] / 2
+    at = edges[:-1, None] + half * (1.0 + nodes)
+    rate = 2.0 * fan / inertia(at.ravel()).reshape(at.shape)
+    whole = np.concatenate([[0.0], np.cumsum((half * weights * rate).sum(axis=1))])
+    inner = at[..., None] * 0.0 + (edges[:-1, None, None] + (at - edges[:-1, None])[..., None] * (1.0 + nodes) / 2)
+    inner_rate = 2.0 * fan / inertia(inner.ravel()).reshape(inner.shape)
+    raised = whole[:-1, None] + ((at - edges[:-1, None])[..., None] / 2 * weights * inner_rate).sum(axis=-1)
+    load = plain.solve(at.ravel()).load_torque.reshape(at.shape)
+    gained = (half * weights * np.exp(raised) * (torque - load)).sum()
+    energy = math.exp(-whole[-1]) * gained / -math.expm1(-whole[-1])
+    assert run.speed[0] == pytest.approx(math.sqrt(2.0 * energy / inertia(0.0)), rel=1e-13)
+
+
+def test_a_great_flywheel_runs_evenly_at_the_speed_of_mean_torque():
+    run = ks.drive.steady(saw(CUT, FAN), MOTOR, 1e9)
+    assert run.fluctuation < 1e-6
+    even = ks.Scene(SAW, run.mean_speed, loads=(ks.Gravity(), CUT, FAN)).solve(40 * 36)
+    assert MOTOR.torque_at_crank(run.mean_speed) == pytest.approx(even.balancing_torque.mean(), rel=1e-6)
+
+
+def test_a_motor_that_turns_the_other_way_runs_the_mirror_image():
+    back = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=-4.6875)
+    scene = ks.Scene(SAW, 1.0, loads=(ks.Torque(-300.0, on="crank"),))
+    mirrored = ks.Scene(SAW, 1.0, loads=(ks.Torque(300.0, on="crank"),))
+    one, other = ks.drive.steady(scene, MOTOR, 200.0), ks.drive.steady(mirrored, back, 200.0)
+    assert other.mean_speed == pytest.approx(-one.mean_speed, rel=1e-13)
+    assert other.speed[1:] == pytest.approx(-one.speed[:0:-1], rel=1e-12)
+    assert other.energy_per_turn == pytest.approx(one.energy_per_turn, rel=1e-11)
+
+
+def test_of_several_running_speeds_the_stable_one_is_found():
+    """A constant load crosses Kloss's curve twice; below the breakdown torque running is not stable."""
+    scene = ks.Scene(SAW, 1.0, loads=(ks.Torque(-2500.0, on="crank"),))
+    run = ks.drive.steady(scene, MOTOR, 1e4)
+    slow = 157.0 * (1.0 - MOTOR.breakdown_slip) / 4.6875
+    assert run.speed_range[0] > slow
+    assert MOTOR.torque_at_crank(slow / 3.0) < 2500.0 < MOTOR.torque_at_crank(slow)
+
+
+def test_a_load_of_two_turns_runs_over_two_turns():
+    angle = np.linspace(0.0, 2 * TURN, 81)[:-1]
+    gas = ks.ProcessForce(ks.Table(angle, -3e4 * np.exp(-((angle - 6.0) ** 2)), period=2 * TURN), period=2 * TURN)
+    run = ks.drive.steady(saw(gas), MOTOR, 300.0)
+    assert run.turns == 2
+    assert run.period == pytest.approx(2 * TURN)
+    assert run.mean_speed == pytest.approx(2 * TURN / run.duration)
+    assert abs(run.motion(np.array(0.1))[0] - run.motion(np.array(0.1 + TURN))[0]) > 1e-3
+    assert run.solution.period == run.period
+
+
+def test_a_linkage_whose_branch_takes_two_turns_runs_over_two_turns():
+    deltoid = ks.four_bar(0.3, 0.8, 0.8, rocker_pivot=(0.3, 0.0), assembly="open", rocker=ks.Link(20.0, 0.5, 2.0))
+    run = ks.drive.steady(ks.Scene(deltoid, 1.0, loads=(ks.Gravity(), ks.Torque(-300.0, on="crank"))), MOTOR, 20.0)
+    assert run.turns == 2
+    assert run.energy_per_turn == pytest.approx(300.0 * TURN, rel=1e-12)
+    left = run.solution.balancing_torque + 20.0 * run.acceleration - MOTOR.transmission * run.motor_torque
+    assert np.abs(left).max() < 1e-13 * np.abs(MOTOR.transmission * run.motor_torque).max()
+
+
+def test_a_table_over_travel_with_a_stroke_back_does_its_exact_work():
+    cut = ks.Table([1.6, 1.9, 2.4], [3e3, 3e3, 5e3], over="travel", back=[0.0, 0.0, 0.0])
+    run = ks.drive.steady(saw(ks.ProcessForce(cut)), MOTOR, 20.0)
+    assert run.energy_per_turn == pytest.approx(-(0.2 * 3e3 + 0.4 * 3.8e3), rel=1e-12)
+
+
+def test_a_load_that_jumps_where_nobody_told_is_resolved_at_its_jump():
+    jump = 1.2345
+    pushed = ks.Torque(lambda motion: np.where(np.mod(motion.crank_angle, TURN) < jump, -800.0, 0.0), on="crank")
+    run = ks.drive.steady(saw(pushed), MOTOR, 100.0)
+    assert run.energy_per_turn == pytest.approx(800.0 * jump, rel=1e-11)
+
+
+def test_without_motor_a_constant_torque_keeps_the_mean_speed_of_the_scene():
+    run = ks.drive.steady(saw(CUT), None, 500.0)
+    assert run.mean_speed == pytest.approx(33.0, rel=1e-13)
+    assert np.ptp(run.motor_torque) == 0.0
+    left = run.solution.balancing_torque + 500.0 * run.acceleration - run.motor_torque
+    assert np.abs(left).max() < 1e-11 * run.solution.largest_torque_term
+
+
+# Where there is none
+
+
+def test_a_motor_too_weak_for_the_mean_load_is_told_with_the_torque_missing():
+    load = 5000.0
+    with pytest.raises(ks.DriveError, match="the motor is too weak") as caught:
+        ks.drive.steady(ks.Scene(SAW, 1.0, loads=(ks.Torque(-load, on="crank"),)), MOTOR, 1000.0)
+    most = MOTOR.transmission * MOTOR.breakdown_torque
+    assert caught.value.missing == pytest.approx(load - most, rel=1e-3)
+    assert "N m at the crank" in str(caught.value)
+
+
+def test_a_motor_too_weak_for_the_peak_without_flywheel_stalls_at_a_crank_angle():
+    peak = ks.Torque(lambda motion: -8000.0 * (0.5 - 0.5 * np.cos(motion.crank_angle)), on="crank")
+    small = ks.Scene(ks.crank_slider(0.3, 2.0, crank=ks.Link(0.0, 0.0, 3.0)), 1.0, loads=(peak,))
+    assert ks.drive.steady(
+        small, ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875), 4e3
+    )
+    with pytest.raises(ks.DriveError, match="comes to a standstill at crank angle") as caught:
+        ks.drive.steady(
+            small, ks.drive.Motor.kloss(9e4, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875), 0.0
+        )
+    assert 1.5 < caught.value.crank_angle < math.pi
+
+
+@pytest.mark.parametrize(
+    ("scene", "motor", "flywheel", "words"),
+    [
+        (ks.Scene(ks.crank_slider(0.1, 0.4, slider=ks.Link(3.0)), 1.0), MOTOR, 0.0, "all inertia vanishes"),
+        (ks.Scene(ks.crank_slider(0.1, 0.4), 1.0), MOTOR, 0.0, "all inertia vanishes"),
+        (saw(), ks.drive.Motor.constant(30.0), 10.0, "nothing holds the speed"),
+        (saw(FAN), None, 10.0, "depend on the speed"),
+        (saw(), ks.drive.Motor.table([0.0, 100.0], [300.0, 200.0]), 10.0, "runs away"),
+    ],
+)
+def test_running_that_does_not_exist_is_refused(scene, motor, flywheel, words):
+    with pytest.raises(ks.DriveError, match=words):
+        ks.drive.steady(scene, motor, flywheel)
+
+
+@pytest.mark.parametrize(
+    ("scene", "motor", "flywheel", "words"),
+    [
+        (SAW, MOTOR, 1.0, "scene must be a Scene"),
+        (saw(), "55 kW", 1.0, "motor must be a Motor"),
+        (saw(), MOTOR, -1.0, "flywheel must be at least 0"),
+        (saw(), MOTOR, math.nan, "flywheel must be finite"),
+        (saw(), MOTOR, "big", "flywheel must be a number"),
+        (saw(ks.ProcessForce(np.ones(720))), MOTOR, 1.0, "table over the crank angles given"),
+        (
+            ks.Scene(ks.crank_slider(np.array([[0.3], [0.2]]), 2.0, slider=ks.Link(1.0)), 1.0),
+            MOTOR,
+            1.0,
+            "one design at a time",
+        ),
+        (saw(ks.ProcessForce(lambda motion: motion.slider_acceleration)), MOTOR, 9e3, "depends on the crank accelera"),
+        (ks.Scene(SAW, 0.0), None, 1.0, "crank_speed of the scene must not be 0"),
+    ],
+)
+def test_what_cannot_be_driven_is_refused(scene, motor, flywheel, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.drive.steady(scene, motor, flywheel)
+
+
+def test_a_mechanism_that_does_not_make_full_turns_is_refused_with_its_gaps():
+    rocking = ks.Scene(ks.four_bar(0.6, 0.8, 0.3, rocker_pivot=(0.7, 0.4), rocker=ks.Link(5.0)), 1.0)
+    with pytest.raises(ks.AssemblyError) as caught:
+        ks.drive.steady(rocking, MOTOR, 1.0)
+    assert caught.value.intervals

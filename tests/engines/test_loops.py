@@ -1,0 +1,60 @@
+"""Compiled loops: gaps, limit positions and threads change no word and no bit."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.engines import loops
+from support.both_engines import ULP, again, assert_same
+from support.scenes import (
+    ANGLES,
+    SAMPLES,
+    SCENES,
+    SIZES,
+    solve,
+)
+
+
+@pytest.fixture
+def numba():
+    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+
+
+def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeypatch):
+    """Of many designs each thread takes some, of a single one some angles."""
+    expected = solve(SCENES["plain"], SAMPLES + SIZES), solve(SCENES["plain"], ANGLES)
+    alone = [again(s).reaction("O") for s in expected]
+    monkeypatch.setattr(loops, "cores", lambda: 3)
+    monkeypatch.setattr(loops, "SHARE", 20)
+    for s, before in zip(expected, alone, strict=True):
+        found = again(s).reaction("O")
+        assert np.array_equal(found, before)
+        assert np.abs(found - s.reaction("O")).max() <= 8 * ULP * np.abs(before).max()
+
+
+def too_short(engine, **options):
+    mechanism = ks.crank_slider(0.3, 0.25, slider=ks.Link(1.0))
+    return ks.solve(mechanism, ANGLES, crank_speed=3.0, engine=engine, **options)
+
+
+def test_gaps_are_refused_with_the_same_words_or_left_open(interpreted):
+    messages = []
+    for engine in ("numpy", "compiled"):
+        with pytest.raises(ks.AssemblyError) as caught:
+            too_short(engine)
+        messages.append((str(caught.value), caught.value.intervals))
+    assert messages[0] == messages[1]
+    assert_same(too_short("compiled", on_gap="nan"), too_short("numpy", on_gap="nan"))
+
+
+def test_a_limit_position_is_warned_of_with_the_same_words_from_the_same_place(interpreted):
+    found = []
+    for engine in ("numpy", "compiled"):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            ks.solve(ks.crank_slider(0.3, 0.3), [0.2, np.pi / 2], crank_speed=1.0, engine=engine)
+        found.append([(item.category, str(item.message), item.filename) for item in caught])
+    assert found[0] == found[1]
+    assert [(kind, file) for kind, _, file in found[0]] == [(ks.ConditionWarning, __file__)]

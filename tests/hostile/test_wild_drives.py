@@ -1,0 +1,241 @@
+"""Machines that no motor can run, and drives beyond all sizes: told what is wrong, with numbers, or run rightly."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.drive import transient
+
+Motor, steady, start, coast = ks.drive.Motor, ks.drive.steady, ks.drive.start, ks.drive.coast
+PUMP = ks.crank_slider(0.05, 0.2, crank=ks.Link(1.0, 0.0, 0.1), slider=ks.Link(1.0))
+LIGHT, MASSLESS = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), ks.crank_slider(0.05, 0.2)
+ROCKING = ks.four_bar(0.4, 0.5, 0.3, rocker_pivot=(0.6, 0.0))
+TABLE = Motor.table([0.0, 50.0, 99.0, 104.7], [8.0, 12.0, 7.5, 0.0])
+LATE_TABLE = Motor.table([50.0, 99.0, 110.0], [8.0, 7.5, 0.0])
+
+
+def kloss(power=750.0, speed=99.0, synchronous_speed=104.7, overload=2.5, **other):
+    return Motor.kloss(power, speed, synchronous_speed=synchronous_speed, overload=overload, **other)
+
+
+def scene(*loads, of=PUMP, speed=100.0):
+    return ks.Scene(of, speed, loads=loads)
+
+
+def torque(value):
+    return ks.Torque(value, on="crank")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def libraries():
+    """Loads scipy before the clock of any test runs."""
+    steady(scene(torque(-1.0)), kloss(), 1.0)
+
+
+RUNNING = {
+    "no inertia": (MASSLESS, (), kloss(), 0.0, "all inertia vanishes at crank angle"),
+    "inertia that vanishes at dead points": (LIGHT, (), kloss(), 0.0, "all inertia vanishes at crank angle 180 deg"),
+    "too weak": (
+        PUMP,
+        (torque(-30.0),),
+        kloss(),
+        1.0,
+        r"11\.0607 N m are missing, .*give a motor 1\.585 times as strong",
+    ),
+    "hardly too weak": (PUMP, (torque(-18.95),), kloss(), 1.0, r"give a motor 1\.001 times as strong"),
+    "weak line": (PUMP, (torque(-11.0),), Motor.linear(10.0, 100.0), 1.0, "1 N m are missing"),
+    "weak table": (PUMP, (torque(-13.0),), TABLE, 1.0, "1 N m are missing"),
+    "a motor that brakes": (PUMP, (ks.TorsionDamper(0.1, on="crank"),), Motor.constant(-5.0), 1.0, "that drives"),
+    "a spring that stops it": (PUMP, (ks.Spring(1e9, 0.25),), kloss(), 1.0, "comes to a standstill at crank angle"),
+    "runaway": (PUMP, (torque(30.0),), kloss(), 1.0, "runs away: .*give more load, a motor that brakes"),
+    "beyond a table": (PUMP, (torque(2.0),), TABLE, 1.0, "runs away: .*more rows to its table"),
+    "below a table's end": (PUMP, (), TABLE, 1.0, "its table knows 0 to 104.7 rad/s only; give more rows"),
+    "nothing holds it": (PUMP, (), Motor.constant(5.0), 1.0, r"nothing holds the speed.*a turn leaves 31\.4159 J"),
+    "in balance at any speed": (PUMP, (torque(-5.0),), Motor.constant(5.0), 1.0, "nothing holds the speed"),
+    "tiny transmission": (PUMP, (), kloss(transmission=1e-12), 1.0, "give a stronger motor, or less inertia"),
+    "huge transmission": (PUMP, (), kloss(transmission=1e12), 1.0, "N m are missing at the crank"),
+    "huge rotor": (PUMP, (), kloss(inertia=1e50), 1.0, r"an inertia of 1e\+50 kg m2 at the crank"),
+    "tiny motor": (PUMP, (), kloss(power=1e-12), 1.0, "give a stronger motor, or less inertia"),
+    "tiny slip": (PUMP, (), kloss(speed=104.7 * (1.0 - 1e-12)), 1.0, "so rigid .*give it its true slip"),
+    "huge motor": (PUMP, (), kloss(power=1e12), 1.0, "so rigid .*give it its true slip"),
+    "load without bound": (
+        PUMP,
+        (torque(lambda motion: 1e-6 / (motion.crank_angle - 2.0) ** 2),),
+        kloss(),
+        1.0,
+        r"cannot be resolved near crank angle 114\.59",
+    ),
+}
+
+
+@pytest.mark.filterwarnings("ignore:lsoda")
+@pytest.mark.parametrize(("of", "loads", "motor", "flywheel", "words"), RUNNING.values(), ids=RUNNING)
+def test_no_running_is_told_with_what_is_missing(of, loads, motor, flywheel, words):
+    with pytest.raises(ks.DriveError, match=words):
+        steady(scene(*loads, of=of), motor, flywheel)
+
+
+def test_the_torque_that_is_missing_is_given_as_a_number():
+    with pytest.raises(ks.DriveError) as caught:
+        steady(scene(torque(-30.0)), kloss(), 1.0)
+    stronger = float(re.search(r"give a motor ([\d.]+) times", str(caught.value))[1])
+    assert caught.value.missing == pytest.approx(30.0 - 2.5 * 750.0 / 99.0, rel=1e-3)
+    assert steady(scene(torque(-30.0)), kloss(power=750.0 * 1.01 * stronger), 1.0).mean_speed > 70.0
+
+
+OTHERS = {
+    "rocking crank": (lambda: steady(scene(of=ROCKING), kloss(), 1.0), ks.AssemblyError, "104.478 .. 255.522 deg"),
+    "rocking crank started": (lambda: start(scene(of=ROCKING), kloss(), 1.0, until=1.0), ks.AssemblyError, "104.478"),
+    "several designs": (
+        lambda: steady(scene(of=ks.crank_slider(0.05, 0.2, slider=ks.Link(np.array([[1.0], [2.0]])))), kloss(), 1.0),
+        ks.ParameterError,
+        "takes one design at a time",
+    ),
+    "load by the crank angles given": (
+        lambda: steady(scene(torque(np.linspace(0.0, 1.0, 7))), kloss(), 1.0),
+        ks.ParameterError,
+        "unknown between them",
+    ),
+    "function of another shape": (
+        lambda: steady(scene(torque(lambda motion: np.zeros(3))), kloss(), 1.0),
+        ks.ParameterError,
+        "one for each crank angle, got shape",
+    ),
+    "function of the acceleration": (
+        lambda: steady(scene(torque(lambda motion: 0.01 * motion.crank_acceleration)), kloss(), 1.0),
+        ks.ParameterError,
+        "depends on the crank acceleration",
+    ),
+    "function that is noise": (
+        lambda: steady(scene(torque(lambda motion: np.random.default_rng().random(motion.shape))), kloss(), 1.0),
+        ks.ParameterError,
+        "depends on the crank acceleration",
+    ),
+    "function that tells nothing": (
+        lambda: steady(scene(torque(lambda motion: None)), kloss(), 1.0),
+        ks.ParameterError,
+        "got None",
+    ),
+    "textbook at rest": (lambda: steady(scene(speed=0.0), None, 1.0), ks.ParameterError, "must not be 0"),
+    "textbook with loads by speed": (
+        lambda: steady(scene(ks.TorsionDamper(0.1, on="crank")), None, 1.0),
+        ks.DriveError,
+        "no constant torque is known that carries them; give a motor",
+    ),
+    "textbook of several speeds": (
+        lambda: steady(ks.Scene(PUMP, np.linspace(1.0, 2.0, 5)), None, 1.0),
+        ks.ParameterError,
+        "crank_speed of the scene must be a number",
+    ),
+    "textbook without inertia": (lambda: steady(scene(of=MASSLESS), None), ks.DriveError, "all inertia vanishes"),
+    "as even as no flywheel makes it": (
+        lambda: ks.drive.flywheel(scene(), 1e-15, kloss()),
+        ks.DriveError,
+        "give a stronger motor, or less inertia",
+    ),
+    "flywheel for a weak motor": (
+        lambda: ks.drive.flywheel(scene(torque(-30.0)), 0.01, kloss()),
+        ks.DriveError,
+        "11.0607 N m are missing",
+    ),
+    "start without inertia": (lambda: start(scene(of=LIGHT), kloss(), 0.0, until=1.0), ks.DriveError, "no inertia at"),
+    "start against a load": (
+        lambda: start(scene(torque(-20.0)), kloss(), 1.0, until=1.0),
+        ks.DriveError,
+        "the loads ask 20 N m at rest",
+    ),
+    "start with a brake": (
+        lambda: start(scene(), Motor.constant(-5.0), 1.0, until=1.0),
+        ks.DriveError,
+        "the motor gives -5 N m, 5 N m are missing",
+    ),
+    "start where a table tells nothing": (
+        lambda: start(scene(), LATE_TABLE, 1.0, until=0.1),
+        ks.DriveError,
+        "the motor runs at 0 to .* but its table knows 50 to 110 rad/s only",
+    ),
+    "coast where a table tells nothing": (
+        lambda: coast(scene(), 1.0, 0.0, 49.0, 0.1, LATE_TABLE),
+        ks.DriveError,
+        "its table knows 50 to 110 rad/s only",
+    ),
+    "coast without inertia": (
+        lambda: coast(scene(of=MASSLESS), 0.0, 0.0, 1.0, 1.0),
+        ks.DriveError,
+        "no inertia at crank angle 0 deg",
+    ),
+    "coast for ever": (
+        lambda: coast(scene(), 1.0, 0.0, 10.0, "standstill"),
+        ks.DriveError,
+        "never comes to a standstill: of .* J of motion",
+    ),
+    "coast from an angle without digits": (
+        lambda: coast(scene(), 1.0, 1e15, 1.0, 0.1),
+        ks.ParameterError,
+        r"from_angle must be at most 1e\+06 rad in size",
+    ),
+    "a negative flywheel later": (
+        lambda: steady(scene(), kloss(), 1.0).with_flywheel(-1.0),
+        ks.ParameterError,
+        "flywheel must be at least 0",
+    ),
+    "no number of fluctuation": (
+        lambda: steady(scene(), kloss(), 1.0).flywheel_for(math.nan),
+        ks.ParameterError,
+        "fluctuation must be finite",
+    ),
+    "energy of a part that is not there": (
+        lambda: steady(scene(), kloss(), 1.0).energy_flow["rotor"],
+        ks.QuantityError,
+        "allowed: 'through the air gap', 'rotor, by slip'",
+    ),
+    "energy through no air gap": (
+        lambda: steady(scene(torque(-1.0)), Motor.linear(10.0, 100.0), 1.0).rotor_loss_per_turn,
+        ks.DriveError,
+        "only an induction motor",
+    ),
+}
+
+
+@pytest.mark.parametrize(("call", "kind", "words"), OTHERS.values(), ids=OTHERS)
+def test_what_cannot_be_driven_says_why(call, kind, words):
+    with pytest.raises(kind, match=words):
+        call()
+
+
+@pytest.mark.parametrize("until", [1e9, "standstill"])
+def test_a_motion_without_end_is_given_up_with_how_far_it_came(monkeypatch, until):
+    monkeypatch.setattr(transient, "MOST_EVALUATIONS", 2000)
+    damped = scene(ks.TorsionDamper(1e-9, on="crank"))
+    with pytest.raises(ks.DriveError, match=r"too long to follow: .* took 2000 evaluations; give an earlier time"):
+        coast(damped, 1.0, 0.0, 10.0, until)
+
+
+def test_waiting_for_a_standstill_that_comes_is_no_fault():
+    hill = scene(ks.Gravity(), of=ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)))
+    assert coast(hill, 0.0, -math.pi / 2, 5.0, "standstill").events[-1].name == "standstill"
+    assert coast(hill, 0.0, -math.pi / 2, -5.0, "standstill").events[-1].name == "standstill"
+    with pytest.raises(ks.DriveError, match="never comes to a standstill"):
+        coast(hill, 0.0, -math.pi / 2, 50.0, "standstill")
+
+
+EXTREME = {
+    "at its breakdown torque": (torque(-18.9), kloss(), 79.1),
+    "driven beyond its synchronous speed": (torque(10.0), kloss(), 112.5),
+    "overload hardly above 1": (torque(-1.0), kloss(overload=1.0000001), 104.32),
+    "overload without end": (torque(-1.0), kloss(overload=1e9), 103.95),
+    "against a heavy damper": (ks.TorsionDamper(1.0, on="crank"), kloss(), 10.1),
+    "constant torque against a damper": (ks.TorsionDamper(0.05, on="crank"), Motor.constant(5.0), 100.0),
+    "a function that returns one number": (torque(lambda motion: -3.0), kloss(), 102.5),
+    "a function of the speed's sign": (torque(lambda motion: -5.0 * np.sign(motion.crank_speed)), kloss(), 101.0),
+}
+
+
+@pytest.mark.parametrize(("load", "motor", "speed"), EXTREME.values(), ids=EXTREME)
+def test_what_is_extreme_but_possible_runs(load, motor, speed):
+    run = steady(scene(load), motor, 1.0)
+    assert run.mean_speed == pytest.approx(speed, rel=2e-3)
+    assert run.energy_flow.residual < 1e-12

@@ -1,0 +1,177 @@
+"""Tables by crank angle and travel: what they give to any load, their derivatives, kinks and jumps, and CSV files."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from support.machines import largest
+from support.scenes import six_bar
+
+PUMP = ks.crank_slider(0.05, 0.2)
+X = [0.15, 0.21, 0.25]
+DIAGRAM = ks.Table(X, [-900.0, -400.0, -100.0], over="travel", back=[-1500.0, -700.0, -800.0])
+ANGLES = np.linspace(0.05, 6.2, 40)
+
+
+def solved(table, angles=ANGLES, speed=100.0, **options):
+    return ks.solve(PUMP, angles, crank_speed=speed, loads=ks.ProcessForce(table), **options)
+
+
+@pytest.mark.parametrize("speed", [100.0, -100.0])
+def test_a_diagram_has_the_values_of_the_stroke_that_the_slider_is_on(speed):
+    s = solved(DIAGRAM, speed=speed)
+    forward, back = (np.interp(s.slider_position, X, values) for values in (DIAGRAM.y, DIAGRAM.back))
+    expected = np.where(s.slider_velocity < 0, back, forward)
+    assert largest(s.reaction("B")[0] - -expected) < 1e-12 * 1500
+    assert s.power_residual < 1e-14
+
+
+def test_extremes_find_the_peak_on_its_side_of_a_jump_at_the_dead_centre():
+    """Mass and weight are absent, so the axial force of the rod is that of the diagram."""
+
+    def axial(solution):
+        return solution.reaction("B")[0]
+
+    found = ks.extremes(solved(DIAGRAM, [1.0]), axial)
+    assert found.range == pytest.approx((100.0, 1500.0), rel=1e-12)
+    peak = found.angle[np.argmax(found.value)]
+    assert peak == pytest.approx(np.pi, abs=1e-6)
+    assert found.value[np.abs(found.angle) < 1e-6] == pytest.approx([800.0], rel=1e-9)
+
+
+def test_the_mean_torque_is_the_work_of_both_strokes_by_hand():
+    by_hand = sum(np.trapezoid(np.abs(values), X) for values in (DIAGRAM.y, DIAGRAM.back)) / (2 * np.pi)
+    s = solved(DIAGRAM)
+    assert ks.compare(s, s).mean_torques[0] == pytest.approx(by_hand, rel=1e-13)
+
+
+def test_a_table_is_known_between_the_crank_angles_of_a_solution():
+    assert solved(DIAGRAM, [0.1, 0.2]).at(ANGLES).balancing_torque == pytest.approx(solved(DIAGRAM).balancing_torque)
+
+
+def test_the_compiled_loop_reads_tables_as_arrays_do():
+    pytest.importorskip("numba")
+    compiled = solved(DIAGRAM, engine="compiled").balancing_torque
+    assert largest(compiled - solved(DIAGRAM).balancing_torque) < 1e-13 * largest(compiled)
+
+
+def test_derivatives_go_through_the_travel_of_a_table():
+    program = ks.compile(ks.Scene(PUMP, 100.0, 0.0, ks.ProcessForce(DIAGRAM)), "balancing_torque", engine="numpy")
+    angles, step = ANGLES[(ANGLES > 0.3) & (np.abs(ANGLES - np.pi) > 0.3)], 1e-7
+    exact = program.derivatives(angles, "crank_length")["balancing_torque"]["crank_length"]
+    above, below = (program(angles, {"crank_length": 0.05 + k * step})["balancing_torque"] for k in (0, -1))
+    assert largest(exact - (above - below) / step) < 1e-4 * largest(exact)
+
+
+@pytest.mark.parametrize("over", ["angle", "travel"])
+def test_any_load_takes_a_table(over):
+    x, y = ([0.0, 2.0, 4.0], [1.0, 5.0, 2.0]) if over == "angle" else ([-2.0, 0.5, 2.0], [1.0, 5.0, 2.0])
+    table = ks.Table(x, y, over=over)
+    for item in (
+        ks.Force(table, at=("coupler", 0.1), direction=0.3),
+        ks.Torque(table, on="rocker"),
+        ks.PointForce(table, between=("B", (0.1, 0.9))),
+    ):
+        s = ks.solve(six_bar(), ANGLES, crank_speed=9.0, loads=item)
+        place = ANGLES if over == "angle" else s.travel("slider2")
+        values = np.interp(place, x, y, period=2 * np.pi if over == "angle" else None)
+        fixed = {item.VALUE: values}
+        from dataclasses import replace
+
+        other = ks.solve(six_bar(), ANGLES, crank_speed=9.0, loads=replace(item, **fixed))
+        assert largest(s.balancing_torque - other.balancing_torque) < 1e-13 * s.largest_torque_term
+        assert s.condition.shape == ANGLES.shape
+        assert len(ks.extremes(s, "balancing_torque"))
+
+
+def test_kinks_of_a_table_over_travel_are_found_in_both_turns_of_a_branch_through_a_change_point():
+    """The slider is ahead of O in one turn and behind it in the other, where the coupler stands across the guide."""
+    made = ks.crank_slider(0.1, 0.15, guide_offset=0.05, assembly="open")
+    table = ks.Table([-0.3, 0.01, 0.3], [0.0, 50.0, 0.0], over="travel")
+    s = ks.solve(made, 0.3, crank_speed=1.0, loads=ks.ProcessForce(table))
+    fine = np.linspace(0.0, 4 * np.pi, 40001)
+    passed = fine[1:][np.diff(np.sign(s.at(fine).slider_position - 0.01)) != 0]
+    assert made.turns == 2
+    assert passed[-1] > 2 * np.pi
+    for angle in passed:
+        assert np.abs(s.sampled.kinks - angle).min() < 1e-3
+
+
+def test_a_four_stroke_table_gives_a_force_its_period():
+    table = ks.Table(np.radians([0, 180, 360, 540]), [0.0, 5.0, 0.0, 0.0], period=4 * np.pi)
+    s = ks.solve(six_bar(), [1.0], crank_speed=9.0, loads=ks.Force(table, at="B"))
+    assert s.period == 4 * np.pi
+    assert not np.allclose(s.at(1.0).balancing_torque, s.at(1.0 + 2 * np.pi).balancing_torque)
+
+
+def test_a_travel_beyond_the_table_is_told_with_both_ranges_and_the_crank_angle():
+    table = ks.Table([0.15, 0.24], [1.0, 2.0], over="travel")
+    with pytest.raises(ks.ParameterError, match=r"slider goes from 0.15\d* to 0.249\d* m.* from 0.15 to 0.24 m.*deg"):
+        _ = solved(table).balancing_torque
+
+
+def test_of_two_sliders_a_table_must_say_which_unless_its_load_does():
+    engine = ks.Mechanism("V", ks.Crank(0.05), (ks.SliderGroup(0.2), ks.SliderGroup(0.2, pin="C", label="2")))
+    table = ks.Table(X, [1.0, 2.0, 3.0], over="travel")
+    with pytest.raises(ks.ParameterError, match="sliders 'slider', 'slider2': say which"):
+        ks.Scene(engine, 1.0, 0.0, ks.Torque(table, on="crank"))
+    with pytest.raises(ks.ParameterError, match="table over travel: slider is 'slider3', allowed: 'slider'"):
+        ks.Scene(engine, 1.0, 0.0, ks.Torque(ks.Table(X, X, over="travel", slider="slider3"), on="crank"))
+    with pytest.raises(ks.ParameterError, match="the mechanism has no slider"):
+        ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), 1.0, 0.0, ks.Torque(table, on="crank"))
+    s = ks.solve(engine, [1.0], crank_speed=1.0, loads=ks.ProcessForce(table, on="slider2"))
+    assert s.reaction("C")[0, 0] == pytest.approx(-np.interp(s.travel("slider2")[0], X, [1.0, 2.0, 3.0]))
+
+
+# From files
+
+
+def written(folder, text):
+    path = folder / "table.csv"
+    path.write_text(text)
+    return path
+
+
+def test_an_indicator_diagram_is_read_with_its_units_and_multiplied_by_the_area(tmp_path):
+    text = "travel [mm], pressure [bar], pressure_back [MPa]\n150, 9, 1.5\n210, 4, 0.7\n250, 1, 0.8\n"
+    table = ks.Table.from_csv(written(tmp_path, text), area=-1e-3)
+    assert table.x == pytest.approx(X)
+    assert table.y == pytest.approx(DIAGRAM.y)
+    assert table.back == pytest.approx(DIAGRAM.back)
+
+
+def two_turns(back):
+    """A slider on a rocker whose branch closes after two turns, under a table over its travel; and the table."""
+    bars = ks.RockerGroup(0.3, 0.2, (0.4, 0.0), "open")
+    ram = ks.SliderGroup(0.7, ks.Guide.at(0.3, 0.05), on="B", pin="C", label="2")
+    mechanism = ks.Mechanism("two turns", ks.Crank(0.1), (bars, ram))
+    travel = ks.Scene(mechanism, 1.0).solve(720).travel("slider2")
+    rows = np.linspace(travel.min() - 0.01, travel.max() + 0.01, 9)
+    force = np.array([0.0, 50, -20, 80, 10, 0, 90, -60, 30])
+    table = ks.Table(rows, force, over="travel", back=force[::-1] if back else None)
+    return ks.Scene(mechanism, 1.0, 0.0, ks.ProcessForce(table, "slider2")), table
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_table_over_travel_knows_the_second_turn_of_a_branch(back):
+    """Work and peaks of both turns, beside values at many crank angles by hand."""
+    scene, table = two_turns(back)
+    s = scene.solve(40_000)
+    x, v = s.travel("slider2"), s.travel_velocity("slider2")
+    torque = -v * np.where(
+        v < 0, np.interp(x, table.x, table.y[::-1] if back else table.y), np.interp(x, table.x, table.y)
+    )
+    assert largest(s.balancing_torque - torque) < 1e-13
+    assert np.allclose(ks.extremes(s, "balancing_torque").range, (torque.min(), torque.max()), rtol=1e-3)
+    mean, _ = ks.compare(s, s).mean_torques
+    assert mean == pytest.approx(np.abs(torque).mean(), rel=1e-6)
+
+
+def test_kinks_of_a_table_over_travel_lie_in_both_turns_of_a_branch():
+    scene, table = two_turns(back=True)
+    kinks, jumps = table.kinks(scene.solve(4))
+    x = scene.mechanism.place(kinks).travels["slider2"].position
+    assert largest(np.min(np.abs(x[jumps.size :, None] - table.x), axis=1)) < 1e-12
+    assert (kinks < 2 * np.pi).any()
+    assert (kinks > 2 * np.pi).any()
+    assert jumps.size == 4

@@ -1,0 +1,43 @@
+"""Friction by joint: which kind belongs to which pair, and what a mapping of it keeps."""
+
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.machine import friction
+
+SAW = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.02, 0.0)), 2.0)
+LEVER = ks.slotted_lever(0.1, pivot=(0.0, -0.3))
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "joint", "kind"),
+    [
+        (SAW, "O", ks.PinFriction),
+        (SAW, "B", ks.PinFriction),
+        (SAW, "guide", ks.GuideFriction),
+        (SAW, "cam", ks.RollerFriction),
+        (LEVER, "slot", ks.SlotFriction),
+    ],
+)
+def test_each_pair_has_its_kind(mechanism, joint, kind):
+    (name,) = (name for name in mechanism.pairs if name == joint or name.startswith(f"{joint}_"))
+    assert friction.kind_for(mechanism.pairs[name]) is kind
+
+
+def test_a_mapping_keeps_all_joints_and_acts_where_it_is_not_zero():
+    given = {"O": ks.PinFriction(0.1, 0.02), "guide": ks.GuideFriction(0.0)}
+    kept = friction.taken(given)
+    assert dict(kept) == given
+    assert list(kept.acting) == ["O"]
+    assert friction.taken(kept) is kept
+    assert friction.taken({}) is friction.NONE
+    with pytest.raises(KeyError):
+        kept["A"]
+
+
+def test_what_is_wrong_is_told_by_joint():
+    given = {"X": ks.PinFriction(0.1, 0.02), "O": ks.GuideFriction(0.1), "guide": ks.GuideFriction(0.1)}
+    unknown, unlike = friction.problems(SAW, given)
+    assert "joint is 'X'" in unknown
+    assert "'O' turns on a pin and takes a PinFriction" in unlike
+    assert "must be a dict" in next(friction.problems(SAW, 0.1))

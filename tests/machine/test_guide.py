@@ -1,0 +1,34 @@
+"""The straight guide: the same line by angle and offset as by two points, and what passes none."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, -2.5, np.pi / 2])
+@pytest.mark.parametrize("offset", [0.0, -0.3])
+def test_two_points_on_a_guide_make_the_same_guide(angle, offset):
+    along, left = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    made = ks.Guide.through(*(tuple(offset * left + s * along) for s in (-0.4, 1.1)))
+    given = ks.Guide.at(angle, offset)
+    assert made.direction == pytest.approx(given.direction, abs=1e-15)
+    assert made.guide_offset == pytest.approx(offset, abs=1e-15)
+    assert made.guide_angle == pytest.approx(angle, abs=1e-15)
+
+
+def test_a_level_guide_is_known_by_plain_numbers_only():
+    assert ks.Guide.at(0.0, 0.2).is_level
+    assert ks.Guide.through((0.0, 1.0), (3.0, 1.0)).is_level
+    assert not ks.Guide.at(np.pi).is_level
+    assert not ks.Guide.at(np.zeros((2, 1))).is_level
+    assert ks.Guide.at(0.0).line == (None, None)
+
+
+def test_points_that_coincide_or_are_many_make_no_guide():
+    with pytest.raises(ks.ParameterError, match="W1 and W2 coincide"):
+        ks.Guide.through((1.0, 2.0), (1.0, 2.0))
+    with pytest.raises(ks.ParameterError, match="W2 must be one point, not a batch"):
+        ks.Guide.through((0.0, 0.0), (np.ones((2, 1)), 1.0))
+    with pytest.raises(ks.ParameterError, match="direction must have length 1"):
+        ks.Guide(None, 0.0, (1.0, 1.0))

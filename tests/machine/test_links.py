@@ -1,0 +1,55 @@
+"""A rigid link: motion of its points by complex numbers, and inertia and weight as d'Alembert has them."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.machine import links
+from kinetostatics.machine.links import Joint, LinkMotion
+
+ANGLE, RATIO, SLOPE = 0.6, -0.8, 0.35
+ALONG, ACROSS = 0.4, -0.15
+JOINT = Joint((0.2, 0.1), (0.5, -0.3), (-0.7, 0.9))
+LINK = LinkMotion(JOINT, (np.cos(ANGLE), np.sin(ANGLE)), RATIO, SLOPE)
+SPEED, ACCELERATION = 7.0, -11.0
+
+
+def z(vector):
+    return complex(*vector)
+
+
+ARM = complex(ALONG, ACROSS) * np.exp(1j * ANGLE)
+
+
+def test_points_of_a_link_move_as_complex_numbers_do():
+    arm = links.arm(LINK.direction, ALONG, ACROSS)
+    assert z(arm) == pytest.approx(ARM, rel=1e-15)
+    assert z(links.first_at(LINK, arm)) == pytest.approx(z(JOINT.first) + 1j * RATIO * ARM, rel=1e-15)
+    assert z(links.second_at(LINK, arm)) == pytest.approx(z(JOINT.second) + (1j * SLOPE - RATIO**2) * ARM, rel=1e-15)
+    assert links.arm(LINK.direction, None, None) is None
+
+
+def test_a_link_between_two_joints_has_their_direction_and_rate():
+    direction = np.exp(1j * ANGLE)
+    length, end = 0.9, z(JOINT.position) + 0.9 * direction
+    first = z(JOINT.first) + 1j * RATIO * length * direction
+    second = z(JOINT.second) + (1j * SLOPE - RATIO**2) * length * direction
+    found = links.between(JOINT, Joint(*((part.real, part.imag) for part in (end, first, second))), length)
+    assert (z(found.direction), found.ratio, found.ratio_slope) == pytest.approx((direction, RATIO, SLOPE), rel=1e-14)
+
+
+def test_load_is_weight_less_mass_times_acceleration_about_the_joint():
+    body = ks.Link(3.0, (ALONG, ACROSS), 0.2).body
+    found = links.load(LINK, body, SPEED**2, ACCELERATION, (0.0, -9.81))
+    centre = (z(JOINT.second) + (1j * SLOPE - RATIO**2) * ARM) * SPEED**2
+    centre += (z(JOINT.first) + 1j * RATIO * ARM) * ACCELERATION
+    force = 3.0 * (-9.81j - centre)
+    turning = 0.2 * (SLOPE * SPEED**2 + RATIO * ACCELERATION)
+    assert z(found.force) == pytest.approx(force, rel=1e-14)
+    assert found.moment == pytest.approx((ARM.conjugate() * force).imag - turning, rel=1e-14)
+    work = (force * z(JOINT.first).conjugate()).real + found.moment * RATIO
+    assert links.virtual_work(LINK, found) == pytest.approx(work, rel=1e-14)
+
+
+def test_a_massless_link_has_no_load():
+    assert links.load(LINK, ks.Link().body, SPEED**2, ACCELERATION, None) == (None, None)

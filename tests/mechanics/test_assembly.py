@@ -1,0 +1,182 @@
+"""Where a mechanism can be assembled: gaps found to their ends, named in errors, and left open where asked."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import kinetostatics as ks
+
+TURN = 2 * np.pi * np.arange(72) / 72
+
+
+def solve(mechanism, angle=TURN, **changes):
+    return ks.solve(mechanism, angle, **{"crank_speed": 1.0} | changes)
+
+
+# Assembly
+
+
+def gaps(mechanism, angle=TURN):
+    with pytest.raises(ks.AssemblyError) as caught:
+        solve(mechanism, angle)
+    return caught.value
+
+
+def test_assembly_error_names_mechanism_condition_numbers_and_intervals():
+    """Crank 1 m, coupler 0.8 m, guide through O: no closure where |sin| > 0.8."""
+    error = gaps(ks.crank_slider(1.0, 0.8))
+    limit = np.arcsin(0.8)
+    assert_allclose(error.intervals, [(limit, np.pi - limit), (np.pi + limit, 2 * np.pi - limit)], rtol=1e-15)
+    assert str(error) == (
+        "crank-slider cannot be assembled at 30 of 72 crank angles: the distance from A to the guide, up to 1 m here, "
+        "must not exceed the coupler length, 0.8 m. It does not close for crank angles 53.1301 .. 126.87 deg, "
+        '233.13 .. 306.87 deg. Change the lengths, or pass on_gap="nan" to get NaN there and the rest exact'
+    )
+
+
+def test_a_cam_mechanism_with_a_round_cam_has_the_gaps_of_the_plain_one():
+    error = gaps(ks.cam_crank_slider(ks.cams.Circle(1.0), 0.8))
+    assert_allclose(error.intervals, gaps(ks.crank_slider(1.0, 0.8)).intervals, rtol=1e-15)
+    assert str(error).startswith("cam-balanced crank-slider cannot be assembled")
+
+
+@pytest.mark.parametrize("guide_angle", [0.0, 0.4, -2.9])
+@pytest.mark.parametrize("offset", [0.3, -0.25])
+def test_intervals_of_an_offset_guide(guide_angle, offset):
+    """Guide at e: no closure where |e - r sin| > l: here one interval, on the side away from the guide."""
+    r, length = 1.0, 0.8
+    error = gaps(ks.crank_slider(r, length, guide_angle=guide_angle, guide_offset=offset))
+    limit = np.arcsin((length - abs(offset)) / r)
+    middle = guide_angle - np.sign(offset) * np.pi / 2
+    ((start, end),) = error.intervals
+    assert 0 <= start < 2 * np.pi
+    assert start < end
+    assert np.exp(1j * start) == pytest.approx(np.exp(1j * (middle - np.pi / 2 + limit)), abs=4e-15)
+    assert end - start == pytest.approx(np.pi - 2 * limit, abs=4e-15)
+
+
+def test_interval_that_runs_through_zero_ends_beyond_a_turn():
+    """Guide upright: no closure where |cos| > 0.8."""
+    limit = np.arccos(0.8)
+    error = gaps(ks.crank_slider(1.0, 0.8, guide_angle=np.pi / 2))
+    expected = [(np.pi - limit, np.pi + limit), (2 * np.pi - limit, 2 * np.pi + limit)]
+    assert_allclose(error.intervals, expected, rtol=0, atol=4e-15)
+    assert "143.13 .. 216.87 deg, 323.13 .. 396.87 deg" in str(error)
+
+
+def test_a_gap_narrower_than_any_grid_is_found_at_the_angle_that_falls_into_it():
+    """Coupler a billionth shorter than the crank: gaps of 5 thousandths of a degree, square to the guide, both told."""
+    middle, half = 0.4 + np.pi / 2, np.arccos(1.0 - 1e-9)
+    mechanism = ks.crank_slider(1.0, 1.0 - 1e-9, guide_angle=0.4)
+    first, second = gaps(mechanism, np.array([0.3, middle])).intervals
+    assert_allclose(first, [middle - half, middle + half], rtol=0, atol=1e-11)
+    assert_allclose(np.array(second) - np.pi, [middle - half, middle + half], rtol=0, atol=1e-11)
+
+
+def test_a_mechanism_that_never_closes_has_the_whole_turn_as_its_gap():
+    error = gaps(ks.crank_slider(1.0, 0.5, guide_offset=3.0))
+    assert error.intervals == ((0.0, 2 * np.pi),)
+
+
+def test_angles_outside_the_gap_are_solved_though_the_mechanism_has_one():
+    angle = np.array([0.0, 0.9, 2.3, 4.0])
+    assert_allclose(
+        solve(ks.crank_slider(1.0, 0.8), angle).slider_position,
+        np.cos(angle) + np.sqrt(0.64 - np.sin(angle) ** 2),
+        rtol=1e-14,
+    )
+
+
+LINKS = {
+    "crank": ks.Link(3.0, 0.4, 0.2),
+    "coupler": ks.Link(7.0, (0.4, 0.1), 0.9),
+    "slider": ks.Link(11.0, (0.1, 0.2)),
+}
+
+
+def test_nan_exactly_in_the_gap_and_the_rest_as_if_there_were_none():
+    mechanism = ks.crank_slider(1.0, 0.8, guide_offset=0.05, **LINKS)
+    angle = np.linspace(-1.0, 6.0, 211)
+    closed = np.abs(0.05 - np.sin(angle)) < 0.8
+    loads = [ks.Gravity(), ks.Spring(300.0, 0.7)]
+    s = solve(mechanism, angle, on_gap="nan", loads=loads)
+    alone = solve(mechanism, angle[closed], loads=loads)
+    for ask in (
+        lambda s: s.balancing_torque,
+        lambda s: s.balancing_torque_by_power,
+        lambda s: s.guide_force,
+        lambda s: s.guide_moment,
+        lambda s: s.shaking_moment,
+        lambda s: s.slider_position,
+        lambda s: s.rate("coupler"),
+        lambda s: s.angular_acceleration("coupler"),
+        *(lambda s, joint=joint: s.reaction(joint) for joint in ("O", "A", "B", "guide")),
+        lambda s: s.shaking_force,
+        lambda s: s.position("B"),
+        lambda s: s.velocity("coupler"),
+        lambda s: s.acceleration("slider"),
+    ):
+        values = np.atleast_2d(ask(s))
+        assert_array_equal(np.isnan(values), np.broadcast_to(~closed, values.shape))
+        expected = np.atleast_2d(ask(alone))
+        assert_allclose(values[:, closed], expected, rtol=1e-15, atol=1e-15 * np.max(np.abs(expected)))
+    assert s.power_residual < 1e-14
+
+
+def test_a_batch_names_its_first_impossible_design_and_its_gap():
+    lengths = np.array([[1.5], [0.8], [2.0], [0.5]])
+    error = gaps(ks.crank_slider(1.0, lengths))
+    limit = np.arcsin(0.8)
+    assert "first in design 1" in str(error)
+    assert "coupler length, 0.5 to 2 m" in str(error)
+    assert_allclose(error.intervals, [(limit, np.pi - limit), (np.pi + limit, 2 * np.pi - limit)], rtol=1e-15)
+
+
+def test_a_batch_has_nan_only_in_the_gaps_of_its_impossible_design():
+    lengths = np.array([[1.5], [0.8], [2.0]])
+    s = solve(ks.crank_slider(1.0, lengths, **LINKS), on_gap="nan")
+    assert_array_equal(np.isnan(s.balancing_torque), np.abs(np.sin(TURN)) > lengths)
+    for i in (0, 2):
+        single = solve(ks.crank_slider(1.0, lengths[i, 0], **LINKS))
+        assert_allclose(s.balancing_torque[i], single.balancing_torque, rtol=1e-14, atol=1e-12)
+
+
+class Limacon(ks.cams.Cam):
+    """Pitch curve 0.1 + 0.2 cos, which does not go around O."""
+
+    def polar(self, angle, ray):
+        """Radius and its derivatives."""
+        return 0.1 + 0.2 * ray[0], -0.2 * ray[1], -0.2 * ray[0]
+
+
+def test_a_pitch_curve_that_does_not_go_around_the_pivot_is_refused_where_its_radius_is_negative():
+    error = gaps(ks.cam_crank_slider(Limacon(), 2.0))
+    assert_allclose(error.intervals, [(2 * np.pi / 3, 4 * np.pi / 3)], rtol=1e-15)
+    assert "pitch curve must go around O, but its radius falls to -0.1 m" in str(error)
+
+
+@pytest.mark.parametrize(("margin", "digits"), [(1e-6, 6), (1e-9, 2), (1e-12, 0)])
+def test_a_crank_angle_near_a_limit_position_is_warned_of_with_a_number(margin, digits):
+    """Coupler longer than the crank by a hair: cos is sqrt(2 margin) at 90 degrees, and reactions lose it thrice."""
+    mechanism = ks.crank_slider(1.0, 1.0 + margin, slider=ks.Link(1.0))
+    with pytest.warns(ks.ConditionWarning, match=f"at crank angle 90 deg .* about {digits} correct") as caught:
+        solve(mechanism, np.array([0.3, np.pi / 2]))
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+
+
+def test_no_warning_while_half_the_digits_are_left():
+    solve(ks.crank_slider(1.0, 1.0 + 1e-4, slider=ks.Link(1.0)), np.array([np.pi / 2]))
+
+
+@pytest.mark.parametrize("tilt", [-2.9, 0.7, 1.3])
+def test_rounding_at_the_limit_position_itself_is_no_gap(tilt):
+    """Crank as long as the coupler: across the guide both lie in one line, where sine is 1 but for rounding."""
+    mechanism = ks.crank_slider(0.3, 0.3, guide_angle=tilt, slider=ks.Link(1.0))
+    with pytest.warns(ks.ConditionWarning, match="near a limit position"):
+        solve(mechanism, np.array([tilt + np.pi / 2]))
+
+
+def test_power_residual_of_a_mechanism_that_never_closes_is_nan():
+    never = solve(ks.crank_slider(0.1, 0.2, guide_offset=1.0), np.array([0.0, 1.0]), on_gap="nan")
+    assert np.isnan(never.power_residual)

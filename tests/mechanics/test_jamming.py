@@ -1,0 +1,39 @@
+"""Where friction jams: a guide with a wide shoe and a steep rod, by the closed form of its couple."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.mechanics import jamming
+
+PUMP = ks.crank_slider(0.1, 0.2, slider=ks.Link(2.0))
+TURN = np.linspace(0.1, 2 * np.pi, 30)
+
+
+def solved(mu, **options):
+    loads, friction = (ks.Gravity(), ks.ProcessForce(500.0)), {"guide": ks.GuideFriction(mu)}
+    return ks.solve(PUMP, TURN, crank_speed=3.0, loads=loads, friction=friction, **options)
+
+
+def test_a_rod_within_the_angle_of_friction_jams_and_says_at_which_angles():
+    """The rod leans by at most 30 degrees: a slider jams where mu times its slope reaches one."""
+    assert np.isfinite(solved(1.7).balancing_torque).all()
+    with pytest.raises(ks.errors.JammingError, match="friction jams at") as caught:
+        solved(2.5)
+    slope = np.abs(np.sin(TURN)) / np.sqrt(4.0 - np.sin(TURN) ** 2)
+    assert set(caught.value.angles) <= set(TURN[2.5 * slope >= 1.0].tolist())
+
+
+def test_it_is_left_open_where_asked():
+    found = solved(2.5, on_gap="nan").balancing_torque
+    assert 0 < np.isnan(found).sum() < found.size
+
+
+@pytest.mark.parametrize(("speed", "acceleration", "stands"), [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
+def test_a_crank_that_stands_has_no_direction_of_friction(speed, acceleration, stands):
+    s = ks.solve(PUMP, TURN, crank_speed=speed, crank_acceleration=acceleration)
+    assert bool(jamming.standing(s)) == stands
+
+
+def test_friction_is_found_where_one_more_pass_changes_no_digit():
+    assert jamming.converged(np.array([1.0, 1.0, -1.0]), np.array([1e-14, 1e-9, 0.0])).tolist() == [True, False, False]

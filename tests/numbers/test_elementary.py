@@ -1,0 +1,48 @@
+"""Elementary functions of whatever number the caller brought."""
+
+import math
+
+import numpy as np
+import pytest
+
+from kinetostatics.numbers import elementary
+from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, root, sign, stack
+
+
+@pytest.mark.parametrize("name", ["sin", "cos", "sqrt"])
+@pytest.mark.parametrize("value", [0.5, np.float64(0.5), np.array([0.25, 0.5])])
+def test_numbers_and_arrays_are_numpys(name, value):
+    assert np.array_equal(getattr(elementary, name)(value), getattr(np, name)(value))
+
+
+def test_arrays_of_another_library_stay_with_it():
+    jnp = pytest.importorskip("jax.numpy")
+    found = elementary.sin(jnp.array([0.5]))
+    assert isinstance(found, jnp.ndarray)
+    assert elementary.is_foreign_array(found)
+    assert not any(map(elementary.is_foreign_array, (1.0, np.ones(2), [1.0], np.float64(1.0))))
+
+
+def test_a_square_below_zero_by_rounding_only_has_the_root_zero():
+    square = np.array([4.0, 0.0, -0.5 * ROUNDING, -2.0 * ROUNDING])
+    found = root(square, 1.0)
+    assert found[:3].tolist() == [2.0, 0.0, 0.0]
+    assert math.isnan(found[3])
+    assert not np.isnan(root(square, 3.0)).any()
+
+
+def test_divisors_stay_off_zero_and_distances_have_a_direction():
+    assert divisor(np.array([0.0, 2.0]), 1e-3).tolist() == [1e-3, 2.0]
+    assert apart(0.0, 2.0) == 2.0 * APART > 0.0
+    assert apart(1.0, 2.0) == 1.0
+
+
+def test_signs_of_zeros_are_their_own():
+    assert [sign(value) for value in (3.0, -3.0, 0.0, -0.0)] == [1.0, -1.0, 1.0, -1.0]
+    assert sign(np.array([0.0, -0.0, -2.0])).tolist() == [1.0, -1.0, -1.0]
+
+
+def test_stacks_are_arrays_and_locked_arrays_cannot_be_written_to():
+    assert stack([np.ones(2), np.zeros(2)]).tolist() == [[1.0, 1.0], [0.0, 0.0]]
+    with pytest.raises(ValueError, match="read-only"):
+        read_only(np.ones(2))[0] = 2.0

@@ -1,0 +1,35 @@
+"""Text with a unit to SI."""
+
+import math
+
+import pytest
+
+from kinetostatics.numbers.units import base_factor, factor, shown, to_si
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("300 mm", "m", 0.3),
+        ("320 rpm", "rad/s", 320 * math.pi / 30),
+        ("-12.5 deg", "rad", math.radians(-12.5)),
+        ("1.5 kN/mm", "N/m", 1.5e6),
+        ("2e3 g cm^2", "kg m^2", 2e-4),
+    ],
+)
+def test_text_is_read_in_the_unit_asked_for(text, unit, value):
+    assert to_si(text, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(("text", "unit"), [("5 Hz", "rad/s"), ("3 kg", "m"), ("5", "m"), ("12 m s", "m/s")])
+def test_what_measures_something_else_is_refused(text, unit):
+    with pytest.raises(ValueError, match=r"does not measure the same|has no unit"):
+        to_si(text, unit)
+
+
+def test_factors_go_to_the_unit_and_to_the_base():
+    assert factor("kN", "N") == base_factor("kN") == 1000.0
+
+
+def test_long_values_are_shown_short():
+    assert len(shown("x" * 1000)) < 100

@@ -1,0 +1,31 @@
+"""Dynamic coefficients: ratios whose closed form is known."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+
+
+def yoke(mass, speed=10.0):
+    return ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(mass)), np.zeros(1), crank_speed=speed)
+
+
+def test_twice_the_mass_is_twice_every_force():
+    found = ks.compare(yoke(6.0), yoke(3.0))
+    assert found.mean_torque_ratio == pytest.approx(2.0, rel=1e-12)
+    assert found.torque_extremum_ratios == pytest.approx(np.full(4, 2.0), rel=1e-9)
+    assert found.peak_reaction_ratio("O") == pytest.approx(2.0, rel=1e-9)
+
+
+def test_the_mean_torque_is_that_of_a_sine():
+    """Of m r^2 omega^2 sin 2 phi / 2 the mean of the absolute value is 2 / pi times the largest."""
+    reference, balanced = ks.compare(yoke(6.0), yoke(3.0, 5.0)).mean_torques
+    assert reference == pytest.approx(6.0 * 0.01 * 100.0 / np.pi, rel=1e-9)
+    assert balanced == pytest.approx(3.0 * 0.01 * 25.0 / np.pi, rel=1e-9)
+
+
+def test_the_table_has_a_row_for_each_coefficient_with_its_unit():
+    table = ks.compare(yoke(6.0), yoke(3.0)).frame()
+    row = table.loc["mean |balancing torque|"]
+    assert (row["unit"], row["ratio"]) == ("N m", pytest.approx(2.0))
+    assert table.loc["power residual", ["reference", "balanced"]].max() < 1e-12

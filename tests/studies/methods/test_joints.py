@@ -1,0 +1,72 @@
+"""Other ways to the motion of the joints: the error of each falls as its theory says."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.studies import precision
+from kinetostatics.studies.methods import METHODS
+from support.curves import torque_study
+
+pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+
+
+@pytest.fixture(scope="module")
+def torque():
+    return torque_study()
+
+
+def curve(table, method, first, last):
+    """Settings and errors of a method over a stretch of its settings."""
+    rows = table[(table["method"] == method) & table["value"].between(first, last)]
+    return rows["value"].to_numpy(), rows["error"].to_numpy()
+
+
+@pytest.mark.parametrize(
+    ("method", "order", "coarsest", "finest"),
+    [("differences, 2nd order", 2, 1e-1, 1e-3), ("differences, 4th order", 4, 3e-1, 3e-2)],
+)
+def test_error_of_differences_falls_with_the_power_of_the_step_that_is_their_order(
+    torque, method, order, coarsest, finest
+):
+    """At steps from which rounding, which the step squared divides, is less than a hundredth of the error."""
+    step, error = curve(torque, method, finest, coarsest)
+    slopes = np.diff(np.log(error)) / np.diff(np.log(step))
+    assert slopes == pytest.approx(order, abs=0.07)
+
+
+@pytest.mark.parametrize("method", ["differences, 2nd order", "differences, 4th order"])
+def test_error_of_differences_rises_again_as_rounding_over_the_square_of_the_step(torque, method):
+    _, error = curve(torque, method, 0.0, 1e-3)
+    assert error[-1] > 20 * error.min()
+    assert error[-1] < 1e3 * 2.0**-53 / (1e-5 if "2nd" in method else 1e-4) ** 2
+
+
+SINGULARITY = np.arccosh(2.0 / 0.3)
+"""Crank angles pi/2 + i times this make the root in the kinematics zero; Fourier coefficients fall as exp(-k times it)
+(see e.g. Trefethen, *Spectral Methods in MATLAB*, chapter 4).
+"""
+
+
+def test_error_of_spectral_differentiation_falls_geometrically_with_the_samples(torque):
+    samples, error = curve(torque, "spectral differentiation", 8, 24)
+    rates = -np.diff(np.log(error)) / np.diff(samples)
+    assert rates == pytest.approx(SINGULARITY / 2, rel=0.03)
+
+
+def test_error_of_harmonic_series_falls_geometrically_with_the_harmonics(torque):
+    """The plain crank-slider on a guide through O has even harmonics only."""
+    harmonics, error = curve(torque, "harmonic series", 2, 6)
+    rates = -np.diff(np.log(error)) / np.diff(harmonics)
+    assert rates == pytest.approx(SINGULARITY, rel=0.03)
+
+
+def test_two_masses_are_no_method_for_a_coupler_with_its_mass_beyond_its_joints():
+    """One of them would be negative, and the table says so."""
+    mechanism = ks.crank_slider(0.3, 1.0, coupler=ks.Link(10.0, (-0.2, 0.0), 1.0), slider=ks.Link(5.0))
+    solution = ks.solve(mechanism, np.linspace(0, 2 * np.pi, 12, endpoint=False), crank_speed=10.0)
+    methods = [method for method in METHODS if method.name.startswith("two-mass")]
+    table = precision.study(solution, methods=methods, repeats=1)
+    assert len(table) == 2
+    assert table["error"].isna().all()
+    assert table["not given"].str.contains("lies beyond its joints, so one of two masses there would be negative").all()

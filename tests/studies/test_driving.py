@@ -1,0 +1,43 @@
+"""Studies of running and of motions over time: tables with units, charts, and what cannot be studied."""
+
+from dataclasses import replace
+
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.studies import driving
+from kinetostatics.views import charts
+from support.driven_saws import BY_NAME, IDLE, MOTOR, SAW
+
+
+def test_a_study_of_running_is_a_chart_with_units(tmp_path):
+    pytest.importorskip("flint")
+    methods = [BY_NAME["ours, NumPy"], replace(BY_NAME["collocation, Fourier"], settings=(9, 17, 33))]
+    table = driving.study_running(IDLE, MOTOR, 1000.0, methods=methods, repeats=1)
+    assert table.set_index("method").loc["ours, NumPy", "error"] < 1e-14
+    assert (table["time [ms]"] > 0.0).all()
+    paths = charts.drive_page({"saw, idle": table}, tmp_path / "drive")
+    assert [path.name for path in paths] == ["drive.png", "drive.svg"]
+    ax = charts.work_precision(table)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("time [ms]", "error of the crank speed [1]")
+
+
+@pytest.mark.parametrize(
+    ("call", "kind", "words"),
+    [
+        (
+            lambda: driving.study_running(ks.Scene(SAW, 1.0, loads=ks.TorsionDamper(1.0, on="crank")), MOTOR),
+            ks.errors.NotGivenError,
+            "do not depend on the speed",
+        ),
+        (
+            lambda: driving.study_running(IDLE, ks.drive.Motor.linear(9.0, 9.0, transmission=-1.0), 1.0),
+            ks.errors.NotGivenError,
+            "counter-clockwise",
+        ),
+        (lambda: driving.study_motion("slider crank"), ks.ParameterError, "allowed: 'slider-crank of SUNDIALS'"),
+    ],
+)
+def test_what_cannot_be_studied_says_why(call, kind, words):
+    with pytest.raises(kind, match=words):
+        call()

@@ -1,0 +1,83 @@
+"""A chunk of designs: what fails is set apart with its reason, and the others go on."""
+
+import numpy as np
+import pandas as pd
+
+import kinetostatics as ks
+from kinetostatics.sweeps.sweeps import FAILED
+from support import factories
+from support.factories import DESIGNS, OUTPUTS
+from support.sweeping import SAW, assert_equal, sweep
+
+
+def test_failing_rows_keep_their_reasons_and_others_their_numbers():
+    designs = pd.DataFrame(
+        {
+            "coupler_length [m]": [2.0, -1.0, 0.25, 2.0, 2.0, 2.0, 0.31],
+            "slider.mass [kg]": [600.0, 600.0, 600.0, -5.0, np.nan, 600.0, 600.0],
+            "crank_speed": [33.0, 33.0, 33.0, 33.0, 33.0, np.nan, 33.0],
+        }
+    )
+    found = sweep(SAW, designs, OUTPUTS, variant="plain", angles=36)
+    assert found[FAILED].tolist() == [
+        "",
+        "slider group: coupler length must be greater than 0, got -1.0",
+        "crank-slider cannot be assembled at 14 of 36 crank angles; change the lengths",
+        "Link: mass must be at least 0, got -5.0",
+        "Link: mass must be finite, got nan",
+        "scene: crank_speed must be finite, got nan",
+        "",
+    ]
+    assert np.isnan(found.iloc[:, 3:5]).all(axis=1).tolist() == [False, True, True, True, True, True, False]
+    good = sweep(SAW, designs.iloc[[0, 6]], OUTPUTS, variant="plain", angles=36)
+    assert_equal(found.iloc[[0, 6]], good)
+
+
+def test_reasons_of_cams_tell_the_numbers_of_their_row():
+    designs = pd.DataFrame({"cam.mean [m]": [2.0, 0.2, 0.1], "cam.amplitude [m]": [0.3, 0.3, 0.15]})
+    found = sweep(SAW, designs, OUTPUTS, variant="cam-cosine", angles=36)[FAILED].tolist()
+    assert found[0] == ""
+    assert "got mean 0.2 m and amplitude 0.3 m" in found[1]
+    assert "got mean 0.1 m and amplitude 0.15 m" in found[2]
+    found = sweep(SAW, pd.DataFrame({"cam.centre.x": [0.0, 0.4]}), OUTPUTS, variant="cam-circle", angles=36)[FAILED]
+    assert found[0] == ""
+    assert "its centre is 0.4 m from O and its radius 0.3 m" in found[1]
+
+
+def test_a_failing_reference_is_told_apart():
+    reference = ks.Scene(ks.crank_slider(0.3, 0.25, slider=ks.Link(1.0)), 1.0, 0.0, ())
+    found = sweep(factories.pump, DESIGNS[:2].assign(mass=[-1, 1]), ["rms O", "ratio rms O"], reference=reference)
+    assert found[FAILED][0] == "Link: mass must be at least 0, got -1.0"
+    assert found[FAILED][1].startswith("reference: crank-slider cannot be assembled at 134 of 360")
+    assert found.iloc[:, 2:4].isna().all(axis=None)
+
+
+def test_a_ratio_of_nothing_to_nothing_is_told():
+    found = sweep(factories.pump, DESIGNS[:2].assign(mass=[0, 1]), ["ratio rms B"], reference=factories.pump(0.1, 0.0))
+    assert found[FAILED].tolist() == ["ratio rms B is no number, such as 0 / 0", ""]
+    assert found.iloc[1, 2] == 0.0
+
+
+def test_errors_of_a_function_stay_with_their_rows():
+    designs = DESIGNS.assign(mass=DESIGNS["mass"].to_numpy()[::-1])
+    found = sweep(factories.picky, designs, OUTPUTS, angles=36)
+    wrong = (designs["crank [mm]"] < 300) & (designs["mass"] > 5)
+    assert (found[FAILED] != "").tolist() == wrong.tolist()
+    assert found[FAILED][3] == "a crank of 0.13 m does not carry 8.4 kg"
+    assert_equal(found[~wrong], sweep(factories.pump, designs[~wrong], OUTPUTS, angles=36))
+
+
+def test_when_all_designs_fail_all_say_why():
+    found = sweep(factories.pump, DESIGNS.assign(mass=-1.0), OUTPUTS, angles=36)
+    assert found[FAILED].eq("Link: mass must be at least 0, got -1.0").all()
+    assert found.iloc[:, 2:4].isna().all(axis=None)
+
+
+def test_the_hundredth_design_impossible_among_many():
+    designs = ks.designs.random({"coupler_length": "1.8..2.2 m", "slider.mass": "500..700 kg"}, 5000)
+    designs.loc[::100, "slider.mass [kg]"] = -1.0
+    designs.loc[1::100, "coupler_length [m]"] = 0.2
+    found = sweep(SAW, designs, OUTPUTS, variant="plain", angles=12)
+    assert found[FAILED].ne("").sum() == 100
+    assert found.loc[::100, FAILED].str.startswith("Link: mass").all()
+    assert found.loc[1::100, FAILED].str.startswith("crank-slider cannot be assembled").all()

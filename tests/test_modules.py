@@ -1,0 +1,43 @@
+"""Every module has a file of tests that is found by its name: kinetostatics/ROOM/x.py has tests/ROOM/test_x.py."""
+
+from pathlib import Path
+
+import pytest
+
+TESTS = Path(__file__).parent
+PACKAGE = TESTS.parent / "kinetostatics"
+PROVEN_IN = {
+    f"studies/methods/{module}.py": f"studies/methods/test_{test}.py"
+    for test, modules in {
+        "certified": ("acting", "enclosures", "independent", "postures"),
+        "kane": ("kane_equations",),
+        "newton": ("configurations", "constraints"),
+    }.items()
+    for module in modules
+} | {f"studies/methods/{module}.py": "studies/test_precision.py" for module in ("engines", "method")}
+"""Parts of one method under study, which only mean something as a whole: proven against another method."""
+
+pytestmark = pytest.mark.skipif(not PACKAGE.is_dir(), reason="the package is not beside its tests")
+
+
+def modules():
+    """Paths of modules with code of their own; not what only gathers names, nor `__main__`."""
+    return {path.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py") if not path.name.startswith("__")}
+
+
+def file_of_tests(module):
+    """Where the tests of a module stand."""
+    path = Path(module)
+    return TESTS / path.parent / f"test_{path.name}"
+
+
+def test_every_module_has_its_file_of_tests_or_is_part_of_a_method_proven_elsewhere():
+    missing = {module for module in modules() - PROVEN_IN.keys() if not file_of_tests(module).exists()}
+    assert not missing, f"write tests/ROOM/test_MODULE.py for {', '.join(sorted(missing))}"
+
+
+def test_exceptions_are_modules_without_a_file_and_the_proof_is_there():
+    for module, proof in PROVEN_IN.items():
+        assert module in modules(), f"{module} is no module any longer"
+        assert not file_of_tests(module).exists(), f"{module} has its own file of tests and needs no exception"
+        assert (TESTS / proof).exists(), f"{module} is said to be proven in {proof}, which is not there"

@@ -1,0 +1,80 @@
+"""What tests lean on: many inputs in one test are each tried, named and timed."""
+
+import time
+
+import pytest
+
+from support.every import every, limited
+
+
+def failure(test, **fixtures):
+    with pytest.raises(AssertionError) as caught:
+        test(**fixtures)
+    return str(caught.value).splitlines()
+
+
+def test_every_input_that_fails_is_named_with_its_reason_and_no_other():
+    @every("value, limit", [(1, 2), (3, 2), (5, 2)])
+    def test(value, limit):
+        if value > limit:
+            raise ValueError(f"{value} is too much")
+
+    assert failure(test) == [
+        "2 of 3 inputs fail; the first is traced above",
+        "3-2: ValueError: 3 is too much",
+        "5-2: ValueError: 5 is too much",
+    ]
+
+
+def test_an_input_that_raises_nothing_where_an_error_is_due_is_named():
+    @every("text", ["1", "one"])
+    def test(text):
+        with pytest.raises(ValueError, match="one"):
+            int(text)
+
+    assert [line.split(":")[0] for line in failure(test)[1:]] == ["1"]
+
+
+def test_decorators_give_all_combinations_beside_fixtures_and_keep_their_names():
+    seen = []
+
+    @every("a", {"x": 1, "y": 2})
+    @every("b", [1, 2, 3], ids=["one", "two", "three"])
+    def test(a, b, fixture):
+        seen.append((a, b, fixture))
+        assert (a, b) != ("y", 2)
+
+    assert failure(test, fixture="given")[1].startswith("y-two: AssertionError")
+    assert seen == [(a, b, "given") for a in "xy" for b in (1, 2, 3)]
+
+
+def test_each_input_has_the_time_of_a_test():
+    @every("seconds", [0.3, 0.0, 0.06, 0.06, 0.06])
+    def test(seconds):
+        time.sleep(seconds)
+
+    with limited(0.15):
+        assert failure(test)[1:] == ["0.3: TimeoutError: took more than 0.15 s"]
+
+
+def test_a_test_is_stopped_once_so_that_its_failure_can_be_told():
+    def stopped():
+        with limited(0.05):
+            time.sleep(1.0)
+
+    with pytest.raises(TimeoutError, match=r"more than 0\.05 s"):
+        stopped()
+    time.sleep(0.1)
+
+
+def test_an_input_that_would_skip_the_others_fails():
+    @every("value", [1, 2])
+    def test(value):
+        pytest.skip("no")
+
+    assert "leave it out" in failure(test)[0]
+
+
+def test_no_inputs_are_no_test():
+    with pytest.raises(ValueError, match="no inputs value"):
+        every("value", [])
