@@ -15,6 +15,7 @@ PROVEN_IN = {
     }.items()
     for module in modules
 } | {f"studies/methods/{module}.py": "studies/test_precision.py" for module in ("engines", "method")}
+PROVEN_IN["studies/methods/followers.py"] = "laws/test_followers.py"
 """Parts of one method under study, which only mean something as a whole: proven against another method."""
 
 pytestmark = pytest.mark.skipif(not PACKAGE.is_dir(), reason="the package is not beside its tests")

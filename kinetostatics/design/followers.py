@@ -47,13 +47,15 @@ class Surge(NamedTuple):
         return {order: self.natural_frequency / order for order in orders}
 
 
-def lift_off_speed(solution):
+def lift_off_speed(solution, force="cam_force"):
     """Crank speed from which the roller leaves the side of the cam that it rests on, at constant speed, rad/s.
 
     Parameters
     ----------
     solution : Solution
-        Of one design, of a mechanism with a `CamRoller`; its speed tells which way the crank turns.
+        Of one design, of a mechanism with a `CamRoller` or a follower; its speed tells which way the crank turns.
+    force : str
+        That of the contact: "contact_force" of a follower on a cam that turns, with its label.
 
     Returns
     -------
@@ -69,36 +71,36 @@ def lift_off_speed(solution):
     >>> round(ks.design.lift_off_speed(ks.solve(machine, 0.5, crank_speed=10.0, loads=spring)), 6)
     39.528471
     """
-    _require(solution, "lift_off_speed", "cam_force")
+    _require(solution, "lift_off_speed", force)
     fast = _speed(solution)
     angle = np.linspace(0.0, solution.period, SAMPLES, endpoint=False)
-    rest, moving, faster = (_force(solution, speed, angle) for speed in (CREEPING * fast, fast, 2.0 * fast))
+    rest, moving, faster = (_force(solution, force, speed, angle) for speed in (CREEPING * fast, fast, 2.0 * fast))
     side = np.sign(rest[int(np.argmax(np.abs(rest)))])
     if not np.all(side * rest > 0.0):
         return 0.0
     if np.max(np.abs(faster - rest - 4.0 * (moving - rest))) <= QUADRATIC * np.max(np.abs(faster)):
-        return _by_squares(solution, fast)
-    return _by_search(solution, fast, side, angle)
+        return _by_squares(solution, force, fast)
+    return _by_search(solution, force, fast, side, angle)
 
 
-def _by_squares(solution, fast):
+def _by_squares(solution, force, fast):
     """Where forces are F0 + F2 speed^2: the least speed for which they vanish at some crank angle."""
 
     def ratio(angle):
-        rest = _force(solution, CREEPING * fast, angle)
-        return (rest - _force(solution, fast, angle)) / (fast * fast * rest)
+        rest = _force(solution, force, CREEPING * fast, angle)
+        return (rest - _force(solution, force, fast, angle)) / (fast * fast * rest)
 
     peak = highest(ratio, 0.0, solution.period).value
     found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
     return found if found <= FASTEST * abs(fast) else np.inf
 
 
-def _by_search(solution, fast, side, angle):
+def _by_search(solution, force, fast, side, angle):
     """Where loads hang on the speed in another way."""
     from scipy.optimize import brentq
 
     def least(speed):
-        return float(np.min(side * _force(solution, np.copysign(speed, fast), angle)))
+        return float(np.min(side * _force(solution, force, np.copysign(speed, fast), angle)))
 
     low = CREEPING * abs(fast)
     for speed in abs(fast) * np.geomspace(0.01, FASTEST, 61):
@@ -137,9 +139,7 @@ def lifted(solution, force="cam_force"):
     """
     from scipy.optimize import brentq
 
-    checks.require("lifted", checks.solution("solution", solution))
-    require_single(solution, "lifted", force)
-    checks.require("lifted", checks.choice("force", force, tuple(solution.scalars)))
+    _require(solution, "lifted", force)
 
     def value(angle):
         return solution.at(np.atleast_1d(np.mod(angle, solution.period))).scalar(force)
@@ -219,8 +219,9 @@ def spring_surge(solution, spring_mass):
 def _require(solution, owner, name):
     checks.require(owner, checks.solution("solution", solution))
     require_single(solution, owner, name)
-    if name == "cam_force" and "cam_force" not in solution.scalars:
+    if name == "cam_force" and name not in solution.scalars:
         raise ParameterError(f"{owner}: takes a mechanism with a CamRoller, a {solution.mechanism.name} has none")
+    checks.require(owner, checks.choice("force", name, tuple(solution.scalars)) if name else None)
 
 
 def _speed(solution):
@@ -232,5 +233,5 @@ def _at(solution, speed, angle):
     return Scene(solution.mechanism, speed, 0.0, solution.loads, solution.friction).solve(angle)
 
 
-def _force(solution, speed, angle):
-    return _at(solution, speed, angle).cam_force
+def _force(solution, name, speed, angle):
+    return _at(solution, speed, angle).scalar(name)

@@ -44,7 +44,7 @@ class Lawful:
         return value if type(value) is FollowerLaw else checks.UNSURE
 
     def taken(self, value, field=""):
-        if hasattr(value, "polar"):
+        if type(value) is FollowerLaw:
             return value, None
         problem = law_problem(value)
         return (value, f"{field}: {problem}") if problem else (FollowerLaw(value), None)

@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from tests.support.chains import error_beside_constraints, errors_beside_full_systems
-from tests.support.followers import ANGLES, KINDS, scene
+from support.chains import error_beside_constraints, errors_beside_full_systems
+from support.followers import ANGLES, KINDS, scene
 
 every_kind = pytest.mark.parametrize("kind", KINDS)
 
@@ -37,9 +37,8 @@ def test_the_torque_from_forces_is_that_of_the_powers(kind):
     assert_allclose(s.balancing_torque, s.balancing_torque_by_power, rtol=0, atol=1e-13 * size)
 
 
-@every_kind
-def test_the_compiled_engine_agrees(kind):
-    drive = scene(KINDS[kind]())
+def test_the_compiled_engine_agrees():
+    drive = scene(KINDS["roller, offset"]())
     plain, compiled = (drive.solve(ANGLES, engine=engine) for engine in ("numpy", "compiled"))
     name = "contact_force" + drive.mechanism.groups[-1].label
     assert_allclose(compiled.scalar(name), plain.scalar(name), rtol=1e-13)
