@@ -23,6 +23,7 @@ cam_start       the cam-balanced crank-slider that a search for its cam begins w
 torque_free     cams that need no torque
 weights         what carries weight where a symmetric cam cannot
 torque_balancing  spring-loaded follower on a cam on the crank that leaves the mean torque alone
+torque_balanced what it gives and costs
 spring_follower how far its spring is stretched at each crank angle
 """
 
@@ -37,7 +38,8 @@ if TYPE_CHECKING:
     from .hardness import hardness_from_pressure, pressure_from_hardness
     from .optimisation import optimise
     from .robust import Spread, over_spread
-    from .torque_balancing import TorqueBalancing, torque_balancing_cam
+    from .torque_balanced import TorqueBalancing
+    from .torque_balancing import torque_balancing_cam
     from .torque_free import torque_free_cam
     from .weights import weight_options
 
@@ -69,7 +71,7 @@ _WHERE = {
     "Front": "fronts",
     "Spread": "robust",
     "Surge": "followers",
-    "TorqueBalancing": "torque_balancing",
+    "TorqueBalancing": "torque_balanced",
     "contact": "cam_contact",
     "hardness_from_pressure": "hardness",
     "lift_off_speed": "followers",

@@ -5,7 +5,7 @@ lets it out as E rises, so that the motor sees the mean alone. `spring_follower`
 follower's own inertia in and so needs no iteration.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,160 +15,23 @@ from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
 from ..machine.mechanism import Mechanism
 from ..machine.panel_law import PanelLaw
-from ..machine.profile import POSITIVE, Peak, highest, lowest
+from ..machine.profile import POSITIVE
 from ..machine.roller_follower import RollerFollower
 from ..numbers import checks
-from ..numbers.lazy import cached_property
 from ..numbers.panels import Panels
 from ..numbers.planar import dot
 from ..results.turn import Turn, require_single
 from ..solution.scene import Scene
 from . import spring_follower
-from .followers import lifted
+from .torque_balanced import COUNT, TorqueBalancing
 
 OWNER, TURN = "torque_balancing_cam", 2 * np.pi
-COUNT = 4096
-ANGLES = (np.arange(COUNT) + 0.382) * TURN / COUNT
-"""Crank angles at which torques are compared; at none of them anything is likely to jump."""
-EVEN = 1e-12
-"""Unevenness of the torque, relative to its size, that counts as none."""
+EVEN = 1e-10
+"""Unevenness of the torque, relative to the largest part of it, that counts as none."""
 CORNER = 1e-6
 """Jump of the torque across its mean, relative to the largest, that counts as one."""
 BESIDE = 1e-9
-STEEP = np.radians(30.0)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class TorqueBalancing:
-    """A machine with a torque-balancing cam on its crank; made by `torque_balancing_cam`.
-
-    Attributes
-    ----------
-    scene : Scene
-        With the follower and its spring.
-    reference : Scene
-        As it was.
-    follower : RollerFollower
-    spring : Spring
-    mean_torque : float
-        What the motor gives all the way, N m.
-    energy : float
-        What the spring takes up and gives back, J.
-    stretch : (float, float)
-        Of the spring, least and largest, m; weight of the follower counted in.
-    reserve : float
-        Times the force with which the spring must pull for contact, 2 omega sqrt(m E''), at least; above 1.
-    """
-
-    scene: Scene
-    reference: Scene
-    follower: RollerFollower
-    spring: Spring
-    mean_torque: float
-    energy: float
-    stretch: tuple[float, float]
-    reserve: float
-
-    @property
-    def travel(self):
-        """Of the follower, m."""
-        return self.stretch[1] - self.stretch[0]
-
-    @property
-    def preload(self):
-        """Force of the spring where it is stretched least, N."""
-        return float(self.spring.stiffness * self.stretch[0])
-
-    @cached_property
-    def uneven(self):
-        """Mean of ``abs(T - mean(T))`` before and after, N m, each from a solution of its scene."""
-        found = []
-        for scene in (self.reference, self.scene):
-            torque = scene.solve(ANGLES).balancing_torque
-            found.append(float(np.mean(np.abs(torque - np.mean(torque)))))
-        return tuple(found)
-
-    @property
-    def remaining(self):
-        """What is left of the unevenness."""
-        return self.uneven[1] / self.uneven[0]
-
-    @cached_property
-    def _solution(self):
-        return self.scene.solve(ANGLES)
-
-    def _contact_force(self, angle):
-        return self._solution.at(angle).scalar("contact_force" + self.follower.label)
-
-    @cached_property
-    def least_contact_force(self) -> Peak:
-        """N, and the crank angle."""
-        return lowest(self._contact_force)
-
-    @cached_property
-    def largest_contact_force(self) -> Peak:
-        return highest(self._contact_force)
-
-    @property
-    def lifts_off(self):
-        """Crank angles (start, stop) between which the roller would leave the cam, rad; none as designed."""
-        return lifted(self._solution, "contact_force" + self.follower.label)
-
-    @cached_property
-    def pressure_angle(self) -> Peak:
-        """Largest size, rad."""
-        name = "pressure_angle" + self.follower.label
-        return highest(lambda angle: np.abs(self._solution.at(angle).measure(name)))
-
-    @cached_property
-    def curvature_radius(self) -> Peak:
-        """Smallest radius of the pitch curve where it is convex, m, by polar angle of the cam."""
-        sharpest = highest(lambda angle: 1.0 / self.follower.disk.curvature_radius(angle))
-        return Peak(1.0 / sharpest.value, sharpest.angle)
-
-    def table(self):
-        """Torque and bearing force before and after, as a DataFrame."""
-        import pandas as pd
-
-        rows = {}
-        for name, scene in (("before", self.reference), ("after", self.scene)):
-            s = scene.solve(ANGLES)
-            torque = s.balancing_torque
-            rows[name] = {
-                "mean torque [N m]": np.mean(torque),
-                "mean |T - mean| [N m]": np.mean(np.abs(torque - np.mean(torque))),
-                "largest |T| [N m]": np.max(np.abs(torque)),
-                "largest reaction at O [N]": np.max(np.hypot(*s.reaction("O"))),
-            }
-        return pd.DataFrame(rows)
-
-    def report(self):
-        """What it is and what it costs, as text."""
-        low, high = self.stretch
-        before, after = self.uneven
-        mean = self.mean_torque if abs(self.mean_torque) > EVEN * before else 0.0
-        forces = self.least_contact_force, self.largest_contact_force
-        lost = ", ".join(f"{np.degrees(a):.4g} to {np.degrees(b):.4g} deg" for a, b in self.lifts_off)
-        return "\n".join(
-            [
-                f"Torque-balancing cam on the crank of {self.reference.mechanism.name}",
-                f"  torque              {mean:.6g} N m mean; uneven by {before:.4g} N m before, "
-                f"{after:.3g} after ({self.remaining:.2g})",
-                f"  spring              {self.spring.stiffness:.6g} N/m, free at {self.spring.free_position:.6g} m, "
-                f"stretched {low * 1e3:.4g} to {high * 1e3:.4g} mm, preload {self.preload:.4g} N",
-                f"  energy              {self.energy:.4g} J to and fro",
-                f"  follower            {self.follower.follower.mass:.4g} kg, travel {self.travel * 1e3:.4g} mm",
-                f"  contact             the spring pulls at least {self.reserve:.3g} times as much as it must",
-                f"  contact force       {forces[0].value:.4g} N at {np.degrees(forces[0].angle):.4g} deg, to "
-                f"{forces[1].value:.4g} N at {np.degrees(forces[1].angle):.4g}; "
-                + (f"lifts off from {lost}" if lost else "positive all the way"),
-                f"  pressure angle      {np.degrees(self.pressure_angle.value):.4g} deg at most",
-                f"  pitch curve         smallest radius of curvature {self.curvature_radius.value * 1e3:.4g} mm",
-            ]
-        )
-
-    def __repr__(self):
-        return f"<TorqueBalancing: {self.reference.mechanism.name}, {self.remaining:.2g} of the unevenness left>"
+STEEP, STEEPEST = np.radians(30.0), np.radians(85.0)
 
 
 def torque_balancing_cam(
@@ -231,12 +94,14 @@ def torque_balancing_cam(
     >>> found.remaining < 1e-9, found.lifts_off
     (True, ())
     """
-    given = {"mass": mass, "travel": travel, "stiffness": stiffness, "pressure_angle": pressure_angle}
-    given |= {"base_radius": base_radius, "roller_radius": roller_radius}
+    given = {"stiffness": stiffness, "base_radius": base_radius, "roller_radius": roller_radius}
     values = checks.singles(
         OWNER,
         _scene_problem(scene),
         **{name: (value, POSITIVE) for name, value in given.items() if value is not None},
+        mass=(mass, POSITIVE),
+        travel=(travel, POSITIVE),
+        pressure_angle=(pressure_angle, POSITIVE | {"high": STEEPEST}),
         guide_angle=(guide_angle, {}),
         guide_offset=(guide_offset, {}),
     )
@@ -285,6 +150,7 @@ def _energy(scene, switches):
     """Torque as panels, and the integral of what it is above its mean."""
     solution = scene.solve(720)
     require_single(solution, OWNER, "balancing_torque")
+    _require_uneven(solution.balancing_torque, solution.dynamics.largest_torque_term)
     kinks = Turn.of(solution).kinks
     try:
         torque = Panels.of(lambda angle: solution.at(angle).balancing_torque, TURN, [*kinks, *switches])
@@ -293,15 +159,18 @@ def _energy(scene, switches):
     return torque, torque.plus(-torque.mean).integral
 
 
+def _require_uneven(torque, size):
+    """Raise if the torque is its mean but for rounding of the torques that it is a sum of."""
+    if not np.ptp(torque) > EVEN * size:
+        raise ParameterError(f"{OWNER}: the torque is even as it is, {np.mean(torque):.6g} N m all the way")
+
+
 def _swing(torque, energy):
     """Range of the machine's energy, its peak, and the crank angles where it is least."""
     mean = torque.mean
     size = float(np.max(np.abs(torque(np.linspace(0.0, TURN, COUNT)))))
     turns = torque.plus(-mean).roots
-    values = energy(turns) if turns.size else np.zeros(1)
-    swing, peak = float(np.ptp(values)), float(np.max(values))
-    if not swing > EVEN * size:
-        raise ParameterError(f"{OWNER}: the torque is even as it is, {mean:.6g} N m all the way")
+    values = energy(turns)
     for angle in turns:
         beside = np.abs(torque(angle + np.array([-BESIDE, BESIDE])) - mean)
         if np.max(beside) > CORNER * size:
@@ -309,7 +178,11 @@ def _swing(torque, energy):
                 f"{OWNER}: the torque jumps across its mean of {mean:.6g} N m at {np.degrees(angle):.6g} deg, where "
                 "the follower would have to turn back at once; let the load that switches there take some degrees"
             )
-    return swing, peak, [angle for place, angle in enumerate(turns) if values[place] < values[place - 1]]
+    return (
+        float(np.ptp(values)),
+        float(np.max(values)),
+        [angle for place, angle in enumerate(turns) if values[place] < values[place - 1]],
+    )
 
 
 def _spring(values, swing):

@@ -18,6 +18,8 @@ from .law import TURN
 GRID = np.linspace(0.0, TURN, 2049)
 """Crank angles from which the iteration starts, rad."""
 ITERATIONS = 8
+OUTLINE = 181
+"""Points of a drawn curve."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +39,12 @@ class DiskCam(Cam):
         place, first, second = self.follower.pitch(self.follower.cam.law(phi))
         back = np.exp(-1j * phi)
         return back * place, back * (first - 1j * place), back * (second - 2j * first - place)
+
+    @property
+    def outline(self):
+        """Points (2, K) of the pitch curve, the last again the first, m."""
+        points = self.curve(np.linspace(0.0, TURN, OUTLINE))[0]
+        return np.array([points.real, points.imag])
 
     @cached_property
     def _around(self):

@@ -94,6 +94,10 @@ class GuidedFollower(checks.Checked, Group):
         """The cam itself, in its own axes: those of +x and +y at crank angle 0; for workshop and figures."""
         return DiskCam(self)
 
+    @property
+    def outlines(self):
+        return {"crank": self.disk.outline}
+
     def sliding(self, name, placement):
         return Slide(self.guide.line.direction, placement.travels[self._follower].first)
 

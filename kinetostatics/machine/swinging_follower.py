@@ -203,6 +203,10 @@ class SwingingFollower(checks.Checked, Group):
         """The cam itself, in its own axes: those of +x and +y at crank angle 0; for workshop and figures."""
         return DiskCam(self)
 
+    @property
+    def outlines(self):
+        return {"crank": self.disk.outline}
+
     def pitch(self, law):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""
         placed = place(law[:3], self.pivot, self.arm_length, self.assembly).roller

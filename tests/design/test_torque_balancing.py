@@ -129,13 +129,3 @@ def test_scenes_that_no_cam_can_balance_are_refused():
     for text, item in cases.items():
         with pytest.raises(ks.ParameterError, match=text):
             balanced(item)
-
-
-def test_the_report_and_the_table_say_what_it_gives_and_costs():
-    found = balanced(drive("free-start", "switching"))
-    for text in ("N m mean; uneven by", "preload", "positive all the way", "pressure angle      30 deg at most"):
-        assert text in found.report()
-    table = found.table()
-    assert table.loc["mean |T - mean| [N m]", "after"] < 1e-9
-    assert table.loc["largest reaction at O [N]", "after"] > table.loc["largest reaction at O [N]", "before"]
-    assert "of the unevenness left" in repr(found)
