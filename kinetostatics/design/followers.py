@@ -135,7 +135,7 @@ def lifted(solution, force="cam_force"):
     ()
     >>> ((start, stop),) = ks.design.lifted(ks.solve(machine, 0.0, crank_speed=90.0, loads=spring), "contact_force")
     >>> round(float(start), 6), round(float(stop), 6)
-    (-1.106539, 1.106539)
+    (-1.108026, 1.108026)
     """
     from scipy.optimize import brentq
 

@@ -41,7 +41,7 @@ def test_the_curvature_is_that_of_the_pitch_curve_as_points(found):
 
 def test_a_faster_machine_shows_where_it_lifts_off(found):
     scene = found.scene
-    faster = ks.Scene(scene.mechanism, 3.0 * scene.crank_speed, loads=scene.loads).solve(360)
+    faster = ks.Scene(scene.mechanism, 10.0 * scene.crank_speed, loads=scene.loads).solve(360)
     pressing = faster.scalar("contact_force_cam") > 0.0
     inside = np.zeros(360, bool)
     for start, stop in ks.design.lifted(faster, "contact_force_cam"):
