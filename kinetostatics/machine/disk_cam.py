@@ -26,7 +26,7 @@ OUTLINE = 181
 class DiskCam(Cam):
     """Cam of a follower with ``pitch(law values) -> P, P', P''``; made by its `disk`.
 
-    It turns with the crank; its polar angles are from +x at crank angle 0.
+    It turns with the crank; its polar angles, which are what cams call crank angles, are from +x at crank angle 0.
     """
 
     follower: Any
@@ -39,6 +39,13 @@ class DiskCam(Cam):
         place, first, second = self.follower.pitch(self.follower.cam.law(phi))
         back = np.exp(-1j * phi)
         return back * place, back * (first - 1j * place), back * (second - 2j * first - place)
+
+    def export(self, path, *, clockwise=True, **others):
+        """Write the cam for the workshop, as every cam; see `Cam.export`.
+
+        The roller goes around it clockwise, as it does where the crank turns counter-clockwise, unless told.
+        """
+        super().export(path, clockwise=clockwise, **others)
 
     @property
     def outline(self):

@@ -56,6 +56,9 @@ def test_it_is_made_for_the_workshop(tmp_path):
     made = disk.profile(0.01, 90)
     assert_allclose(np.hypot(*(made.pitch - made.surface)), 0.01, rtol=1e-12)
     disk.export(tmp_path / "cam.csv", roller_radius=0.01, points=36)
+    disk.export(tmp_path / "turned.csv", roller_radius=0.01, points=36, clockwise=False)
+    texts = [(tmp_path / name).read_text() for name in ("cam.csv", "turned.csv")]
+    assert ["the roller goes around clockwise" in text for text in texts] == [True, False]
     assert len((tmp_path / "cam.csv").read_text().splitlines()) > 36
     with pytest.raises(ks.ParameterError, match="roller"):
         disk.profile(0.2, 90)
