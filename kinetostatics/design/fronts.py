@@ -109,5 +109,10 @@ def _table(found, outputs, pair):
     import pandas as pd
 
     columns = [output.column for output in pair]
-    rows = [dict(zip(columns, outputs(design.scene), strict=True)) | dict(design.values) for design in found]
+    units = found[0].scene.units
+    rows = [
+        dict(zip(columns, outputs(design.scene), strict=True))
+        | {f"{path} [{units[path]}]": value for path, value in dict(design.values).items()}
+        for design in found
+    ]
     return pd.DataFrame(rows)

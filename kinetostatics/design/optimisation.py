@@ -11,6 +11,7 @@ from .demands import TOPS, Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
+from .progress import shown
 from .robust import Sampled
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
 
@@ -35,6 +36,7 @@ def optimise(
     seed=0,
     angles=ANGLES,
     engine="numpy",
+    progress=False,
 ):
     """Best machine within bounds and limits.
 
@@ -64,6 +66,8 @@ def optimise(
         Crank angles over the period of the loads.
     engine : "numpy" or "compiled"
         The loop of many parameters takes a while to compile, and pays for long studies.
+    progress : bool
+        Show a bar that counts the steps of the search.
 
     Returns
     -------
@@ -95,8 +99,10 @@ def optimise(
     asked = (output, *(limit.output for limit in limits))
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
-    best, ends = multiple(problem, goal, plain, starting(problem, starts, seed, begin), limits)
-    best = held(problem, goal, plain, best)
+    begins = starting(problem, starts, seed, begin)
+    with shown(problem, progress):
+        best, ends = multiple(problem, goal, plain, begins, limits)
+        best = held(problem, goal, plain, best)
     return found_of(
         problem,
         Goal(goal.output, goal.sign) if robust is not None else Goal(output, sign),

@@ -24,6 +24,7 @@ from .derived import scene_of
 from .found import Found, found_of, known
 from .optimisation import aim, aimed, as_asked, held, multiple, require_reference, without_ratios
 from .problem import Problem, chosen, true_value
+from .progress import shown
 from .search import Goal
 
 FEWEST, ENOUGH = 360, 32
@@ -71,6 +72,7 @@ def torque_free_cam(
     starts=1,
     seed=0,
     engine="numpy",
+    progress=False,
 ) -> Found:
     """Cam-balanced crank-slider that needs least torque, or is best in what else is asked of it.
 
@@ -101,7 +103,7 @@ def torque_free_cam(
         Bounds of the spring's cubic term, N/m3; without it the spring is linear.
     vary : dict of path to (low, high), optional
         Further numbers that vary, or other bounds.
-    robust, variant, reference, starts, seed, engine
+    robust, variant, reference, starts, seed, engine, progress
         As for `optimise`. Further starts have harmonics anywhere within a tenth of the cam's radius.
 
     Returns
@@ -151,8 +153,9 @@ def torque_free_cam(
     _require_within_bound(start, problem, asked, compared, begins[0])
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), asked)
     try:
-        best, came_to = multiple(problem, goal, plain, begins, asked)
-        best = held(problem, goal, plain, best)
+        with shown(problem, progress):
+            best, came_to = multiple(problem, goal, plain, begins, asked)
+            best = held(problem, goal, plain, best)
     except DesignError as error:
         nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
         raise DesignError(f"{error}{_advice(start, problem, compared, nearest)}", error.values) from None
