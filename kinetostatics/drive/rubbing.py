@@ -46,7 +46,7 @@ class RubbingDriven(Driven):
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
         super().__init__(owner, scene, motor, flywheel, engine, direction)
         self.senses = Senses.of(self.scene)
-        self._engine, self._passes = engine or "numpy", PASSES[0]
+        self._engine, self._passes = engine, PASSES[0]
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()
 
@@ -72,7 +72,7 @@ class RubbingDriven(Driven):
         rubs = tuple(with_fields(rub, sense=1.0) for rub in self.scene.friction.rubs)
         friction = with_fields(self.scene.friction, rubs=rubs, passes=self._passes)
         scene, kept = with_fields(self.scene, friction=friction), ("crank_speed", "crank_acceleration")
-        return compiled(scene, (*OWN, *self._bending), parameters=kept, engine=self._engine)
+        return compiled(scene, (*OWN, *self._bending), parameters=kept, engine=self._engine or "numpy")
 
     @cached_property
     def _pressed(self):
@@ -94,10 +94,10 @@ class RubbingDriven(Driven):
         given = {"crank_speed": speed, "crank_acceleration": acceleration}
         given |= {f"friction.{name}.sense": sense for name, sense in senses.items()}
         if not shape:
-            found = self._program.unlooked(np.array(angle), given)
+            found = self._program.unlooked(float(angle), given, self._engine != "numpy")
             return {name: float(value) for name, value in found.items()}
         columns = {path: np.broadcast_to(value, shape).reshape(-1, 1) for path, value in given.items()}
-        rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns)
+        rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns, self._engine == "compiled")
         return {name: value.reshape(shape) for name, value in rows.items()}
 
     def at(self, angle, speed=None) -> State:

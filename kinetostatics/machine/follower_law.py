@@ -7,7 +7,7 @@ import numpy as np
 
 from ..numbers import checks
 from .crank import ray as ray_at
-from .law_cam import law_problem
+from .law import law_problem
 
 
 @dataclass(frozen=True, eq=False)
