@@ -29,17 +29,15 @@ def test_what_is_no_law_is_refused(number, law):
         KINDS[number](cam=law)
 
 
-@pytest.mark.parametrize("value", [part for part in NUMBERS if part != 1e300], ids=str)
+@pytest.mark.parametrize("value", [part for part in NUMBERS if part != "text"], ids=range(len(NUMBERS) - 1))
 @pytest.mark.parametrize("name", ["pin", "label"])
 def test_names_must_be_texts(name, value):
-    if value == "text":
-        return
     for kind in KINDS:
         with pytest.raises(ks.ParameterError, match=f"{name} must be a name"):
             kind(**{name: value})
 
 
-@pytest.mark.parametrize("value", NUMBERS, ids=str)
+@pytest.mark.parametrize("value", NUMBERS, ids=range(len(NUMBERS)))
 @pytest.mark.parametrize("name", ["mass", "travel", "stiffness", "base_radius", "pressure_angle", "roller_radius"])
 def test_numbers_of_a_torque_balancing_cam_are_refused_or_make_one(drive, name, value):
     given = {"mass": 0.3, "travel": 0.012, name: value}
