@@ -23,7 +23,6 @@ from ..numbers import checks
 from ..numbers.files import written_whole
 
 CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "harmonic"}
-RESERVED = "reference"
 
 
 def write(path, title, scenes, source="", *, comment="", designs=None) -> Path:
@@ -179,7 +178,8 @@ def _link(link):
 def _cam(cam):
     if type(cam) not in CAMS:
         raise ParameterError(
-            f"case file: has no text for a cam of the class {type(cam).__name__}; sample it as a table"
+            f"case file: has no text for a cam of the class {type(cam).__name__}; write it by cam.export as .csv, and "
+            'name that in a case file: cam = { kind = "sampled", table = "cam.csv" }'
         )
     keys = {PLAIN.get(name, name): value for name, value in _keys(cam).items() if name != "guide_angle"}
     return _inline({"kind": _quoted(CAMS[type(cam)]), **keys})

@@ -1,16 +1,20 @@
 """What a search found: the better machine, what binds it, and what each limit and each bound costs."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..mechanics.quantities import of_scene
+from ..numbers import checks
 from .demands import Demand
 from .derived import scene_of
-from .problem import true_value
+from .problem import compared_value
 from .search import side_of
 
+TAKEN = ("reference", "before")
+"""Variants of the case file beside the design's own."""
 BINDS = 1e-6
 """How near, relative to its size or range, a design is to a limit or bound that holds it."""
 
@@ -55,6 +59,11 @@ class Found:
     evaluations: int = 0
     starts: list[float] = field(default_factory=list)
     bound: float = np.inf
+
+    def __repr__(self):
+        numbers = f"{len(self.values)} numbers of {self.scene.mechanism.name} varied"
+        binds = f"{', '.join(self.active)} binds" if self.active else "nothing binds"
+        return f"<Found: {self.goal}; {numbers}, {binds}; {self.evaluations} evaluations>"
 
     def report(self):
         """Outputs before and after, with their limits and what these cost; a pandas DataFrame."""
@@ -109,6 +118,13 @@ class Found:
         """
         from .case_text import write
 
+        known = isinstance(name, str) and name not in TAKEN
+        checks.require(
+            "case file",
+            None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
+            None if known else f"name must be a text, not one of {TAKEN}, got {name!r}",
+            None if title is None or isinstance(title, str) else f"title must be a text, got {checks.shown(title)}",
+        )
         scenes = {} if self.reference is None else {"reference": self.reference}
         scenes |= {"before": self.before, name: self.scene}
         return write(path, title or f"Design for the {self.goal}", scenes)
@@ -116,8 +132,7 @@ class Found:
     def _of(self, output, scene):
         if output.quantity not in known(scene):
             return np.nan
-        own = true_value(output, scene)
-        return true_value(output, self.reference) / own if output.ratio else own
+        return compared_value(output, scene, self.reference)
 
 
 def known(scene):

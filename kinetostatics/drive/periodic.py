@@ -15,7 +15,7 @@ from .motor import single
 from .newton import interpolated, looked_at, settled, unresolved
 from .operating import operating_speed, require_known
 from .pieces import LEVELS, MOST_PIECES, TAIL
-from .resolution import require_inertia, resolved
+from .resolution import require_inertia, resolved_with_bends
 from .rubbing import driven_by
 from .running import Running
 
@@ -80,7 +80,7 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
 def _driven_running(driven, scene):
     """Pieces, and the energy U at their points, of stable periodic running under a motor."""
     start = operating_speed(driven)
-    pieces, bends = resolved(driven, start)
+    pieces, bends = resolved_with_bends(driven, start)
     require_inertia(driven, pieces)
     found = settled(driven, pieces, lambda pieces: 0.5 * driven.inertia(pieces.angle) * start * start)
     pieces, energy = found or from_above(driven, pieces, start)
@@ -113,7 +113,7 @@ def _prescribed(driven, scene):
             "give a motor"
         )
     speed = abs(scene.crank_speed)
-    pieces, bends = resolved(driven, driven.direction * speed)
+    pieces, bends = resolved_with_bends(driven, driven.direction * speed)
     require_inertia(driven, pieces)
     for _ in range(LEVELS):
         energy, slow, acceleration = _under_constant_torque(driven, pieces, speed)

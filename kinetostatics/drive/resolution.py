@@ -24,7 +24,12 @@ VANISHING = 1e-10
 
 
 def resolved(driven, speed):
-    """Pieces in which inertia and torque at a speed are series that are done, and crank angles of bends among them."""
+    """Pieces in which inertia and torque at a speed are series that are done."""
+    return resolved_with_bends(driven, speed)[0]
+
+
+def resolved_with_bends(driven, speed):
+    """The same, and crank angles of bends of friction among their edges."""
     edges = _edges(np.concatenate([[0.0], driven.kinks, [driven.period]]))
     pieces, bends = _bent(driven, Pieces(edges, FEW_POINTS if len(edges) > MANY else POINTS), speed)
     pieces = _refined(driven, pieces, speed)

@@ -83,7 +83,7 @@ def _textbook(scene, wanted, engine):
     speed, wrong = single(getattr(scene, "crank_speed", 1.0), name="crank_speed of the scene", unequal=0.0)
     checks.require("flywheel", wrong)
     driven = driven_by("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
-    pieces, _ = resolved(driven, speed)
+    pieces = resolved(driven, speed)
     angle = pieces.angle
     state = driven.at_constant_speed(angle, 0.0 * angle + speed if driven.by_speed else None)
     spare = pieces.total(state.torque) / driven.period - state.torque

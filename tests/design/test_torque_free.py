@@ -123,32 +123,6 @@ def test_random_starts_reach_the_same_least_squares(harmonics):
     assert np.mean(np.isclose(ends, best, rtol=1e-6)) >= 0.6
 
 
-def test_coupler_keeps_mass_inertia_and_the_share_of_its_mass_centre():
-    found = torque_free(2, gravity=False, minimise=SQUARES)
-    coupler = found.scene.mechanism.links["coupler"]
-    assert (coupler.mass, coupler.inertia) == (150.0, 20.5)
-    assert_allclose(coupler.centre[0], found.values["coupler_length"] / 2, rtol=1e-15)
-
-
-def test_the_study_s_ends_are_kept_from_a_plain_machine_as_well():
-    """A scene of Python, of which a plain crank-slider is the reference too."""
-    plain = SAW.variant("plain").scene
-    found = ks.design.torque_free_cam(plain, 3, reference=plain, minimise=SQUARES, gravity=False)
-    assert_allclose(ks.extremes(found.scene.solve(90), "slider_position").range, (1.7, 2.3), rtol=1e-9)
-    assert found.report().loc[f"{RATIO} [1]", "before"] == 1.0
-
-
-def test_a_turned_machine_has_the_turned_design():
-    """Guide and gravity turned together by 0.4 rad: the same harmonics."""
-    plain = SAW.variant("plain").scene
-    parts = {"coupler": ks.Link(150.0, 1.0, 20.5), "slider": ks.Link(600.0)}
-    turned = ks.Scene(
-        ks.crank_slider(0.3, 2.0, guide_angle=0.4, **parts), plain.crank_speed, loads=ks.Gravity(9.81, 0.4 - np.pi / 2)
-    )
-    one, other = (ks.design.torque_free_cam(scene, 2, 2, minimise=SQUARES) for scene in (plain, turned))
-    assert_allclose(list(other.values.values()), list(one.values.values()), rtol=1e-5, atol=1e-7)
-
-
 def test_a_ratio_beyond_the_bound_ends_with_the_bound_and_what_may_help():
     with pytest.raises(
         ks.DesignError, match=r">= 200 cannot be kept; .* reaches .* 16\d.* at most: give sine"
@@ -166,14 +140,6 @@ def test_bound_is_what_the_weight_alone_asks():
     plain = np.mean(np.abs(found.reference.solve(2880).balancing_torque))
     assert_allclose(found.bound, plain / torque, rtol=1e-3)
     assert numbers["coupler_length"] > 2.0
-
-
-def test_ways_to_carry_the_weight_are_told_with_their_prices():
-    table = ks.design.weight_options(SAW, 3)
-    ratios = table[f"{RATIO} [1]"]
-    assert ratios["symmetric"] < table.loc["symmetric", "bound"] < ratios["sine terms"] < ratios["coupler spring"]
-    assert table["largest O [N]"].idxmax() == "counterweight"
-    assert table["largest_absolute guide_moment [N m]"].idxmax() == "coupler spring"
 
 
 def test_smooth_cams_come_first():
