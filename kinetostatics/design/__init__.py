@@ -13,6 +13,7 @@ demands         what is asked of a design, read from texts
 derived         what follows from the numbers that vary
 measures        outputs with their derivatives
 problem         outputs of a scene as functions of the numbers that vary
+progress        bars that count its steps
 search          the search by SciPy's optimisers
 found           its result: the machine, what binds, what it costs
 case_text       scenes as case files

@@ -85,13 +85,16 @@ class Found:
         return pd.DataFrame.from_dict(rows, orient="index").rename_axis("output")
 
     def numbers(self):
-        """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame."""
+        """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame.
+
+        Before stands NaN where the source has no such number, as of another cam.
+        """
         import pandas as pd
 
         own, units = self.before.parameters, self.scene.units
         rows = {
             f"{path} [{units[path]}]": {
-                "before": own.get(path, 0.0),
+                "before": own.get(path, np.nan),
                 "after": value,
                 "price": self.prices.get(path, np.nan),
             }

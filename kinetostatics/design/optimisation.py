@@ -12,6 +12,7 @@ from .demands import TOPS, Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
+from .progress import shown
 from .robust import Sampled, not_spread
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
 
@@ -38,6 +39,7 @@ def optimise(
     seed=0,
     angles=ANGLES,
     engine="numpy",
+    progress=False,
 ):
     """Best machine within bounds and limits.
 
@@ -67,6 +69,8 @@ def optimise(
         Crank angles over the period of the loads.
     engine : "numpy" or "compiled"
         The loop of many parameters takes a while to compile, and pays for long studies.
+    progress : bool
+        Show a bar that counts the steps of the search.
 
     Returns
     -------
@@ -100,8 +104,10 @@ def optimise(
     require_resolved(angles, asked)
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
-    best, ends = multiple(problem, goal, plain, starting(problem, starts, seed, begin), limits)
-    best = held(problem, goal, plain, best)
+    begins = starting(problem, starts, seed, begin)
+    with shown(problem, progress):
+        best, ends = multiple(problem, goal, plain, begins, limits)
+        best = held(problem, goal, plain, best)
     return found_of(
         problem,
         goal if robust is not None else Goal(output, sign),

@@ -13,6 +13,7 @@ from ..numbers.units import to_si
 from ..solution.compile import compile as compiled
 from . import measures
 from .derived import Derived, scene_of
+from .progress import no_bar
 
 SHARED = ("crank_speed", "crank_acceleration")
 """Numbers that a reference takes from the design."""
@@ -46,6 +47,7 @@ class Problem:
         self.quantities = tuple(dict.fromkeys(quantities))
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
         self.evaluations = 0
+        self.stepped = no_bar
         self._curves: dict[bytes, dict] = {}
         self._compared: Any = None if reference is None else _Compared(reference, self)
 

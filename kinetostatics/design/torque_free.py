@@ -35,6 +35,7 @@ from .optimisation import (
     without_ratios,
 )
 from .problem import Problem, chosen, true_value
+from .progress import shown
 from .search import Goal
 
 FEWEST, ENOUGH = 360, 32
@@ -84,6 +85,7 @@ def torque_free_cam(
     starts=1,
     seed=0,
     engine="numpy",
+    progress=False,
 ) -> Found:
     """Cam-balanced crank-slider that needs least torque, or is best in what else is asked of it.
 
@@ -114,7 +116,7 @@ def torque_free_cam(
         Bounds of the spring's cubic term, N/m3; without it the spring is linear.
     vary : dict of path to (low, high), optional
         Further numbers that vary, or other bounds.
-    robust, variant, reference, starts, seed, engine
+    robust, variant, reference, starts, seed, engine, progress
         As for `optimise`. Further starts have harmonics anywhere within a tenth of the cam's radius.
 
     Returns
@@ -169,8 +171,9 @@ def torque_free_cam(
     _require_within_bound(start, problem, asked, compared, begins[0])
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), asked)
     try:
-        best, came_to = multiple(problem, goal, plain, begins, asked)
-        best = held(problem, goal, plain, best)
+        with shown(problem, progress):
+            best, came_to = multiple(problem, goal, plain, begins, asked)
+            best = held(problem, goal, plain, best)
     except DesignError as error:
         nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
         torque = any(item.output.quantity == TORQUE for item in asked)

@@ -6,7 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from support.designs import CAM, CIRCLE, ENDS, RATIO, SAW, SPRING, TORQUE, bound
+from support.improved_saws import CAM, CIRCLE, ENDS, RATIO, SAW, SPRING, TORQUE, bound
 
 
 def test_report_shows_before_and_after_and_what_binds():
