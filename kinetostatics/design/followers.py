@@ -44,6 +44,8 @@ class Surge(NamedTuple):
 
     def speeds(self, orders=range(1, 13)):
         """Crank speeds at which a harmonic of each order meets the natural frequency, rad/s."""
+        orders = tuple(orders) if np.iterable(orders) else (orders,)
+        checks.require("speeds", *(checks.count("an order", order) for order in orders))
         return {order: self.natural_frequency / order for order in orders}
 
 
@@ -178,7 +180,8 @@ def spring_surge(solution, spring_mass):
     """Natural frequency of the springs on a slider, and the harmonics with which the machine moves their ends.
 
     With both ends held, omega = pi sqrt(k / m); where it is a low multiple of the crank speed whose harmonic is not
-    small, coils clash (Wahl, *Mechanical Springs*, 1963, chapter 13).
+    small, coils clash (Wahl, *Mechanical Springs*, 1963, chapter 13). The rate k of a progressive spring is its mean
+    over the period.
 
     Parameters
     ----------
@@ -200,19 +203,21 @@ def spring_surge(solution, spring_mass):
     >>> print(f"order {found.order:.2f}, second harmonic {found.amplitudes[2] * 1e3:.2f} mm")
     order 19.87, second harmonic 8.58 mm
     """
-    _require(solution, "spring_surge", "")
+    _require(solution, "spring_surge", "slider_position")
     mass = checks.singles("spring_surge", spring_mass=(spring_mass, POSITIVE))["spring_mass"]
     springs = [load for load in solution.loads if isinstance(load, Spring)]
-    if len(springs) != 1 or not np.all(springs[0].stiffness):
-        raise ParameterError(
-            f"spring_surge: takes a solution with one Spring that has a stiffness among its loads, got {len(springs)}"
-        )
+    if len(springs) != 1:
+        raise ParameterError(f"spring_surge: takes a solution with one Spring among its loads, got {len(springs)}")
     (spring,) = springs
     turns = round(solution.period / (2.0 * np.pi))
     at = solution.at(np.linspace(0.0, solution.period, SAMPLES * turns, endpoint=False))
-    series = np.abs(np.fft.rfft(at.placement.travels[spring.on].position))[::turns] / at.crank_angle.size
+    end = at.placement.travels[spring.on].position
+    rate = float(np.mean(spring.stiffness + 3.0 * spring.cubic * (end - spring.free_position) ** 2))
+    if not rate > 0.0:
+        raise ParameterError(f"spring_surge: the Spring must have a stiffness, but its mean rate is {rate:.6g} N/m")
+    series = np.abs(np.fft.rfft(end))[::turns] / at.crank_angle.size
     series[1:] *= 2.0
-    natural = float(np.pi * np.sqrt(spring.stiffness / mass))
+    natural = float(np.pi * np.sqrt(rate / mass))
     return Surge(natural, natural / abs(_speed(solution)), series[: SAMPLES // 4])
 
 

@@ -131,7 +131,7 @@ def buffered_line(outputs) -> tuple[str, int]:
     source += [f"    r{place}[...] = {place_of.get(part) or _name(part, _PLAIN)}" for place, part in copies]
     heads = ["def line(angle, sine, cosine, parameters, tables, buffers, results):"]
     heads += [f"    {', '.join(f'b{k}' for k in range(count))}, = buffers"] if count else []
-    heads += [f"    {', '.join(f'r{k}' for k in range(len(outputs)))}, = results"]
+    heads += [f"    {', '.join(f'r{k}' for k in range(len(outputs)))}, = results"] if outputs else []
     return "\n".join(heads + source) + "\n", count
 
 

@@ -85,3 +85,31 @@ def test_a_force_that_is_not_there_is_refused_with_those_that_are():
     for function in (ks.design.lifted, ks.design.lift_off_speed):
         with pytest.raises(ks.ParameterError, match="'contact_force'"):
             function(turned(10.0), "contact")
+
+
+def test_a_progressive_spring_surges_by_its_mean_rate():
+    pump, angle = ks.crank_slider(0.1, 0.3), np.linspace(0, 2 * np.pi, 3600, endpoint=False)
+    spring = ks.Spring(2e3, 0.25, cubic=4e5)
+    solution = ks.solve(pump, angle, crank_speed=10.0, loads=spring)
+    step = 1e-5
+    rate = np.mean([spring_force(spring, solution.slider_position + side * step) for side in (1, -1)], axis=1)
+    found = ks.design.spring_surge(solution, 0.5)
+    assert found.natural_frequency == pytest.approx(np.pi * np.sqrt((rate[0] - rate[1]) / (2 * step) / 0.5), rel=1e-6)
+
+
+def spring_force(spring, place):
+    return spring.stiffness * (place - spring.free_position) + spring.cubic * (place - spring.free_position) ** 3
+
+
+@pytest.mark.parametrize("loads", [[], [ks.Spring(2e3, 0.3), ks.Spring(2e3, 0.3)], ks.Spring(0.0, 0.3)])
+def test_what_cannot_surge_is_refused(loads):
+    solution = ks.solve(ks.crank_slider(0.1, 0.3), 0.5, crank_speed=10.0, loads=loads)
+    with pytest.raises(ks.ParameterError, match="spring_surge: "):
+        ks.design.spring_surge(solution, 0.5)
+
+
+@pytest.mark.parametrize("orders", [0, [1, 0], [-1], [1.5], ["x"]])
+def test_orders_are_whole_numbers_of_turns(orders):
+    solution = ks.solve(ks.crank_slider(0.1, 0.3), 0.5, crank_speed=10.0, loads=ks.Spring(2e3, 0.3))
+    with pytest.raises(ks.ParameterError, match="an order must be a whole number"):
+        ks.design.spring_surge(solution, 0.5).speeds(orders)
