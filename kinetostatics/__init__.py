@@ -11,6 +11,7 @@ Call first
     compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
     sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
     balancing, linkage, needs                   counterweights; classes of four-bars; how much model a quantity needs
+    design.optimise, design.torque_free_cam     the best machine within bounds and limits; a cam that needs no torque
     laws, cams, design                          laws of motion; cams that make them; contact of the roller, lift-off ...
     plots, precision, stability, check          figures; every method's time and error; a test of a group of one's own
 
@@ -22,7 +23,7 @@ Rooms, in the order in which they build on each other
     results     extremes, means, reductions, comparison, tables
     solution    what users hold: scene, solution, solve, compile
     drive       motors, periodic running, flywheels, starting and coasting
-    design      static balancing, four-bar classes
+    design      counterweights, four-bar classes, contact of cams, optimisation under limits, torque-free cams
     sweeps      designs, sweep, workers, datasets, tolerances
     studies     needs, precision, stability, the methods under study
     casefile    case files: schema, reading, building
@@ -36,6 +37,7 @@ from .errors import (
     AssemblyError,
     CaseError,
     ConditionWarning,
+    DesignError,
     DriveError,
     HintWarning,
     JammingError,
@@ -54,6 +56,7 @@ if TYPE_CHECKING:
     from .machine.crank import Crank
     from .machine.cylinder_group import CylinderGroup
     from .machine.dyad import Dyad
+    from .machine.flat_follower import FlatFollower
     from .machine.friction import GuideFriction, PinFriction, RollerFriction, SlotFriction
     from .machine.guide import Guide
     from .machine.lever_group import LeverGroup
@@ -74,7 +77,9 @@ if TYPE_CHECKING:
     from .machine.mechanism import Mechanism
     from .machine.pin import Pin
     from .machine.rocker_group import RockerGroup
+    from .machine.roller_follower import RollerFollower
     from .machine.slider_group import SliderGroup
+    from .machine.swinging_follower import SwingingFollower
     from .machine.yoke_group import YokeGroup
     from .mechanics.principal_points import principal_points
     from .results.comparison import compare
@@ -99,8 +104,10 @@ __all__ = [
     "ConditionWarning",
     "Crank",
     "CylinderGroup",
+    "DesignError",
     "DriveError",
     "Dyad",
+    "FlatFollower",
     "Force",
     "Gravity",
     "Guide",
@@ -120,12 +127,14 @@ __all__ = [
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
+    "RollerFollower",
     "RollerFriction",
     "Scene",
     "SliderGroup",
     "SlotFriction",
     "Solution",
     "Spring",
+    "SwingingFollower",
     "Table",
     "Torque",
     "TorsionDamper",
@@ -166,6 +175,7 @@ _WHERE = {
     "machine.crank": ["Crank"],
     "machine.cylinder_group": ["CylinderGroup"],
     "machine.dyad": ["Dyad"],
+    "machine.flat_follower": ["FlatFollower"],
     "machine.friction": ["GuideFriction", "PinFriction", "RollerFriction", "SlotFriction"],
     "machine.guide": ["Guide"],
     "machine.lever_group": ["LeverGroup"],
@@ -185,8 +195,10 @@ _WHERE = {
     ],
     "machine.mechanism": ["Mechanism"],
     "machine.rocker_group": ["RockerGroup"],
+    "machine.roller_follower": ["RollerFollower"],
     "machine.pin": ["Pin"],
     "machine.slider_group": ["SliderGroup"],
+    "machine.swinging_follower": ["SwingingFollower"],
     "machine.yoke_group": ["YokeGroup"],
     "mechanics.principal_points": ["principal_points"],
     "results.comparison": ["compare"],

@@ -81,6 +81,20 @@ class DriveError(KinetostaticsError, ValueError):
         self.crank_angle = crank_angle
 
 
+class DesignError(KinetostaticsError, ValueError):
+    """No machine meets what is asked of a design; the message says why, and how near the best one comes.
+
+    Attributes
+    ----------
+    values : dict of path to float, or None
+        Numbers of the nearest one, where a search was made.
+    """
+
+    def __init__(self, message, values=None):
+        super().__init__(message)
+        self.values = values
+
+
 class QuantityError(KinetostaticsError, AttributeError):
     """The mechanism has no such joint, link or quantity; the message lists those it has."""
 

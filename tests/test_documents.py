@@ -60,6 +60,20 @@ def test_readme_program_gives_torque_and_slope_which_is_constant_in_a_mass():
     np.testing.assert_allclose(names["torque"] - before, 0.5 * names["slope"], rtol=1e-9, atol=1e-12)
 
 
+def test_readme_saw_needs_as_little_torque_as_it_says(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("ezdxf", reason="ezdxf is not installed (extra: workshop)")
+    monkeypatch.chdir(tmp_path)
+    names: dict = {"ks": ks}
+    exec(compile(python_blocks()[5], "README", "exec"), names)
+    gain, reaction = map(float, capsys.readouterr().out.rsplit("\n", 2)[1].split())
+    assert gain == pytest.approx(411.4, abs=0.1)
+    assert ks.extremes(names["found"].scene.solve(), "O").largest == pytest.approx(753.0, abs=1.0)
+    study = names["saw"].variants["cam-circle"].solve()
+    assert ks.compare(study, names["found"].scene.solve()).mean_torque_ratio == pytest.approx(67.7, abs=0.2)
+    assert reaction > 300.0
+    assert (tmp_path / "cam.dxf").stat().st_size > 10_000
+
+
 def test_readme_links_lead_to_files():
     links = [link for link in re.findall(r"\]\(([^)]+)\)", README) if "://" not in link]
     assert links

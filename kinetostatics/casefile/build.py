@@ -142,10 +142,10 @@ def _loads(table, tabulated):
         yield Gravity(table.gravity.acceleration, table.gravity.direction)
     spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)
     if spring is not None:
-        if isinstance(spring.stiffness, str):
-            yield Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position)
-        else:
-            yield Spring(spring.stiffness, spring.free_position)
+        stiffness = spring.stiffness
+        if isinstance(stiffness, str):
+            stiffness = Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position).stiffness
+        yield Spring(stiffness, spring.free_position, cubic=spring.cubic)
     if force is not None:
         read = tabulated.get(("process_force",)) or tabulated.get(("process_force", "force"))
         yield ProcessForce(force.force) if read is None else ProcessForce(read, period=read.period)

@@ -63,6 +63,8 @@ def cam_of(table, read, guide_angle):
         return read
     if isinstance(table, schema.CosineLawTable):
         return cams.CosineLaw(table.amplitude, table.mean, guide_angle)
+    if isinstance(table, schema.HarmonicTable):
+        return cams.Harmonic(table.cosine, table.sine, guide_angle)
     return cams.Circle(table.radius, table.centre)
 
 

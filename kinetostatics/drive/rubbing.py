@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import DriveError
 from ..machine.friction import PASSES, Rolling, Sliding
 from ..mechanics.friction_laws import bends
-from ..mechanics.jamming import converged
+from ..mechanics.jamming import converged, require_free
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
 from .driven import STEP, Driven, State, apart
@@ -113,8 +113,8 @@ class RubbingDriven(Driven):
         friction = np.concatenate([block[FRICTION] for block in blocks])
         return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
 
-    def here(self, angle, speed):
-        senses = {name: float(sense) for name, sense in self.senses.at(angle, self.direction).items()}
+    def here(self, angle, speed, direction=None):
+        senses = {name: float(sense) for name, sense in self.senses.at(angle, direction or self.direction).items()}
         return self.moving(angle, speed, senses)[:3]
 
     def moving(self, angle, speed, senses):
@@ -188,7 +188,7 @@ class RubbingDriven(Driven):
         found = self.rubbed(angle, speed, acceleration, senses)
         margin, residual = (found[name] for name in CHECKS)
         if not np.isfinite(found[FRICTION]).all():
-            self.scene.solve(np.ravel(angle))  # says where it jams
+            require_free(self.scene.solve(np.ravel(angle), on_gap="nan"), "drive")
         if not converged(margin, residual).all() and self._passes < PASSES[-1]:
             self._passes = next(passes for passes in PASSES if passes > self._passes)
             del self._program

@@ -59,7 +59,7 @@ def flywheel_for(wanted, running_with, unit):
         running_with(size)  # says why the machine does not run
         raise DriveError(f"flywheel: even {size:.3g} kg m2 do not bring the fluctuation to {wanted:g}")
     while not math.isfinite(excess(low)):  # too light to run at all
-        if high < LIGHTEST * unit:
+        if high < LIGHTEST * unit or high - low <= PRECISION * high:
             return high, runs[high]
         middle = 0.5 * (low + high)
         low, high = (low, middle) if excess(middle) <= 0.0 else (middle, high)

@@ -88,7 +88,7 @@ def cam_crank_slider(
 
     Parameters
     ----------
-    cam : cams.Circle, cams.CosineLaw or cams.Sampled
+    cam : cams.Circle, cams.CosineLaw, cams.Harmonic or cams.Sampled
         Fixed cam, by the pitch curve of the roller centre.
     coupler_length, guide_angle, guide_offset, guide, assembly, crank, coupler, slider
         As for `crank_slider`; the mass centre of the slotted crank lies on it at a constant distance from O.

@@ -76,7 +76,7 @@ class CamRoller(checks.Checked, Group):
 
     Parameters
     ----------
-    cam : cams.Circle, cams.CosineLaw, cams.Sampled or alike
+    cam : cams.Circle, cams.CosineLaw, cams.Harmonic, cams.Sampled or alike
         Anything with ``polar(angle, ray)`` that returns r, r', r'' in m; taken as it is when the group is made.
     block : Link
         Block with roller; reference joint A, along the crank ray.

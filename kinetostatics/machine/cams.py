@@ -15,10 +15,11 @@ from ..numbers.elementary import namespace, sqrt
 from ..numbers.lazy import cached_property
 from .cam import Cam
 from .crank import ray as ray_at
+from .harmonic_cam import Harmonic
 from .law_cam import LawCam, from_law
 from .sampled_cam import Sampled
 
-__all__ = ["Cam", "Circle", "CosineLaw", "LawCam", "Sampled", "from_law"]
+__all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "LawCam", "Sampled", "from_law"]
 
 
 @dataclass(frozen=True, eq=False, init=False)

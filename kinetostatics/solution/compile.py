@@ -18,8 +18,9 @@ from ..mechanics.quantities import CHECKS
 from ..numbers import checks, paths
 from ..numbers.elementary import read_only
 from ..numbers.kinds import Numbered
-from ..numbers.leaves import Kept, with_fields
+from ..numbers.leaves import with_fields
 from .angles import crank_angles, problems
+from .parameters import is_judged_together, is_zero, shaping, with_kept
 from .scene import Scene, unchecked
 
 FEW = 180
@@ -97,8 +98,8 @@ class Program:
         if scene.friction.acting:
             scene = _with_enough_passes(scene)
         for path in kept:
-            if _is_zero(places[path].value(scene)):
-                scene = _with_kept(scene, places[path].steps)
+            if is_zero(places[path].value(scene)):
+                scene = with_kept(scene, places[path].steps)
         state = Dynamics(scene.mechanism, np.zeros(1), *_drive(scene))
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)
@@ -109,11 +110,11 @@ class Program:
             path: (number, places[path].rule) for path, number in found.items() if isinstance(number, Numbered)
         }
         self._absent = tuple(path for path in places if path not in self._numbers)
-        self._doors = {path for path in self._numbers if _is_judged_together(scene, places[path].steps)}
+        self._doors = {path for path in self._numbers if is_judged_together(scene, places[path].steps)}
         self._passages = scene.mechanism.passages
         groups = scene.mechanism.groups
-        self._lengths = _shaping(places, scene.mechanism, [group for group in groups if group.through])
-        self._fixed = _shaping(places, scene.mechanism, [group for group in groups if group.passes])
+        self._lengths = shaping(places, scene.mechanism, [group for group in groups if group.through])
+        self._fixed = shaping(places, scene.mechanism, [group for group in groups if group.passes])
         values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
         self.parameters: Mapping[str, Any] = MappingProxyType(values)
 
@@ -307,20 +308,6 @@ _FIXED = (
 )
 
 
-def _shaping(places, mechanism, groups):
-    """Paths of what decides which change points some groups pass: pins of the crank, their own lengths and lines."""
-    numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
-    pins = {group.on for group in groups}
-    numbers += [number for number, group in enumerate(mechanism.groups) if pins.intersection(group.throws)]
-    owners = [("mechanism", "groups", number) for number in numbers] + [("mechanism", "crank")] * bool(numbers)
-    links = {"link"}.union(*(group.own_names.values() for group in groups))
-    return {
-        path
-        for path, place in places.items()
-        if any(place.steps[: len(owner)] == owner for owner in owners) and not links & set(place.steps)
-    }
-
-
 def _shape(angle, leaves):
     """Shape (..., N) of scalar results; refused where tables over the crank angles, or designs, do not fit them."""
     try:
@@ -330,27 +317,3 @@ def _shape(angle, leaves):
         given = {f"array {number} of the scene": array.shape for number, array in enumerate(arrays, 1)}
         checks.require("program", checks.fitting(crank_angle=angle.shape, **given))
         raise
-
-
-def _is_zero(value):
-    return isinstance(value, int | float) and value == 0
-
-
-def _with_kept(item, steps):
-    """Copy of a tree in which a zero is kept as a number; nothing is checked."""
-    if not steps:
-        return Kept(0.0)
-    step, *rest = steps
-    if isinstance(step, int):
-        return tuple(_with_kept(part, rest) if place == step else part for place, part in enumerate(item))
-    return with_fields(item, **{step: _with_kept(getattr(item, step), rest)})
-
-
-def _is_judged_together(item, steps):
-    """Whether a number stands in a part that has rules for several of its numbers together."""
-    for step in steps:
-        rules = getattr(item, "RULES", None)
-        if rules is not None and rules.also is not None:
-            return True
-        item = item[step] if isinstance(step, int) else getattr(item, step)
-    return False

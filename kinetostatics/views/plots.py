@@ -20,6 +20,7 @@ from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressu
 from .canvas import INK, axes, closed, display, finished, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
+from .fronts import front
 from .labels import label
 from .lost_power import losses, lost_power
 
@@ -33,6 +34,7 @@ __all__ = [
     "chain_unit_motion",
     "contact_pressure",
     "error_by_distance",
+    "front",
     "hodograph",
     "law_motion",
     "losses",

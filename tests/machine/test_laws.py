@@ -1,9 +1,7 @@
-"""Laws of motion: against accelerations integrated with 30 digits, published peaks, and what joins them."""
+"""Laws of the whole turn: a cosine, segments that are joined or do not join, tables."""
 
 import warnings
-from itertools import pairwise
 
-import mpmath as mp
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -20,85 +18,7 @@ SEGMENTS = {
     "3-4-5": laws.polynomial,
     "4-5-6-7": lambda *args: laws.polynomial(*args, powers="4-5-6-7"),
 }
-PUBLISHED = {
-    "harmonic": (1.5708, 4.9348, 15.503),
-    "cycloidal": (2.0, 6.2832, 39.478),
-    "modified sine": (1.7596, 5.5280, 69.466),
-    "modified trapezoid": (2.0, 4.8881, 61.426),
-    "3-4-5": (1.875, 5.7735, 60.0),
-    "4-5-6-7": (2.1875, 7.5132, 52.5),
-}
-"""Peak velocity, acceleration and jerk (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 3)."""
 SMOOTH = [name for name in SEGMENTS if name != "harmonic"]
-PLACES = (0.03, 0.125, 0.2, 0.375, 0.41, 0.5, 0.61, 0.8, 0.97)
-
-
-def shape(name, u):
-    """Acceleration of a rise but for its size, as drawn in the textbooks, and where its pieces meet."""
-    pi, sin, cos = mp.pi, mp.sin, mp.cos
-    if u > 0.5:
-        return -shape(name, 1 - u)
-    if name == "harmonic":
-        return cos(pi * u)
-    if name == "cycloidal":
-        return sin(2 * pi * u)
-    if name == "modified sine":
-        return sin(4 * pi * u) if u < 0.125 else cos(4 * pi / 3 * (u - mp.mpf(1) / 8))
-    if name == "modified trapezoid":
-        return sin(4 * pi * u) if u < 0.125 else mp.mpf(1) if u < 0.375 else cos(4 * pi * (u - mp.mpf(3) / 8))
-    return u * (1 - u) * (1 - 2 * u) if name == "3-4-5" else (u * (1 - u)) ** 2 * (1 - 2 * u)
-
-
-def integrated(name, u):
-    """Position, velocity and acceleration of the rise at u, from its acceleration by quadrature."""
-    u = mp.mpf(u)
-
-    def quad(function, end):
-        breaks = [mp.mpf(place) / 8 for place in (0, 1, 3, 4, 5, 7)]
-        return mp.quad(function, [place for place in breaks if place < end] + [end])
-
-    size = 1 / quad(lambda t: (1 - t) * shape(name, t), mp.mpf(1))
-    position = quad(lambda t: (u - t) * shape(name, t), u)
-    return [float(size * part) for part in (position, quad(lambda t: shape(name, t), u), shape(name, u))]
-
-
-@pytest.mark.parametrize("name", SEGMENTS)
-def test_a_rise_is_its_textbook_acceleration_integrated(name):
-    segment = SEGMENTS[name](0.0, 1.0, 1.0)
-    with mp.workdps(25):
-        expected = np.array([integrated(name, place) for place in PLACES]).T
-    assert_allclose(segment(PLACES)[:3], expected, rtol=0, atol=1e-13)
-
-
-@pytest.mark.parametrize("name", SEGMENTS)
-def test_peaks_are_the_published_ones_and_those_of_the_curve(name):
-    segment = SEGMENTS[name](0.0, 1.0, 1.0)
-    assert_allclose(segment.coefficients, PUBLISHED[name], rtol=2e-5)
-    found = [np.max(np.abs(part)) for part in segment(np.linspace(0.0, 1.0, 80001))[1:]]
-    assert_allclose(found, segment.coefficients, rtol=1e-8)
-
-
-@pytest.mark.parametrize("name", SEGMENTS)
-def test_every_derivative_is_that_of_the_one_before(name):
-    """By the interpolating polynomial between the knots, whose derivative is exact to rounding."""
-    segment = SEGMENTS[name](0.2, -0.3, 1.7)
-    for low, high in pairwise(segment.knots):
-        motion = np.polynomial.Chebyshev.interpolate(lambda x: segment(x).position, 24, [low, high])
-        inner = np.linspace(low, high, 9)[1:-1]
-        for order, part in enumerate(segment(inner)):
-            assert_allclose(
-                part, motion.deriv(order)(inner) if order else motion(inner), rtol=0, atol=10.0 ** (3 * order - 13)
-            )
-
-
-@pytest.mark.parametrize("name", SEGMENTS)
-def test_the_end_of_a_rise_is_as_exact_as_its_start(name):
-    """Velocity and acceleration vanish at both ends, and close to the end nothing of its rest is lost."""
-    segment = SEGMENTS[name](0.0, 1.0, 1.0)
-    start, end = segment(np.array([0.0, 1e-6])), segment(np.array([1.0, 1.0 - 1e-6]))
-    assert_allclose(end[1], start[1], rtol=1e-9, atol=1e-300)
-    assert end[0][0] == 1.0
-    assert start[0][0] == 0.0
 
 
 def test_a_cosine_is_one_smooth_law_of_the_turn():
@@ -137,12 +57,6 @@ def test_position_velocity_and_acceleration_are_continuous_where_segments_meet(n
     knots = np.unique(law.knots)
     before, after = law(knots - 1e-9), law(knots + 1e-9)
     assert_allclose(before[:3], after[:3], rtol=0, atol=1e-6)
-
-
-def test_a_law_comes_later_by_a_phase():
-    law = rise_dwell_return()
-    assert_allclose(law.shifted(0.4)(1.3), law(0.9), rtol=0, atol=1e-15)
-    assert_allclose(law.shifted(0.4).knots, np.add(law.knots, 0.4))
 
 
 def test_a_table_gives_the_law_that_it_was_taken_from():

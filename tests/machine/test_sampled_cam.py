@@ -40,16 +40,6 @@ def test_sampled_cam_passes_through_its_points_and_repeats_after_a_turn():
         assert_allclose(far, near, rtol=0, atol=1e-13)
 
 
-def test_sampled_cam_has_a_continuous_second_derivative_at_its_points_and_across_the_seam():
-    """The step across a point vanishes in proportion to its width, also where the table ends and begins again."""
-    _, angle, radius = circle_table(24)
-    cam = ks.cams.Sampled(angle, radius)
-    third = largest(np.diff(cam.radius(np.linspace(0, 7, 7001))[2])) / 1e-3
-    for width in (1e-4, 1e-7):
-        ahead, behind = cam.radius(angle + width)[2], cam.radius(angle - width)[2]
-        assert largest(ahead - behind) < 2 * width * third * 1.01
-
-
 def test_sampled_cam_drives_a_mechanism_like_the_circle_it_was_taken_from():
     circle, angle, radius = circle_table(360)
     machines = [
@@ -147,14 +137,6 @@ def test_a_warning_comes_from_one_per_cent(step, warned):
             assert ks.cams.Sampled(*table).force_error >= 0.01
     else:
         assert ks.cams.Sampled(*table).force_error < 0.01
-
-
-def test_noise_of_uneven_points_and_a_point_read_wrongly_are_found():
-    _, angle, radius = circle_table(360)
-    noise = np.random.default_rng(0).normal(0.0, 1e-8, 360)
-    assert ks.cams.Sampled(angle, radius + noise).noise == pytest.approx(1e-8, rel=0.15)
-    with pytest.warns(UserWarning, match="too coarse or too noisy"):
-        ks.cams.Sampled(angle, radius + 1e-5 * (np.arange(360) == 77))
 
 
 @pytest.mark.filterwarnings("ignore:sampled cam")

@@ -1,8 +1,6 @@
-"""What the workshop is given: files read back give the same points, drawings are to scale, nothing is half written."""
+"""What the workshop is given: files read back give the same points, nothing is half written."""
 
-import re
 import sys
-import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
@@ -44,37 +42,6 @@ def test_a_csv_read_back_gives_the_same_points_and_the_same_cam(tmp_path, units)
         assert_allclose([columns[f"{name}_x"], columns[f"{name}_y"]], points, rtol=0, atol=1e-15)
     again = ks.cams.Sampled.from_csv(tmp_path / "cam.csv")
     assert_allclose(again.radius(0.123)[2], LAW.radius(0.123)[2], atol=1e-9)
-
-
-def read_svg(path):
-    root = ET.parse(path).getroot()
-    return root, {"svg": "http://www.w3.org/2000/svg"}
-
-
-@pytest.mark.parametrize("side", ["disk", "ring"])
-def test_a_drawing_is_one_to_one_and_its_curve_the_profile(tmp_path, side):
-    LAW.export(tmp_path / "cam.svg", side=side, **GIVEN)
-    root, space = read_svg(tmp_path / "cam.svg")
-    left, top, width, height = map(float, root.get("viewBox").split())
-    assert root.get("width") == f"{width:.6g}mm"
-    assert root.get("height") == f"{height:.6g}mm"
-    path = root.find("svg:path[@id='surface']", space).get("d")
-    points = np.array(re.findall(r"(\S+) (\S+)(?= [LZ])", path), dtype=float).T * [[1e-3], [-1e-3]]
-    made = LAW.profile(0.05, 500, side)
-    assert_allclose(points, made.surface, rtol=0, atol=1e-9)
-    for x, y in 1e3 * made.surface.T:
-        assert left < x < left + width
-        assert top < -y < top + height
-
-
-def test_a_drawing_has_dimensions_zero_mark_and_sense_of_rotation(tmp_path):
-    LAW.export(tmp_path / "cam.svg", clockwise=True, **GIVEN)
-    root, space = read_svg(tmp_path / "cam.svg")
-    texts = [item.text for item in root.findall("svg:text", space)]
-    for expected in ("0° zero mark", "roller goes clockwise", "500 mm", "roller ⌀ 100 mm"):
-        assert expected in texts
-    assert "smallest R 278.095 mm at 0°" in texts
-    assert "largest R 321.905 mm at 180°" in texts
 
 
 def test_a_measured_cam_states_the_error_of_the_forces(tmp_path):

@@ -24,7 +24,7 @@ def test_products_lengths_and_turns_are_those_of_complex_numbers():
     assert planar.turned(A, None) is A is planar.unturned(A, None)
 
 
-@pytest.mark.parametrize(("a", "b"), product((A, None), (B, None)))
+@pytest.mark.parametrize(("a", "b"), list(product((A, None), (B, None))))
 def test_absent_vectors_count_as_zero_and_stay_absent(a, b):
     assert z(planar.added(a, b)) == z(a) + z(b)
     assert z(planar.subtracted(a, b) if a or b else None) == z(a) - z(b)
@@ -34,7 +34,7 @@ def test_absent_vectors_count_as_zero_and_stay_absent(a, b):
     assert (planar.added(a, b) is None) == (a is None and b is None)
 
 
-@pytest.mark.parametrize(("a", "b"), product((3.0, None), (4.0, None)))
+@pytest.mark.parametrize(("a", "b"), list(product((3.0, None), (4.0, None))))
 def test_absent_numbers_count_as_zero_and_stay_absent(a, b):
     one, other = planar.number(a), planar.number(b)
     assert planar.number(planar.plus(a, b)) == one + other

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from ...design.balancing import RATIOS
+from ...machine.cams import Harmonic
 from ...numbers.checks import choice, nearest
 from ...numbers.units import shown
 from .texts import (
@@ -21,6 +22,7 @@ from .texts import (
     Weight,
     or_else,
     reader,
+    series_of,
 )
 
 
@@ -124,7 +126,14 @@ class SampledTable(Table):
     noise: Length | None = None
 
 
-Cam = one_of("cam", {"circle": CircleTable, "cosine-law": CosineLawTable, "sampled": SampledTable})
+class HarmonicTable(Table):
+    kind: Literal["harmonic"]
+    cosine: Annotated[Any, BeforeValidator(series_of("m")), Harmonic.RULES.rules["cosine"]]
+    sine: Annotated[Any, BeforeValidator(series_of("m")), Harmonic.RULES.rules["sine"]] = ()
+
+
+CAMS = {"circle": CircleTable, "cosine-law": CosineLawTable, "harmonic": HarmonicTable, "sampled": SampledTable}
+Cam = one_of("cam", CAMS)
 
 
 # Counterweights

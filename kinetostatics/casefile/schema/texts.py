@@ -27,6 +27,7 @@ def reader(unit, *, low=None, strict=False):
 # each type ends with its SI unit, by which `parameters` finds what a design may vary
 Length = Annotated[float, BeforeValidator(reader("m", low=0.0, strict=True)), "m"]
 Coordinate = Annotated[float, BeforeValidator(reader("m")), "m"]
+CubicStiffness = Annotated[float, BeforeValidator(reader("N/m^3")), "N/m^3"]
 Angle = Annotated[float, BeforeValidator(reader("rad")), "rad"]
 Mass = Annotated[float, BeforeValidator(reader("kg", low=0.0)), "kg"]
 Inertia = Annotated[float, BeforeValidator(reader("kg m^2", low=0.0)), "kg m^2"]
@@ -60,6 +61,17 @@ def pair_of(unit):
     def read(value):
         if not isinstance(value, list) or len(value) != 2:
             raise ValueError(f'must be a pair such as ["0.1 {unit}", "0 {unit}"], found {shown(value)}')
+        return tuple(to_si(part, unit) for part in value)
+
+    return read
+
+
+def series_of(unit):
+    """Function that reads a list of texts with units, the coefficients of a series."""
+
+    def read(value):
+        if not isinstance(value, list | tuple):
+            raise ValueError(f'must be a list such as ["0.3 {unit}", "0.02 {unit}"], found {shown(value)}')
         return tuple(to_si(part, unit) for part in value)
 
     return read

@@ -18,6 +18,7 @@ from .texts import (
     Angle,
     AngularAcceleration,
     Coordinate,
+    CubicStiffness,
     GuidePoints,
     Length,
     Period,
@@ -36,6 +37,7 @@ Name = Annotated[Any, BeforeValidator(by(checks.Name()))]
 class SpringTable(Table):
     stiffness: Stiffness
     free_position: Coordinate
+    cubic: CubicStiffness = 0.0
 
 
 class ProcessForceTable(Table):
@@ -178,7 +180,7 @@ class PublishedTable(Table):
 
 
 class CaseTable(Table):
-    """The head of a case file; its variants are read one by one with what they have in common."""
+    """The head of a case file; its variants are read one by one with what they have in common, so are its designs."""
 
     title: str
     source: str = ""
@@ -187,6 +189,7 @@ class CaseTable(Table):
     variants: dict[str, dict] = Field(min_length=1)
     published: PublishedTable = PublishedTable()
     tolerances: dict[str, str] = Field(default_factory=dict)
+    design: dict[str, dict] = Field(default_factory=dict)
 
 
 VARIANTS = {

@@ -7,7 +7,9 @@ problems
 single
     Single numbers, where no arrays of designs are taken.
 rules
-    What a field must be: `Number`, `Pair`, `Name` ..., and `Checked` dataclasses that keep to a table of `Rules`.
+    What a value must be: `Number`, `Pair`, `Name` ...
+checked
+    `Checked` dataclasses, whose fields keep to a table of `Rules`.
 
 A dataclass that is `Checked` says what its fields must be by a table of rules, field -> rule. Where every value is a
 plain number in range nothing more is looked at; otherwise each is examined, all that is wrong is said at once, and the
@@ -15,6 +17,7 @@ object keeps floats and locked copies of arrays, so nothing it holds changes beh
 `arb` enclosure passes as it is.
 """
 
+from .checked import Checked, Rules, examined
 from .problems import (
     ANGLE,
     Problem,
@@ -27,12 +30,12 @@ from .problems import (
     nearest,
     quantity,
     require,
+    seed,
     shown,
     solution,
 )
 from .rules import (
     UNSURE,
-    Checked,
     Made,
     Name,
     Number,
@@ -40,9 +43,8 @@ from .rules import (
     OrFunction,
     Own,
     Pair,
-    Rules,
+    Series,
     Sign,
-    examined,
     finite,
     pair,
     positive,
@@ -65,6 +67,7 @@ __all__ = [
     "Pair",
     "Problem",
     "Rules",
+    "Series",
     "Sign",
     "case",
     "choice",
@@ -82,6 +85,7 @@ __all__ = [
     "problem",
     "quantity",
     "require",
+    "seed",
     "shown",
     "single",
     "singles",

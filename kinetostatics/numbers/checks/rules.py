@@ -1,14 +1,14 @@
-"""Rules: what a field must be, and the dataclasses whose fields keep to them."""
+"""Rules: what a value must be."""
 
 import math
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from ..content import LIBRARY
-from .problems import Problem, fitting, require, shown
+from .problems import Problem, shown
 from .values import UnfitError, kept, known, number, unfit
 
 HUGE, LONG = 1e150, 1e75
@@ -135,6 +135,45 @@ class Pair:
 
 
 @dataclass(frozen=True)
+class Series:
+    """Coefficients of a series, a tuple of numbers called by their order, from `start`; the `first` by its own rule."""
+
+    unit: str = ""
+    letter: str = "a"
+    start: int = 0
+    first: Number | None = None
+    rule: Number = dataclass_field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "rule", Number(self.unit))
+
+    def quick(self, value):
+        if type(value) is not tuple or (self.first is not None and not value):
+            return UNSURE
+        found = tuple(self._rule(place).quick(part) for place, part in enumerate(value))
+        return UNSURE if any(part is UNSURE for part in found) else found
+
+    def taken(self, value, field=""):
+        several = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim == 1)
+        if not several or (self.first is not None and not len(value)):
+            terms = f"({self.letter}{self.start}, {self.letter}{self.start + 1}, ...)"
+            return value, f"{field} must be a tuple of numbers {terms}, got {shown(value)}"
+        found = [
+            self._rule(place).taken(part, f"{field}.{place + self.start}".strip("."))
+            for place, part in enumerate(value)
+        ]
+        return tuple(part for part, _ in found), next((problem for _, problem in found if problem), None)
+
+    def numbers(self, value):
+        """Name, steps and rule of each number, for paths."""
+        for place in range(len(value)):
+            yield str(place + self.start), (place,), self._rule(place)
+
+    def _rule(self, place):
+        return self.rule if place or self.first is None else self.first
+
+
+@dataclass(frozen=True)
 class Optional:
     """What another rule says, or None."""
 
@@ -237,83 +276,6 @@ class Sign:
             return str(value), None
         words = f", nor one of {', '.join(map(repr, self.words))}" if isinstance(value, str) and self.words else ""
         return value, f"{field} must be +1 or -1, got {shown(value)}{words}"
-
-
-class Rules:
-    """What the fields of a dataclass must be, field -> rule; `also` finds problems of several fields together."""
-
-    def __init__(self, owner, also=None, **rules):
-        """`are_plain(values)` tells of a mapping whether all values are well and kept as they are."""
-        self.owner, self.also, self.rules = owner, also, rules
-        self.are_plain = _look(rules)
-
-    def admit(self, item):
-        """Put into the fields what is to be kept of them, or raise `ParameterError`."""
-        self.keep(vars(item), self.owner)
-        if self.also is not None:
-            require(self.owner, *self.also(item))
-
-    def keep(self, values, owner):
-        """The same in a mapping of field to value."""
-        if self.are_plain(values):
-            return
-        for field, rule in self.rules.items():
-            found = rule.quick(values[field])
-            if found is UNSURE:
-                values.update(examined(owner, self.rules, values))
-                return
-            values[field] = found
-
-
-def _look(rules):
-    """Function that tells of values by field whether all are kept as they are, written for the rules in one line."""
-    scope: dict[str, Any] = {}
-    lines = [f"    {field} = values[{field!r}]" for field in rules]
-    conditions = []
-    for field, rule in rules.items():
-        condition, objects = rule.plainly(field) if hasattr(rule, "plainly") else _quickly(rule, field)
-        scope |= objects
-        conditions.append(condition)
-    exec("\n".join(["def look(values):", *lines, f"    return {' and '.join(conditions) or 'True'}"]), scope)
-    return scope["look"]
-
-
-def _quickly(rule, value):
-    return f"quick_at_{value}({value}) is {value}", {f"quick_at_{value}": rule.quick}
-
-
-class Checked:
-    """A dataclass whose fields keep to its table of rules."""
-
-    RULES: ClassVar[Rules]
-
-    def __post_init__(self):
-        rules = self.RULES
-        if rules.also is not None or not rules.are_plain(self.__dict__):
-            rules.admit(self)
-
-
-def examined(owner, rules, values):
-    """What to keep of values by name, each by its rule; one `ParameterError` for all that is wrong."""
-    found, problems = {}, []
-    for field, rule in rules.items():
-        found[field], problem = rule.taken(values[field], field)
-        problems.append(problem)
-    if not any(problems):
-        problems.append(fitting(**dict(_shapes(found))))
-    require(owner, *problems)
-    return found
-
-
-def _shapes(values):
-    """Name and shape of each array of designs among values and pairs of them."""
-    for name, value in values.items():
-        for part in value if type(value) is tuple else (value,):
-            if len(shape := getattr(part, "shape", ())) > 1:
-                yield name, shape
-
-
-# One number
 
 
 def problem(name, value, **rule):

@@ -1,53 +1,47 @@
-"""Rules of fields: what they take, as what, and what they refuse."""
-
-from dataclasses import dataclass
-from typing import Any
+"""What each rule keeps of a value, quickly and thoroughly alike, and what it says of a value that is wrong."""
 
 import numpy as np
 import pytest
 
-import kinetostatics as ks
 from kinetostatics.numbers import checks
+from kinetostatics.numbers.checks.rules import UNSURE
+
+RULES = {
+    "number": (checks.Number("m"), (1.5, -0.0, 3, np.float64(2.0)), ("1", None, np.nan, np.inf, 1e200)),
+    "positive": (checks.Number("m", low=0.0, strict=True), (1.5, 3), (0.0, -1.0, True)),
+    "pair": (checks.Pair("m"), ((1.0, 2.0), (0, 1)), ((1.0,), (1.0, np.nan), 1.0)),
+    "centre": (checks.Pair("m", lone=True), (0.5, (0.5, 0.1)), ("x", (1.0, 2.0, 3.0))),
+    "optional": (checks.Optional(checks.Number("m")), (None, 1.0), ("x",)),
+    "sign": (checks.Sign(("open",)), (1, -1, "open"), (0, 2, "closed", True)),
+    "name": (checks.Name(), ("A",), ("", "a\nb", 3)),
+}
 
 
-@dataclass(frozen=True)
-class Box(checks.Checked):
-    """Something with rules."""
-
-    width: Any
-    corner: Any = (0.0, 0.0)
-    lid: Any = None
-
-    def _not_flat(self):
-        if np.any(self.width == 7.0):
-            yield "seven is flat"
-
-    RULES = checks.Rules(
-        "box",
-        _not_flat,
-        width=checks.Number("m", low=0.0, strict=True),
-        corner=checks.Pair("m"),
-        lid=checks.Optional(checks.Number("m", low=0.0)),
-    )
+@pytest.mark.parametrize("name", RULES)
+def test_good_values_are_kept_alike_by_a_quick_and_a_thorough_look(name):
+    rule, good, _ = RULES[name]
+    for value in good:
+        kept, problem = rule.taken(value, "it")
+        assert problem is None
+        quick = rule.quick(value)
+        assert quick is UNSURE or quick == kept
 
 
-def test_whole_numbers_become_floats_and_arrays_locked_copies():
-    widths = np.array([[1], [2]])
-    box = Box(widths, [1, 2])
-    widths[0] = 9
-    assert box.width.tolist() == [[1.0], [2.0]]
-    assert not box.width.flags.writeable
-    assert (box.corner, box.lid) == ((1.0, 2.0), None)
-    assert type(Box(3).width) is float
+@pytest.mark.parametrize("name", RULES)
+def test_wrong_values_are_never_kept_quickly_and_told_by_name(name):
+    rule, _, wrong = RULES[name]
+    for value in wrong:
+        assert rule.quick(value) is UNSURE, value
+        _, problem = rule.taken(value, "it")
+        assert problem is not None, value
+        assert "it" in problem, value
 
 
-def test_all_fields_that_are_wrong_are_told_at_once():
-    with pytest.raises(ks.ParameterError) as caught:
-        Box(0.0, (1.0, np.nan), -1.0)
-    for words in ("box: ", "width must be greater than 0", "corner", "lid must be at least 0"):
-        assert words in str(caught.value)
-
-
-def test_what_fields_are_only_together_is_looked_at_after_them():
-    with pytest.raises(ks.ParameterError, match="seven is flat"):
-        Box(7.0)
+@pytest.mark.parametrize("name", [name for name, (rule, *_) in RULES.items() if hasattr(rule, "plainly")])
+def test_the_written_condition_holds_for_nothing_that_a_quick_look_would_change_or_doubt(name):
+    rule, good, wrong = RULES[name]
+    condition, objects = rule.plainly("it")
+    for value in (*good, *wrong):
+        if eval(condition, {**objects, "it": value}):
+            assert rule.quick(value) is value or rule.quick(value) == value, value
+            assert value in good

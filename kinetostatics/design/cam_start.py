@@ -1,0 +1,191 @@
+"""Where the search for a torque-free cam begins: the machine with a cam for the cosine law, and what may vary of it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import DesignError, ParameterError
+from ..machine.builders import cam_crank_slider, crank_slider
+from ..machine.cam_roller import CamRoller
+from ..machine.cams import CosineLaw
+from ..machine.guide import Guide
+from ..machine.harmonic_cam import Harmonic
+from ..machine.loads import Gravity, Spring, TorsionSpring
+from ..machine.slider_group import SliderGroup
+from ..results.extremes import extrema
+from ..solution.scene import Scene
+
+REACH = 0.5
+"""How far lengths may lie from where the search begins, relative to half the stroke."""
+STIFFEST = 3.0
+"""How many times stiffer the spring may be than one that balances the slider."""
+TENTH = 0.1
+"""How far, relative to half the stroke, the harmonics of random starts lie from a circle about O."""
+WEIGHT_REACH = 0.1
+"""How far the counterweight may lie from where it balances the coupler's weight, relative to its arm."""
+SPRING, OFFSET = "torsion_spring.stiffness", "guide_offset"
+WEIGHT = ("crank.centre.along", "crank.centre.across")
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A scene whose coupler keeps the place of its mass centre, as a share of its length."""
+
+    scene: Scene
+    share: float
+
+    @property
+    def units(self):
+        return self.scene.units
+
+    @property
+    def parameters(self):
+        return self.scene.parameters
+
+    def varied(self, values):
+        values = dict(values)
+        if "coupler_length" in values:
+            values.setdefault("coupler.centre.along", values["coupler_length"] * self.share)
+        return Machine(self.scene.varied(values), self.share)
+
+
+@dataclass(frozen=True)
+class Start:
+    """Machine that a search begins with.
+
+    Attributes
+    ----------
+    machine : Machine
+    ends : (float, float)
+        Extreme positions of the slider, m.
+    vary : dict of path to (low, high)
+    first : set of str
+        Those that the least squares of the torque find.
+    weight : float
+        Of the coupler, what its joint A carries, across the guide to its left, N.
+    unit : float
+        Mean torque of a plain crank-slider with that stroke, N m.
+    """
+
+    machine: Machine
+    ends: tuple[float, float]
+    vary: dict
+    first: frozenset[str]
+    weight: float
+    unit: float
+
+    @property
+    def scene(self):
+        return self.machine.scene
+
+    @property
+    def half(self):
+        return (self.ends[1] - self.ends[0]) / 2
+
+    def random(self, names, start, generator):
+        """A start with harmonics anywhere within a tenth of the radius."""
+        found = start.copy()
+        for place, name in enumerate(names):
+            if name.startswith(("cam.cosine", "cam.sine")):
+                mean = self.half if name == "cam.cosine.0" else 0.0
+                found[place] = mean + TENTH * self.half * generator.uniform(-1.0, 1.0)
+        return found
+
+
+def begun(given, cosine, sine, ends, gravity, offset, coupler_spring, counterweight, cubic) -> Start:
+    """The machine that a search begins with, made of the links and loads of a scene.
+
+    Raises
+    ------
+    ParameterError
+        The scene is no crank-slider.
+    DesignError
+        A stroke that no coupler can make.
+    """
+    group, links = _parts(given)
+    low, high = extrema(given.solve(12), "slider_position").range if ends is None else map(float, ends)
+    half, mean = (high - low) / 2, (high + low) / 2
+    if not (0 < low < high):
+        raise DesignError(
+            f"torque-free cam: the slider must stay ahead of O between two ends, but is to run from {low:.6g} m to "
+            f"{high:.6g} m; lengthen the coupler or shorten the stroke"
+        )
+    law = CosineLaw(half, mean)
+    length, centre = law.coupler_length, group.coupler.centre
+    share = centre[0] / group.coupler_length
+    angle = np.linspace(0.0, 2 * np.pi, 1024, endpoint=False)
+    series = np.fft.rfft(law.radius(angle)[0]).real / angle.size
+    guide = Guide(group.guide.guide_angle, group.guide.guide_offset if offset is None else float(offset))
+    cam = Harmonic((series[0], *2 * series[1 : cosine + 1]), (0.0,) * sine, group.guide.guide_angle)
+    links["coupler"] = replace(links["coupler"], centre=(share * length, centre[1]))
+    mass, speed = group.slider.mass, given.crank_speed
+    loads = tuple(
+        item for item in given.loads if not isinstance(item, Spring) and (gravity or not isinstance(item, Gravity))
+    )
+    rate = mass * speed * speed
+    loads += (Spring(rate, mean),)
+    across = _across(loads, guide) if gravity else 0.0
+    weight = group.coupler.mass * (1.0 - share) * across
+    reach = REACH * half
+    vary = {"cam.cosine.0": (half - reach, half + reach)}
+    vary |= {f"cam.cosine.{order}": (-reach, reach) for order in range(1, cosine + 1)}
+    vary |= {f"cam.sine.{order}": (-reach, reach) for order in range(1, sine + 1)}
+    vary |= {"coupler_length": (length - reach, length + reach), "spring.stiffness": (0.0, STIFFEST * rate)}
+    vary |= {"spring.free_position": (mean - reach, mean + reach)}
+    first = frozenset(vary)
+    if cubic is not None:
+        vary["spring.cubic"] = cubic
+    if coupler_spring is not None:
+        found = _carrying(weight * length, float(coupler_spring))
+        loads += (found,)
+        vary[SPRING] = (0.5 * found.stiffness, 1.5 * found.stiffness)
+    if counterweight is not None:
+        arm = -group.coupler.mass * (1.0 - share) * half / counterweight
+        crank = links["crank"]
+        links["crank"] = replace(crank, mass=float(counterweight), centre=(arm, 0.0))
+        first |= {OFFSET}
+        near = WEIGHT_REACH * arm
+        vary |= {WEIGHT[0]: (arm + near, arm - near), WEIGHT[1]: (near, -near), OFFSET: (-reach, reach)}
+    mechanism = cam_crank_slider(cam, length, guide=guide, **links)
+    scene = Scene(mechanism, speed, loads=loads)
+    plain = crank_slider(
+        half, mean, coupler=replace(links["coupler"], centre=(share * mean, centre[1])), slider=group.slider
+    )
+    unit = float(np.mean(np.abs(Scene(plain, speed).solve(360).balancing_torque)))
+    if not unit:
+        raise DesignError("torque-free cam: without masses or at rest the machine needs no torque to begin with")
+    return Start(Machine(scene, share), (float(low), float(high)), vary, first, weight, unit)
+
+
+def _parts(given):
+    """Slider group of a crank-slider, and its links by name."""
+    groups, mechanism = given.mechanism.groups, given.mechanism
+    *before, last = groups
+    rollers = [group for group in before if isinstance(group, CamRoller)]
+    fits = isinstance(last, SliderGroup) and last.on == "A" and not last.label and len(before) == len(rollers) <= 1
+    if not fits or last.assembly != 1:
+        raise ParameterError(
+            "torque-free cam: takes a crank-slider, plain or with a cam, whose slider is ahead of A (assembly +1), "
+            f"got {mechanism.name}"
+        )
+    links = {"crank": mechanism.crank.link, "coupler": last.coupler, "slider": last.slider}
+    if rollers:
+        links["block"] = rollers[0].block
+    return last, links
+
+
+def _across(loads, guide):
+    """Acceleration of gravity along the guide's left normal."""
+    return sum(
+        item.acceleration * np.sin(item.direction - guide.guide_angle) for item in loads if isinstance(item, Gravity)
+    )
+
+
+def _carrying(moment, free_angle):
+    """Torsion spring whose couple on the coupler is a moment where the coupler lies along the guide."""
+    if not moment:
+        raise ParameterError("torque-free cam: coupler_spring carries weight across the guide, but none acts")
+    if not moment * free_angle > 0:
+        side = "negative" if moment < 0 else "positive"
+        raise ParameterError(f"torque-free cam: coupler_spring, a free angle, must be {side}, got {free_angle:g} rad")
+    return TorsionSpring(moment / free_angle, free_angle, on="coupler", against="slider")

@@ -1,0 +1,92 @@
+"""What is asked of a design: an output to be made least or greatest, and limits of others, read from texts."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from ..errors import ParameterError
+from ..numbers import checks
+from ..numbers.units import NUMBER, to_si
+from ..results.reductions import Output, parsed
+
+_FORM = re.compile(r"(?P<output>[^<>=≤≥]*?)\s*(?P<relation><=|>=|==?|≤|≥)\s*(?P<value>[^<>=≤≥]*)")
+_RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
+TOPS = {"largest": (1.0,), "smallest": (-1.0,), "largest_absolute": (1.0, -1.0)}
+"""By reduction: which sides of a quantity its extreme is on."""
+
+
+@dataclass(frozen=True)
+class Demand:
+    """An output and what it must be.
+
+    Attributes
+    ----------
+    output : Output
+    relation : "<=", ">=" or "="
+    value : float
+        SI.
+    """
+
+    output: Output
+    relation: str
+    value: float
+
+    def __str__(self):
+        unit = self.output.unit if not self.output.ratio and self.output.unit != "1" else ""
+        return f"{self.output} {self.relation} {self.value:.9g} {unit}".strip()
+
+
+def demand(text, known) -> Demand:
+    """Demand from a text such as "largest O <= 0.75 kN" or "ratio mean_absolute balancing_torque >= 50".
+
+    `known` is the scene, or what has a mechanism, that the output is of.
+
+    Raises
+    ------
+    ParameterError
+        The text has another form; the output or its unit is not known.
+    """
+    found = _FORM.fullmatch(text.strip()) if isinstance(text, str) else None
+    if found is None or not found["value"]:
+        raise ParameterError(
+            f'limit {text!r} must be an output, a relation and a value, such as "largest O <= 0.75 kN" or "largest '
+            'slider_position = 2.3 m"'
+        )
+    output = wanted(found["output"], known)
+    plain = output.ratio or output.unit == "1"
+    try:
+        number = re.fullmatch(NUMBER, found["value"].strip()) if plain else None
+        value = float(found["value"]) if number else to_si(found["value"], "1" if plain else output.unit)
+    except ValueError as error:
+        raise ParameterError(f"limit {text!r}: {error}") from None
+    return Demand(output, _RELATIONS.get(found["relation"], found["relation"]), value)
+
+
+def wanted(text, known) -> Output:
+    """Output of a design, with its unit; refused if nothing tells how it changes with the numbers.
+
+    Raises
+    ------
+    ParameterError
+        The text names no reduction and quantity, or the place of an extreme, which jumps.
+    """
+    output = parsed(text).of(known)
+    if output.reduction.endswith("_at"):
+        raise ParameterError(f"output {str(output)!r} is a place, which jumps; design by the value there")
+    return output if output.unit else replace(output, unit="1")
+
+
+def demands(texts, known):
+    """Limits from their texts; all that is wrong with them in one error."""
+    if not isinstance(texts, str | Iterable):
+        raise ParameterError(
+            f'design: limits must be texts, such as ["largest O <= 0.75 kN"], got {checks.shown(texts)}'
+        )
+    found, problems = [], []
+    for text in (texts,) if isinstance(texts, str) else texts:
+        try:
+            found.append(text if isinstance(text, Demand) else demand(text, known))
+        except ParameterError as error:
+            problems.append(str(error))
+    checks.require("design", *problems)
+    return tuple(found)

@@ -1,0 +1,194 @@
+"""What a search found: the better machine, what binds it, and what each limit and each bound costs."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..mechanics.quantities import of_scene
+from ..numbers import checks
+from .demands import Demand
+from .derived import scene_of
+from .problem import compared_value
+from .search import side_of
+
+TAKEN = ("reference", "before")
+"""Variants of the case file beside the design's own."""
+BINDS = 1e-6
+"""How near, relative to its size or range, a design is to a limit or bound that holds it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A design that a search found; made by `optimise` and `torque_free_cam`.
+
+    Attributes
+    ----------
+    scene : Scene
+    values : dict of path to float
+        Of the numbers that varied, SI.
+    before : Scene
+        What the search began with.
+    reference : Scene or None
+        What ratios refer to.
+    limits : tuple of Demand
+    goal : str
+        What was made least or greatest.
+    active : tuple of str
+        Limits, and bounds of numbers, that hold the design.
+    prices : dict of str to float
+        By what is active: what the goal would gain if it gave way by one of its unit.
+    evaluations : int
+        Of all derivatives, by all starts.
+    starts : list of float
+        The goal that each start came to; infinite, or a ratio of 0, where it kept not its limits.
+    bound : float
+        Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
+    """
+
+    scene: Any
+    values: dict[str, float]
+    before: Any
+    reference: Any
+    limits: tuple[Demand, ...]
+    goal: str
+    outputs: tuple = field(repr=False)
+    active: tuple[str, ...] = ()
+    prices: dict[str, float] = field(default_factory=dict)
+    evaluations: int = 0
+    starts: list[float] = field(default_factory=list)
+    bound: float = np.inf
+
+    def __repr__(self):
+        numbers = f"{len(self.values)} numbers of {self.scene.mechanism.name} varied"
+        binds = f"{', '.join(self.active)} binds" if self.active else "nothing binds"
+        return f"<Found: {self.goal}; {numbers}, {binds}; {self.evaluations} evaluations>"
+
+    def report(self):
+        """Outputs before and after, with their limits and what these cost; a pandas DataFrame."""
+        import pandas as pd
+
+        limits: dict[str, list[Demand]] = {}
+        for limit in self.limits:
+            limits.setdefault(str(limit.output), []).append(limit)
+        rows = {}
+        for output in self.outputs:
+            own = limits.get(str(output), [])
+            rows[output.column] = {
+                "before": self._of(output, self.before),
+                "after": self._of(output, self.scene),
+                "limit": ", ".join(f"{limit.relation} {limit.value:.9g}" for limit in own),
+                "binds": any(str(limit) in self.active for limit in own),
+                "price": next((self.prices[str(limit)] for limit in own if str(limit) in self.prices), np.nan),
+            }
+        return pd.DataFrame.from_dict(rows, orient="index").rename_axis("output")
+
+    def numbers(self):
+        """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame.
+
+        Before stands NaN where the source has no such number, as of another cam.
+        """
+        import pandas as pd
+
+        own, units = self.before.parameters, self.scene.units
+        rows = {
+            f"{path} [{units[path]}]": {
+                "before": own.get(path, np.nan),
+                "after": value,
+                "price": self.prices.get(path, np.nan),
+            }
+            for path, value in self.values.items()
+        }
+        return pd.DataFrame.from_dict(rows, orient="index").rename_axis("number")
+
+    def case(self, path, name="optimal", title=None):
+        """Write a case file, ready to run: the design, what it was before, and what ratios refer to.
+
+        Parameters
+        ----------
+        path : str or path
+        name : str
+            Of the design's variant.
+        title : str, optional
+
+        Returns
+        -------
+        pathlib.Path
+        """
+        from .case_text import write
+
+        known = isinstance(name, str) and name not in TAKEN
+        checks.require(
+            "case file",
+            None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
+            None if known else f"name must be a text, not one of {TAKEN}, got {name!r}",
+            None if title is None or isinstance(title, str) else f"title must be a text, got {checks.shown(title)}",
+        )
+        scenes = {} if self.reference is None else {"reference": self.reference}
+        scenes |= {"before": self.before, name: self.scene}
+        return write(path, title or f"Design for the {self.goal}", scenes)
+
+    def _of(self, output, scene):
+        if output.quantity not in known(scene):
+            return np.nan
+        return compared_value(output, scene, self.reference)
+
+
+def known(scene):
+    """Quantities of a scene by name."""
+    return of_scene(scene)
+
+
+def prices(problem, goal, limits, values):
+    """What holds a design, and by how much the goal would gain if it gave way by one of its unit.
+
+    The derivatives of the goal are the sum of those of what binds, each times its price (Kuhn and Tucker).
+    """
+    from scipy.optimize import lsq_linear
+
+    output, sign = goal
+    slopes = sign * (output(values) if callable(output) else problem.output(output, values))[1]
+    reach = problem.high - problem.low
+    names, columns, free = [], [], []
+    for limit in limits:
+        excess, changes = side_of(problem, limit, values)
+        for place in np.flatnonzero(np.abs(excess) <= BINDS * (abs(limit.value) or 1.0)):
+            names.append(str(limit))
+            columns.append(changes[:, place])
+            free.append(limit.relation == "=")
+    for number, name in enumerate(problem.names):
+        for end, side in ((problem.low, -1.0), (problem.high, 1.0)):
+            if abs(values[number] - end[number]) <= BINDS * reach[number]:
+                names.append(name)
+                columns.append(side * np.eye(values.size)[number])
+                free.append(False)
+    if not names:
+        return (), {}
+    matrix = np.array(columns).T * reach[:, None]
+    weight = np.linalg.norm(matrix, axis=0)
+    weight[weight == 0] = 1.0
+    low = np.where(free, -np.inf, 0.0)
+    solved = lsq_linear(matrix / weight, -slopes * reach, (low, np.full(low.size, np.inf)))
+    found: dict[str, float] = {}
+    for name, price in zip(names, solved.x / weight, strict=True):
+        found[name] = found.get(name, 0.0) + float(price)
+    return tuple(found), found
+
+
+def found_of(problem, goal, limits, reached, outputs, label, **more):
+    """The result of a search."""
+    active, cost = prices(problem, goal, limits, reached.values)
+    reference = None if problem.reference is None else scene_of(problem.reference)
+    return Found(
+        scene_of(problem.scene(reached.values)),
+        dict(zip(problem.names, map(float, reached.values), strict=True)),
+        scene_of(problem.source),
+        reference,
+        tuple(limits),
+        label,
+        tuple(outputs),
+        active,
+        cost,
+        **more,
+    )

@@ -1,0 +1,115 @@
+"""Fronts: the best of one output for each value of another, the ends being the best of each alone."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import DesignError
+from ..numbers import checks
+from .demands import Demand, demands, wanted
+from .derived import scene_of
+from .found import Found
+from .optimisation import ANGLES, optimise
+from .problem import chosen, compared_value
+
+
+@dataclass(frozen=True, eq=False)
+class Front:
+    """Designs of which none is better in both outputs; made by `pareto`, drawn by `ks.plots.front`.
+
+    Attributes
+    ----------
+    outputs : (str, str)
+    table : pandas.DataFrame
+        A row for each design: both outputs, and the numbers that varied.
+    designs : tuple of Found
+    before : (float, float)
+        Outputs of the source.
+    """
+
+    outputs: tuple[str, str]
+    table: object = field(repr=False)
+    designs: tuple[Found, ...] = field(repr=False)
+    before: tuple[float, float]
+
+
+def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, reference=None, seed=0, starts=1, **options):
+    """Pareto front of two outputs.
+
+    Parameters
+    ----------
+    source, vary, limits, variant, reference, starts, seed
+        As for `optimise`, as are `angles` and `engine`.
+    minimise : (str, str)
+        Two outputs; a "-" in front of one makes it greatest: ("largest_absolute cam_force", "-ratio mean_absolute
+        balancing_torque").
+    points : int
+        Designs on the front, at least 2: evenly between the ends, by the second output, of a ratio by its logarithm.
+
+    Returns
+    -------
+    Front
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> vary = {"spring.stiffness": ("600 kN/m", "900 kN/m"), "cam.centre.x": ("-30 mm", "-10 mm")}
+    >>> front = ks.design.pareto(
+    ...     ks.load_case("sawframe_2r63"), vary, ("largest_absolute cam_force", "mean_absolute balancing_torque"),
+    ...     variant="cam-circle", points=3, angles=180,
+    ... )
+    >>> bool((front.table.iloc[:, 0].diff().dropna() > 0).all())
+    True
+    """
+    texts = isinstance(minimise, list | tuple) and all(isinstance(text, str) for text in minimise)
+    checks.require(
+        "pareto",
+        None if texts and len(minimise) == 2 else f"minimise must be two outputs, got {checks.shown(minimise)}",
+        checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}"),
+        *(checks.choice("option", name, ("angles", "engine")) for name in options),
+    )
+    pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
+    item, compared = chosen(source, variant, reference)
+    shared = {"reference": compared, "seed": seed, "starts": starts, "angles": ANGLES} | options
+    first, second = (wanted(text, scene_of(item)) for text, _ in pair)
+    kept = demands(limits, scene_of(item))
+
+    def best(number, more=(), begin=None):
+        text, greatest = pair[number]
+        goal = {"maximise" if greatest else "minimise": text}
+        return optimise(item, vary, limits=(*kept, *more), begin=begin, **goal, **shared)
+
+    def outputs(scene):
+        return [compared_value(output, scene, scene_of(compared)) for output in (first, second)]
+
+    ends = [best(0), best(1)]
+    levels = [outputs(end.scene)[1] for end in ends]
+    logarithmic = second.ratio and min(levels) > 0
+    first_level, last_level = map(float, levels)
+    between = (np.geomspace if logarithmic else np.linspace)(first_level, last_level, points)
+    found, last = [ends[0]], ends[0]
+    relation = ">=" if pair[1][1] else "<="
+    for level in between[1:-1]:
+        limit = Demand(second, relation, float(level))
+        try:
+            last = best(0, (limit,), last.values)
+        except DesignError:
+            last = best(0, (limit,), ends[1].values)
+        found.append(last)
+    found.append(ends[1])
+    return Front(
+        (str(first), str(second)), _table(found, outputs, (first, second)), tuple(found), tuple(outputs(scene_of(item)))
+    )
+
+
+def _table(found, outputs, pair):
+    import pandas as pd
+
+    columns = [output.column for output in pair]
+    units = found[0].scene.units
+    rows = [
+        dict(zip(columns, outputs(design.scene), strict=True))
+        | {f"{path} [{units[path]}]": value for path, value in dict(design.values).items()}
+        for design in found
+    ]
+    return pd.DataFrame(rows)

@@ -1,0 +1,293 @@
+"""Optimisation of any machine under limits: what is made least, what may vary, what must hold, by texts."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import DesignError, KinetostaticsError, ParameterError
+from ..numbers import checks
+from ..results.extremes import extrema
+from .demands import TOPS, Demand, demands, wanted
+from .derived import scene_of
+from .found import found_of
+from .problem import SHARED, Problem, chosen, own, true_value
+from .progress import shown
+from .robust import Sampled, not_spread
+from .search import KEPT, Goal, Reached, better, missed, scale, searched
+
+ANGLES = 720
+"""Crank angles over the period."""
+FEWEST_ANGLES = 12
+"""Crank angles below which curves say nothing."""
+TIGHTER = 4
+"""How often limits are drawn in until true extremes keep them."""
+
+
+def optimise(
+    source,
+    vary,
+    minimise=None,
+    limits=(),
+    *,
+    maximise=None,
+    variant=None,
+    reference=None,
+    robust=None,
+    begin=None,
+    starts=1,
+    seed=0,
+    angles=ANGLES,
+    engine="numpy",
+    progress=False,
+):
+    """Best machine within bounds and limits.
+
+    Derivatives are exact, from the recorded program; the optimiser is SciPy's SLSQP. Limits hold at true extremes.
+
+    Parameters
+    ----------
+    source : Case, Scene or variant
+        Of a case what its file derives from other numbers follows, as for `sweep`.
+    vary : dict of path to (low, high)
+        Numbers in SI or texts with units: ``{"spring.stiffness": ("600 kN/m", "900 kN/m")}``.
+    minimise, maximise : str
+        One of the two: an output as sweeps have them, "mean_absolute balancing_torque", "largest O",
+        "ratio mean_absolute balancing_torque" ...
+    limits : sequence of str
+        "largest O <= 0.75 kN", "largest slider_position = 2.3 m", "ratio mean_absolute balancing_torque >= 50" ...
+    variant, reference : str
+        As for `sweep`; of a scene `reference` is a `Scene`.
+    robust : Spread, optional
+        Makes a quantile of the output over spreads of numbers the goal.
+    begin : dict of path to float, optional
+        Where the first search begins, in place of the source.
+    starts : int
+        Searches: the first begins at the source itself, others at designs within the bounds (scrambled Sobol).
+    seed : int
+    angles : int
+        Crank angles over the period of the loads.
+    engine : "numpy" or "compiled"
+        The loop of many parameters takes a while to compile, and pays for long studies.
+    progress : bool
+        Show a bar that counts the steps of the search.
+
+    Returns
+    -------
+    Found
+
+    Raises
+    ------
+    ParameterError
+        What is asked for cannot be read, or names what the machine has not.
+    DesignError
+        No design found keeps the limits; the message tells how near the best comes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> found = ks.design.optimise(
+    ...     saw, {"spring.stiffness": ("600 kN/m", "900 kN/m"), "cam.centre.x": ("-30 mm", "-10 mm")},
+    ...     maximise="ratio mean_absolute balancing_torque", variant="cam-circle",
+    ... )
+    >>> round(found.report().loc["ratio mean_absolute balancing_torque [1]", "after"])
+    67
+    """
+    source, reference = chosen(source, variant, reference)
+    checks.require("design", checks.count("angles", angles, size=checks.ANGLE), *searches(starts, seed))
+    sign, text = aim(minimise, maximise)
+    scene = scene_of(source)
+    output, limits = wanted(text, scene), demands(limits, scene)
+    require_reference(reference, output, limits)
+    asked = (output, *(limit.output for limit in limits))
+    require_resolved(angles, asked)
+    problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
+    goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
+    begins = starting(problem, starts, seed, begin)
+    with shown(problem, progress):
+        best, ends = multiple(problem, goal, plain, begins, limits)
+        best = held(problem, goal, plain, best)
+    return found_of(
+        problem,
+        goal if robust is not None else Goal(output, sign),
+        limits,
+        best,
+        dict.fromkeys(asked),
+        label(sign, text, robust),
+        evaluations=problem.evaluations,
+        starts=as_asked(problem, output, goal, ends),
+    )
+
+
+def aim(minimise, maximise):
+    if (minimise is None) == (maximise is None):
+        raise ParameterError('design: give either minimise or maximise, an output such as "largest O"')
+    return (1.0, minimise) if maximise is None else (-1.0, maximise)
+
+
+def label(sign, text, robust):
+    """What is asked for, in words."""
+    of = "" if robust is None else f"{robust.quantile:g} quantile of "
+    return f"{'least' if sign > 0 else 'greatest'} {of}{text}"
+
+
+def aimed(problem, output, sign, robust):
+    """The goal: an output, or a quantile of it over a spread."""
+    checks.require("design", None if robust is None else not_spread("robust", robust))
+    return Goal(output if robust is None else Sampled(problem, output, robust, sign), sign)
+
+
+def searches(starts, seed):
+    """What is wrong with how many searches begin, and where, as sentences."""
+    return checks.count("starts", starts), checks.seed("seed", seed)
+
+
+def require_resolved(angles, outputs):
+    """Refuse crank angles too few for what is asked."""
+    orders = [int(item.reduction[9:]) for item in outputs if item.reduction.startswith("harmonic_")]
+    needed = max([FEWEST_ANGLES, *(2 * order + 1 for order in orders)])
+    checks.require(
+        "design",
+        None if angles >= needed else f"angles must be at least {needed} for the outputs asked for, got {angles}",
+    )
+
+
+def require_reference(reference, output, limits):
+    ratios = [str(item) for item in (output, *(limit.output for limit in limits)) if item.ratio]
+    checks.require(
+        "design",
+        f"{ratios[0]!r} needs a reference: a Scene, as reference=plain" if ratios and reference is None else None,
+    )
+
+
+def without_ratios(problem, goal, limits):
+    """Goal and limits in which a ratio to what does not vary is the number below it."""
+    if problem.reference is None or set(problem.names) & set(SHARED):
+        return goal, limits
+    reference = scene_of(problem.reference)
+
+    def plain(output):
+        return replace(output, ratio=False)
+
+    turned = {"<=": ">=", ">=": "<=", "=": "="}
+    found = tuple(
+        Demand(plain(limit.output), turned[limit.relation], true_value(plain(limit.output), reference) / limit.value)
+        if limit.output.ratio and limit.value > 0
+        else limit
+        for limit in limits
+    )
+    if callable(goal.output) or not goal.output.ratio:
+        return goal, found
+    return Goal(plain(goal.output), -goal.sign), found
+
+
+def as_asked(problem, output, goal, ends):
+    """What starts came to, as ratios where these were asked for and the number below them was the goal."""
+    if callable(goal.output) or goal.output.ratio == output.ratio:
+        return ends
+    above = true_value(own(output), scene_of(problem.reference))
+    return [above / end for end in ends]
+
+
+def starting(problem, count, seed, begin=None):
+    """Starts: the source's own values or others told, then designs spread over the bounds."""
+    from scipy.stats import qmc
+
+    spread = qmc.Sobol(problem.low.size, rng=seed).random(max(1, 2 ** int(np.ceil(np.log2(max(count - 1, 1))))))
+    first = problem.start
+    if begin is not None:
+        if not isinstance(begin, Mapping):
+            raise ParameterError(f"design: begin must be a dict of path to number, got {checks.shown(begin)}")
+        wrong = [checks.choice("begin", path, problem.names) for path in begin]
+        own = checks.singles("design", *wrong, **{f"begin {path}": (value, {}) for path, value in begin.items()})
+        first = np.array([own.get(f"begin {name}", value) for name, value in zip(problem.names, first, strict=True)])
+    return [first, *(problem.low + spread[: count - 1] * (problem.high - problem.low))]
+
+
+def multiple(problem, goal, limits, starts, told=None):
+    """Best end of several searches, and the goal that each came to; limits may be told of in other words.
+
+    Raises
+    ------
+    DesignError
+        None keeps the limits.
+    """
+    ends = [searched(problem, goal, limits, start) for start in starts]
+    best = better(ends)
+    if best.missed > 1e3 * KEPT:
+        nearest = dict(zip(problem.names, map(float, best.values), strict=True))
+        raise DesignError(_why(problem, told or limits, best, len(ends)), nearest)
+    return best, [goal.sign * end.goal if end.missed <= 1e3 * KEPT else np.inf for end in ends]
+
+
+def _why(problem, limits, best, count):
+    tries = "the search" if count == 1 else f"any of {count} searches"
+    if not np.isfinite(best.missed):
+        return (
+            f"no design that can be built was found by {tries} ({_obstacle(problem, best.values)}); change the bounds, "
+            "or begin with a machine that runs"
+        )
+    reached = []
+    for limit in limits:
+        if missed(problem, [limit], best.values) > 1e3 * KEPT:
+            reached.append(f"{limit}, where it comes to {problem.output(limit.output, best.values)[0]:.6g}")
+    held = [
+        name
+        for name, value, low, high in zip(problem.names, best.values, problem.low, problem.high, strict=True)
+        if min(value - low, high - value) <= 1e-6 * (high - low)
+    ]
+    bounds = f"; at their bounds are {', '.join(held)}" if held else ""
+    return f"no design that keeps all limits was found by {tries}; the nearest misses {'; '.join(reached)}{bounds}"
+
+
+def _obstacle(problem, values):
+    """Why a design cannot be built, as a sentence."""
+    try:
+        scene_of(problem.scene(values)).solve(problem.angles)
+    except KinetostaticsError as error:
+        return str(error)
+    return "this one runs, but outputs asked for, or machines within its spread, have no value"
+
+
+def held(problem, goal, limits, best) -> Reached:
+    """The design with its limits kept at true extremes: they are drawn in by what the samples did not tell."""
+    drawn = list(limits)
+    for _ in range(TIGHTER):
+        scene = scene_of(problem.scene(best.values))
+        over = [true_excess(limit, scene) for limit in limits]
+        if all(part <= KEPT * scale(limit) / 2 for part, limit in zip(over, limits, strict=True)):
+            return best
+        drawn = [
+            limit if part <= 0 else replace(limit, value=limit.value - _outward(limit, scene) * 1.01 * part)
+            for limit, part in zip(drawn, over, strict=True)
+        ]
+        best = searched(problem, goal, drawn, best.values, rounds=2)
+    worst = max(part / scale(limit) for part, limit in zip(over, limits, strict=True))
+    if worst > KEPT:
+        raise DesignError(
+            f"limits hold at {problem.angles} crank angles, but are missed by {worst:.2g} of their size between; give "
+            "more angles"
+        )
+    return best
+
+
+def _outward(limit, scene):
+    """+1 where a design exceeds a limit upwards, -1 downwards."""
+    return np.sign(true_extreme(limit.output, scene) - limit.value)
+
+
+def true_excess(limit, scene):
+    """By how much a scene exceeds a limit, by its true extremes; not positive where it is kept."""
+    excess = true_extreme(limit.output, scene) - limit.value
+    return abs(excess) if limit.relation == "=" else -excess if limit.relation == ">=" else excess
+
+
+def true_extreme(output, scene):
+    """Value of an output of a scene; extremes are true ones."""
+    if output.ratio or output.reduction not in (*TOPS, "range"):
+        return true_value(output, scene)
+    low, high = extrema(scene.solve(12), output.quantity).range
+    if output.reduction == "range":
+        return high - low
+    return {"largest": high, "smallest": low, "largest_absolute": max(high, -low)}[output.reduction]

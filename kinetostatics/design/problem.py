@@ -1,0 +1,206 @@
+"""A design problem: curves of a scene with exact derivatives by the numbers that vary, and outputs of them."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..errors import KinetostaticsError, ParameterError
+from ..mechanics.quantities import of_scene
+from ..mechanics.quantities import values as values_of
+from ..numbers import checks
+from ..numbers.units import to_si
+from ..solution.compile import compile as compiled
+from . import measures
+from .derived import Derived, scene_of
+from .progress import no_bar
+
+SHARED = ("crank_speed", "crank_acceleration")
+"""Numbers that a reference takes from the design."""
+REMEMBERED = 8
+"""Designs whose curves are remembered."""
+
+
+class Problem:
+    """Outputs of a scene as functions of the numbers that vary.
+
+    Parameters
+    ----------
+    source : Scene, or what has `.scene` and `.varied(values)`, as a case's variant
+    vary : mapping of path to (low, high)
+        SI numbers, or texts with units.
+    quantities : sequence of str
+    reference : Scene or alike, optional
+        What ratios refer to; it runs at the speed of the design and else stays as it is.
+    angles : int
+        Crank angles evenly over the period.
+    engine : "numpy" or "compiled"
+    """
+
+    def __init__(self, source, vary, quantities, reference=None, angles=720, engine="numpy"):
+        self.source, self.reference, self.angles, self.engine = source, reference, angles, engine
+        self.low, self.high = bounds(source, vary)
+        self.names = tuple(vary)
+        scene = scene_of(source)
+        self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
+        self.derived = Derived(source, self.names)
+        self.quantities = tuple(dict.fromkeys(quantities))
+        self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
+        self.evaluations = 0
+        self.stepped = no_bar
+        self._curves: dict[bytes, dict] = {}
+        self._compared: Any = None if reference is None else _Compared(reference, self)
+
+    @property
+    def start(self):
+        """Values of the source, within the bounds."""
+        own = self.source.parameters
+        scene = scene_of(self.source).parameters
+        values = [value if isinstance(value := own[name], float) else scene[name] for name in self.names]
+        return np.clip(np.array(values, dtype=float), self.low, self.high)
+
+    def scene(self, values):
+        """Scene, or variant, of a design."""
+        return self.source.varied(dict(zip(self.names, map(float, values), strict=True)))
+
+    def curves(self, values):
+        """Curve by quantity of a design; NaN where it cannot be built."""
+        key = values.tobytes()
+        if key not in self._curves:
+            while len(self._curves) >= REMEMBERED:
+                self._curves.pop(next(iter(self._curves)))
+            self._curves[key] = self._computed(values)
+        return self._curves[key]
+
+    def output(self, output, values):
+        """Value of an output of a design, and its derivatives."""
+        found, slopes = measures.reduced(output.reduction, self.curves(values)[output.quantity])
+        if not output.ratio:
+            return found, slopes
+        above, rises = self._compared.output(output, values)
+        return above / found, (rises - above / found * slopes) / found
+
+    def _computed(self, values):
+        self.evaluations += 1
+        try:
+            numbers, changes = self.derived(values)
+            found = self.program(self.angle, numbers)
+            slopes = self.program.derivatives(self.angle, self.derived.paths, numbers)
+        except KinetostaticsError:
+            nothing = np.full(self.angle.size, np.nan)
+            empty = measures.Curve(nothing, np.full((len(self.names), self.angle.size), np.nan))
+            return dict.fromkeys(self.quantities, empty)
+        return {name: _curve(found[name], slopes[name], changes, self.angle) for name in self.quantities}
+
+    def _zeros(self, scene):
+        own = scene.parameters
+        return tuple(path for path in self.derived.paths if isinstance(own[path], float) and own[path] == 0.0)
+
+
+class _Compared:
+    """Outputs of the reference, which runs as fast as the design and else stays as it is."""
+
+    def __init__(self, reference, problem):
+        shared = [name for name in problem.names if name in SHARED]
+        self._columns = [problem.names.index(name) for name in shared]
+        self._size = len(problem.names)
+        self._fixed: dict = {}
+        self._problem = None
+        self._reference, self._angles = reference, problem.angles
+        if shared:
+            limits = {
+                name: (problem.low[place], problem.high[place])
+                for name, place in zip(shared, self._columns, strict=True)
+            }
+            known = of_scene(scene_of(reference))
+            ratios = tuple(name for name in problem.quantities if name in known)
+            self._problem = Problem(reference, limits, ratios, None, problem.angles, problem.engine)
+
+    def output(self, output, values):
+        slopes = np.zeros(self._size)
+        if self._problem is None:
+            if output not in self._fixed:
+                self._fixed[output] = true_value(output, scene_of(self._reference))
+            return self._fixed[output], slopes
+        found, slopes[self._columns] = self._problem.output(own(output), values[self._columns])
+        return found, slopes
+
+
+def own(output):
+    """An output itself, not its ratio to the reference's."""
+    return replace(output, ratio=False)
+
+
+def _curve(values, slopes, changes, angle):
+    """Curve of a quantity from derivatives by the scene's numbers, and theirs by the numbers that vary."""
+    shape = values.shape[:-1] + angle.shape
+    by_scene = np.array([np.broadcast_to(part, shape) for part in slopes.values()])
+    slopes = np.tensordot(changes.T, by_scene, 1)
+    values = np.broadcast_to(values, shape)
+    return measures.size(values, slopes) if values.ndim == 2 else measures.Curve(values, slopes)
+
+
+def chosen(source, variant, reference):
+    """The variant or scene to vary, and what ratios refer to."""
+    if hasattr(source, "variants"):
+        name = reference or source.reference
+        first = next((other for other in source.variants if other != name), name)
+        return source.variant(variant or first), source.variant(name)
+    checks.require(
+        "design",
+        _no_design("source", source, "a Case, as of ks.load_case, or a Scene"),
+        None if variant is None else "variant is for cases; a Scene has none",
+        None if reference is None else _no_design("reference", reference, "a Scene, as the source is"),
+    )
+    return source, reference
+
+
+def _no_design(name, item, kinds):
+    """What is wrong with what must be one design, as a sentence, or None."""
+    if not hasattr(item, "varied") or not hasattr(item, "units"):
+        return f"{name} must be {kinds}, got {checks.shown(item)}"
+    several = [path for path, value in scene_of(item).parameters.items() if np.size(value) > 1]
+    return f"{name} must be one design, but has several values of {', '.join(several)}" if several else None
+
+
+def compared_value(output, scene, reference):
+    """Value of an output of a scene, of a ratio to that of the reference."""
+    found = true_value(output, scene)
+    return true_value(output, reference) / found if output.ratio else found
+
+
+def true_value(output, scene, angles=5760):
+    """Value of an output of a scene, so many samples that it is true to rounding where the scene is smooth."""
+    values = values_of(scene.solve(angles), output.quantity)
+    return float(own(output).reduced(np.broadcast_to(values, (angles,))[None])[0])
+
+
+def bounds(source, vary):
+    """Lowest and highest value of each number that varies.
+
+    Raises
+    ------
+    ParameterError
+        There is no such number, or its bounds are no two numbers, or texts with units, that rise.
+    """
+    if not hasattr(vary, "items") or not vary:
+        raise ParameterError(
+            'design: vary must be a dict of path to (low, high), such as {"spring.stiffness": ("600 kN/m", "900 kN/m")}'
+            f", got {checks.shown(vary)}"
+        )
+    known, found, problems = source.units, [], []
+    for path, given in vary.items():
+        problem = checks.choice("parameter", path, tuple(known))
+        if problem is None:
+            try:
+                low, high = given
+                pair = [to_si(end, known[path]) if isinstance(end, str) else float(end) for end in (low, high)]
+                problem = None if np.all(np.isfinite(pair)) and pair[0] < pair[1] else "they must be finite and rise"
+                found.append(pair)
+            except (TypeError, ValueError) as error:
+                problem = str(error)
+            problem = problem and f"bounds of {path} must be (low, high), got {checks.shown(given)}: {problem}"
+        problems.append(problem)
+    checks.require("design", *problems)
+    low, high = np.array(found).T
+    return low, high

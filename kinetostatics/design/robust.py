@@ -1,0 +1,318 @@
+"""Quantiles of an output over machines as they are made and run: what a design is worth when its numbers spread.
+
+Each sample is the design with its own deviations, the same whatever the design, from a scrambled Sobol sequence. The
+quantile is Harrell and Davis's mean of ordered samples, which changes smoothly with the design, by exact derivatives.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from ..errors import KinetostaticsError, ParameterError
+from ..mechanics.quantities import of_scene
+from ..mechanics.quantities import values as values_of
+from ..numbers import checks, spreads
+from ..numbers.units import base_factor, factor
+from ..solution.compile import compile as compiled
+from . import measures
+from .demands import wanted
+from .derived import Derived, scene_of
+from .problem import chosen, own
+
+ANGLES, TOGETHER = 180, 16
+"""Crank angles of each sample, and samples computed at a time."""
+SPEED = "crank_speed"
+NARROWED = 30
+"""Steps of the golden section that trims a speed: to a millionth of the range."""
+GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How numbers spread, and which quantile of an output counts; for `optimise` and `torque_free_cam`.
+
+    Parameters
+    ----------
+    quantile : float
+        Between 0 and 1: of an output to be made greatest that which few fall below, 0.05.
+    spreads : mapping of path to text
+        Deviations from the design: "normal 0 mm +- 0.05 mm", "-2..2 mm", and in per cent of the design's value "normal
+        0 % +- 0.5 %". What a text spreads about does not count, so the texts of a case's [tolerances] will do.
+    samples : int
+        While it is searched; a power of two.
+    trim : float
+        Share of the design's crank speed within which each machine's own is set to what suits it best.
+    seed : int
+        Of the scrambled Sobol sequence.
+    """
+
+    quantile: float
+    spreads: Mapping[str, str]
+    samples: int = 256
+    trim: float = 0.0
+    seed: int = field(default=0)
+
+    def __post_init__(self):
+        checks.require(
+            "spread",
+            None
+            if isinstance(self.quantile, float) and 0 < self.quantile < 1
+            else (f"quantile must lie between 0 and 1, got {self.quantile!r}"),
+            None
+            if isinstance(self.spreads, Mapping) and self.spreads
+            else ('spreads must be a dict of path to text, such as {"slider.mass": "normal 0 % +- 1 %"}'),
+            _samples_problem(self.samples),
+            checks.single("trim", self.trim, low=0.0, high=1.0)[1],
+            checks.seed("seed", self.seed),
+        )
+        spreads.distributions(self.spreads)
+
+
+MOST_SAMPLES = 2**20
+
+
+def _samples_problem(samples):
+    """What is wrong with a number of samples, as a sentence, or None."""
+    whole = isinstance(samples, int) and 1 < samples <= MOST_SAMPLES
+    if whole and not samples & (samples - 1):
+        return None
+    return f"samples must be a power of two, up to {MOST_SAMPLES}, got {checks.shown(samples)}"
+
+
+def not_spread(name, value):
+    """What is wrong with what must be a `Spread`, or None."""
+    if isinstance(value, Spread):
+        return None
+    return f'{name} must be a Spread, as ks.design.Spread(0.05, {{"slider.mass": ...}}), got {checks.shown(value)}'
+
+
+class Sampled:
+    """An output of a design over its spread; deviations are of the scene's own numbers, from which nothing follows."""
+
+    def __init__(self, problem, output, spread, sign, samples=None, angles=ANGLES):
+        self.problem, self.output, self.spread, self.sign = problem, output, spread, sign
+        scene = scene_of(problem.source)
+        checks.require("spread", *(checks.choice("parameter", path, tuple(scene.units)) for path in spread.spreads))
+        self.count = spread.samples if samples is None else samples
+        self._shares, self._deviations = _deviations(spread, scene.units, self.count)
+        self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
+        self._derived: Any = Derived(problem.source, problem.names) if problem.names else None
+        designed = self._derived.paths if self._derived else ()
+        self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
+        self._own = scene.parameters
+        zeros = [path for path in self.paths if self._own[path] == 0.0]
+        self.program = compiled(scene, output.quantity, zeros, problem.engine)
+        self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
+        self._weights = _harrell_davis(spread.quantile, self.count)
+        if spread.trim:
+            self._require_trim()
+
+    def __call__(self, values):
+        """The quantile, and its derivatives by the numbers that vary."""
+        try:
+            found, slopes = self._sampled(values, True)
+        except KinetostaticsError:  # a machine within the spread that cannot be built
+            return np.nan, np.full(values.size, np.nan)
+        order = np.argsort(found)
+        return self._weights @ found[order], self._weights @ slopes[order]
+
+    def outputs(self, values):
+        """The output of each sample."""
+        return self._sampled(values, False)[0]
+
+    def _sampled(self, values, sloped):
+        design, changes = self._derived(values) if self._derived else ({}, np.zeros((0, 0)))
+        parts = []
+        for start in range(0, self.count, TOGETHER):
+            numbers, rises = self._numbers(design, slice(start, start + TOGETHER))
+            parts.append(self._part(numbers, rises[:, :, None] * _row_by_row(changes, len(self.paths)), sloped))
+        return tuple(np.concatenate([part[place] for part in parts]) for place in (0, 1))
+
+    def _numbers(self, design, part):
+        """Numbers of some samples by path (samples, 1), and how each grows with the design's own (paths, samples)."""
+        numbers, rises = {}, []
+        for path in self.paths:
+            value = design.get(path, self._own[path])
+            deviation = self._deviations.get(path, np.zeros(self.count))[part]
+            share = path in self._shares
+            rises.append(1.0 + deviation if share else np.ones(deviation.size))
+            numbers[path] = (value * (1.0 + deviation) if share else value + deviation)[:, None]
+        return numbers, np.array(rises)
+
+    def _part(self, numbers, changes, sloped):
+        """Output of some samples, with derivatives (samples, n)."""
+        if self.spread.trim:
+            curves, slopes, above = self._trimmed(numbers, changes, sloped)
+        else:
+            (curves, slopes), above = self._curves(numbers, changes, sloped), self._above(numbers)
+        found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
+        for place, curve in enumerate(curves):
+            own_slopes = slopes[place] if sloped else np.zeros((0, curve.size))
+            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes))
+            if self.output.ratio:
+                value, row = above[place] / value, -above[place] / value**2 * row
+            found[place] = value
+            rows[place] = row if sloped else 0.0
+        return found, rows
+
+    def _curves(self, numbers, changes, sloped):
+        """Values (samples, N) and derivatives (samples, n, N)."""
+        quantity = self.output.quantity
+        shape = (*self._vector, len(next(iter(numbers.values()))), self.angle.size)
+        values = np.broadcast_to(self.program(self.angle, numbers)[quantity], shape)
+        if not sloped:
+            return (np.hypot(*values) if self._vector else values), None
+        found = self.program.derivatives(self.angle, self._derived.paths, numbers)[quantity]
+        by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
+        slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
+        if self._vector:
+            curve = [measures.size(values[:, place], slopes[:, :, place]) for place in range(shape[-2])]
+            return np.array([part.values for part in curve]), np.array([part.slopes for part in curve])
+        return values, np.moveaxis(slopes, 0, 1)
+
+    def _above(self, numbers):
+        """The reference's output for each sample."""
+        return own(self.output).reduced(self._of_reference(numbers)) if self.output.ratio else None
+
+    def _of_reference(self, numbers):
+        """Curves of the reference, with those of the numbers that spread that it has too."""
+        reference = scene_of(self.problem.reference)
+        known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
+        found = reference.varied({path: numbers[path] for path in known}).solve(self.angle)
+        return np.broadcast_to(
+            values_of(found, self.output.quantity), (len(next(iter(numbers.values()))), self.angle.size)
+        )
+
+    def _trimmed(self, numbers, changes, sloped):
+        """Curves at the speed within the trim that makes each sample's output best."""
+        slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
+        (low, low_slopes), (high, high_slopes) = (self._curves(at, changes, sloped) for at in (slow, fast))
+        below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
+        reduced = own(self.output).reduced
+
+        def outputs(share):
+            found = reduced(_between(low, high, share[:, None]))
+            return self.sign * (reduced(_between(below, above, share[:, None])) / found if self.output.ratio else found)
+
+        share = _least(outputs, len(low))[:, None]
+        slopes = _between(low_slopes, high_slopes, share[..., None]) if sloped else None
+        compared = reduced(_between(below, above, share)) if self.output.ratio else None
+        return _between(low, high, share), slopes, compared
+
+    def _at_speed(self, numbers, share):
+        """Numbers of samples at a share of the design's speed."""
+        return numbers | {SPEED: np.full_like(numbers[SPEED], self._own[SPEED] * share)}
+
+    def _require_trim(self):
+        """Refuse to trim what does not change with the square of the speed alone, which two speeds tell."""
+        problem = None
+        if SPEED in self.problem.names:
+            problem = f"trim sets {SPEED}, so it cannot vary too"
+        else:
+            numbers, _ = self._numbers({}, slice(0, 1))
+            squares = np.array([(1.0 - self.spread.trim) ** 2, 1.0, (1.0 + self.spread.trim) ** 2])
+            low, middle, high = (
+                self._curves(self._at_speed(numbers, share), None, False)[0] for share in np.sqrt(squares)
+            )
+            share = (1.0 - squares[0]) / (squares[2] - squares[0])
+            if not np.allclose(middle, _between(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
+                problem = (
+                    "trim takes outputs of constant parts and others that grow as the speed squared; "
+                    f"{self.output} does not, as with friction or dampers"
+                )
+        checks.require("spread", problem)
+
+
+def _row_by_row(changes, count):
+    """Derivatives of a scene's numbers by those of a design (paths, 1, n), with zeros for paths that it has not."""
+    found = np.zeros((count, 1, changes.shape[1]))
+    found[: len(changes), 0] = changes
+    return found
+
+
+def over_spread(source, output, spread, *, variant=None, reference=None, samples=4096):
+    """An output of machines as they are made and run.
+
+    Parameters
+    ----------
+    source, variant, reference
+        As for `optimise`; of a design that was found, its `.scene` and `.reference`. The reference takes those of the
+        numbers that spread that it has too.
+    output : str
+    spread : Spread
+    samples : int
+        A power of two.
+
+    Returns
+    -------
+    array (samples,)
+        For ``numpy.quantile``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> spread = ks.design.Spread(0.05, {"spring.stiffness": "normal 0 % +- 0.5 %", "crank_speed": "normal 0 % +- 1 %"})
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> found = ks.design.over_spread(
+    ...     saw, "ratio mean_absolute balancing_torque", spread, variant="cam-circle", samples=64
+    ... )
+    >>> round(float(np.quantile(found, 0.05)), 1)
+    5.2
+    """
+    checks.require("over_spread", not_spread("spread", spread), _samples_problem(samples))
+    item, compared = chosen(source, variant, reference)
+    text = wanted(output, scene_of(item))
+    bare = SimpleNamespace(source=item, reference=compared, names=(), engine="numpy", start=np.empty(0))
+    return Sampled(bare, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+
+
+def _between(one, other, share):
+    """Values between those at two speeds: inertia grows with the square of the speed, all else stays."""
+    return one * (1.0 - share) + other * share
+
+
+def _least(function, count):
+    """Where, from 0 to 1, each of several functions is least, by the golden section."""
+    low, high = np.zeros(count), np.ones(count)
+    inner, outer = high - GOLDEN, low + GOLDEN
+    at_inner, at_outer = function(inner), function(outer)
+    for _ in range(NARROWED):
+        left = at_inner < at_outer
+        high, low = np.where(left, outer, high), np.where(left, low, inner)
+        new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
+        value = function(new)
+        inner, outer = np.where(left, new, outer), np.where(left, inner, new)
+        at_inner, at_outer = np.where(left, value, at_outer), np.where(left, at_inner, value)
+    return np.where(at_inner < at_outer, inner, outer)
+
+
+def _deviations(spread, known, count):
+    """Which numbers deviate in shares of their own value, and deviations (count,) of each."""
+    from scipy.stats import qmc
+
+    found = spreads.distributions(spread.spreads)
+    uniform = qmc.Sobol(len(found), rng=spread.seed).random(count)
+    shares, deviations = set(), {}
+    for (path, (distribution, unit)), column in zip(found.items(), uniform.T, strict=True):
+        deviations[path] = distribution.ppf(column) - distribution.median()
+        if unit.strip() in ("%", "percent"):
+            shares.add(path)
+            deviations[path] = deviations[path] * base_factor(unit)
+            continue
+        try:
+            deviations[path] = deviations[path] * factor(unit, known[path])
+        except ValueError as error:
+            raise ParameterError(f"spread: {path}: {error}") from None
+    return shares, deviations
+
+
+def _harrell_davis(quantile, count):
+    """Weights of the ordered samples in a quantile."""
+    from scipy.special import betainc
+
+    first, second = (count + 1) * quantile, (count + 1) * (1.0 - quantile)
+    return np.diff(betainc(first, second, np.linspace(0.0, 1.0, count + 1)))

@@ -1,0 +1,259 @@
+"""The search for a design: a problem set up for SciPy's SLSQP, with variables that count alike.
+
+Mean magnitudes and squares are smooth; of a largest value each part of the period is a limit of its own, and where it
+is to be made least, of one more unknown. Variables are turned and stretched so that each changes what is asked by about
+as much: of a cam's harmonics some combinations change the torque a thousand times as much as others.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import measures
+from .demands import TOPS, Demand
+
+ROUNDS = 8
+"""How often the variables are turned anew before a search ends."""
+STEPS = 200
+"""Steps of one round."""
+FIRST, AGAIN = 1e-10, 1e-9
+"""Relative change of the goal, and miss of a limit, at which the first round ends, and others."""
+SETTLED = 1e-7
+"""Relative change of what is made least that ends a search."""
+KEPT = 1e-9
+"""By how much, relative to its size, a limit may be missed."""
+FAR = 1e6
+"""What a design that cannot be built counts as, in units of the first one's."""
+
+
+class Goal(NamedTuple):
+    """What is made least: `sign` times an output, or a function of designs that returns it with its derivatives."""
+
+    output: Any
+    sign: float = 1.0
+
+
+class Reached(NamedTuple):
+    """End of a search.
+
+    Attributes
+    ----------
+    values : array
+        Of the numbers that vary.
+    goal : float
+        Least value of the goal.
+    missed : float
+        By how much, relative to its size, the worst limit is missed.
+    message : str
+        What the optimiser says.
+    """
+
+    values: np.ndarray
+    goal: float
+    missed: float
+    message: str
+
+
+def searched(problem, goal, limits, start, rounds=ROUNDS) -> Reached:
+    """Local optimum from a start."""
+    best = _round(problem, goal, limits, np.clip(start, problem.low, problem.high))
+    for _ in range(rounds - 1):
+        found = _round(problem, goal, limits, best.values, AGAIN)
+        before, best = best, _better(best, found)
+        if best is before or best.missed > max(KEPT, 0.9 * before.missed):
+            break
+        if before.missed <= KEPT and before.goal - best.goal <= SETTLED * max(abs(best.goal), 1e-300):
+            break
+    return best
+
+
+def _better(one, other):
+    """The one of two designs that keeps its limits, or misses them by less; of two that do the better one."""
+    if max(one.missed, other.missed) <= KEPT:
+        return min(one, other, key=lambda found: found.goal)
+    return min(one, other, key=lambda found: found.missed)
+
+
+def better(several):
+    """The best of several ends."""
+    best = several[0]
+    for found in several[1:]:
+        best = _better(best, found)
+    return best
+
+
+def _round(problem, goal, limits, start, change=FIRST):
+    from scipy.optimize import minimize
+
+    turned = _Turned(problem, goal, limits, start)
+    if not np.isfinite(turned.unit):
+        return Reached(start, np.inf, np.inf, "the start cannot be built")
+    constraints: Any = [{"type": "ineq", "fun": turned.inside, "jac": lambda _: turned.walls}]
+    for kind, fun, jac in (("ineq", turned.under, turned.under_slopes), ("eq", turned.level, turned.level_slopes)):
+        if fun(turned.zero).size:
+            constraints.append({"type": kind, "fun": fun, "jac": jac})
+    found = minimize(
+        turned.goal,
+        turned.zero,
+        jac=turned.goal_slopes,
+        constraints=constraints,
+        method="SLSQP",
+        callback=problem.stepped,
+        options={"maxiter": STEPS, "ftol": change},
+    )
+    values = np.clip(turned.values(found.x), problem.low, problem.high)
+    return Reached(values, turned.reached(values), missed(problem, limits, values), found.message)
+
+
+def missed(problem, limits, values):
+    """By how much the worst limit is missed, relative to its size; infinite where a design cannot be built."""
+    worst = 0.0
+    for limit in limits:
+        excess, _ = side_of(problem, limit, values)
+        worst = max(worst, np.max(np.abs(excess) if limit.relation == "=" else excess) / scale(limit))
+    return worst if np.isfinite(worst) else np.inf
+
+
+def scale(limit):
+    """Size that a limit is counted in."""
+    return abs(limit.value) or 1.0
+
+
+def side_of(problem, limit, values):
+    """By how much a design exceeds a limit (parts,), not positive where it is kept, and derivatives (n, parts)."""
+    output, relation = limit.output, limit.relation
+    sign = -1.0 if relation == ">=" else 1.0
+    sides = TOPS.get(output.reduction, ())
+    bounded = bool(sides) and not output.ratio and relation != "="
+    if bounded and (relation == "<=") == (output.reduction != "smallest"):
+        curve = problem.curves(values)[output.quantity]
+        parts = [measures.tops(curve, side) for side in sides]
+        excess = np.concatenate([found for found, _ in parts]) - sign * limit.value
+        return excess, np.concatenate([slopes for _, slopes in parts], axis=1)
+    found, slopes = problem.output(output, values)
+    return np.array([sign * (found - limit.value)]), sign * slopes[:, None]
+
+
+class _Turned:
+    """The problem in variables that count alike, around a start."""
+
+    def __init__(self, problem, goal, limits, start):
+        self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
+        self.raised = _is_raised(goal)
+        self._last: tuple[Any, Any] = (None, None)
+        first = self.reached(start)
+        self.unit = abs(first) or 1.0
+        count = start.size
+        self.matrix = np.diag(problem.high - problem.low)
+        if np.isfinite(first):
+            self.matrix = self.matrix @ self._turn()
+        self.zero = np.zeros(count + self.raised)
+        if self.raised:
+            self.zero[-1] = first / self.unit
+        self.walls = np.vstack([self.matrix, -self.matrix]) / np.tile(problem.high - problem.low, 2)[:, None]
+        self.walls = np.hstack([self.walls, np.zeros((2 * count, int(self.raised)))])
+
+    def _turn(self):
+        """Directions of the unit box, each as long as changes goal and limits by about their size, at most the box."""
+        rows = [*self._rows()]
+        stacked = np.vstack(rows) * (self.problem.high - self.problem.low)
+        if not np.isfinite(stacked).all():
+            return np.eye(self.start.size)
+        _, sizes, turns = np.linalg.svd(stacked, full_matrices=True)
+        lengths = np.ones(self.start.size)
+        lengths[: sizes.size] = np.maximum(sizes, 1.0)
+        return turns.T / lengths
+
+    def _rows(self):
+        """Derivatives of goal and limits along the period, in units of their sizes."""
+        curves = self.problem.curves(self.start)
+        outputs = [(item.output, scale(item)) for item in self.limits]
+        if not callable(self.goal_of.output):
+            outputs.append((self.goal_of.output, self.unit))
+        for output, unit in outputs:
+            slopes = curves[output.quantity].slopes
+            if output.ratio:
+                value = np.sqrt(np.mean(curves[output.quantity].values ** 2)) or 1.0
+                yield slopes.T / (value * np.sqrt(slopes.shape[1]))
+            else:
+                yield slopes.T / (unit * np.sqrt(slopes.shape[1]))
+        if callable(self.goal_of.output):
+            yield self.goal_of.output(self.start)[1][None] / self.unit
+
+    def values(self, unknowns):
+        values = self.start + self.matrix @ unknowns[: self.start.size]
+        return np.clip(values, self.problem.low, self.problem.high)
+
+    def reached(self, values):
+        """The goal of a design; infinite where it cannot be built."""
+        found = self._goal(values)[0]
+        return found if np.isfinite(found) else np.inf
+
+    def _goal(self, values):
+        output, sign = self.goal_of
+        found, slopes = output(values) if callable(output) else self.problem.output(output, values)
+        return sign * found, sign * slopes
+
+    def goal(self, unknowns):
+        if self.raised:
+            return unknowns[-1]
+        found = self._goal(self.values(unknowns))[0] / self.unit
+        return found if np.isfinite(found) else FAR
+
+    def goal_slopes(self, unknowns):
+        if self.raised:
+            return np.append(np.zeros(self.start.size), 1.0)
+        return np.nan_to_num(self._goal(self.values(unknowns))[1] @ self.matrix / self.unit)
+
+    def inside(self, unknowns):
+        """How far within the bounds, in units of their range."""
+        values, problem = self.values(unknowns), self.problem
+        reach = problem.high - problem.low
+        return np.concatenate([(values - problem.low) / reach, (problem.high - values) / reach])
+
+    def under(self, unknowns):
+        return self._sides(unknowns, False)[0]
+
+    def under_slopes(self, unknowns):
+        return self._sides(unknowns, False)[1]
+
+    def level(self, unknowns):
+        return self._sides(unknowns, True)[0]
+
+    def level_slopes(self, unknowns):
+        return self._sides(unknowns, True)[1]
+
+    def _sides(self, unknowns, equal):
+        """How far under the limits, each in units of its size, with derivatives by the unknowns."""
+        key = unknowns.tobytes(), equal
+        if self._last[0] != key:
+            self._last = key, self._computed_sides(unknowns, equal)
+        return self._last[1]
+
+    def _computed_sides(self, unknowns, equal):
+        values = self.values(unknowns)
+        parts, slopes = [np.empty(0)], [np.empty((self.start.size, 0))]
+        for limit in self.limits:
+            if (limit.relation == "=") == equal:
+                excess, changes = side_of(self.problem, limit, values)
+                parts.append(-excess / scale(limit))
+                slopes.append(-changes / scale(limit))
+        found, changes = np.nan_to_num(np.concatenate(parts), nan=-FAR), np.hstack(slopes)
+        rows = np.nan_to_num(self.matrix.T @ changes).T
+        if not self.raised:
+            return found, rows
+        rows = np.hstack([rows, np.zeros((len(rows), 1))])
+        if equal:
+            return found, rows
+        output, sign = self.goal_of
+        level = Demand(output, "<=" if sign > 0 else ">=", sign * unknowns[-1] * self.unit)
+        excess, changes = side_of(self.problem, level, values)
+        raised = np.hstack([-(self.matrix.T @ changes).T / self.unit, np.ones((excess.size, 1))])
+        return np.append(found, np.nan_to_num(-excess / self.unit, nan=-FAR)), np.vstack([rows, np.nan_to_num(raised)])
+
+
+def _is_raised(goal):
+    """Whether the goal is a largest value, which an unknown of its own bounds."""
+    if callable(goal.output) or goal.output.ratio:
+        return False
+    return goal.output.reduction in TOPS and (goal.sign > 0) == (goal.output.reduction != "smallest")

@@ -1,0 +1,319 @@
+"""Cams that need no torque: the cam-balanced crank-slider whose energy stays constant over the turn.
+
+Constant crank speed needs no torque exactly if kinetic energy and potential of weight and springs do not change
+together. Harmonics of the cam, the coupler's length, the spring's rate and free position are found for that, the ends
+of the stroke kept: first the least squares of the torque (Gauss and Newton, from the cosine law's cam), then the least
+of what is asked, under limits.
+
+The weight of half the coupler acts across the guide. Its torque is even in the crank angle from the guide, all else of
+a symmetric machine is odd, so that no symmetric cam can balance it: sine terms, a torsion spring on the coupler, or a
+counterweight on the crank with an offset guide can, each at a price.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import DesignError
+from ..machine.loads import Gravity
+from ..numbers import checks
+from ..solution.scene import Scene
+from .cam_start import begun
+from .demands import demands, wanted
+from .derived import scene_of
+from .found import Found, found_of, known
+from .optimisation import (
+    aim,
+    aimed,
+    as_asked,
+    held,
+    label,
+    multiple,
+    require_reference,
+    require_resolved,
+    searches,
+    without_ratios,
+)
+from .problem import Problem, chosen, true_value
+from .progress import shown
+from .search import Goal
+
+FEWEST, ENOUGH = 360, 32
+"""Crank angles at least, and for each harmonic of the cam."""
+MOST_HARMONICS = 64
+"""With which a search still ends within a minute; eight leave nothing that a workshop could cut."""
+PASSES = ((2.0, 1.0), (2e3, 0.0))
+"""Passes of the least squares, one after the other: what ends of the stroke count, a miss by half of it as so many mean
+torques, and what the bends of the cam do. From far away the first finds the way, the second keeps to the ends."""
+STEPS = 100
+NEARLY = 1.05
+"""How far beyond the bound of symmetric cams a limit is refused at once: the bound moves a little with the cam."""
+TORQUE, POSITION = "balancing_torque", "slider_position"
+SHOWN = (
+    "ratio mean_absolute balancing_torque",
+    "mean_absolute balancing_torque",
+    "largest_absolute balancing_torque",
+    "largest O",
+    "largest_absolute cam_force",
+    "largest_absolute guide_force",
+    "largest_absolute guide_moment",
+    "largest_absolute pressure_angle",
+    "largest slider_position",
+    "smallest slider_position",
+)
+"""Outputs that a report shows."""
+
+
+def torque_free_cam(
+    source,
+    cosine=8,
+    sine=0,
+    *,
+    minimise=None,
+    maximise=None,
+    limits=(),
+    ends=None,
+    gravity=True,
+    guide_offset=None,
+    coupler_spring=None,
+    counterweight=None,
+    cubic=None,
+    vary=None,
+    robust=None,
+    variant=None,
+    reference=None,
+    starts=1,
+    seed=0,
+    engine="numpy",
+    progress=False,
+) -> Found:
+    """Cam-balanced crank-slider that needs least torque, or is best in what else is asked of it.
+
+    Parameters
+    ----------
+    source : Case, Scene or variant
+        A crank-slider, plain or with a cam; its masses, speed and loads stay. Of a case the first variant besides the
+        reference, unless told.
+    cosine, sine : int
+        Harmonics of the cam.
+    minimise, maximise : str, optional
+        Output to be made least or greatest, as for `optimise`; the mean magnitude of the torque is made least unless
+        told. "rms balancing_torque" is the least squares.
+    limits : sequence of str
+        As for `optimise`.
+    ends : (low, high), optional
+        Extreme positions of the slider, m; those of the source unless told.
+    gravity : bool
+        Whether weight acts.
+    guide_offset : float, optional
+        m; that of the source unless told.
+    coupler_spring : float, optional
+        Free angle, rad, of a torsion spring between coupler and slider that carries the coupler's weight; its rate is
+        found. Its couple goes through the slider to the guide.
+    counterweight : float, optional
+        Mass on the crank, kg, whose place is found, and a guide offset with it.
+    cubic : (low, high), optional
+        Bounds of the spring's cubic term, N/m3; without it the spring is linear.
+    vary : dict of path to (low, high), optional
+        Further numbers that vary, or other bounds.
+    robust, variant, reference, starts, seed, engine, progress
+        As for `optimise`. Further starts have harmonics anywhere within a tenth of the cam's radius.
+
+    Returns
+    -------
+    Found
+        Its `bound` is the greatest ratio of mean torques that a symmetric cam reaches under weight.
+
+    Raises
+    ------
+    DesignError
+        There is no such machine: a stroke the coupler cannot make, limits beyond what such cams can.
+    ParameterError
+        The source is no crank-slider, or a value no machine can have.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> found = ks.design.torque_free_cam(ks.load_case("sawframe_2r63"), cosine=4, gravity=False)
+    >>> print(f"{found.report().loc['ratio mean_absolute balancing_torque [1]', 'after']:.3g}")
+    5.25e+04
+    """
+    source, reference = chosen(source, variant, reference)
+    checks.require(
+        "torque-free cam",
+        _harmonics_problem("cosine", cosine),
+        _harmonics_problem("sine", sine) if sine or sine is False else None,
+        *searches(starts, seed),
+        None if isinstance(gravity, bool) else f"gravity must be True or False, got {checks.shown(gravity)}",
+        None if guide_offset is None else checks.single("guide_offset", guide_offset)[1],
+        None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}",
+        None if ends is None else checks.pair("ends", ends),
+        None if counterweight is None else checks.positive("counterweight", counterweight),
+        None if coupler_spring is None else checks.finite("coupler_spring", coupler_spring),
+    )
+    given = _weighted(scene_of(source), gravity)
+    compared = None if reference is None else _weighted(scene_of(reference), gravity)
+    start = begun(given, cosine, sine, ends, gravity, guide_offset, coupler_spring, counterweight, cubic)
+    sign, text = (1.0, f"mean_absolute {TORQUE}") if minimise is maximise is None else aim(minimise, maximise)
+    low, high = start.ends
+    kept = demands([f"smallest {POSITION} = {low!r} m", f"largest {POSITION} = {high!r} m"], start.scene)
+    output, asked = wanted(text, start.scene), (*kept, *demands(limits, start.scene))
+    require_reference(compared, output, asked)
+    outputs = (output, *(limit.output for limit in asked))
+    angles = max(FEWEST, ENOUGH * max(cosine, sine))
+    require_resolved(angles, (output, *(limit.output for limit in asked)))
+    quantities = (TORQUE, POSITION, *(item.quantity for item in outputs))
+    problem = Problem(start.machine, start.vary | dict(vary or {}), quantities, compared, angles, engine)
+    _require_possible(problem, start)
+    generator = np.random.default_rng(seed)
+    begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
+    begins = [least_squares(problem, start, values) for values in begins]
+    _require_within_bound(start, problem, asked, compared, begins[0])
+    goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), asked)
+    try:
+        with shown(problem, progress):
+            best, came_to = multiple(problem, goal, plain, begins, asked)
+            best = held(problem, goal, plain, best)
+    except DesignError as error:
+        nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
+        torque = any(item.output.quantity == TORQUE for item in asked)
+        advice = _advice(start, problem, compared, nearest) if torque else ""
+        raise DesignError(f"{error}{advice}", error.values) from None
+    found = found_of(
+        problem,
+        goal if robust is not None else Goal(output, sign),
+        asked,
+        best,
+        _shown(start.scene, compared, outputs),
+        label(sign, text, robust),
+        evaluations=problem.evaluations,
+        starts=as_asked(problem, output, goal, came_to),
+    )
+    return replace(found, before=given, bound=bound(start, found.scene, compared))
+
+
+def _harmonics_problem(name, value):
+    """What is wrong with a number of harmonics, as a sentence, or None."""
+    wrong = checks.count(name, value)
+    if wrong or value <= MOST_HARMONICS:
+        return wrong
+    return f"{name} must be at most {MOST_HARMONICS}, got {value}"
+
+
+def least_squares(problem, start, values):
+    """Design of least squares of the torque, with the ends of the stroke among them, by Gauss and Newton's steps.
+
+    Numbers besides those of the cam, the coupler and the linear spring stay as they are.
+    """
+    columns = [place for place, name in enumerate(problem.names) if name in start.first]
+    for weight, smooth in PASSES:
+        values = _squared(problem, start, values, columns, weight, smooth)
+    return np.clip(values, problem.low, problem.high)
+
+
+def _squared(problem, start, values, columns, weight, smooth):
+    """Least squares by some of the numbers, with weights of the ends of the stroke and of the waves of the cam."""
+    from scipy import optimize
+
+    waves = smooth * np.array([wave(problem.names[place]) for place in columns]) / start.half
+    ends = np.array(start.ends)
+    reach = (problem.high - problem.low)[columns]
+    count = problem.angles
+
+    def placed(steps):
+        found = values.copy()
+        found[columns] += reach * steps
+        return found
+
+    def residuals(steps):
+        curves = problem.curves(placed(steps))
+        torque, place = curves[TORQUE].values, curves[POSITION].values
+        missed = (np.array([place.min(), place.max()]) - ends) / start.half
+        found = [torque / (start.unit * np.sqrt(count)), weight * missed, waves * placed(steps)[columns]]
+        return np.nan_to_num(np.concatenate(found), nan=1e3)
+
+    def slopes(steps):
+        curves = problem.curves(placed(steps))
+        place = curves[POSITION]
+        extreme = place.slopes[:, [place.values.argmin(), place.values.argmax()]]
+        rows = np.hstack([curves[TORQUE].slopes / (start.unit * np.sqrt(count)), weight * extreme / start.half])
+        return np.nan_to_num(np.vstack([rows[columns].T, np.diag(waves)]) * reach)
+
+    found = optimize.least_squares(
+        residuals, np.zeros(len(columns)), slopes, method="lm", x_scale=1.0, xtol=1e-12, ftol=1e-12, max_nfev=STEPS
+    )
+    return placed(found.x)
+
+
+def wave(name):
+    """How much a harmonic of the cam bends it: the square of its order, from the second on."""
+    kind, _, order = name.rpartition(".")
+    return float(order) ** 2 if kind in ("cam.cosine", "cam.sine") and int(order) > 1 else 0.0
+
+
+def bound(start, scene, reference):
+    """Greatest ratio of mean torques that a symmetric cam reaches: the coupler's weight stays.
+
+    It rises and falls twice a turn to the greatest height of A, whatever else balances.
+    """
+    if reference is None or not start.weight:
+        return np.inf
+    solution = scene.solve(720)
+    guide = scene.mechanism.groups[-1].guide
+    x, y = solution.position("A")
+    height = np.abs(np.cos(guide.guide_angle) * y - np.sin(guide.guide_angle) * x).max()
+    plain = true_value(wanted(f"mean_absolute {TORQUE}", reference), reference)
+    return float(plain * 2 * np.pi / (4 * abs(start.weight) * height))
+
+
+def _weighted(scene, gravity):
+    """The scene, without its gravity if that shall not act."""
+    if gravity:
+        return scene
+    loads = tuple(item for item in scene.loads if not isinstance(item, Gravity))
+    return Scene(scene.mechanism, scene.crank_speed, scene.crank_acceleration, loads, scene.friction or None)
+
+
+def _require_possible(problem, start):
+    """Refuse a stroke that no coupler within the bounds can make."""
+    place = problem.names.index("coupler_length")
+    shortest, longest = problem.low[place], problem.high[place]
+    low, high = start.ends
+    if not (shortest < high and longest > low):
+        raise DesignError(
+            f"torque-free cam: a coupler of {shortest:.6g} to {longest:.6g} m cannot make the stroke from {low:.6g} m "
+            f"to {high:.6g} m: its length must lie between these ends, or A would pass O"
+        )
+
+
+def _require_within_bound(start, problem, limits, reference, values):
+    """Refuse a ratio of mean torques that the weight alone forbids a symmetric cam."""
+    advice = _advice(start, problem, reference, values)
+    if not advice:
+        return
+    greatest = bound(start, scene_of(problem.scene(values)), reference)
+    for limit in limits:
+        output = limit.output
+        mean = output.ratio and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
+        if mean and limit.relation != "<=" and limit.value > NEARLY * greatest:
+            nearest = dict(zip(problem.names, map(float, values), strict=True))
+            raise DesignError(f"torque-free cam: {limit} cannot be kept{advice}", nearest)
+
+
+def _advice(start, problem, reference, values):
+    """What else may balance weight, where a symmetric cam cannot."""
+    helped = any(name.startswith(("cam.sine", "torsion_spring", "crank.")) for name in problem.names)
+    limit = bound(start, scene_of(problem.scene(values)), reference)
+    if helped or not np.isfinite(limit):
+        return ""
+    return (
+        f"; under weight a symmetric cam reaches a ratio of mean torques of {limit:.4g} at most: give sine terms, "
+        "coupler_spring or counterweight"
+    )
+
+
+def _shown(scene, reference, outputs):
+    """Outputs that a report shows: those asked for, and the usual ones."""
+    texts = SHOWN if reference is not None else SHOWN[1:]
+    usual = (wanted(text, scene) for text in texts if text.split()[-1] in known(scene))
+    return tuple(dict.fromkeys([*outputs, *usual]))

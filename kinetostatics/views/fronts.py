@@ -1,0 +1,34 @@
+"""Figures of designs: fronts of two outputs."""
+
+from ..numbers.headings import parted
+from .canvas import ACCENT, INK, axes, display
+
+
+def front(found, ax=None):
+    """Designs of which none is better in both outputs, as `ks.design.pareto` finds them, and the source.
+
+    Parameters
+    ----------
+    found : design.Front
+    ax : matplotlib Axes, optional
+
+    Returns
+    -------
+    Axes
+    """
+    ax = axes(ax)
+    scales, headings = [], []
+    for column in list(found.table.columns)[:2]:
+        name, unit = parted(column)
+        factor, shown = display(unit, [found.table[column].to_numpy()])
+        scales.append(factor)
+        headings.append(f"{name.replace('_', ' ')} [{shown}]" if unit not in ("", "1") else name.replace("_", " "))
+    first, second = (found.table.iloc[:, place].to_numpy() * scales[place] for place in (0, 1))
+    ax.plot(second, first, "o-", color=INK, label="best designs")
+    before = [value * scale for value, scale in zip(found.before, scales, strict=True)]
+    ax.plot(before[1], before[0], "x", color=ACCENT, label="before")
+    ax.set_ylabel(headings[0])
+    ax.set_xlabel(headings[1])
+    ax.grid(alpha=0.3)
+    ax.legend(frameon=False, fontsize="small")
+    return ax

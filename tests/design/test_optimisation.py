@@ -1,0 +1,72 @@
+"""Optimisation under limits: optima known otherwise, limits at true extremes, any machine and output."""
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+import kinetostatics as ks
+from support.improved_saws import CIRCLE, RATIO, SAW, SPRING, TORQUE, bound
+
+
+def test_one_number_is_best_where_a_search_by_values_alone_finds_it():
+    from scipy.optimize import minimize_scalar
+
+    def torque(stiffness):
+        return float(np.mean(np.abs(CIRCLE.varied({"spring.stiffness": stiffness}).solve(720).balancing_torque)))
+
+    found = ks.design.optimise(SAW, SPRING, TORQUE, variant="cam-circle")
+    other = minimize_scalar(torque, bounds=(5e5, 9e5), method="bounded", options={"xatol": 1.0})
+    assert_allclose(dict(found.values)["spring.stiffness"], other.x, rtol=1e-4)
+    assert found.active == ()
+
+
+def test_counterweight_that_makes_the_largest_shaking_force_least_is_the_one_of_balancing():
+    """The mower's optimal variant, found by another search, by its unbalance along the crank and across."""
+    mower = ks.load_case("mower_drive").variant("unbalanced")
+    balanced = ks.load_case("mower_drive").variant("optimal").balanced.mechanism
+    vary = {"crank.centre.along": (-0.3, 0.3), "crank.centre.across": (-0.1, 0.1)}
+    found = ks.design.optimise(mower.scene, vary, "largest shaking_force")
+    force = ks.extremes(found.scene.solve(90), "shaking_force").range[1]
+    assert_allclose(
+        force, ks.extremes(ks.solve(balanced, 0.0, crank_speed=mower.crank_speed), "shaking_force").range[1], rtol=1e-6
+    )
+
+
+def test_limits_hold_at_true_extremes_to_a_billionth():
+    solution = bound().scene.solve(90)
+    low, high = ks.extremes(solution, "slider_position").range
+    assert_allclose([low, high], [1.7, 2.3], rtol=1e-9)
+    assert ks.extremes(solution, "O").range[1] <= 15e3 * (1 + 1e-9)
+    assert bound().report().loc[f"{RATIO} [1]", "after"] >= 50 * (1 - 1e-8)
+
+
+def test_the_same_optimum_under_an_independent_solution():
+    compared = ks.compare(SAW.solve("plain"), bound().scene.solve(720)).frame()
+    assert_allclose(compared.iloc[0]["ratio"], bound().report().loc[f"{RATIO} [1]", "after"], rtol=1e-6)
+
+
+def test_any_machine_can_be_improved():
+    """A four-bar's rocker is given the pivot that makes its largest reaction least, its swing kept."""
+    bars = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(20.0, 0.15, 0.2))
+    scene = ks.Scene(bars, 10.0, loads=ks.Gravity())
+    vary = {"rocker_pivot.x": (0.3, 0.4), "rocker_pivot.y": (0.0, 0.2), "coupler_length": (0.35, 0.5)}
+    found = ks.design.optimise(scene, vary, "largest O", limits="largest_absolute balancing_torque <= 12 N m")
+    table = found.report()["after"]
+    assert table["largest O [N]"] < 0.8 * found.report()["before"]["largest O [N]"]
+    assert table["largest_absolute balancing_torque [N m]"] <= 12.0 * (1 + 1e-9)
+
+
+def test_losses_and_pressure_angle_are_outputs_too():
+    """No design of a grid that keeps the limit loses less."""
+    friction = {"O": ks.PinFriction(0.1, 0.1), "guide": ks.GuideFriction(0.1)}
+    scene = ks.Scene(CIRCLE.mechanism, CIRCLE.crank_speed, loads=CIRCLE.loads, friction=friction)
+    vary = {"spring.stiffness": (6e5, 9e5), "cam.centre.x": (-0.03, -0.01)}
+    found = ks.design.optimise(
+        scene, vary, "mean friction_loss", "largest_absolute pressure_angle <= 3.7 deg", angles=180
+    )
+    after = found.report()["after"]
+    assert after["largest_absolute pressure_angle [rad]"] <= np.radians(3.7) * (1 + 1e-9)
+    for stiffness in np.linspace(6e5, 9e5, 5):
+        for centre in np.linspace(-0.03, -0.01, 5):
+            other = scene.varied({"spring.stiffness": stiffness, "cam.centre.x": centre}).solve(180)
+            if np.abs(other.pressure_angle).max() <= np.radians(3.7):
+                assert np.mean(other.friction_loss) >= after["mean friction_loss [W]"] * (1 - 1e-6)

@@ -1,0 +1,96 @@
+"""Quantiles over spreads: what designs are worth as they are made and run."""
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+import kinetostatics as ks
+from kinetostatics.design.demands import wanted
+from kinetostatics.design.problem import Problem
+from kinetostatics.design.robust import Sampled
+
+SAW = ks.load_case("sawframe_2r63")
+RATIO = "ratio mean_absolute balancing_torque"
+SPREADS = {
+    "spring.stiffness": "normal 0 % +- 0.5 %",
+    "crank_speed": "normal 0 % +- 1 %",
+    "slider.mass": "normal 0 % +- 1 %",
+    "spring.free_position": "normal 0 mm +- 0.5 mm",
+}
+CIRCLE = SPREADS | {"cam.radius": "normal 0 mm +- 0.05 mm"}
+HARMONIC = SPREADS | {"cam.cosine.0": "normal 0 mm +- 0.05 mm"}
+
+
+def ks_quantile(found, trim=0.0):
+    spread = ks.design.Spread(0.05, HARMONIC, trim=trim)
+    return np.quantile(ks.design.over_spread(found.scene, RATIO, spread, reference=found.reference, samples=512), 0.05)
+
+
+def test_outputs_over_a_spread_are_those_of_each_machine_by_itself():
+    spread = ks.design.Spread(0.05, {"spring.stiffness": "-5..5 %", "slider.mass": "-10..10 kg"}, seed=4)
+    found = ks.design.over_spread(SAW, RATIO, spread, variant="cam-circle", samples=16)
+    from scipy.stats import qmc
+
+    uniform = qmc.Sobol(2, rng=4).random(16)
+    circle, plain = SAW.variant("cam-circle").scene, SAW.variant("plain").scene
+    for value, (one, other) in zip(found, uniform, strict=True):
+        mass = 600.0 + 20.0 * (other - 0.5)
+        design = circle.varied(
+            {"spring.stiffness": circle.parameters["spring.stiffness"] * (1 + 0.1 * (one - 0.5)), "slider.mass": mass}
+        )
+        means = [
+            np.mean(np.abs(scene.solve(2880).balancing_torque))
+            for scene in (plain.varied({"slider.mass": mass}), design)
+        ]
+        assert_allclose(value, means[0] / means[1], rtol=2e-4)
+
+
+def test_studys_design_has_the_quantile_of_the_study():
+    spread = ks.design.Spread(0.05, CIRCLE)
+    found = ks.design.over_spread(SAW, RATIO, spread, variant="cam-circle", samples=1024)
+    assert_allclose(np.quantile(found, 0.05), 5.2, atol=0.15)
+
+
+def test_derivatives_of_a_quantile_are_those_of_small_changes():
+    vary = {"spring.stiffness": (6e5, 9e5), "cam.centre.x": (-0.03, -0.01)}
+    circle = SAW.variant("cam-circle")
+    problem = Problem(circle, vary, ["balancing_torque"], SAW.variant("plain"))
+    for trim in (0.0, 0.02):
+        goal = Sampled(problem, wanted(RATIO, circle.scene), ks.design.Spread(0.1, CIRCLE, 32, trim), -1.0)
+        point = np.array([7.9e5, -0.021])
+        _, slopes = goal(point)
+        for place, step in enumerate((30.0, 2e-6)):
+            move = step * np.eye(2)[place]
+            high, low = (goal(point + side * move)[0] for side in (1, -1))
+            assert_allclose(slopes[place], (high - low) / (2 * step), rtol=5e-3)
+
+
+def test_trim_takes_the_best_speed_of_each_machine():
+    spread = ks.design.Spread(0.05, {"slider.mass": "normal 0 % +- 1 %"}, trim=0.03, seed=2)
+    found = ks.design.over_spread(SAW, RATIO, spread, variant="cam-circle", samples=4)
+    from scipy.stats import norm, qmc
+
+    circle, plain = SAW.variant("cam-circle").scene, SAW.variant("plain").scene
+    for value, uniform in zip(found, qmc.Sobol(1, rng=2).random(4).ravel(), strict=True):
+        mass = {"slider.mass": 600.0 * (1 + 0.01 * norm.ppf(uniform))}
+        ratios = []
+        for speed in circle.crank_speed * np.linspace(0.97, 1.03, 61):
+            means = [
+                np.mean(np.abs(scene.varied(mass | {"crank_speed": speed}).solve(360).balancing_torque))
+                for scene in (plain, circle)
+            ]
+            ratios.append(means[0] / means[1])
+        assert_allclose(value, max(ratios), rtol=1e-3)
+
+
+def test_a_robust_design_keeps_more_than_the_best_at_nominal_numbers():
+    """Cubic spring, cam force at most 20 kN: 5 % of machines fall below 33, of every good linear design below 24."""
+    common = {"variant": "cam-cosine"}
+    linear = ks.design.torque_free_cam(SAW, 4, 4, **common)
+    robust = ks.design.torque_free_cam(
+        SAW, 4, 4, maximise=RATIO, limits="largest_absolute cam_force <= 20 kN", cubic=(0, 2e7),
+        robust=ks.design.Spread(0.05, HARMONIC, samples=32), **common,
+    )  # fmt: skip
+    assert 22 < ks_quantile(linear) < 24
+    assert ks_quantile(robust) >= 32.5
+    assert max(map(abs, ks.extremes(robust.scene.solve(90), "cam_force").range)) <= 20e3 * (1 + 1e-9)
+    assert ks_quantile(linear, trim=0.03) >= 125

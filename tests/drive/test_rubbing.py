@@ -1,0 +1,118 @@
+"""Machines that rub in periodic running: the true acceleration, losses, many digits."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from support.driven_rubbing import MOTOR, PUMP, REFERENCE, RUBBING, SAW, SMALL
+
+CAM = ks.Scene(
+    ks.cam_crank_slider(ks.cams.Circle(0.1, (0.02, 0.0)), 0.4, slider=ks.Link(10.0), coupler=ks.Link(2.0, 0.2, 0.03)),
+    1.0,
+    loads=ks.Gravity(),
+    friction={
+        "O": ks.PinFriction(0.05, 0.02),
+        "slot": ks.SlotFriction(0.1),
+        "cam": ks.RollerFriction(0.003, 0.02, 0.04),
+        "guide": ks.GuideFriction(0.1),
+    },
+)
+MACHINES = {"saw": (RUBBING, MOTOR, 1000.0), "pump": (PUMP, SMALL, 0.3), "cam": (CAM, SMALL, 1.0)}
+
+
+@pytest.fixture(scope="module", params=MACHINES)
+def run(request):
+    scene, motor, flywheel = MACHINES[request.param]
+    return ks.drive.steady(scene, motor, flywheel)
+
+
+def test_the_motor_drives_machine_and_flywheel_at_the_true_acceleration(run):
+    torque = run.motor.transmission * run.motor_torque - run.flywheel * run.acceleration
+    assert np.abs(torque - run.crank_torque).max() < 1e-13 * np.abs(run.crank_torque).max()
+    assert run.solution.friction_loss.min() >= 0.0
+
+
+def test_what_the_motor_gives_is_what_loads_and_friction_take(run):
+    lost = sum(run.friction_energy_per_turn_at(joint) for joint in run.scene.friction)
+    flowing = run.energy_per_turn
+    assert flowing == pytest.approx(run.load_energy_per_turn + lost, rel=1e-12, abs=1e-12 * lost)
+    assert run.mean_power == pytest.approx(run.mean_friction_loss + run.load_energy_per_turn / run.duration, rel=1e-12)
+    assert run.friction_energy_per_turn == pytest.approx(lost, rel=1e-15)
+
+
+def test_energy_changes_between_any_two_angles_by_what_the_torques_do(run):
+    """Motor, loads and friction by the tables of the run, integrated apart from its own series."""
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    edges = np.union1d(run._pieces.edges, np.linspace(0.0, run.period, 41))
+    half, middle = np.diff(edges)[:, None] / 2, (edges[1:] + edges[:-1])[:, None] / 2
+    angle = middle + half * nodes
+    speed, acceleration = (part.ravel() for part in run.motion(angle))
+    moving = ks.Scene(run.scene.mechanism, speed, acceleration, run.scene.loads, run.scene.friction)
+    s = moving.solve(angle.ravel())
+    drive = run.motor.transmission * run.motor.torque(run.motor.transmission * speed)
+    net = drive - s.load_torque - s.friction_torque
+    gained = np.cumsum((half * weights * net.reshape(angle.shape)).sum(axis=1))
+    ends = run.motion(edges)[0]
+    inertia = run.flywheel + run.scene.solve(edges, on_gap="nan").reduced_inertia
+    energy = 0.5 * inertia * ends**2
+    assert np.abs(energy[1:] - energy[0] - gained).max() < 1e-12 * energy.max()
+
+
+@pytest.mark.parametrize("speed", [30.0, -30.0])
+def test_without_motor_a_constant_torque_carries_the_losses(speed):
+    scene = ks.Scene(SAW, speed, loads=ks.Gravity(), friction=RUBBING.friction)
+    run = ks.drive.steady(scene, None, 1000.0)
+    assert run.mean_speed == pytest.approx(speed, rel=1e-14)
+    assert run.energy_per_turn == pytest.approx(run.friction_energy_per_turn, rel=1e-12)
+    balance = run.motor_torque - run.flywheel * run.acceleration - run.crank_torque
+    assert np.abs(balance).max() < 1e-13 * np.abs(run.crank_torque).max()
+    step, angle = 1e-5, np.linspace(0.5, 6.0, 9)
+    after, before = (run.motion(angle + way * step)[0] for way in (1, -1))
+    rate, acceleration = (after - before) / (2 * step), run.motion(angle)[1]
+    assert rate * run.motion(angle)[0] == pytest.approx(acceleration, rel=1e-6, abs=1e-6)
+
+
+def test_a_flywheel_for_a_fluctuation_is_the_one_that_runs_with_it():
+    textbook = ks.drive.flywheel(PUMP, 0.02)
+    s = PUMP.solve(7200)
+    spare = np.cumsum(s.balancing_torque.mean() - s.balancing_torque) * 2 * np.pi / 7200
+    assert textbook.energy == pytest.approx(np.ptp(spare), rel=1e-3)
+
+
+def test_friction_that_vanishes_changes_nothing():
+    free = ks.Scene(SAW, 1.0, loads=ks.Gravity())
+    none = ks.Scene(SAW, 1.0, loads=ks.Gravity(), friction={"O": ks.PinFriction(0.0, 0.1)})
+    one, other = (ks.drive.steady(scene, MOTOR, 1000.0) for scene in (free, none))
+    assert np.array_equal(one.speed, other.speed)
+    slight = ks.Scene(SAW, 1.0, loads=ks.Gravity(), friction={"O": ks.PinFriction(1e-12, 0.06)})
+    assert ks.drive.steady(slight, MOTOR, 1000.0).speed == pytest.approx(one.speed, rel=1e-11)
+
+
+@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
+def test_the_rubbing_saw_runs_as_many_digits_say(engine):
+    if engine == "compiled":
+        pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+    angles = np.radians(REFERENCE["angle [deg]"])
+    run = ks.drive.steady(RUBBING, MOTOR, 1000.0, angles=angles, engine=engine)
+    for name in ("speed", "acceleration", "motor_torque"):
+        exact = np.array(REFERENCE[name], dtype=float)
+        assert np.abs(getattr(run, name) - exact).max() < 1e-12 * np.abs(exact).max(), name
+    assert run.mean_speed == pytest.approx(float(REFERENCE["mean_speed"]), rel=1e-14)
+    assert run.friction_energy_per_turn == pytest.approx(float(REFERENCE["friction_energy"]), rel=1e-12)
+
+
+def test_friction_that_jams_is_refused_with_its_angles():
+    steep = ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0))
+    scene = ks.Scene(steep, 1.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(1.2)})
+    for drive in (lambda: ks.drive.steady(scene, SMALL, 1.0), lambda: ks.drive.coast(scene, 1.0, 0.0, 5.0, 1.0)):
+        with pytest.raises(ks.JammingError, match=r"friction jams at .* or steepen the links$"):
+            drive()
+
+
+def test_the_summary_tells_the_power_lost_by_joint():
+    from kinetostatics.drive.summary import summary
+
+    run = ks.drive.steady(RUBBING, MOTOR, 1000.0)
+    table = summary({"saw": run}, {"saw": None})["saw"]
+    assert table["lost by friction, mean"] == run.mean_friction_loss
+    assert table["lost by friction at guide, mean"] == run.mean_friction_loss_at("guide")
