@@ -382,3 +382,36 @@ def test_missing_numba_is_said_with_the_way_to_install_it(monkeypatch):
     scene = ks.Scene(SCENES["plain"].mechanism, crank_speed=1.0)
     with pytest.raises(ks.errors.MissingLibraryError, match=r'pip install "kinetostatics\[fast\]"'):
         ks.compile(scene, ["O"], engine="compiled")
+
+
+RUBBING = ks.Scene(
+    ks.crank_slider(0.05, 0.2, slider=ks.Link(2.0)),
+    20.0,
+    loads=ks.Gravity(),
+    friction={"A": ks.PinFriction(0.1, 0.02), "guide": ks.GuideFriction(0.15, 0.03)},
+)
+
+
+@pytest.mark.slow_start
+def test_few_angles_over_and_over_are_computed_by_the_loop_to_the_same_bits(monkeypatch):
+    pytest.importorskip("numba")
+    program = ks.compile(RUBBING, "friction_torque", engine="compiled")
+    angles = np.linspace(0.1, 6.0, 5)
+    before = [program(angle)["friction_torque"] for angle in (0.3, angles)]
+    assert "loop" not in vars(program._program)
+    monkeypatch.setattr(programs, "LONG", 0)
+    monkeypatch.setattr(programs, "PAYS", 0)
+    after = [program(angle)["friction_torque"] for angle in (0.3, angles)]
+    assert "loop" in vars(program._program)
+    assert all(np.array_equal(one, other) for one, other in zip(before, after, strict=True))
+    assert program.unlooked(0.3, {}, True)["friction_torque"] == before[0]
+
+
+def test_few_angles_stay_on_plain_numbers_without_numba(monkeypatch):
+    program = ks.compile(RUBBING, "friction_loss", engine="numpy")
+    monkeypatch.setattr(programs, "LONG", 0)
+    monkeypatch.setattr(programs, "PAYS", 0)
+    monkeypatch.setattr(programs, "available", lambda: False)
+    expected = program(0.3)["friction_loss"]
+    assert [program.unlooked(0.3, {}, True)["friction_loss"] for _ in range(3)] == [expected] * 3
+    assert "loop" not in vars(program._program)
