@@ -125,7 +125,7 @@ def test_only_designs_that_kill_their_worker_are_given_up(tidy, impatient, expec
     assert_only_lost(found, expected[19:23], rows)
 
 
-def test_only_a_design_that_kills_its_worker_is_given_up_by_dask(cluster, impatient, expected):
+def test_only_a_design_that_kills_its_worker_is_given_up_by_dask(cluster, expected):
     found = sweep(factories.deadly(0.3), DESIGNS[19:21], OUTPUTS, executor=cluster, chunk=2)
     assert_only_lost(found, expected[19:21], [20])
 
