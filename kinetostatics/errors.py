@@ -50,6 +50,9 @@ class AssemblyError(KinetostaticsError, ValueError):
 class JammingError(KinetostaticsError, ValueError):
     """Friction holds the mechanism at some crank angles, or leaves more than one state of its forces.
 
+    Of a guide or pin that rubs alone this is exact. Of several joints of a group it may be so: friction is refused from
+    the bound on up to which there is surely one state of forces, whatever loads and senses of motion are.
+
     Attributes
     ----------
     angles : tuple of float

@@ -21,6 +21,7 @@ from ..results.comparison import Comparison
 from ..solution.scene import Scene
 from ..solution.solution import Solution
 from . import build, parameters, reading, schema
+from .designs import Design, designs_of
 from .pieces import PartsError
 from .reading import shipped_cases
 from .spreads import far_off, spread_problems
@@ -156,6 +157,8 @@ class Case:
     variants : mapping of name to Variant
     tolerances : mapping of parameter to text
         How parameters spread, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
+    designs : mapping of name to Design
+        What the file wants to be found; `.find()` does.
     """
 
     title: str
@@ -165,6 +168,7 @@ class Case:
     variants: typing.Mapping[str, Variant]
     published: schema.PublishedTable = field(repr=False)
     tolerances: typing.Mapping[str, str] = field(default_factory=dict)
+    designs: typing.Mapping[str, Design] = field(default_factory=dict)
 
     def __getstate__(self):
         return {**vars(self), "variants": dict(self.variants)}
@@ -273,6 +277,7 @@ def load_case(path) -> Case:
         problems.append(checks.choice("reference", reference, tuple(variants)))
     if head is not None:
         problems += spread_problems(head.tolerances, variants)
+        designs = designs_of(head.design, head.reference, variants, problems)
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
     for doubt in far_off(head.tolerances, variants):
@@ -280,9 +285,8 @@ def load_case(path) -> Case:
     for name, item in variants.items():
         for hint in item.mechanism.hints:
             warnings.warn(f"{path}: variants.{name}: {hint}", HintWarning, stacklevel=2)
-    return Case(
-        head.title, head.source, path, head.reference, MappingProxyType(variants), head.published, head.tolerances
-    )
+    kept = MappingProxyType(variants)
+    return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, designs)
 
 
 def _variant(name, own, common, folder, problems):

@@ -108,6 +108,10 @@ def validated(model, raw, place):
         return None, [_sentence(model, item, place) for item in error.errors()]
 
 
+NO_TABLE = ("model_type", "dict_type")
+"""What is wrong, as pydantic calls it, where a table should stand."""
+
+
 def _sentence(model, item, place):
     keys = tuple(key for key in item["loc"] if key not in schema.TAGS)
     path = key_path(place(keys))
@@ -126,6 +130,8 @@ def _sentence(model, item, place):
         return checks.choice(f"{path}.kind", found["kind"], allowed)
     if item["type"] == "literal_error" and keys[-1] == "kind":
         return checks.choice(path, found, schema.kinds(item["loc"][-2]))
+    if item["type"] in NO_TABLE:
+        return f"{path} must be a table of keys and values, found {shown(found)}"
     if item["type"] == "value_error":
         return f"{path} {item['ctx']['error']}"
     return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {shown(found)}"

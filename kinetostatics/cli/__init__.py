@@ -1,9 +1,11 @@
-"""The command line: ``kinetostatics run | compare | drive | plot | precision | sweep CASE``, ``... stability``.
+"""The command line: ``kinetostatics run | compare | drive | plot | precision | sweep | design CASE``, and others.
 
 options
     What may be written on the line.
 commands
     What each command does.
+designing
+    What the command ``design`` does.
 printed
     Tables on the screen and in files.
 """

@@ -193,6 +193,12 @@ def stability(options):
     print(*paths, sep="\n")
 
 
+def design(options):
+    from .designing import design
+
+    design(options)
+
+
 def sweep(options):
     from ..casefile.case import load_case
     from ..results.reductions import parsed

@@ -81,6 +81,13 @@ def parser():
     )
     sweep.add_argument("--plot", type=_text, metavar="FILE", help="figure to write, .png or .svg")
 
+    design = _command(group, "design", commands.design, "find the machines that the case asks for: its [design] tables")
+    design.add_argument("--design", action="append", type=_text, metavar="NAME", help="only these (all)")
+    design.add_argument("--starts", type=_count, metavar="N", help="searches for each (as the case says)")
+    design.add_argument("--out", type=_text, metavar="FILE", help="case file to write with what is found, .toml")
+    design.add_argument("--plot", type=_text, metavar="DIR", help="folder for the figures")
+    design.add_argument("--format", choices=("png", "svg"), default="png", help="of the figures (png)")
+
     stability = _command(
         group, "stability", commands.stability, "every method's error near the places where it hurts", False
     )

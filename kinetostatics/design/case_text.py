@@ -23,11 +23,12 @@ from ..numbers import checks
 from ..numbers.files import written_whole
 
 CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "harmonic"}
-RESERVED = "reference"
 
 
-def write(path, title, scenes, source="") -> Path:
+def write(path, title, scenes, source="", *, comment="", designs=None) -> Path:
     """Write a case file of scenes by the names of their variants, the first as reference.
+
+    Before them may stand a comment, behind them tables of designs as they stood in another file.
 
     Raises
     ------
@@ -37,13 +38,27 @@ def write(path, title, scenes, source="") -> Path:
         The file cannot be written.
     """
     path = Path(path)
-    parts = [f"title = {_quoted(title)}"]
+    parts = [f"# {line}" for line in comment.splitlines()]
+    parts += [f"title = {_quoted(title)}"]
     parts += [f"source = {_quoted(source)}"] if source else []
     parts += [f"reference = {_quoted(next(iter(scenes)))}"]
     parts += [variant(name, scene) for name, scene in scenes.items()]
+    parts += [table(f"design.{_key(name)}", raw) for name, raw in (designs or {}).items()]
     with written_whole(path) as place:
         Path(place).write_text("\n".join(parts) + "\n", encoding="utf-8")
     return path
+
+
+def table(head, raw) -> str:
+    """Text of a table as it was read from a case file, tables within it below."""
+    inner = {key: value for key, value in raw.items() if isinstance(value, dict)}
+    own = [f"{_key(key)} = {_plain_text(value)}" for key, value in raw.items() if key not in inner]
+    return "\n".join(["", f"[{head}]", *own, *(table(f"{head}.{_key(key)}", value) for key, value in inner.items())])
+
+
+def _plain_text(value):
+    """Text, truth values, numbers and lists of them as TOML and JSON alike have them."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def variant(name, scene) -> str:
@@ -163,7 +178,8 @@ def _link(link):
 def _cam(cam):
     if type(cam) not in CAMS:
         raise ParameterError(
-            f"case file: has no text for a cam of the class {type(cam).__name__}; sample it as a table"
+            f"case file: has no text for a cam of the class {type(cam).__name__}; write it by cam.export as .csv, and "
+            'name that in a case file: cam = { kind = "sampled", table = "cam.csv" }'
         )
     keys = {PLAIN.get(name, name): value for name, value in _keys(cam).items() if name != "guide_angle"}
     return _inline({"kind": _quoted(CAMS[type(cam)]), **keys})

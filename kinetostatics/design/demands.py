@@ -1,6 +1,7 @@
 """What is asked of a design: an output to be made least or greatest, and limits of others, read from texts."""
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from ..errors import ParameterError
@@ -10,7 +11,6 @@ from ..results.reductions import Output, parsed
 
 _FORM = re.compile(r"(?P<output>[^<>=≤≥]*?)\s*(?P<relation><=|>=|==?|≤|≥)\s*(?P<value>[^<>=≤≥]*)")
 _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
-SMOOTH = ("mean", "mean_absolute", "rms")
 TOPS = {"largest": (1.0,), "smallest": (-1.0,), "largest_absolute": (1.0, -1.0)}
 """By reduction: which sides of a quantity its extreme is on."""
 
@@ -78,6 +78,10 @@ def wanted(text, known) -> Output:
 
 def demands(texts, known):
     """Limits from their texts; all that is wrong with them in one error."""
+    if not isinstance(texts, str | Iterable):
+        raise ParameterError(
+            f'design: limits must be texts, such as ["largest O <= 0.75 kN"], got {checks.shown(texts)}'
+        )
     found, problems = [], []
     for text in (texts,) if isinstance(texts, str) else texts:
         try:

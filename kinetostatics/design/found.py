@@ -1,16 +1,20 @@
 """What a search found: the better machine, what binds it, and what each limit and each bound costs."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..mechanics.quantities import of_scene
+from ..numbers import checks
 from .demands import Demand
 from .derived import scene_of
-from .problem import true_value
+from .problem import compared_value
 from .search import side_of
 
+TAKEN = ("reference", "before")
+"""Variants of the case file beside the design's own."""
 BINDS = 1e-6
 """How near, relative to its size or range, a design is to a limit or bound that holds it."""
 
@@ -81,13 +85,16 @@ class Found:
         return pd.DataFrame.from_dict(rows, orient="index").rename_axis("output")
 
     def numbers(self):
-        """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame."""
+        """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame.
+
+        Before stands NaN where the source has no such number, as of another cam.
+        """
         import pandas as pd
 
         own, units = self.before.parameters, self.scene.units
         rows = {
             f"{path} [{units[path]}]": {
-                "before": own.get(path, 0.0),
+                "before": own.get(path, np.nan),
                 "after": value,
                 "price": self.prices.get(path, np.nan),
             }
@@ -111,6 +118,13 @@ class Found:
         """
         from .case_text import write
 
+        known = isinstance(name, str) and name not in TAKEN
+        checks.require(
+            "case file",
+            None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
+            None if known else f"name must be a text, not one of {TAKEN}, got {name!r}",
+            None if title is None or isinstance(title, str) else f"title must be a text, got {checks.shown(title)}",
+        )
         scenes = {} if self.reference is None else {"reference": self.reference}
         scenes |= {"before": self.before, name: self.scene}
         return write(path, title or f"Design for the {self.goal}", scenes)
@@ -118,8 +132,7 @@ class Found:
     def _of(self, output, scene):
         if output.quantity not in known(scene):
             return np.nan
-        own = true_value(output, scene)
-        return true_value(output, self.reference) / own if output.ratio else own
+        return compared_value(output, scene, self.reference)
 
 
 def known(scene):

@@ -10,7 +10,7 @@ from .demands import Demand, demands, wanted
 from .derived import scene_of
 from .found import Found
 from .optimisation import ANGLES, optimise
-from .problem import chosen, true_value
+from .problem import chosen, compared_value
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Parameters
     ----------
     source, vary, limits, variant, reference, starts, seed
-        As for `optimise`, as other options are.
+        As for `optimise`, as are `angles` and `engine`.
     minimise : (str, str)
         Two outputs; a "-" in front of one makes it greatest: ("largest_absolute cam_force", "-ratio mean_absolute
         balancing_torque").
@@ -61,12 +61,14 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     >>> bool((front.table.iloc[:, 0].diff().dropna() > 0).all())
     True
     """
-    pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
+    texts = isinstance(minimise, list | tuple) and all(isinstance(text, str) for text in minimise)
     checks.require(
         "pareto",
-        None if len(pair) == 2 else f"minimise must be two outputs, got {minimise!r}",
+        None if texts and len(minimise) == 2 else f"minimise must be two outputs, got {checks.shown(minimise)}",
         checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}"),
+        *(checks.choice("option", name, ("angles", "engine")) for name in options),
     )
+    pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
     item, compared = chosen(source, variant, reference)
     shared = {"reference": compared, "seed": seed, "starts": starts, "angles": ANGLES} | options
     first, second = (wanted(text, scene_of(item)) for text, _ in pair)
@@ -78,7 +80,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
         return optimise(item, vary, limits=(*kept, *more), begin=begin, **goal, **shared)
 
     def outputs(scene):
-        return [_value(output, scene, compared) for output in (first, second)]
+        return [compared_value(output, scene, scene_of(compared)) for output in (first, second)]
 
     ends = [best(0), best(1)]
     levels = [outputs(end.scene)[1] for end in ends]
@@ -100,14 +102,14 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     )
 
 
-def _value(output, scene, compared):
-    own = true_value(output, scene)
-    return true_value(output, scene_of(compared)) / own if output.ratio else own
-
-
 def _table(found, outputs, pair):
     import pandas as pd
 
     columns = [output.column for output in pair]
-    rows = [dict(zip(columns, outputs(design.scene), strict=True)) | dict(design.values) for design in found]
+    units = found[0].scene.units
+    rows = [
+        dict(zip(columns, outputs(design.scene), strict=True))
+        | {f"{path} [{units[path]}]": value for path, value in dict(design.values).items()}
+        for design in found
+    ]
     return pd.DataFrame(rows)

@@ -26,5 +26,9 @@ def pressure_from_hardness(brinell):
 
 
 def hardness_from_pressure(pressure):
-    """Brinell hardness for a Hertz pressure in Pa: the same the other way round, extrapolated where it is."""
-    return (pressure / 1e6 - 200.0) / 2.22
+    """Brinell hardness of steel that bears a Hertz pressure in Pa: the same the other way round.
+
+    At least 180 HB, the softest that the standard tells of; beyond 400 HB extrapolated.
+    """
+    value = checks.singles("hardness_from_pressure", pressure=(pressure, {"low": 0.0}))["pressure"]
+    return max(180.0, (value / 1e6 - 200.0) / 2.22)

@@ -1,21 +1,25 @@
 """Optimisation of any machine under limits: what is made least, what may vary, what must hold, by texts."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from ..errors import DesignError, ParameterError
+from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..numbers import checks
 from ..results.extremes import extrema
 from .demands import TOPS, Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
-from .robust import Sampled
+from .progress import shown
+from .robust import Sampled, not_spread
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
 
 ANGLES = 720
 """Crank angles over the period."""
+FEWEST_ANGLES = 12
+"""Crank angles below which curves say nothing."""
 TIGHTER = 4
 """How often limits are drawn in until true extremes keep them."""
 
@@ -35,6 +39,7 @@ def optimise(
     seed=0,
     angles=ANGLES,
     engine="numpy",
+    progress=False,
 ):
     """Best machine within bounds and limits.
 
@@ -64,6 +69,8 @@ def optimise(
         Crank angles over the period of the loads.
     engine : "numpy" or "compiled"
         The loop of many parameters takes a while to compile, and pays for long studies.
+    progress : bool
+        Show a bar that counts the steps of the search.
 
     Returns
     -------
@@ -88,22 +95,26 @@ def optimise(
     67
     """
     source, reference = chosen(source, variant, reference)
+    checks.require("design", checks.count("angles", angles, size=checks.ANGLE), *searches(starts, seed))
     sign, text = aim(minimise, maximise)
     scene = scene_of(source)
     output, limits = wanted(text, scene), demands(limits, scene)
     require_reference(reference, output, limits)
     asked = (output, *(limit.output for limit in limits))
+    require_resolved(angles, asked)
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
-    best, ends = multiple(problem, goal, plain, starting(problem, starts, seed, begin), limits)
-    best = held(problem, goal, plain, best)
+    begins = starting(problem, starts, seed, begin)
+    with shown(problem, progress):
+        best, ends = multiple(problem, goal, plain, begins, limits)
+        best = held(problem, goal, plain, best)
     return found_of(
         problem,
-        Goal(goal.output, goal.sign) if robust is not None else Goal(output, sign),
+        goal if robust is not None else Goal(output, sign),
         limits,
         best,
         dict.fromkeys(asked),
-        f"{'least' if sign > 0 else 'greatest'} {text}",
+        label(sign, text, robust),
         evaluations=problem.evaluations,
         starts=as_asked(problem, output, goal, ends),
     )
@@ -115,9 +126,31 @@ def aim(minimise, maximise):
     return (1.0, minimise) if maximise is None else (-1.0, maximise)
 
 
+def label(sign, text, robust):
+    """What is asked for, in words."""
+    of = "" if robust is None else f"{robust.quantile:g} quantile of "
+    return f"{'least' if sign > 0 else 'greatest'} {of}{text}"
+
+
 def aimed(problem, output, sign, robust):
     """The goal: an output, or a quantile of it over a spread."""
+    checks.require("design", None if robust is None else not_spread("robust", robust))
     return Goal(output if robust is None else Sampled(problem, output, robust, sign), sign)
+
+
+def searches(starts, seed):
+    """What is wrong with how many searches begin, and where, as sentences."""
+    return checks.count("starts", starts), checks.seed("seed", seed)
+
+
+def require_resolved(angles, outputs):
+    """Refuse crank angles too few for what is asked."""
+    orders = [int(item.reduction[9:]) for item in outputs if item.reduction.startswith("harmonic_")]
+    needed = max([FEWEST_ANGLES, *(2 * order + 1 for order in orders)])
+    checks.require(
+        "design",
+        None if angles >= needed else f"angles must be at least {needed} for the outputs asked for, got {angles}",
+    )
 
 
 def require_reference(reference, output, limits):
@@ -161,12 +194,14 @@ def starting(problem, count, seed, begin=None):
     """Starts: the source's own values or others told, then designs spread over the bounds."""
     from scipy.stats import qmc
 
-    checks.require("design", checks.count("starts", count))
     spread = qmc.Sobol(problem.low.size, rng=seed).random(max(1, 2 ** int(np.ceil(np.log2(max(count - 1, 1))))))
     first = problem.start
     if begin is not None:
-        checks.require("design", *(checks.choice("begin", path, problem.names) for path in begin))
-        first = np.array([begin.get(name, value) for name, value in zip(problem.names, first, strict=True)])
+        if not isinstance(begin, Mapping):
+            raise ParameterError(f"design: begin must be a dict of path to number, got {checks.shown(begin)}")
+        wrong = [checks.choice("begin", path, problem.names) for path in begin]
+        own = checks.singles("design", *wrong, **{f"begin {path}": (value, {}) for path, value in begin.items()})
+        first = np.array([own.get(f"begin {name}", value) for name, value in zip(problem.names, first, strict=True)])
     return [first, *(problem.low + spread[: count - 1] * (problem.high - problem.low))]
 
 
@@ -189,7 +224,10 @@ def multiple(problem, goal, limits, starts, told=None):
 def _why(problem, limits, best, count):
     tries = "the search" if count == 1 else f"any of {count} searches"
     if not np.isfinite(best.missed):
-        return f"no design that can be built was found by {tries}; narrow the bounds, or begin with a machine that runs"
+        return (
+            f"no design that can be built was found by {tries} ({_obstacle(problem, best.values)}); change the bounds, "
+            "or begin with a machine that runs"
+        )
     reached = []
     for limit in limits:
         if missed(problem, [limit], best.values) > 1e3 * KEPT:
@@ -201,6 +239,15 @@ def _why(problem, limits, best, count):
     ]
     bounds = f"; at their bounds are {', '.join(held)}" if held else ""
     return f"no design that keeps all limits was found by {tries}; the nearest misses {'; '.join(reached)}{bounds}"
+
+
+def _obstacle(problem, values):
+    """Why a design cannot be built, as a sentence."""
+    try:
+        scene_of(problem.scene(values)).solve(problem.angles)
+    except KinetostaticsError as error:
+        return str(error)
+    return "this one runs, but outputs asked for, or machines within its spread, have no value"
 
 
 def held(problem, goal, limits, best) -> Reached:

@@ -13,10 +13,11 @@ from ..numbers.units import to_si
 from ..solution.compile import compile as compiled
 from . import measures
 from .derived import Derived, scene_of
+from .progress import no_bar
 
 SHARED = ("crank_speed", "crank_acceleration")
 """Numbers that a reference takes from the design."""
-KEPT = 8
+REMEMBERED = 8
 """Designs whose curves are remembered."""
 
 
@@ -46,6 +47,7 @@ class Problem:
         self.quantities = tuple(dict.fromkeys(quantities))
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
         self.evaluations = 0
+        self.stepped = no_bar
         self._curves: dict[bytes, dict] = {}
         self._compared: Any = None if reference is None else _Compared(reference, self)
 
@@ -65,7 +67,7 @@ class Problem:
         """Curve by quantity of a design; NaN where it cannot be built."""
         key = values.tobytes()
         if key not in self._curves:
-            while len(self._curves) >= KEPT:
+            while len(self._curves) >= REMEMBERED:
                 self._curves.pop(next(iter(self._curves)))
             self._curves[key] = self._computed(values)
         return self._curves[key]
@@ -144,13 +146,27 @@ def chosen(source, variant, reference):
         name = reference or source.reference
         first = next((other for other in source.variants if other != name), name)
         return source.variant(variant or first), source.variant(name)
-    problem = (
-        None
-        if hasattr(source, "varied") and hasattr(source, "units")
-        else (f"source must be a Case, as of ks.load_case, or a Scene, got {checks.shown(source)}")
+    checks.require(
+        "design",
+        _no_design("source", source, "a Case, as of ks.load_case, or a Scene"),
+        None if variant is None else "variant is for cases; a Scene has none",
+        None if reference is None else _no_design("reference", reference, "a Scene, as the source is"),
     )
-    checks.require("design", problem, None if variant is None else "variant is for cases; a Scene has none")
     return source, reference
+
+
+def _no_design(name, item, kinds):
+    """What is wrong with what must be one design, as a sentence, or None."""
+    if not hasattr(item, "varied") or not hasattr(item, "units"):
+        return f"{name} must be {kinds}, got {checks.shown(item)}"
+    several = [path for path, value in scene_of(item).parameters.items() if np.size(value) > 1]
+    return f"{name} must be one design, but has several values of {', '.join(several)}" if several else None
+
+
+def compared_value(output, scene, reference):
+    """Value of an output of a scene, of a ratio to that of the reference."""
+    found = true_value(output, scene)
+    return true_value(output, reference) / found if output.ratio else found
 
 
 def true_value(output, scene, angles=5760):

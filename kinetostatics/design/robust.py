@@ -56,7 +56,6 @@ class Spread:
     seed: int = field(default=0)
 
     def __post_init__(self):
-        power = isinstance(self.samples, int) and self.samples > 1 and not self.samples & (self.samples - 1)
         checks.require(
             "spread",
             None
@@ -65,10 +64,29 @@ class Spread:
             None
             if isinstance(self.spreads, Mapping) and self.spreads
             else ('spreads must be a dict of path to text, such as {"slider.mass": "normal 0 % +- 1 %"}'),
-            None if power else f"samples must be a power of two, got {self.samples!r}",
-            None if 0 <= self.trim < 1 else f"trim must be a share of the speed, at least 0, got {self.trim!r}",
+            _samples_problem(self.samples),
+            checks.single("trim", self.trim, low=0.0, high=1.0)[1],
+            checks.seed("seed", self.seed),
         )
         spreads.distributions(self.spreads)
+
+
+MOST_SAMPLES = 2**20
+
+
+def _samples_problem(samples):
+    """What is wrong with a number of samples, as a sentence, or None."""
+    whole = isinstance(samples, int) and 1 < samples <= MOST_SAMPLES
+    if whole and not samples & (samples - 1):
+        return None
+    return f"samples must be a power of two, up to {MOST_SAMPLES}, got {checks.shown(samples)}"
+
+
+def not_spread(name, value):
+    """What is wrong with what must be a `Spread`, or None."""
+    if isinstance(value, Spread):
+        return None
+    return f'{name} must be a Spread, as ks.design.Spread(0.05, {{"slider.mass": ...}}), got {checks.shown(value)}'
 
 
 class Sampled:
@@ -245,6 +263,7 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     >>> round(float(np.quantile(found, 0.05)), 1)
     5.2
     """
+    checks.require("over_spread", not_spread("spread", spread), _samples_problem(samples))
     item, compared = chosen(source, variant, reference)
     text = wanted(output, scene_of(item))
     bare = SimpleNamespace(source=item, reference=compared, names=(), engine="numpy", start=np.empty(0))

@@ -98,6 +98,7 @@ def _round(problem, goal, limits, start, change=FIRST):
         jac=turned.goal_slopes,
         constraints=constraints,
         method="SLSQP",
+        callback=problem.stepped,
         options={"maxiter": STEPS, "ftol": change},
     )
     values = np.clip(turned.values(found.x), problem.low, problem.high)

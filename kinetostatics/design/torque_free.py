@@ -22,12 +22,26 @@ from .cam_start import begun
 from .demands import demands, wanted
 from .derived import scene_of
 from .found import Found, found_of, known
-from .optimisation import aim, aimed, as_asked, held, multiple, require_reference, without_ratios
+from .optimisation import (
+    aim,
+    aimed,
+    as_asked,
+    held,
+    label,
+    multiple,
+    require_reference,
+    require_resolved,
+    searches,
+    without_ratios,
+)
 from .problem import Problem, chosen, true_value
+from .progress import shown
 from .search import Goal
 
 FEWEST, ENOUGH = 360, 32
 """Crank angles at least, and for each harmonic of the cam."""
+MOST_HARMONICS = 64
+"""With which a search still ends within a minute; eight leave nothing that a workshop could cut."""
 PASSES = ((2.0, 1.0), (2e3, 0.0))
 """Passes of the least squares, one after the other: what ends of the stroke count, a miss by half of it as so many mean
 torques, and what the bends of the cam do. From far away the first finds the way, the second keeps to the ends."""
@@ -71,6 +85,7 @@ def torque_free_cam(
     starts=1,
     seed=0,
     engine="numpy",
+    progress=False,
 ) -> Found:
     """Cam-balanced crank-slider that needs least torque, or is best in what else is asked of it.
 
@@ -101,7 +116,7 @@ def torque_free_cam(
         Bounds of the spring's cubic term, N/m3; without it the spring is linear.
     vary : dict of path to (low, high), optional
         Further numbers that vary, or other bounds.
-    robust, variant, reference, starts, seed, engine
+    robust, variant, reference, starts, seed, engine, progress
         As for `optimise`. Further starts have harmonics anywhere within a tenth of the cam's radius.
 
     Returns
@@ -126,8 +141,12 @@ def torque_free_cam(
     source, reference = chosen(source, variant, reference)
     checks.require(
         "torque-free cam",
-        checks.count("cosine", cosine),
-        checks.count("sine", sine) if sine or sine is False else None,
+        _harmonics_problem("cosine", cosine),
+        _harmonics_problem("sine", sine) if sine or sine is False else None,
+        *searches(starts, seed),
+        None if isinstance(gravity, bool) else f"gravity must be True or False, got {checks.shown(gravity)}",
+        None if guide_offset is None else checks.single("guide_offset", guide_offset)[1],
+        None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}",
         None if ends is None else checks.pair("ends", ends),
         None if counterweight is None else checks.positive("counterweight", counterweight),
         None if coupler_spring is None else checks.finite("coupler_spring", coupler_spring),
@@ -142,6 +161,7 @@ def torque_free_cam(
     require_reference(compared, output, asked)
     outputs = (output, *(limit.output for limit in asked))
     angles = max(FEWEST, ENOUGH * max(cosine, sine))
+    require_resolved(angles, (output, *(limit.output for limit in asked)))
     quantities = (TORQUE, POSITION, *(item.quantity for item in outputs))
     problem = Problem(start.machine, start.vary | dict(vary or {}), quantities, compared, angles, engine)
     _require_possible(problem, start)
@@ -151,22 +171,33 @@ def torque_free_cam(
     _require_within_bound(start, problem, asked, compared, begins[0])
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), asked)
     try:
-        best, came_to = multiple(problem, goal, plain, begins, asked)
-        best = held(problem, goal, plain, best)
+        with shown(problem, progress):
+            best, came_to = multiple(problem, goal, plain, begins, asked)
+            best = held(problem, goal, plain, best)
     except DesignError as error:
         nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
-        raise DesignError(f"{error}{_advice(start, problem, compared, nearest)}", error.values) from None
+        torque = any(item.output.quantity == TORQUE for item in asked)
+        advice = _advice(start, problem, compared, nearest) if torque else ""
+        raise DesignError(f"{error}{advice}", error.values) from None
     found = found_of(
         problem,
         goal if robust is not None else Goal(output, sign),
         asked,
         best,
         _shown(start.scene, compared, outputs),
-        f"{'least' if sign > 0 else 'greatest'} {text}",
+        label(sign, text, robust),
         evaluations=problem.evaluations,
         starts=as_asked(problem, output, goal, came_to),
     )
     return replace(found, before=given, bound=bound(start, found.scene, compared))
+
+
+def _harmonics_problem(name, value):
+    """What is wrong with a number of harmonics, as a sentence, or None."""
+    wrong = checks.count(name, value)
+    if wrong or value <= MOST_HARMONICS:
+        return wrong
+    return f"{name} must be at most {MOST_HARMONICS}, got {value}"
 
 
 def least_squares(problem, start, values):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..machine.loads import Gravity
+from ..numbers import checks
 from .derived import scene_of
 from .problem import chosen
 from .torque_free import TORQUE, torque_free_cam
@@ -42,6 +43,8 @@ def weight_options(source, cosine=8, *, variant=None, reference=None, counterwei
     """
     import pandas as pd
 
+    taken = [name for name in ("sine", "coupler_spring") if name in options]
+    checks.require("weight_options", *(f"{name} is one of the ways compared, so it cannot be given" for name in taken))
     given, compared = chosen(source, variant, reference)
     scene = scene_of(given)
     group = scene.mechanism.groups[-1]

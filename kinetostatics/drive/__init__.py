@@ -22,6 +22,7 @@ summary     what running comes to, in one table
 sizing      flywheels for a coefficient of fluctuation
 trajectory  motion over time
 stretches   motion over time with friction, stretch by stretch
+standstill  whether coasting ends
 transient   starting and coasting
 """
 

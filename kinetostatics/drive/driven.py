@@ -127,8 +127,11 @@ class Driven:
         self._kept = angle, found
         return found
 
-    def here(self, angle, speed):
-        """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats."""
+    def here(self, angle, speed, direction=None):
+        """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats.
+
+        Friction is that of turning in the `direction` of the motor unless told.
+        """
         found = self.program(angle, {"crank_speed": speed}) if self.loads_by_speed else self.program(angle)
         inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load

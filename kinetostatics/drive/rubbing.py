@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import DriveError
 from ..machine.friction import PASSES, Rolling, Sliding
 from ..mechanics.friction_laws import bends
-from ..mechanics.jamming import converged
+from ..mechanics.jamming import converged, require_free
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
 from .driven import STEP, Driven, State, apart
@@ -46,7 +46,7 @@ class RubbingDriven(Driven):
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
         super().__init__(owner, scene, motor, flywheel, engine, direction)
         self.senses = Senses.of(self.scene)
-        self._engine, self._passes = engine or "numpy", PASSES[0]
+        self._engine, self._passes = engine, PASSES[0]
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()
 
@@ -72,7 +72,7 @@ class RubbingDriven(Driven):
         rubs = tuple(with_fields(rub, sense=1.0) for rub in self.scene.friction.rubs)
         friction = with_fields(self.scene.friction, rubs=rubs, passes=self._passes)
         scene, kept = with_fields(self.scene, friction=friction), ("crank_speed", "crank_acceleration")
-        return compiled(scene, (*OWN, *self._bending), parameters=kept, engine=self._engine)
+        return compiled(scene, (*OWN, *self._bending), parameters=kept, engine=self._engine or "numpy")
 
     @cached_property
     def _pressed(self):
@@ -94,10 +94,10 @@ class RubbingDriven(Driven):
         given = {"crank_speed": speed, "crank_acceleration": acceleration}
         given |= {f"friction.{name}.sense": sense for name, sense in senses.items()}
         if not shape:
-            found = self._program.unlooked(np.array(angle), given)
+            found = self._program.unlooked(float(angle), given, self._engine != "numpy")
             return {name: float(value) for name, value in found.items()}
         columns = {path: np.broadcast_to(value, shape).reshape(-1, 1) for path, value in given.items()}
-        rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns)
+        rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns, self._engine == "compiled")
         return {name: value.reshape(shape) for name, value in rows.items()}
 
     def at(self, angle, speed=None) -> State:
@@ -113,8 +113,8 @@ class RubbingDriven(Driven):
         friction = np.concatenate([block[FRICTION] for block in blocks])
         return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
 
-    def here(self, angle, speed):
-        senses = {name: float(sense) for name, sense in self.senses.at(angle, self.direction).items()}
+    def here(self, angle, speed, direction=None):
+        senses = {name: float(sense) for name, sense in self.senses.at(angle, direction or self.direction).items()}
         return self.moving(angle, speed, senses)[:3]
 
     def moving(self, angle, speed, senses):
@@ -188,7 +188,7 @@ class RubbingDriven(Driven):
         found = self.rubbed(angle, speed, acceleration, senses)
         margin, residual = (found[name] for name in CHECKS)
         if not np.isfinite(found[FRICTION]).all():
-            self.scene.solve(np.ravel(angle))  # says where it jams
+            require_free(self.scene.solve(np.ravel(angle), on_gap="nan"), "drive")
         if not converged(margin, residual).all() and self._passes < PASSES[-1]:
             self._passes = next(passes for passes in PASSES if passes > self._passes)
             del self._program

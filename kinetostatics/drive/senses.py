@@ -47,7 +47,7 @@ class Senses:
         ]
 
         def rates(angle):
-            placement = scene.unsolved(angle).placement
+            placement = scene.unsolved(np.asarray(angle, dtype=float)).placement
             found = (rate_of(part, name, pair, placement) for part, name, pair in moving)
             return [1.0 if rate is None else rate for rate in found]
 

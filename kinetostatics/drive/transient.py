@@ -18,6 +18,7 @@ from .motor import Motor, single
 from .operating import require_known
 from .periodic import steady
 from .rubbing import RubbingDriven, driven_by
+from .standstill import require_a_standstill
 from .stretches import ABSOLUTE, RELATIVE, followed
 from .trajectory import Event, Trajectory
 
@@ -78,7 +79,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     elif speed == 0.0:
         checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
     else:
-        _require_a_standstill(driven, angle, speed)
+        require_a_standstill(driven, angle, speed)
     return _followed(driven, scene, angle, speed, until)
 
 
@@ -199,24 +200,6 @@ def _easiest(places, missing, direction):
         return None
     high = int(np.argmax(energy)) + 1
     return float(places[::step][high % places.size])
-
-
-def _require_a_standstill(driven, angle, speed):
-    """Refuse to wait for the standstill of a machine whose loads give back in a turn all that they take."""
-    if driven.motor is not None or driven.by_speed:  # friction and dampers take energy
-        return
-    way = math.copysign(1.0, speed)
-    places = angle + way * np.linspace(0.0, driven.period, 721)
-    state = driven.at(np.mod(places, driven.period))
-    between = 0.5 * (state.torque[1:] + state.torque[:-1]) * np.diff(places)
-    taken = np.cumsum(between)
-    motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed
-    if taken[-1] <= SMALL * np.abs(between).sum() and taken.max() < (1.0 - SMALL) * motion:
-        raise DriveError(
-            f"{driven.scene.mechanism.name}: never comes to a standstill: of {motion:.6g} J of motion the loads take "
-            f"{max(taken.max(), 0.0):.6g} J at most, and give back all that they take in a turn; give a time as until, "
-            "or a load that resists"
-        )
 
 
 def _followed(driven, scene, angle, speed, until, target=None, one_way=False):

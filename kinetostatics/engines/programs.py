@@ -15,14 +15,16 @@ from ..numbers.elementary import ROUNDING
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves
 from . import loops, writing
-from .compiled import _loaded
+from .compiled import _loaded, available
 from .derivatives import gradients
 from .recent import kept_for_same_angles
 from .record import record
-from .trace import needed
+from .trace import needed, operations
 
 FEW = 12
 """Crank angles, up to this many, that are computed one by one on plain numbers."""
+LONG, PAYS = 300, 20_000_000
+"""Operations from which few angles take longer on plain numbers than by a loop; after how many this is compiled."""
 BLOCK = 2048
 """Values over designs and angles that one buffer holds."""
 
@@ -40,6 +42,7 @@ class Program:
         self.recording = recording
         self.outputs = recording.outputs if outputs is None else outputs
         self._slopes: dict[tuple[int, ...], Program] = {}
+        self._computed = 0.0
 
     def by_parameters(self, places):
         """Program of all outputs and, one after the other, their derivatives by each of the parameters at some places.
@@ -95,8 +98,10 @@ class Program:
     def run(self, state, leaves, compiled=False):
         """Outputs (outputs, *shape) of a `Dynamics` whose leaves are at hand."""
         angle, shape = state.crank_angle, state.shape
-        if len(shape) < 2 and math.prod(shape) <= FEW and not self.recording.tables:
-            return self._by_numbers(angle, leaves.numbers, shape)
+        count = math.prod(shape)
+        if len(shape) < 2 and count <= FEW and not self.recording.tables:
+            few = self._by_short_loop if compiled and self._has_paid(count) else self._by_numbers
+            return few(angle, leaves.numbers, shape)
         run = self.by_loop if compiled else self.by_numpy
         if angle.shape[-1:] != state.shape[-1:]:  # a single angle, and tables over more
             angle = np.broadcast_to(angle, angle.shape[:-1] + state.shape[-1:])
@@ -120,9 +125,37 @@ class Program:
                 batch(angle, sine, cosine, numbers, rows, np.empty((count, *shape)), results)
         return results
 
+    @cached_property
+    def _operations(self):
+        return operations(self.outputs)
+
+    def _has_paid(self, count):
+        """Whether these and all earlier computations of few angles on plain numbers took longer than compiling does.
+
+        For ever after the loop computes them, to the same bits but of the arc tangent.
+        """
+        if self._operations < LONG:
+            return False
+        self._computed += count * self._operations
+        if self._computed > PAYS and not available():
+            self._computed = -math.inf
+        return self._computed > PAYS
+
+    def at_one(self, angle, numbers, compiled):
+        """Outputs at one crank angle, all floats; of a program without tables."""
+        if compiled and self._has_paid(1):
+            return self._by_short_loop(np.array([[angle]]), numbers, (1,))[:, 0].tolist()
+        return self._by_numbers(np.array([angle]), numbers, (1,))[:, 0].tolist()
+
+    def _by_short_loop(self, angle, numbers, shape):
+        angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
+        parameters = np.array([_plain_numbers(numbers)], dtype=float)
+        self.loop(angle, np.sin(angle), np.cos(angle), parameters, loops.NO_ROWS, results)
+        return results.reshape(-1, *shape)
+
     def _by_numbers(self, angle, numbers, shape):
         angle = angle.ravel()
-        numbers = [number.item() if type(number) is np.ndarray else number for number in numbers]
+        numbers = _plain_numbers(numbers)
         given = zip(angle.tolist(), np.sin(angle).tolist(), np.cos(angle).tolist(), strict=True)
         try:
             found = [self._plain(*one, numbers, ()) for one in given]
@@ -149,6 +182,10 @@ class Program:
         sine, cosine = loops.turn(angles)
         loops.run(self.loop, angles, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
+
+
+def _plain_numbers(numbers):
+    return [number.item() if type(number) is np.ndarray else number for number in numbers]
 
 
 @kept_for_same_angles
@@ -208,8 +245,7 @@ PLAIN = {
     "atan": lambda slope: float(np.arctan(slope)),
     "sqrt": _sqrt,
     "abs": abs,
-    "sign": lambda value: math.copysign(1.0, value),
-    "held": lambda value: value,
+    "copysign": math.copysign,
     "root": _plain_root,
     "divisor": _plain_divisor,
     "nan": math.nan,
@@ -221,8 +257,7 @@ _BY_DESIGN = {
     "atan": np.arctan,
     "sqrt": np.sqrt,
     "abs": np.abs,
-    "sign": lambda value: np.copysign(1.0, value),
-    "held": lambda value: value,
+    "copysign": np.copysign,
     "root": _root,
     "divisor": np.maximum,
     "nan": math.nan,

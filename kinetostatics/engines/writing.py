@@ -4,7 +4,9 @@ from ..numbers.elementary import ROUNDING
 from .trace import BY_ANGLE, Node, needed
 
 ROWS_AT_ONCE = 12
-"""Outputs written in one loop; beyond fifteen the compiler gives up vectorising."""
+"""Outputs written to as many rows; beyond fifteen the compiler gives up vectorising, unless all go to one memory."""
+AT_ONCE = 64
+"""Crank angles whose outputs go to one memory and from there to their rows."""
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
 """Arrays of so many axes that a loop reads, which may be locked, and that it writes, as numba names them."""
 TURN = f'''"""Written by kinetostatics; may be deleted at any time."""
@@ -26,6 +28,7 @@ LOOP_HEADER = f'''"""Written by kinetostatics; may be deleted at any time."""
 from math import atan, copysign, cos, inf, nan, sin, sqrt
 
 from numba import njit
+from numpy import empty, uint64
 
 options = dict(error_model="numpy", nogil=True)
 
@@ -40,22 +43,20 @@ def divisor(root, unit):
     return root if root != root else max(root, unit)
 
 
-@njit(**options)
-def held(value):
-    return value
-
-
-@njit(**options)
-def sign(value):
-    return copysign(1.0, value)
-
-
 @njit("void({", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})", cache=KEEP, **options)
 def loop(angle, sine, cosine, parameters, tables, results):
-    for design in range(parameters.shape[0]):
-        first = design * (angle.shape[0] > 1)
-        table = design * (tables.shape[1] > 1)
 '''
+LOOP = """    for design in range(parameters.shape[0]):
+        first = design * (angle.shape[0] > 1)
+        table = design * (tables.shape[1] > 1)"""
+BLOCKS = f"""        for start in range(0, angle.shape[1], {AT_ONCE}):
+            count = min(angle.shape[1] - start, {AT_ONCE})
+            for k in range(count):
+                i = uint64(start + k)"""
+SPREAD = f"""            for place in range(results.shape[1]):
+                row = results[design, place, start:]
+                for k in range(count):
+                    row[k] = block[{AT_ONCE} * place + k]"""
 
 
 def loop(outputs) -> str:
@@ -65,14 +66,17 @@ def loop(outputs) -> str:
     designs, N), and fills results (designs, outputs, N).
     """
     nodes = needed(outputs)
-    lines = [f"        {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
-    for start in range(0, len(outputs), ROWS_AT_ONCE):
-        rows = dict(enumerate(outputs[start : start + ROWS_AT_ONCE], start))
-        lines += [f"        row_{place} = results[design, {place}]" for place in rows]
-        lines.append("        for i in range(angle.shape[1]):")
-        lines += [f"            {_defined(node)}" for node in needed(rows.values()) if _is_computed_by_angle(node)]
-        lines += [f"            row_{place}[i] = {_name(part)}" for place, part in rows.items()]
-    return LOOP_HEADER + "\n".join(lines) + "\n"
+    by_design = [f"        {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
+    by_angle = [_defined(node) for node in nodes if _is_computed_by_angle(node)]
+    if len(outputs) <= ROWS_AT_ONCE:
+        rows = [f"        row_{place} = results[design, {place}]" for place in range(len(outputs))]
+        ends = [f"row_{place}[i] = {_name(part)}" for place, part in enumerate(outputs)]
+        inner = ["        for i in range(angle.shape[1]):", *(f"            {each}" for each in by_angle + ends)]
+        return LOOP_HEADER + "\n".join([LOOP, *by_design, *rows, *inner]) + "\n"
+    ends = [f"block[{place * AT_ONCE} + k] = {_name(part)}" for place, part in enumerate(outputs)]
+    memory = f"    block = empty({len(outputs) * AT_ONCE})"
+    inner = [BLOCKS, *(f"                {each}" for each in by_angle + ends), SPREAD]
+    return LOOP_HEADER + "\n".join([memory, LOOP, *by_design, *inner]) + "\n"
 
 
 def line(outputs, argument_names="angle, sine, cosine, parameters, tables") -> str:
@@ -168,6 +172,8 @@ _COMPILED = {"angle": "angle[first, i]", "parameter": "parameters[design, {}]", 
 _COMPILED |= {"sin": "sine[first, i]", "cos": "cosine[first, i]"}
 _PLAIN = {"angle": "angle", "parameter": "parameters[{}]", "table": "tables[{}]", "sin": "sine", "cos": "cosine"}
 """What inputs, and sine and cosine of the crank angle, are called."""
+_CALLS = {"held": "{}", "sign": "copysign(1.0, {})"}
+"""Operations that are no function of the same name."""
 
 
 def _defined(node, inputs=_COMPILED):
@@ -189,4 +195,4 @@ def _expression(node, inputs):
     names = [_name(part, inputs) for part in node.arguments]
     if kind in ("+", "-", "*", "/"):
         return f" {kind} ".join(names) if len(names) == 2 else f"{kind}{names[0]}"
-    return f"{kind}({', '.join(names)})"
+    return _CALLS.get(kind, f"{kind}({', '.join(names)})").format(*names)

@@ -29,10 +29,7 @@ class _Drawing:
     def __init__(self, sheet):
         self.sheet, self.items = sheet, []
         self.radius = MM * sheet.radius
-        curves = {"pitch": sheet.made.pitch, "surface": sheet.made.surface}
-        if "cutter" in sheet.curves:
-            curves["cutter"] = sheet.made.cutter_path(sheet.cutter_radius)
-        self.curves = {name: MM * points for name, points in curves.items()}
+        self.curves = {name: MM * points for name, points in sheet.paths.items()}
         self.roller = MM * sheet.made.roller_radius
         every = np.concatenate(list(self.curves.values()), axis=1)
         self.low, self.high = every.min(axis=1) - self.roller, every.max(axis=1) + self.roller

@@ -5,10 +5,17 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import ParameterError
 from ..numbers import checks
 from .rises import Motion
 
 TURN = 2 * np.pi
+STEPS = 720
+"""Parts of the turn in which the derivatives of a law are added up."""
+PLACES, WEIGHTS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)]), np.array([5.0, 8.0, 5.0]) / 18.0
+"""Of Gauss's quadrature over a part of 1."""
+MOST_JUMPS = 0.1
+"""Share of these parts in which something may jump."""
 
 
 class Law:
@@ -57,4 +64,51 @@ def knots_of(law):
 
 def angles(phi):
     """Crank angles as an array, one for a single number."""
-    return np.asarray(phi, dtype=float)
+    try:
+        return np.asarray(phi, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(f"law: crank angles must be numbers, rad, got {checks.shown(phi)}") from None
+
+
+def law_problem(law):
+    """What is wrong with a law, as a sentence, or None."""
+    if not callable(law) or isinstance(law, type):
+        return f"law must be one of ks.laws, or a function of the crank angle, got {checks.shown(law)}"
+    angle = np.array([-1.0, 0.5, 0.5 + TURN])
+    try:
+        parts = _parts(law, angle)
+    except Exception as error:  # of the user's own function
+        return f"law must give position and three derivatives of arrays of crank angles; it fails with: {error}"
+    if len(parts) != len(Motion._fields):
+        return f"law must give 4 arrays, position to jerk, got {len(parts)}"
+    if not all(np.isfinite(part).all() for part in parts):
+        return "law must give finite values"
+    position = parts[0]
+    if abs(position[2] - position[1]) > 1e-9 * max(abs(position[1]), 1e-30):
+        return f"law must repeat after a turn, but gives {position[1]:.9g} m at 0.5 rad and {position[2]:.9g} a turn on"
+    return _derivative_problem(law)
+
+
+def _parts(law, angle):
+    return [np.broadcast_to(np.asarray(part, dtype=float), angle.shape) for part in law(angle)]
+
+
+def _derivative_problem(law):
+    """Whether each part of a law is what the next adds up to, but for a few steps with a jump between them."""
+    edges = np.linspace(0.0, TURN, STEPS + 1)
+    width = edges[1]
+    ends = _parts(law, edges)
+    inner = _parts(law, np.add.outer(PLACES * width, edges[:-1]))
+    for order, (kind, changes) in enumerate(zip(Motion._fields, Motion._fields[1:], strict=False)):
+        sums = width * WEIGHTS @ inner[order + 1]
+        grown = np.diff(ends[order])
+        allowed = 0.05 * width * np.max(np.abs(inner[order + 1])) + 1e-12 * np.max(np.abs(ends[order]))
+        wrong = np.abs(grown - sums) > allowed
+        if np.mean(wrong) > MOST_JUMPS:
+            place = int(np.argmax(np.abs(grown - sums)))
+            return (
+                f"law must give exact derivatives by the crank angle in rad, but at {np.degrees(edges[place]):.4g} deg "
+                f"its {kind} changes by {grown[place] / width:.6g} per rad, while its {changes} is "
+                f"{sums[place] / width:.6g}"
+            )
+    return None

@@ -23,7 +23,7 @@ from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .cam import Cam
-from .law import TURN, knots_of
+from .law import TURN, knots_of, law_problem
 
 GRID = np.linspace(-np.pi, np.pi, 2881)
 """Crank angles from the guide at which the highest and lowest d are bracketed, rad."""
@@ -232,7 +232,7 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     """
     values = checks.singles(
         "from_law",
-        _law_problem(law),
+        law_problem(law),
         guide_angle=(guide_angle, {}),
         guide_offset=(guide_offset, {}),
         coupler_length=(1.0 if coupler_length is None else coupler_length, {"low": 0.0, "strict": True}),
@@ -308,26 +308,6 @@ def _degrees(turning):
     return f"{np.degrees(turning.angle) % 360:.6g}"
 
 
-def _law_problem(law):
-    """What is wrong with a law, as a sentence, or None."""
-    if not callable(law) or isinstance(law, type):
-        return f"law must be one of ks.laws, or a function of the crank angle, got {checks.shown(law)}"
-    angle = np.array([-1.0, 0.5, 0.5 + TURN])
-    try:
-        found = law(angle)
-        parts = [np.broadcast_to(np.asarray(part, dtype=float), angle.shape) for part in found]
-    except (TypeError, ValueError) as error:
-        return f"law must give position and three derivatives of arrays of crank angles; it fails with: {error}"
-    if len(parts) != 4:
-        return f"law must give 4 arrays, position to jerk, got {len(parts)}"
-    if not all(np.isfinite(part).all() for part in parts):
-        return "law must give finite values"
-    position = parts[0]
-    if abs(position[2] - position[1]) > 1e-9 * max(abs(position[1]), 1e-30):
-        return f"law must repeat after a turn, but gives {position[1]:.9g} m at 0.5 rad and {position[2]:.9g} a turn on"
-    return None
-
-
 def _no_cam(cam):
     """Why the law is no motion of a slider ahead of a roller that goes around O, as sentences."""
     radius = cam.radius(GRID + cam.guide_angle)[0]
@@ -340,7 +320,7 @@ def _no_cam(cam):
     elif radius[worst] <= 0:
         yield (
             f"the pitch curve must go around O, but its radius falls to {radius[worst]:.6g} m at "
-            f"{np.degrees(GRID[worst]) % 360:.4g} deg from the guide; move the law farther from O"
+            f"{np.degrees(GRID[worst]) % 360:.4g} deg from the guide; {_remedy(position)}"
         )
     elif np.min(ahead) <= 0:
         place = int(np.argmin(ahead))
@@ -348,3 +328,14 @@ def _no_cam(cam):
             f"the slider must stay ahead of the roller along the guide, but is {-ahead[place]:.6g} m behind it at "
             f"{np.degrees(GRID[place]) % 360:.4g} deg from the guide; move the law farther from O, or turn the guide"
         )
+
+
+def _remedy(position):
+    """What leads the pitch curve of a law around O: the roller, and with it the slider, is farthest on the guide."""
+    farthest = GRID[int(np.argmax(position))]
+    if np.cos(farthest) > 0.0 or np.ptp(position) == 0.0:
+        return "move the law farther from O" if np.ptp(position) else "the law must have a stroke"
+    return (
+        f"the slider must be farthest near 0 deg from the guide, but is so at {np.degrees(farthest) % 360:.4g}: take "
+        f"law.shifted({-float(farthest)!r})"
+    )

@@ -15,10 +15,12 @@ from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .crank import ray as ray_at
+from .law import TURN
 
-TURN = 2 * np.pi
 SAMPLES = 1440
 """Crank angles a turn at which extremes are bracketed."""
+GRID = np.linspace(0.0, TURN, SAMPLES, endpoint=False)
+"""Crank angles at which a chain of points is looked at, rad."""
 RIVALS = 4
 """Highest samples between whose neighbours the peak is sought."""
 SIDES = {"disk": -1.0, "ring": 1.0}
@@ -98,7 +100,7 @@ class Profile:
         Raises
         ------
         ParameterError
-            The cutter does not fit into a hollow of the working curve.
+            The cutter does not fit into a hollow of the working curve, or cuts into another part of it.
         """
         radius = checks.singles("cutter_path", cutter_radius=(cutter_radius, POSITIVE))["cutter_radius"]
         hollow = self.smallest_hollow
@@ -107,7 +109,16 @@ class Profile:
                 f"cutter_path: a cutter of radius {radius:.6g} m does not fit into the hollow of the {self.side} at "
                 f"crank angle {np.degrees(hollow.angle):.6g} deg, whose radius is {-hollow.value:.6g} m; take a smaller"
             )
-        return self.surface - SIDES[self.side] * radius * self.normal
+        side = SIDES[self.side]
+        _, normal, made = _curves(self.cam, self.roller_radius, GRID, self.side)
+        nearest = _nearest(made - side * radius * normal, made)
+        if nearest.value < radius * (1.0 - CUT):
+            raise ParameterError(
+                f"cutter_path: a cutter of radius {radius:.6g} m cuts into another part of the {self.side}: its centre "
+                f"comes as near as {nearest.value:.6g} m to the working curve at crank angle "
+                f"{np.degrees(nearest.angle):.6g} deg; take a smaller"
+            )
+        return self.surface - side * radius * self.normal
 
     @cached_property
     def largest_pressure_angle(self):
@@ -204,7 +215,6 @@ def _angles(angle):
 
 def _cut_away(cam, radius, side):
     """Why a roller cannot run on this side of the pitch curve, as sentences, with the crank angles."""
-    grid = np.linspace(0.0, TURN, SAMPLES, endpoint=False)
     least = lowest(lambda angle: cam.radius(angle)[0])
     if not least.value > 0:
         yield (
@@ -214,22 +224,19 @@ def _cut_away(cam, radius, side):
         return
     sharpest = highest(lambda angle: _bend(cam, angle, side))
     if sharpest.value * radius >= 1.0:
-        where = " and ".join(_intervals(grid, _bend(cam, grid, side) * radius >= 1.0)) or "there alone"
+        where = " and ".join(_intervals(GRID, _bend(cam, GRID, side) * radius >= 1.0)) or "there alone"
         yield (
             f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
             f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "
             "the roller's must be less"
         )
         return
-    pitch, _, made = _curves(cam, radius, grid, side)
-    from scipy.spatial import cKDTree
-
-    distance, _ = cKDTree(pitch.T).query(made.T)
-    if np.min(distance) < radius * (1.0 - CUT):
-        worst = int(np.argmin(distance))
+    pitch, _, made = _curves(cam, radius, GRID, side)
+    nearest = _nearest(pitch, made)
+    if nearest.value < radius * (1.0 - CUT):
         yield (
             f"a roller of radius {radius:.6g} m cuts into another part of the {side}: where it touches at crank angle "
-            f"{np.degrees(grid[worst]):.6g} deg its centre comes as near as {distance[worst]:.6g} m later; "
+            f"{np.degrees(nearest.angle):.6g} deg its centre comes as near as {nearest.value:.6g} m later; "
             "take a smaller"
         )
     elif side == "disk" and least.value <= radius:
@@ -237,6 +244,15 @@ def _cut_away(cam, radius, side):
             f"a roller of radius {radius:.6g} m covers O, as its centre comes as near as {least.value:.6g} m at crank "
             f"angle {np.degrees(least.angle):.6g} deg; take a smaller"
         )
+
+
+def _nearest(centres, made):
+    """Least distance of a working curve from centres of what runs on it, m, and the crank angle of that point."""
+    from scipy.spatial import cKDTree
+
+    distance, _ = cKDTree(centres.T).query(made.T)
+    worst = int(np.argmin(distance))
+    return Peak(float(distance[worst]), float(GRID[worst]))
 
 
 def _intervals(grid, marked):

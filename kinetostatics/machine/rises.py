@@ -84,7 +84,7 @@ class SineConstantCosine:
                 -pi / d * np.sin(falling),
             ),
         ]
-        found = np.zeros((4, *np.shape(u)))
+        found = np.full((4, *np.shape(u)), np.nan)
         within = [u < b / 2, (u >= b / 2) & (u < start), u >= start]
         for inside, zone in zip(within, zones, strict=True):
             if np.any(inside):

@@ -164,9 +164,10 @@ class TurnTable:
 
     def _smoothing_error(self, places, second):
         random, smooth = np.random.default_rng(0), self.splines[0](self.angle)
+        scatter = self.noise if self._stated * UNLIKE < self.noise else self._stated
         errors = []
         for _ in range(TRIALS):
-            fitted = self._fit(smooth + random.normal(0.0, self._stated, smooth.size))
+            fitted = self._fit(smooth + random.normal(0.0, scatter, smooth.size))
             if fitted is not None:
                 errors.append(float(np.max(np.abs(fitted.derivative(2)(places) - second))))
         return 1.5 * max(errors, default=math.inf)

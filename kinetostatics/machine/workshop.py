@@ -27,12 +27,17 @@ class Sheet:
     clockwise: bool
 
     @cached_property
-    def curves(self):
-        """Points (2, N) by the name of each curve, in the unit, the cutter's where there is one."""
+    def paths(self):
+        """Points (2, N) by the name of each curve, m, the cutter's where there is one."""
         found = {"pitch": self.made.pitch, "surface": self.made.surface}
         if self.cutter_radius is not None:
             found["cutter"] = self.made.cutter_path(self.cutter_radius)
-        return {name: self.measured(points) for name, points in found.items()}
+        return found
+
+    @cached_property
+    def curves(self):
+        """The same in the unit."""
+        return {name: self.measured(points) for name, points in self.paths.items()}
 
     def measured(self, length):
         """A length in m in the unit."""

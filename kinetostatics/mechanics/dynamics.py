@@ -98,7 +98,10 @@ class Dynamics(Motion):
 
     @property
     def friction_margin(self):
-        """How far friction is from jamming, 1 without friction; where it is not positive all friction is NaN."""
+        """How far friction is from jamming, 1 without friction; where it is not positive all friction is NaN.
+
+        Exact of a guide or pin that rubs alone, a bound of several joints: see `Solution.friction_margin`.
+        """
         self.rubbed  # noqa: B018  found with the forces
         return self._scalar(reduce(smaller, self.rubbing.margins, 1.0) if self.rubbing else 1.0)
 

@@ -284,7 +284,9 @@ class _System:
         """How far friction is from jamming: 1 without friction, 0 where it may jam or have several solutions.
 
         Smallest pivot of one less the largest feedback from friction to friction: all are positive if and only if its
-        spectral radius is less than 1. Of a guide alone it is 1 - |kappa|.
+        spectral radius is less than 1. Then friction is a contraction, for all loads and senses of motion, so there is
+        one state. That is necessary as well for a guide or pin alone, 1 - |kappa|, but not for several joints, whose
+        feedbacks may be of opposite signs.
         """
         matrix: list[list] = [[None] * self.count for _ in range(self.count)]
         for law, slopes, effects in zip(self.laws, self.slopes, self.effects, strict=True):

@@ -93,9 +93,9 @@ def _error(solution, margin, jams, owner="", other=', or pass on_gap="nan" to ge
     return JammingError(
         f"{owner}{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, "
         f"{_degrees(angle)} deg: "
-        f"it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (1 or more: there no forces, or "
-        "more than one state of them, are in equilibrium); lower the coefficients, lengthen the shoes or steepen the "
-        f"links{other}",
+        f"it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (at 1 or more there are no "
+        "forces in equilibrium, or several states of them; of several joints together: there may be); lower the "
+        f"coefficients, lengthen the shoes or steepen the links{other}",
         np.unique(angle).tolist(),
     )
 

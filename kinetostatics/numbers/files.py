@@ -160,13 +160,13 @@ def written_whole(path):
     What stands there keeps its permissions and, where that is allowed, its owner; through a symbolic link its target is
     written. A file that may not be written is refused.
     """
+    problem = unwritable(path)
+    if problem:
+        raise FileError(problem)
     path = Path(os.path.realpath(path))
     if path.exists() and not path.is_file():  # a pipe or a device takes what is written as it comes
         yield path
         return
-    problem = unwritable(path)
-    if problem:
-        raise FileError(problem)
     path.parent.mkdir(parents=True, exist_ok=True)
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")

@@ -95,8 +95,8 @@ class Comparison:
         rows += self._lost()
         for joint in self.reference.reactions:
             if joint in self.balanced.reactions:
-                row = *self.peak_reactions(joint), self.peak_reaction_ratio(joint)
-                rows.append((f"largest {label_of(self.reference, joint)}", "N", *row))
+                peaks = self.peak_reactions(joint)
+                rows.append((f"largest {label_of(self.reference, joint)}", "N", *peaks, _ratio(*peaks)))
         for name in ("shaking_force", "shaking_moment"):
             peaks = [abs(extremes(solution, name).largest) for solution in (self.reference, self.balanced)]
             label, unit = label_of(self.reference, name), unit_of(self.reference, name)

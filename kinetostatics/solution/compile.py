@@ -157,13 +157,15 @@ class Program:
         rows = self._program.run(state, leaves, self._compiled)
         return self._program.recording.named(read_only(rows))
 
-    def unlooked(self, angle, values):
-        """The same where the caller sees to it that the values are right, and looks at friction himself."""
+    def unlooked(self, angle, values, compiled):
+        """The same, compiled or not, where the caller sees to it that values are right, and looks at friction."""
         numbers = list(self._leaves.numbers)
         for path, value in values.items():
             numbers[self._numbers[path][0]] = value
-        state, leaves = self._state(angle, values, self._leaves.with_numbers(numbers))
-        return self._program.recording.named(self._program.run(state, leaves, self._compiled))
+        if type(angle) is float and not (self._refuses or self._program.recording.tables):
+            return self._program.recording.named(self._program.at_one(angle, numbers, compiled))
+        state, leaves = self._state(np.asarray(angle), values, self._leaves.with_numbers(numbers))
+        return self._program.recording.named(self._program.run(state, leaves, compiled))
 
     def derivatives(self, angle, by=None, values=MappingProxyType({})):
         """Exact derivatives of every quantity by parameters, from the recorded arithmetic.

@@ -47,7 +47,7 @@ def draw_case(case, folder, file_format="png", only=None):
     checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
     names = [case.reference, *(name for name in case.variants if name != case.reference)]
     solutions = {name: case.solve(name) for name in names}
-    return [_saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]
+    return [saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]
 
 
 def draw_drive(case, runs, folder):
@@ -60,10 +60,10 @@ def draw_drive(case, runs, folder):
     }
     paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}
     checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
-    return [_saved(figures[name], runs, path, case, "png") for name, path in paths.items()]
+    return [saved(figures[name], runs, path, case, "png") for name, path in paths.items()]
 
 
-def _saved(draw, solutions, path, case, file_format):
+def saved(draw, solutions, path, case, file_format):
     with rc_context({"svg.hashsalt": case.path.stem, "font.size": 9}):
         figure = draw(solutions)
         metadata = {"Date": None} if file_format == "svg" else {}

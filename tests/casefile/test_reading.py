@@ -109,3 +109,9 @@ def test_the_name_of_a_shipped_case_means_that_case_whatever_lies_here(tmp_path,
     (tmp_path / "sawframe_2r63").rename(tmp_path / "sawframe_2r63.toml")
     assert ks.load_case("sawframe_2r63.toml").title == "test"
     assert ks.load_case("sawframe_2r63").title.startswith("Log frame saw")
+
+
+@pytest.mark.parametrize("key", ["drive", "friction", "gravity"])
+def test_what_stands_for_a_table_is_told_in_the_words_of_the_file(tmp_path, key):
+    found = problems(tmp_path, PLAIN.replace("[common]\n", f'[common]\n{key} = "x"\n', 1))
+    assert f"common.{key} must be a table of keys and values, found 'x'" in found

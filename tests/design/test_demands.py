@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from kinetostatics.design.demands import demand
-from support.designs import CIRCLE, RATIO
+from support.improved_saws import CIRCLE, RATIO
 
 
 @pytest.mark.parametrize(

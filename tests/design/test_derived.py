@@ -2,7 +2,7 @@
 
 from numpy.testing import assert_allclose
 
-from support.designs import bound
+from support.improved_saws import bound
 
 
 def test_what_is_derived_in_the_file_follows():

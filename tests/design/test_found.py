@@ -2,10 +2,11 @@
 
 import numpy as np
 import pandas as pd
+import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from support.designs import CAM, CIRCLE, ENDS, RATIO, SAW, SPRING, TORQUE, bound
+from support.improved_saws import CAM, CIRCLE, ENDS, RATIO, SAW, SPRING, TORQUE, bound
 
 
 def test_report_shows_before_and_after_and_what_binds():
@@ -46,3 +47,18 @@ def test_price_of_a_bound_is_the_slope_there():
 def test_what_starts_came_to_is_told_as_asked():
     found = ks.design.optimise(SAW, SPRING, maximise=RATIO, variant="cam-circle", angles=360)
     assert_allclose(found.starts, [found.report().loc[f"{RATIO} [1]", "after"]], rtol=1e-5)
+
+
+@pytest.mark.parametrize("name", ["reference", "before", 5, None])
+def test_a_design_takes_the_name_of_no_other_variant(tmp_path, name):
+    with pytest.raises(ks.ParameterError, match="name must be a text, not one of"):
+        bound().case(tmp_path / "case.toml", name=name)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["", "a\0b", "x" * 300])
+def test_a_case_that_cannot_be_written_is_a_file_error(name):
+    with pytest.raises(ks.errors.FileError):
+        bound().case(name)
+    with pytest.raises(ks.ParameterError, match="path must be the name of a file"):
+        bound().case(None)

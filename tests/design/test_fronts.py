@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.designs import FORCE, FRONT_OF, RATIO, SAW, front
+from support.improved_saws import FORCE, FRONT_OF, RATIO, SAW, front
 
 
 def test_no_design_of_a_front_is_better_in_both():

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from support.designs import CIRCLE, RATIO, SAW, SPRING, TORQUE, bound
+from support.improved_saws import CIRCLE, RATIO, SAW, SPRING, TORQUE, bound
 from support.shipped import shipped
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from kinetostatics.design.problem import Problem
-from support.designs import CIRCLE
+from support.improved_saws import CIRCLE
 
 
 def test_derivatives_of_a_design_are_those_of_small_changes():

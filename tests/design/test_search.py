@@ -4,7 +4,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from support.designs import RATIO, SAW, SPRING, TORQUE
+from support.improved_saws import RATIO, SAW, SPRING, TORQUE
 
 
 def test_several_starts_reach_the_same_design_and_the_seed_repeats_them():

@@ -46,3 +46,7 @@ def test_rollers_have_no_sense_that_changes():
     senses = Senses.of(ROLLING)
     assert senses.all_edges.size == 0
     assert senses.stretch(0.5, -1.0) == ({"cam": -1.0}, 0.5 - senses.period)
+
+
+def test_signs_at_one_angle_that_is_an_edge_are_told():
+    assert {abs(float(sign)) for sign in SAW.at(0.0, 1.0).values()} == {1.0}

@@ -38,7 +38,24 @@ def test_a_loop_assigns_each_output_its_row_and_a_buffered_line_its_result(recor
     assert 0 < buffers < len(line.splitlines())
 
 
-def test_many_outputs_are_written_in_loops_of_few(recorded):
+def test_many_outputs_are_computed_in_one_loop_over_the_angles(recorded):
+    """A second one would compute again what they have in common, and assign the same names, which numba is slow at."""
     made, _ = recorded
     many = [made.outputs[0]] * (2 * writing.ROWS_AT_ONCE + 1)
-    assert writing.loop(many).count("for i in range(angle.shape[1])") == 3
+    lines = [line.strip() for line in writing.loop(many).splitlines()]
+    assigned = [line.split(" = ")[0] for line in lines if line.startswith("v")]
+    assert len(assigned) == len(set(assigned)) > 40
+    assert sum(line.startswith("for k in range") for line in lines) == 2  # that, and one that copies rows
+
+
+@pytest.mark.slow_start
+@pytest.mark.parametrize("angles", [1, writing.AT_ONCE, 2 * writing.AT_ONCE + 3])
+def test_many_outputs_are_those_of_few_to_the_last_bit(recorded, angles):
+    pytest.importorskip("numba")
+    made, leaves = recorded
+    few = programs.Program(made.recording)
+    many = programs.Program(made.recording, (*made.outputs * writing.ROWS_AT_ONCE, 2.5))
+    angle = np.linspace(0.0, 6.0, angles)
+    one, other = (each.by_loop(angle, leaves.numbers, (), angle.shape) for each in (few, many))
+    assert np.array_equal(other[:-1], np.tile(one, (writing.ROWS_AT_ONCE, 1)))
+    assert (other[-1] == 2.5).all()

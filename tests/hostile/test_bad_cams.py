@@ -259,3 +259,48 @@ def test_all_that_is_wrong_with_a_call_is_said_at_once():
         assert word in str(caught.value)
     with pytest.raises(ks.ParameterError, match=r"amplitude must .*; mean must .*; phase must"):
         laws.cosine(-1.0, "x", None)
+
+
+def of_cosine(velocity=1.0, acceleration=1.0, jerk=1.0):
+    """A law whose derivatives are what they should be, times factors."""
+
+    def law(phi):
+        even, odd = 0.3 * np.cos(phi), 0.3 * np.sin(phi)
+        return 2.0 + even, -velocity * odd, -acceleration * even, jerk * odd
+
+    return law
+
+
+@pytest.mark.parametrize(
+    ("factors", "message"),
+    [
+        ({"velocity": -1.0}, "position changes by .* while its velocity"),
+        ({"velocity": np.pi / 180}, "position changes by .* while its velocity"),
+        ({"acceleration": -1.0}, "velocity changes by .* while its acceleration"),
+        ({"jerk": 0.0}, "acceleration changes by .* while its jerk"),
+    ],
+)
+def test_a_law_whose_derivatives_are_others_is_refused(factors, message):
+    assert ks.cams.from_law(of_cosine()).coupler_length > 2.0
+    with pytest.raises(ks.ParameterError, match=message):
+        ks.cams.from_law(of_cosine(**factors))
+
+
+def test_a_law_that_fails_is_refused():
+    with pytest.raises(ks.ParameterError, match="fails with: division by zero"):
+        ks.cams.from_law(lambda phi: 1 / 0)
+
+
+def test_a_law_that_is_farthest_behind_the_crank_is_told_its_phase():
+    rise, back = laws.cycloidal(1.7, 2.3, np.pi), laws.cycloidal(2.3, 1.7, np.pi)
+    law = laws.joined(rise, back)
+    with pytest.raises(ks.ParameterError, match=r"farthest near 0 deg .* at 180") as caught:
+        ks.cams.from_law(law)
+    phase = float(str(caught.value).split("law.shifted(")[1].rstrip(")"))
+    assert ks.cams.from_law(law.shifted(phase)).coupler_length > 2.0
+
+
+@pytest.mark.parametrize("angle", ["a", [1.0, "b"], {}])
+def test_crank_angles_of_a_law_that_are_no_numbers_are_refused(angle):
+    with pytest.raises(ks.ParameterError, match="crank angles must be numbers"):
+        laws.cosine(0.3, 2.0)(angle)

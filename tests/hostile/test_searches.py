@@ -73,12 +73,64 @@ def test_all_wrong_limits_are_told_at_once():
         ({"minimise": TORQUE, "starts": 0}, "starts"),
         ({"minimise": TORQUE, "starts": 1.5}, "starts"),
         ({"minimise": TORQUE, "begin": {"crank": 1.0}}, "begin"),
+        ({"minimise": TORQUE, "begin": {"slider.mass": "1 kg"}}, "begin slider.mass"),
+        ({"minimise": TORQUE, "begin": {"slider.mass": np.nan}}, "begin slider.mass must be finite"),
+        ({"minimise": TORQUE, "begin": 1.0}, "begin must be a dict"),
         ({"minimise": TORQUE, "engine": "fast"}, "engine"),
+        ({"minimise": TORQUE, "seed": -1}, "seed must be a whole number"),
+        ({"minimise": TORQUE, "seed": "x"}, "seed must be a whole number"),
+        ({"minimise": TORQUE, "angles": 0}, "angles"),
+        ({"minimise": TORQUE, "angles": 7}, "angles must be at least 12"),
+        ({"minimise": TORQUE, "angles": 180.0}, "angles"),
+        ({"minimise": TORQUE, "angles": 10**9}, "angles must be at most"),
+        ({"minimise": "harmonic_99 balancing_torque", "angles": 180}, "angles must be at least 199"),
+        ({"minimise": TORQUE, "limits": None}, "limits must be texts"),
+        ({"minimise": TORQUE, "limits": 3.0}, "limits must be texts"),
+        ({"minimise": TORQUE, "robust": 0.05}, "robust must be a Spread"),
+        ({"minimise": TORQUE, "reference": "plain"}, "reference must be a Scene"),
     ],
 )
 def test_options_of_another_kind_are_refused(options, message):
     with pytest.raises(ks.ParameterError, match=message):
         ks.design.optimise(PUMP, VARY, **options)
+
+
+def test_many_designs_are_no_source():
+    """Their curves, two in number, would pass for the components of a vector."""
+    batch = PUMP.varied({"slider.mass": np.array([[1.0], [2.0]])})
+    for source, reference in ((batch, None), (PUMP, batch)):
+        with pytest.raises(ks.ParameterError, match="must be one design, but has several values of slider"):
+            ks.design.optimise(source, {"coupler_length": (0.1, 0.3)}, TORQUE, reference=reference)
+
+
+@pytest.mark.parametrize(
+    ("vary", "message"),
+    [
+        ({"slider.mass": (-10.0, -5.0)}, "mass must be at least 0, got -5"),
+        ({"coupler_length": (0.01, 0.02)}, "must not exceed the coupler length"),
+        ({"coupler_length": (-2.0, -1.0)}, "coupler length must be greater than 0"),
+    ],
+)
+def test_it_is_told_why_no_design_can_be_built(vary, message):
+    with pytest.raises(ks.DesignError, match=f"no design that can be built .*{message}"):
+        ks.design.optimise(PUMP, vary, TORQUE)
+
+
+@pytest.mark.parametrize(
+    ("minimise", "options", "message"),
+    [
+        (None, {}, "minimise must be two outputs"),
+        ("largest O", {}, "minimise must be two outputs"),
+        (("largest O",), {}, "minimise must be two outputs"),
+        (("largest O", 5), {}, "minimise must be two outputs"),
+        (("largest O", TORQUE), {"robust": None}, "option is 'robust'"),
+        (("largest O", TORQUE), {"begin": {}}, "option is 'begin'"),
+        (("largest O", TORQUE), {"points": 1}, "points must be at least 2"),
+    ],
+)
+def test_fronts_of_another_form_are_refused(minimise, options, message):
+    with pytest.raises(ks.ParameterError, match=message):
+        ks.design.pareto(PUMP, VARY, minimise, **options)
 
 
 @pytest.mark.parametrize("quantity", ["forces", "cam_force", "C"])
@@ -103,6 +155,12 @@ def test_what_is_no_scene_is_refused(source):
         (lambda: ks.design.Spread(0.05, {"slider.mass": "1 %"}), "cannot read"),
         (lambda: ks.design.Spread(0.05, {"slider.mass": "normal 0 % +- 1 %"}, samples=100), "power of two"),
         (lambda: ks.design.Spread(0.05, {"slider.mass": "normal 0 % +- 1 %"}, trim=-0.1), "trim must be"),
+        (lambda: ks.design.Spread(0.05, {"slider.mass": "normal 0 % +- 1 %"}, trim="3 %"), "trim must be"),
+        (lambda: ks.design.Spread(0.05, {"slider.mass": "normal 0 % +- 1 %"}, samples=2**40), "up to 1048576"),
+        (lambda: ks.design.Spread(0.05, {"slider.mass": "normal 0 % +- 1 %"}, seed=-1), "seed must be"),
+        (lambda: ks.design.over_spread(PUMP, TORQUE, {"slider.mass": "1 %"}), "spread must be a Spread"),
+        (lambda: spread({"slider.mass": "normal 0 % +- 1 %"}, count=0), "samples must be a power of two"),
+        (lambda: spread({"slider.mass": "normal 0 % +- 1 %"}, count=16.0), "samples must be a power of two"),
         (lambda: spread({"slider.mas": "normal 0 % +- 1 %"}), "did you mean 'slider.mass'"),
         (lambda: spread({"slider.mass": "normal 0 m +- 1 m"}), "does not measure the same"),
         (lambda: spread({"slider.mass": "normal 0 % +- 1 %"}, damped=True, trim=0.1), "trim takes outputs"),
@@ -113,10 +171,10 @@ def test_spreads_of_another_form_are_refused(make, message):
         make()
 
 
-def spread(spreads, damped=False, **options):
+def spread(spreads, damped=False, count=16, **options):
     loads = [ks.TorsionDamper(0.1, on="crank")] if damped else []
     scene = ks.Scene(PUMP.mechanism, 100.0, loads=loads)
-    return ks.design.over_spread(scene, TORQUE, ks.design.Spread(0.05, spreads, **options), samples=16)
+    return ks.design.over_spread(scene, TORQUE, ks.design.Spread(0.05, spreads, **options), samples=count)
 
 
 @pytest.mark.parametrize(
@@ -126,6 +184,14 @@ def spread(spreads, damped=False, **options):
         ({"cosine": 2.5}, ks.ParameterError, "cosine"),
         ({"sine": -1}, ks.ParameterError, "sine"),
         ({"sine": True}, ks.ParameterError, "sine"),
+        ({"cosine": 500}, ks.ParameterError, "cosine must be at most 64"),
+        ({"starts": 0}, ks.ParameterError, "starts"),
+        ({"starts": "x"}, ks.ParameterError, "starts"),
+        ({"seed": -1}, ks.ParameterError, "seed"),
+        ({"gravity": "no"}, ks.ParameterError, "gravity must be True or False"),
+        ({"guide_offset": "20 mm"}, ks.ParameterError, "guide_offset"),
+        ({"vary": 5}, ks.ParameterError, "vary must be a dict"),
+        ({"minimise": "harmonic_200 balancing_torque"}, ks.ParameterError, "angles must be at least 401"),
         ({"ends": (0.3, 0.2)}, ks.DesignError, "two ends"),
         ({"ends": (-0.1, 0.2)}, ks.DesignError, "stay ahead of O"),
         ({"ends": (0.1,)}, ks.ParameterError, "ends must be"),
@@ -151,3 +217,17 @@ def test_a_machine_without_a_coupler_to_a_slider_is_refused():
 def test_a_massless_machine_is_refused():
     with pytest.raises(ks.DesignError, match="needs no torque to begin with"):
         ks.design.torque_free_cam(ks.Scene(ks.crank_slider(0.05, 0.2), 100.0))
+
+
+@pytest.mark.parametrize("taken", ["sine", "coupler_spring"])
+def test_ways_that_are_compared_cannot_be_given_to_all(taken):
+    with pytest.raises(ks.ParameterError, match=f"{taken} is one of the ways compared"):
+        ks.design.weight_options(PUMP, 2, **{taken: 2})
+
+
+def test_what_weight_forbids_is_not_told_where_another_limit_is_missed():
+    saw = ks.load_case("sawframe_2r63")
+    with pytest.raises(ks.DesignError) as caught:
+        ks.design.torque_free_cam(saw, 2, limits="largest_absolute cam_force <= 1 N")
+    assert "cam_force" in str(caught.value)
+    assert "under weight" not in str(caught.value)

@@ -114,6 +114,18 @@ def test_a_ring_is_undercut_where_the_pitch_curve_is_hollow():
     assert LAW.profile(0.2, 8, "ring").largest_roller_radius == np.inf
 
 
+def test_a_cutter_that_cuts_another_part_of_the_cam_is_refused():
+    """A ring of two bulbs, each wider than the neck between them: 0.11 m on both sides of O."""
+    made = ks.cams.Harmonic((0.3, 0.0, 0.2)).profile(0.01, 3600, "ring")
+    assert made.smallest_hollow.value < -0.2
+    for radius in (0.09, 0.109):
+        distance, _ = cKDTree(made.surface.T).query(made.cutter_path(radius).T)
+        assert_allclose(distance.min(), radius, rtol=1e-9)
+    for radius in (0.111, 0.15, 0.2):
+        with pytest.raises(ks.ParameterError, match=r"cuts into another part of the ring: .* take a smaller"):
+            made.cutter_path(radius)
+
+
 def test_a_roller_that_cuts_another_part_of_the_cam_is_refused():
     """A lobe that widens outward from a narrow neck: the roller fits every bend of it, but cuts through the neck."""
     angle = np.linspace(-np.pi, np.pi, 1440, endpoint=False)

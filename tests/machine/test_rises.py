@@ -98,3 +98,9 @@ def test_pieces_meet_where_the_textbooks_say(name, breaks):
 
 def test_rest_does_not_move():
     assert not np.any(rises.Rest()(np.linspace(0.0, 1.0, 5)))
+
+
+@pytest.mark.parametrize("name", RISES)
+def test_what_is_no_number_has_no_position(name):
+    assert np.isnan(RISES[name](np.array([np.nan, np.nan]))).all()
+    assert np.isnan(RISES[name](np.array([0.3, np.nan])).position).tolist() == [False, True]

@@ -80,3 +80,13 @@ def test_what_is_kept_is_a_copy_that_nobody_changes():
     assert made.angle[0] == pytest.approx(0.3)
     with pytest.raises(ValueError, match="read-only"):
         made.values[0] = 1.0
+
+
+def test_noise_stated_too_small_hides_no_error():
+    """The spline follows the scatter there is, and errs by it."""
+    angle = 2 * np.pi * np.arange(90) / 90
+    scattered = value(angle) + np.random.default_rng(0).normal(0.0, 1e-4, angle.size)
+    with pytest.warns(UserWarning, match="less than"):
+        made = table(angle, scattered, 1e-9)
+    error = largest(made.splines[2](FINE) - value(FINE, 2))
+    assert error / 3 <= made.second_derivative_error <= 10 * error

@@ -37,3 +37,18 @@ def test_a_crank_that_stands_has_no_direction_of_friction(speed, acceleration, s
 
 def test_friction_is_found_where_one_more_pass_changes_no_digit():
     assert jamming.converged(np.array([1.0, 1.0, -1.0]), np.array([1e-14, 1e-9, 0.0])).tolist() == [True, False, False]
+
+
+def states(kappa, free):
+    """Forces N of a guide alone with N = free - kappa |N|."""
+    both = free / (1.0 + kappa), free / (1.0 - kappa)
+    return [force for force, sign in zip(both, (1.0, -1.0), strict=True) if sign * force > 0.0]
+
+
+def test_of_a_guide_alone_the_margin_tells_exactly_whether_there_is_one_state_of_forces():
+    s = solved(2.5, on_gap="nan")
+    kappa = 1.0 - s.friction_margin
+    assert kappa == pytest.approx(2.5 * np.abs(np.sin(TURN)) / np.sqrt(4.0 - np.sin(TURN) ** 2), rel=1e-12)
+    for size, jams in zip(kappa, np.isnan(s.balancing_torque), strict=True):
+        counts = {len(states(way * size, free)) for way in (1.0, -1.0) for free in (1.0, -1.0)}
+        assert counts == ({0, 2} if jams else {1})

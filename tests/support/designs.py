@@ -1,32 +1,29 @@
-"""Designs of the sawframe with a circular cam that several tests look at."""
+"""Case files with designs to be found."""
 
-from functools import cache
+from kinetostatics.casefile.case import shipped_cases
 
-import kinetostatics as ks
-from support.shipped import shipped
-
-SAW = shipped("sawframe_2r63")
-CIRCLE = SAW.variant("cam-circle")
-ENDS = ("smallest slider_position = 1.7 m", "largest slider_position = 2.3 m")
-SPRING = {"spring.stiffness": ("500 kN/m", "900 kN/m")}
-CAM = SPRING | {
-    "cam.centre.x": ("-30 mm", "-10 mm"),
-    "cam.radius": (0.2, 0.4),
-    "coupler_length": (1.9, 2.1),
-    "spring.free_position": (1.9, 2.1),
-}
-RATIO, TORQUE = "ratio mean_absolute balancing_torque", "mean_absolute balancing_torque"
-FRONT_OF = {"spring.stiffness": (6e5, 9e5), "cam.centre.x": (-0.03, -0.01)}
-FORCE = "largest_absolute cam_force"
-
-
-@cache
-def bound():
-    """Least cam force with the ends of the stroke kept, and a gain of 50 or more."""
-    return ks.design.optimise(SAW, CAM, FORCE, [*ENDS, f"{RATIO} >= 50", "largest O <= 15 kN"], variant="cam-circle")
+STIFFER = """
+[design.stiffer]
+kind = "optimum"
+variant = "cam-circle"
+maximise = "ratio mean_absolute balancing_torque"
+vary = { "spring.stiffness" = ["600 kN/m", "900 kN/m"] }
+angles = 72
+"""
+FRONT = """
+[design.trade]
+kind = "front"
+variant = "cam-circle"
+minimise = ["largest_absolute cam_force", "-ratio mean_absolute balancing_torque"]
+vary = { "spring.stiffness" = ["600 kN/m", "900 kN/m"], "cam.centre.x" = ["-30 mm", "-10 mm"] }
+points = 2
+angles = 72
+"""
+SAW = shipped_cases()["sawframe_2r63"].read_text(encoding="utf-8").partition("[tolerances]")[0]
 
 
-@cache
-def front():
-    """Cam force against the gain."""
-    return ks.design.pareto(SAW, FRONT_OF, (FORCE, f"-{RATIO}"), variant="cam-circle", points=4, angles=180)
+def saw_with(text, folder):
+    """Path of the saw's case file with more at its end."""
+    path = folder / "saw.toml"
+    path.write_text(f"{SAW}\n{text}", encoding="utf-8")
+    return path

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.designs import front
+from support.improved_saws import front
 
 
 def test_a_front_is_drawn_with_the_source_beside_it():

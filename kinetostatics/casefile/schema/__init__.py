@@ -4,9 +4,11 @@ texts       numbers with units, and words in their place
 tables      links, cams, counterweights, files of values
 parts       groups and loads, by the rules of their classes
 drives      motors and flywheels
+designs     what is to be found: what varies, what must hold
 variants    mechanisms, and the head of a file
 """
 
+from .designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
 from .drives import TorqueTable
 from .parts import MADE_OF
 from .tables import TAGS, CosineLawTable, HarmonicTable, LinkTable, SampledTable, Table, ValuesTable, kinds
@@ -39,15 +41,19 @@ __all__ = [
     "CosineLawTable",
     "CrankSliderVariant",
     "FourBarVariant",
+    "FrontTable",
     "HarmonicTable",
     "LinkTable",
     "MechanismVariant",
+    "OneDesign",
+    "OptimumTable",
     "ProcessForceTable",
     "PublishedTable",
     "SampledTable",
     "ScotchYokeVariant",
     "SlottedLeverVariant",
     "Table",
+    "TorqueFreeCamTable",
     "TorqueTable",
     "ValuesTable",
     "kinds",

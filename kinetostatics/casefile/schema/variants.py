@@ -180,7 +180,7 @@ class PublishedTable(Table):
 
 
 class CaseTable(Table):
-    """The head of a case file; its variants are read one by one with what they have in common."""
+    """The head of a case file; its variants are read one by one with what they have in common, so are its designs."""
 
     title: str
     source: str = ""
@@ -189,6 +189,7 @@ class CaseTable(Table):
     variants: dict[str, dict] = Field(min_length=1)
     published: PublishedTable = PublishedTable()
     tolerances: dict[str, str] = Field(default_factory=dict)
+    design: dict[str, dict] = Field(default_factory=dict)
 
 
 VARIANTS = {

@@ -30,6 +30,7 @@ from .problems import (
     nearest,
     quantity,
     require,
+    seed,
     shown,
     solution,
 )
@@ -84,6 +85,7 @@ __all__ = [
     "problem",
     "quantity",
     "require",
+    "seed",
     "shown",
     "single",
     "singles",

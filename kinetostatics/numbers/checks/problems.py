@@ -65,6 +65,15 @@ def count(name, value, *, size=None):
     return None
 
 
+def seed(name, value):
+    """What is wrong with what random numbers begin with, or None."""
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 0:
+        return f"{name} must be a whole number of at least 0, got {shown(value)}"
+    return None
+
+
 def solution(name, value):
     """What is wrong with what must be a `Solution`, or None."""
     if hasattr(type(value), "power_residual"):

@@ -1,0 +1,107 @@
+"""The command ``design``: searches that a case asks for, what they found, and where it is written."""
+
+import os
+import sys
+from typing import Any
+
+import numpy as np
+
+from ..casefile.case import load_case
+from ..casefile.designs import write_found
+from ..design import case_text
+from ..design.fronts import Front
+from ..design.robust import over_spread
+from ..errors import CaseError, DesignError
+from ..numbers import checks, files
+from .printed import print_table, tell
+
+SAMPLES = 2048
+"""Machines of a spread that are looked at in the end."""
+SAME = 1e-4
+"""Relative difference of ends of searches that count as one."""
+
+
+def design(options):
+    case = load_case(options.case)
+    if not case.designs:
+        raise CaseError(
+            case.path, ["has nothing to find; say what as [design.NAME], with a kind, what varies and limits"]
+        )
+    names = list(dict.fromkeys(options.design)) if options.design else list(case.designs)
+    wrong = [checks.choice("design", name, tuple(case.designs)) for name in names]
+    if any(wrong):
+        raise CaseError(case.path, [problem for problem in wrong if problem])
+    _require_places(case, names, options)
+    print(case.title)
+    found = {}
+    for name in names:
+        found[name] = _found(case.designs[name], options)
+        _print(case.designs[name], found[name])
+        sys.stdout.flush()
+    if options.plot:
+        from ..views.designs import draw_designs
+
+        print("", *draw_designs(case, found, options.plot, options.format), sep="\n")
+    if options.out:
+        print(f"\nwrote {write_found(options.out, case, found)}: {', '.join(found)}")
+
+
+def _require_places(case, names, options):
+    """What is found can be written, and where: nobody searches for what is lost then."""
+    if options.plot:
+        checks.require("--plot", files.unwritable_folder(options.plot))
+    if options.out:
+        there = f"{options.out} is there already; give another name" if os.path.lexists(options.out) else None
+        checks.require("--out", there or files.unwritable(options.out, inputs=case.files, endings=(".toml",)))
+        for name in names:
+            for variant in (case.designs[name].reference, case.designs[name].source):
+                case_text.variant(variant, case.variant(variant).scene)
+
+
+def _found(item, options):
+    tell(f"searching for {item.name}")
+    try:
+        return item.find(starts=options.starts, progress=sys.stderr is not None and sys.stderr.isatty())
+    except DesignError as error:
+        raise DesignError(f"{item.name}: {error}", error.values) from None
+
+
+def _print(item, found):
+    if isinstance(found, Front):
+        print(f"\n{item.name}: front of {' and '.join(found.outputs)}, from {item.source}\n")
+        table: Any = found.table
+        print_table(table.set_axis(range(1, len(table) + 1)).rename_axis("design"))
+        return
+    print(f"\n{item.name}: {found.goal}, from {item.source}; ratios to {item.reference}\n")
+    report = found.report()
+    gain = "gain per unit"
+    binds = report["binds"].map({True: "yes", False: ""})
+    print_table(report.assign(binds=binds).rename(columns={"price": gain}))
+    print()
+    print_table(found.numbers().rename(columns={"price": gain}))
+    print(f"\n{_told(found)}")
+    if item.spread is not None:
+        print(_of_the_spread(item, found))
+
+
+def _of_the_spread(item, found):
+    """The quantile that a robust design keeps, over more machines than it was searched with."""
+    output = item.table.minimise or item.table.maximise
+    values = over_spread(found.scene, output, item.spread, reference=found.reference, samples=SAMPLES)
+    quantile = item.spread.quantile
+    return f"quantile {quantile:g} of {output} over the spread, {SAMPLES} machines: {np.quantile(values, quantile):.6g}"
+
+
+def _told(found):
+    """How it was found, how far it can be trusted, and what no search can reach."""
+    lines = [f"{found.evaluations} evaluations of all derivatives"]
+    if len(found.starts) > 1:
+        best = min(found.starts)
+        same = sum(np.isfinite(end) and abs(end - best) <= SAME * abs(best) for end in found.starts)
+        lines[0] += f"; {same} of {len(found.starts)} searches came to this end"
+    if found.prices:
+        lines.append("gain: by how much the goal would be better if what binds gave way by one of its unit")
+    if np.isfinite(found.bound):
+        lines.append(f"under weight a symmetric cam reaches a ratio of mean torques of {found.bound:.6g} at most")
+    lines.append(f"power balance of what was found: {found.scene.solve(720).power_residual:.1e} of the largest power")
+    return "\n".join(lines)

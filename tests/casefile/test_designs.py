@@ -1,0 +1,69 @@
+"""Designs of case files: found as by Python, written ready to run, and every problem told at once."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.casefile.designs import write_found
+from support.designs import FRONT, STIFFER, saw_with
+
+
+def test_a_design_of_a_file_finds_what_python_finds(tmp_path):
+    case = ks.load_case(saw_with(STIFFER, tmp_path))
+    found = case.designs["stiffer"].find()
+    by_hand = ks.design.optimise(
+        ks.load_case("sawframe_2r63"),
+        {"spring.stiffness": (6e5, 9e5)},
+        maximise="ratio mean_absolute balancing_torque",
+        variant="cam-circle",
+        angles=72,
+    )
+    assert found.values == by_hand.values
+
+
+def test_a_torque_free_cam_of_a_file_is_that_of_python(tmp_path):
+    text = (
+        '[design.cam]\nkind = "torque-free-cam"\nvariant = "cam-cosine"\ncosine = 2\nminimise = "rms balancing_torque"'
+    )
+    found = ks.load_case(saw_with(text, tmp_path)).designs["cam"].find()
+    saw = ks.load_case("sawframe_2r63")
+    by_hand = ks.design.torque_free_cam(saw, 2, variant="cam-cosine", minimise="rms balancing_torque")
+    assert found.values == by_hand.values
+
+
+def test_found_designs_are_written_with_what_they_came_from_and_found_again(tmp_path):
+    case = ks.load_case(saw_with(STIFFER + FRONT, tmp_path))
+    found = {name: item.find() for name, item in case.designs.items()}
+    again = ks.load_case(write_found(tmp_path / "again.toml", case, found))
+    assert list(again.variants) == ["plain", "cam-circle", "stiffer", "trade-1", "trade-2"]
+    for name, scene in (("stiffer", found["stiffer"].scene), ("trade-2", found["trade"].designs[1].scene)):
+        torque = again.solve(name, 24).balancing_torque
+        np.testing.assert_array_equal(torque, scene.solve(24).balancing_torque)
+    once_more = again.designs["stiffer"].find()
+    assert once_more.values == pytest.approx(found["stiffer"].values, rel=1e-9)
+    for name, item in case.designs.items():
+        assert again.designs[name].raw == item.raw | {"variant": "cam-circle", "reference": "plain"}
+
+
+def test_the_first_variant_besides_reference_and_itself_is_what_varies(tmp_path):
+    text = '[design.cam-circle]\nkind = "torque-free-cam"\ncosine = 2'
+    assert ks.load_case(saw_with(text, tmp_path)).designs["cam-circle"].source == "cam-cosine"
+
+
+def test_what_varies_when_none_is_told_is_written_so_that_it_stays(tmp_path):
+    text = '[design.one]\nkind = "torque-free-cam"\ncosine = 1\nminimise = "rms balancing_torque"\n'
+    case = ks.load_case(saw_with(text + text.replace("one", "two"), tmp_path))
+    found = {name: item.find() for name, item in case.designs.items()}
+    again = ks.load_case(write_found(tmp_path / "again.toml", case, dict(reversed(found.items()))))
+    assert {item.source for item in again.designs.values()} == {"cam-circle"}
+
+
+def test_cases_without_designs_have_none():
+    assert not ks.load_case("mower_drive").designs
+
+
+def test_an_impossible_stroke_is_refused_by_the_search_with_its_numbers(tmp_path):
+    text = '[design.cam]\nkind = "torque-free-cam"\nends = ["0 m", "2 m"]\n'
+    case = ks.load_case(saw_with(text, tmp_path))
+    with pytest.raises(ks.DesignError, match="from 0 m to 2 m; lengthen the coupler or shorten the stroke"):
+        case.designs["cam"].find()

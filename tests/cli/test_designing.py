@@ -1,0 +1,118 @@
+"""The command ``design``: tables, figures and the new case file, and errors as of the other commands."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.cli import main
+from support.designs import FRONT, STIFFER, saw_with
+
+
+@pytest.fixture
+def saw(tmp_path):
+    return saw_with(STIFFER + FRONT, tmp_path)
+
+
+def test_design_prints_what_was_and_is_and_writes_a_case_ready_to_run(saw, tmp_path, capsys):
+    out = tmp_path / "found.toml"
+    assert main(["design", str(saw), "--out", str(out), "--plot", str(tmp_path / "figures")]) == 0
+    printed, told = capsys.readouterr()
+    assert "stiffer: greatest ratio mean_absolute balancing_torque, from cam-circle; ratios to plain" in printed
+    row = next(line for line in printed.splitlines() if line.startswith("ratio mean_absolute balancing_torque [1]"))
+    assert row.split()[4:5] == ["6.08075"]
+    assert float(row.split()[5]) > 20
+    assert "spring.stiffness [N/m]" in printed
+    assert "evaluations of all derivatives" in printed
+    assert "trade: front of largest_absolute cam_force and ratio mean_absolute balancing_torque" in printed
+    assert f"wrote {out}: stiffer, trade" in printed
+    assert told.splitlines() == ["searching for stiffer", "searching for trade"]
+    assert len(list((tmp_path / "figures").iterdir())) == 2
+    assert main(["compare", str(out), "--variant", "stiffer"]) == 0
+
+
+def test_only_named_designs_are_found_with_as_many_searches_as_told(saw, capsys):
+    assert main(["design", str(saw), "--design", "stiffer", "--starts", "2"]) == 0
+    printed = capsys.readouterr().out
+    assert "trade" not in printed
+    assert "2 of 2 searches came to this end" in printed
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (["--design", "stifer"], "design is 'stifer', allowed: 'stiffer', 'trade'; did you mean 'stiffer'?"),
+        (["--out", "found.csv"], "--out: "),
+        (["--out", "."], "--out: . is there already; give another name"),
+        (["--out", "/dev/null/found.toml"], "--out: "),
+        (["--plot", "/dev/null"], "--plot: "),
+    ],
+)
+def test_what_cannot_be_is_said_before_the_search(saw, capsys, more, message):
+    assert main(["design", str(saw), *more]) == 2
+    printed, told = capsys.readouterr()
+    assert printed == ""
+    assert message in told
+    assert "searching" not in told
+
+
+def test_a_case_without_designs_has_nothing_to_find(capsys):
+    assert main(["design", "mower_drive"]) == 2
+    assert "has nothing to find; say what as [design.NAME]" in capsys.readouterr().err
+
+
+def test_the_case_itself_is_not_overwritten(saw, capsys):
+    before = saw.read_text()
+    assert main(["design", str(saw), "--out", str(saw)]) == 2
+    assert saw.read_text() == before
+
+
+def test_an_impossible_demand_ends_with_the_reason_and_nothing_written(tmp_path, capsys):
+    saw = saw_with(f'{STIFFER}limits = ["ratio mean_absolute balancing_torque >= 1000"]\n', tmp_path)
+    assert main(["design", str(saw), "--out", str(tmp_path / "found.toml")]) == 2
+    told = capsys.readouterr().err
+    assert "kinetostatics: stiffer: no design that keeps all limits was found" in told
+    assert list(tmp_path.iterdir()) == [saw]
+
+
+def test_scenes_that_no_file_can_hold_are_refused_before_the_search(tmp_path, capsys):
+    (tmp_path / "cam.csv").write_text(
+        "angle [deg], radius [m]\n" + "".join(f"{step}, 0.3\n" for step in range(0, 360, 5))
+    )
+    more = '[variants.cut]\nmechanism = "cam-crank-slider"\ncoupler_length = "2 m"\n'
+    more += 'cam = { kind = "sampled", table = "cam.csv" }\n'
+    saw = saw_with(more + STIFFER.replace("cam-circle", "cut").replace("spring.stiffness", "coupler_length").replace(
+        '"600 kN/m", "900 kN/m"', '"1.9 m", "2.1 m"'), tmp_path)  # fmt: skip
+    assert main(["design", str(saw), "--out", str(tmp_path / "found.toml")]) == 2
+    told = capsys.readouterr().err
+    assert "has no text for a cam of the class Sampled" in told
+    assert "searching" not in told
+
+
+@pytest.mark.slow_start
+@pytest.mark.parametrize(
+    ("sent", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "term")]
+)
+def test_a_search_ends_in_order_with_nothing_half_written(tmp_path, sent, status, word):
+    saw = saw_with(STIFFER.replace("angles = 72", "angles = 100000\nstarts = 1000"), tmp_path)
+    command = [sys.executable, "-m", "kinetostatics", "design", str(saw), "--out", str(tmp_path / "found.toml")]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    assert process.stderr is not None
+    assert process.stderr.readline() == "searching for stiffer\n"
+    time.sleep(0.3)
+    process.send_signal(sent)
+    told = process.communicate(timeout=30)[1]
+    assert process.returncode == status
+    assert told.startswith(f"kinetostatics: {word}")
+    assert len(told.splitlines()) == 1
+    assert list(tmp_path.iterdir()) == [saw]
+
+
+def test_python_and_the_command_find_the_same(saw, tmp_path, capsys):
+    main(["design", str(saw), "--design", "stiffer", "--out", str(tmp_path / "found.toml")])
+    found = ks.load_case(saw).designs["stiffer"].find()
+    written = ks.load_case(tmp_path / "found.toml").variant("stiffer")
+    assert written.parameters["spring.stiffness"] == found.values["spring.stiffness"]
