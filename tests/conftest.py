@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import gc
 import os
 import sys
 from functools import cache
@@ -7,6 +8,15 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 
 import pytest
+
+gc.set_threshold(20_000, 20, 20)  # modules and thousands of tests live to the end: seldom look for garbage among them
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_finish():
+    """What is there before the first test stays, and need not be looked at again and again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -5,8 +5,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design.balancing_table import balancing_table
+from support.shipped import shipped
 
-CASE = ks.load_case("mower_drive")
+CASE = shipped("mower_drive")
 NAME = next(name for name, variant in CASE.variants.items() if variant.balanced is not None)
 BALANCED = CASE.variants[NAME].balanced
 

@@ -4,8 +4,9 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from support.shipped import shipped
 
-SAW, MOWER = ks.load_case("sawframe_2r63"), ks.load_case("mower_drive")
+SAW, MOWER = shipped("sawframe_2r63"), shipped("mower_drive")
 RATIO = "ratio mean_absolute balancing_torque"
 PEAK, SQUARES = "largest_absolute balancing_torque", "rms balancing_torque"
 

@@ -5,6 +5,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from support.improved_saws import CIRCLE, RATIO, SAW, SPRING, TORQUE, bound
+from support.shipped import shipped
 
 
 def test_one_number_is_best_where_a_search_by_values_alone_finds_it():
@@ -21,8 +22,8 @@ def test_one_number_is_best_where_a_search_by_values_alone_finds_it():
 
 def test_counterweight_that_makes_the_largest_shaking_force_least_is_the_one_of_balancing():
     """The mower's optimal variant, found by another search, by its unbalance along the crank and across."""
-    mower = ks.load_case("mower_drive").variant("unbalanced")
-    balanced = ks.load_case("mower_drive").variant("optimal").balanced.mechanism
+    mower = shipped("mower_drive").variant("unbalanced")
+    balanced = shipped("mower_drive").variant("optimal").balanced.mechanism
     vary = {"crank.centre.along": (-0.3, 0.3), "crank.centre.across": (-0.1, 0.1)}
     found = ks.design.optimise(mower.scene, vary, "largest shaking_force")
     force = ks.extremes(found.scene.solve(90), "shaking_force").range[1]

@@ -7,8 +7,9 @@ import kinetostatics as ks
 from kinetostatics.design.demands import wanted
 from kinetostatics.design.problem import Problem
 from kinetostatics.design.robust import Sampled
+from support.shipped import shipped
 
-SAW = ks.load_case("sawframe_2r63")
+SAW = shipped("sawframe_2r63")
 RATIO = "ratio mean_absolute balancing_torque"
 SPREADS = {
     "spring.stiffness": "normal 0 % +- 0.5 %",

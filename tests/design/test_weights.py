@@ -1,8 +1,9 @@
 """What carries the weight that a symmetric cam cannot."""
 
 import kinetostatics as ks
+from support.shipped import shipped
 
-SAW, MOWER = ks.load_case("sawframe_2r63"), ks.load_case("mower_drive")
+SAW, MOWER = shipped("sawframe_2r63"), shipped("mower_drive")
 RATIO = "ratio mean_absolute balancing_torque"
 PEAK, SQUARES = "largest_absolute balancing_torque", "rms balancing_torque"
 

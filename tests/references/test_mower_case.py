@@ -12,6 +12,7 @@ from kinetostatics.cli import main
 from kinetostatics.views.figures import draw_case
 from support.case_files import case_file, problems
 from support.every import every
+from support.shipped import shipped
 
 BARE = """
 title = "test"
@@ -51,7 +52,7 @@ FIGURES = ("mass_centres", "shaking_by_direction", "shaking_by_crank_angle")
 
 @cache
 def case():
-    return ks.load_case("mower_drive")
+    return shipped("mower_drive")
 
 
 @cache

@@ -13,6 +13,7 @@ import pytest
 
 import kinetostatics as ks
 from support import DATA
+from support.shipped import shipped
 
 VARIANTS = {
     "unbalanced": "unbalanced",
@@ -59,7 +60,7 @@ def built(variant):
 
 @cache
 def case():
-    return ks.load_case("mower_drive")
+    return shipped("mower_drive")
 
 
 def balanced(variant):

@@ -11,6 +11,7 @@ from kinetostatics.engines import programs
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
 from support.needed import MECHANISMS, SPEED, TURN, alone, change, cranked, solved
+from support.shipped import shipped
 
 
 def operations(solution, quantity):
@@ -33,7 +34,7 @@ def saw():
 
 @pytest.fixture(scope="module")
 def mower():
-    return ks.load_case("mower_drive").solve("unbalanced", 72)
+    return shipped("mower_drive").solve("unbalanced", 72)
 
 
 # Known answers

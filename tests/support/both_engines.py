@@ -10,9 +10,10 @@ from support.scenes import (
     everything,
     solve,
 )
+from support.shipped import shipped
 
 ULP = 2.0**-52
-SHIPPED = {name: ks.load_case(name) for name in ("sawframe_2r63", "chain_unit", "mower_drive")}
+SHIPPED = {name: shipped(name) for name in ("sawframe_2r63", "chain_unit", "mower_drive")}
 VARIANTS = [(case, name) for case in SHIPPED for name in SHIPPED[case].variants]
 
 

@@ -34,15 +34,15 @@ def picky(crank, mass):
 
 
 def _deadly(crank, mass, at, marker=None):
-    if np.any(crank == at) and not (marker and Path(marker).exists()):
+    if np.any(np.isin(crank, at)) and not (marker and Path(marker).exists()):
         if marker:
             Path(marker).touch()
         die()
     return pump(crank, mass)
 
 
-def deadly(at):
-    """A function whose process dies whenever it makes this crank."""
+def deadly(*at):
+    """A function whose process dies whenever it makes one of these cranks."""
     return partial(_deadly, at=at)
 
 

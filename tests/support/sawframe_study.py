@@ -2,8 +2,9 @@
 
 import kinetostatics as ks
 from kinetostatics.studies.methods import papers
+from support.shipped import shipped
 
-CASE = ks.load_case("sawframe_2r63")
+CASE = shipped("sawframe_2r63")
 PLAIN, CIRCLE, COSINE = (CASE.solve(name) for name in ("plain", "cam-circle", "cam-cosine"))
 SLIDER = CASE.variant("cam-circle").mechanism.links["slider"].mass
 CANCELLED = ks.solve(

@@ -5,8 +5,9 @@ from functools import partial
 import pandas as pd
 
 import kinetostatics as ks
+from support.shipped import shipped
 
-SAW = ks.load_case("sawframe_2r63")
+SAW = shipped("sawframe_2r63")
 sweep = partial(ks.sweep, progress=False)
 
 

@@ -9,6 +9,7 @@ import kinetostatics as ks
 from kinetostatics.casefile import parameters, schema
 from kinetostatics.numbers.headings import si_columns
 from kinetostatics.sweeps import designs
+from support.shipped import shipped
 
 SPREADS = {
     "spring.stiffness": "normal 700 kN/m +- 5000 N/m",
@@ -116,7 +117,7 @@ def test_paths_are_the_numbers_of_a_variant_with_their_units():
 
 def test_what_the_file_fixes_otherwise_is_no_path():
     """Two points fix the guide of the mower, a table a process force."""
-    table = ks.load_case("mower_drive").variant("unbalanced").table
+    table = shipped("mower_drive").variant("unbalanced").table
     assert not {"guide_angle", "guide_offset"} & parameters.paths(table).keys()
     for force, there in (
         (schema.ProcessForceTable(force="2 N"), True),

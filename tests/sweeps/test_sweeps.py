@@ -20,6 +20,7 @@ from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support.case_files import written
 from support.factories import DESIGNS, OUTPUTS
+from support.shipped import shipped
 from support.sweeping import SAW, assert_equal, rising, sweep
 
 # Rows of a case
@@ -95,9 +96,7 @@ def test_variants_are_the_first_beside_the_reference_and_the_reference_unless_to
 def test_counterweights_follow_each_design():
     """Balanced one design at a time; full balancing leaves nothing, whatever the masses."""
     designs = ks.designs.grid({"slider.mass": "4..6 kg:3"})
-    found = sweep(
-        ks.load_case("mower_drive"), designs, ["largest shaking_force", "ratio rms shaking_force"], variant="full"
-    )
+    found = sweep(shipped("mower_drive"), designs, ["largest shaking_force", "ratio rms shaking_force"], variant="full")
     assert found[FAILED].tolist() == [""] * 3
     assert found.iloc[:, 1].max() < 1e-9
     assert np.isinf(found.iloc[:, 2]).all()
@@ -280,8 +279,9 @@ import kinetostatics as ks
 
 around = {"spring.stiffness": "650..850 kN/m", "cam.centre.x": "-30..-10 mm", "coupler_length": "2010..2030 mm"}
 designs = ks.designs.latin_hypercube(around, 1000)
-outputs = ["ratio mean_absolute balancing_torque", "mean O"]
-table = ks.sweep(ks.load_case("sawframe_2r63"), designs, outputs, variant="cam-circle", progress=False)
+outputs = ["mean_absolute balancing_torque", "mean O"]
+scene = ks.load_case("sawframe_2r63").variant("cam-circle").scene
+table = ks.sweep(scene, designs, outputs, progress=False)
 print(hashlib.sha256(table.iloc[:, :-1].to_numpy(float).tobytes()).hexdigest())
 """
 

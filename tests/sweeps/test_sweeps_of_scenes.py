@@ -8,9 +8,10 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
+from support.shipped import shipped
 
 sweep = partial(ks.sweep, progress=False, angles=36)
-SAW = ks.load_case("sawframe_2r63")
+SAW = shipped("sawframe_2r63")
 
 
 def four_bar(mass=2.0, crank=0.1):

@@ -4,8 +4,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views.figures import draw_case
+from support.shipped import shipped
 
-CASE = ks.load_case("sawframe_2r63")
+CASE = shipped("sawframe_2r63")
 
 
 def test_one_figure_is_drawn_to_its_file(tmp_path):
