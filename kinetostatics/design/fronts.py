@@ -39,7 +39,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Parameters
     ----------
     source, vary, limits, variant, reference, starts, seed
-        As for `optimise`, as are `angles` and `engine`.
+        As for `optimise`, as are `angles`, `engine` and `progress`.
     minimise : (str, str)
         Two outputs; a "-" in front of one makes it greatest: ("largest_absolute cam_force", "-ratio mean_absolute
         balancing_torque").
@@ -66,7 +66,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
         "pareto",
         None if texts and len(minimise) == 2 else f"minimise must be two outputs, got {checks.shown(minimise)}",
         checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}"),
-        *(checks.choice("option", name, ("angles", "engine")) for name in options),
+        *(checks.choice("option", name, ("angles", "engine", "progress")) for name in options),
     )
     pair = [(text.lstrip("- "), text.strip().startswith("-")) for text in minimise]
     item, compared = chosen(source, variant, reference)
