@@ -102,7 +102,7 @@ def test_a_search_ends_in_order_with_nothing_half_written(tmp_path, sent, status
     process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
     assert process.stderr is not None
     assert process.stderr.readline() == "searching for stiffer\n"
-    time.sleep(0.3)
+    time.sleep(1.5)  # the libraries are loaded, and the search goes on for minutes
     process.send_signal(sent)
     told = process.communicate(timeout=30)[1]
     assert process.returncode == status

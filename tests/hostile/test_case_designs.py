@@ -11,7 +11,7 @@ AIM = 'minimise = "largest O"\n'
 CAM = '[design.one]\nkind = "torque-free-cam"\nvariant = "cam-cosine"\n'
 SPREADS = '"slider.mass" = "normal 0 % +- 1 %"'
 WRONG = {
-    "no table": ("[design]\none = 3\n", "design.one: input should be a valid dictionary, found 3"),
+    "no table": ("[design]\none = 3\n", "design.one must be a table of keys and values, found 3"),
     "no kind": ("[design.one]\n", "design.one.kind is missing; allowed: 'optimum', 'torque-free-cam', 'front'"),
     "kind misspelt": (
         f"{HEAD}{VARY}{AIM}".replace("optimum", "optimun"),

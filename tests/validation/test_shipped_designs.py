@@ -30,7 +30,7 @@ def gain(case, name):
 
 @pytest.mark.parametrize(("name", "variant"), SEARCHED)
 def test_its_search_finds_the_shipped_machine_again(name, variant):
-    """Within 10 micrometres and 1e-5 of the spring's rate: a search ends elsewhere where a processor rounds otherwise."""
+    """Within 10 micrometres and 1e-5 of the spring's rate: processors round differently."""
     case = CASES[name]
     shipped = case.variant(variant).scene
     found = case.designs[variant].find().scene.parameters
