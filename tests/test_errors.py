@@ -10,6 +10,7 @@ MADE = [
     errors.ParameterError("wrong", designs=[1, 2]),
     errors.AssemblyError("does not close", ((0.1, 0.2),)),
     errors.JammingError("jams", (0.3,)),
+    errors.DesignError("cannot be met", {"coupler_length": 2.0}),
     errors.DriveError("stalls", missing=3.0, crank_angle=1.0),
     errors.QuantityError("no such"),
     errors.NotGivenError("not given"),

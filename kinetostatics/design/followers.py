@@ -203,7 +203,8 @@ def spring_surge(solution, spring_mass):
     >>> print(f"order {found.order:.2f}, second harmonic {found.amplitudes[2] * 1e3:.2f} mm")
     order 19.87, second harmonic 8.58 mm
     """
-    _require(solution, "spring_surge", "slider_position")
+    checks.require("spring_surge", checks.solution("solution", solution))
+    require_single(solution, "spring_surge", "slider_position")
     mass = checks.singles("spring_surge", spring_mass=(spring_mass, POSITIVE))["spring_mass"]
     springs = [load for load in solution.loads if isinstance(load, Spring)]
     if len(springs) != 1:

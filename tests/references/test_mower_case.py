@@ -232,7 +232,7 @@ def test_four_bar_in_a_case_file_is_fully_balanced_by_crank_and_rocker(tmp_path)
         ('method = "partial"\ncrank = { arm = "-5 kg" }', 'variants.x.balancing.crank.arm "kg" does not measure'),
         ('method = "partial"\ncrank = { arm = -50 }', "variants.x.balancing.crank.arm must be text of a number"),
         ('method = "partial"\ncrank = { mas = "5 kg" }', "variants.x.balancing.crank.mas is not a key here; .* 'mass'"),
-        ('method = "partial"\ncrank = "5 kg"', "variants.x.balancing.crank: "),
+        ('method = "partial"\ncrank = "5 kg"', "variants.x.balancing.crank must be a table of keys"),
         (
             'method = "partial"\ncrank = { mass = "5 kg", keep_out = "-1 mm" }',
             "variants.x.balancing.crank.keep_out must",
