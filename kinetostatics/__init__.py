@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from .machine.crank import Crank
     from .machine.cylinder_group import CylinderGroup
     from .machine.dyad import Dyad
+    from .machine.flat_follower import FlatFollower
     from .machine.friction import GuideFriction, PinFriction, RollerFriction, SlotFriction
     from .machine.guide import Guide
     from .machine.lever_group import LeverGroup
@@ -76,7 +77,9 @@ if TYPE_CHECKING:
     from .machine.mechanism import Mechanism
     from .machine.pin import Pin
     from .machine.rocker_group import RockerGroup
+    from .machine.roller_follower import RollerFollower
     from .machine.slider_group import SliderGroup
+    from .machine.swinging_follower import SwingingFollower
     from .machine.yoke_group import YokeGroup
     from .mechanics.principal_points import principal_points
     from .results.comparison import compare
@@ -104,6 +107,7 @@ __all__ = [
     "DesignError",
     "DriveError",
     "Dyad",
+    "FlatFollower",
     "Force",
     "Gravity",
     "Guide",
@@ -123,12 +127,14 @@ __all__ = [
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
+    "RollerFollower",
     "RollerFriction",
     "Scene",
     "SliderGroup",
     "SlotFriction",
     "Solution",
     "Spring",
+    "SwingingFollower",
     "Table",
     "Torque",
     "TorsionDamper",
@@ -169,6 +175,7 @@ _WHERE = {
     "machine.crank": ["Crank"],
     "machine.cylinder_group": ["CylinderGroup"],
     "machine.dyad": ["Dyad"],
+    "machine.flat_follower": ["FlatFollower"],
     "machine.friction": ["GuideFriction", "PinFriction", "RollerFriction", "SlotFriction"],
     "machine.guide": ["Guide"],
     "machine.lever_group": ["LeverGroup"],
@@ -188,8 +195,10 @@ _WHERE = {
     ],
     "machine.mechanism": ["Mechanism"],
     "machine.rocker_group": ["RockerGroup"],
+    "machine.roller_follower": ["RollerFollower"],
     "machine.pin": ["Pin"],
     "machine.slider_group": ["SliderGroup"],
+    "machine.swinging_follower": ["SwingingFollower"],
     "machine.yoke_group": ["YokeGroup"],
     "mechanics.principal_points": ["principal_points"],
     "results.comparison": ["compare"],

@@ -6,15 +6,19 @@ import pytest
 
 TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent / "kinetostatics"
-PROVEN_IN = {
-    f"studies/methods/{module}.py": f"studies/methods/test_{test}.py"
-    for test, modules in {
-        "certified": ("acting", "enclosures", "independent", "postures"),
-        "kane": ("kane_equations",),
-        "newton": ("configurations", "constraints"),
-    }.items()
-    for module in modules
-} | {f"studies/methods/{module}.py": "studies/test_precision.py" for module in ("engines", "method")}
+PROVEN_IN = (
+    {"studies/methods/followers.py": "laws/test_followers.py"}
+    | {
+        f"studies/methods/{module}.py": f"studies/methods/test_{test}.py"
+        for test, modules in {
+            "certified": ("acting", "enclosures", "independent", "postures"),
+            "kane": ("kane_equations",),
+            "newton": ("configurations", "constraints"),
+        }.items()
+        for module in modules
+    }
+    | {f"studies/methods/{module}.py": "studies/test_precision.py" for module in ("engines", "method")}
+)
 """Parts of one method under study, which only mean something as a whole: proven against another method."""
 
 pytestmark = pytest.mark.skipif(not PACKAGE.is_dir(), reason="the package is not beside its tests")

@@ -23,6 +23,9 @@ fronts          the best of one output for each value of another
 cam_start       the cam-balanced crank-slider that a search for its cam begins with
 torque_free     cams that need no torque
 weights         what carries weight where a symmetric cam cannot
+torque_balancing  spring-loaded follower on a cam on the crank that leaves the mean torque alone
+torque_balanced what it gives and costs
+spring_follower how far its spring is stretched at each crank angle
 """
 
 from importlib import import_module
@@ -30,12 +33,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from .cam_contact import Contact, contact
-    from .followers import Surge, lift_off_speed, spring_surge, starting_torque
+    from .followers import Surge, lift_off_speed, lifted, spring_surge, starting_torque
     from .found import Found
     from .fronts import Front, pareto
     from .hardness import hardness_from_pressure, pressure_from_hardness
     from .optimisation import optimise
     from .robust import Spread, over_spread
+    from .torque_balanced import TorqueBalancing
+    from .torque_balancing import torque_balancing_cam
     from .torque_free import torque_free_cam
     from .weights import weight_options
 
@@ -45,15 +50,18 @@ __all__ = [
     "Front",
     "Spread",
     "Surge",
+    "TorqueBalancing",
     "contact",
     "hardness_from_pressure",
     "lift_off_speed",
+    "lifted",
     "optimise",
     "over_spread",
     "pareto",
     "pressure_from_hardness",
     "spring_surge",
     "starting_torque",
+    "torque_balancing_cam",
     "torque_free_cam",
     "weight_options",
 ]
@@ -64,15 +72,18 @@ _WHERE = {
     "Front": "fronts",
     "Spread": "robust",
     "Surge": "followers",
+    "TorqueBalancing": "torque_balanced",
     "contact": "cam_contact",
     "hardness_from_pressure": "hardness",
     "lift_off_speed": "followers",
+    "lifted": "followers",
     "optimise": "optimisation",
     "over_spread": "robust",
     "pareto": "fronts",
     "pressure_from_hardness": "hardness",
     "spring_surge": "followers",
     "starting_torque": "followers",
+    "torque_balancing_cam": "torque_balancing",
     "torque_free_cam": "torque_free",
     "weight_options": "weights",
 }

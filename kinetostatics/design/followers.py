@@ -47,13 +47,15 @@ class Surge(NamedTuple):
         return {order: self.natural_frequency / order for order in orders}
 
 
-def lift_off_speed(solution):
+def lift_off_speed(solution, force="cam_force"):
     """Crank speed from which the roller leaves the side of the cam that it rests on, at constant speed, rad/s.
 
     Parameters
     ----------
     solution : Solution
-        Of one design, of a mechanism with a `CamRoller`; its speed tells which way the crank turns.
+        Of one design, of a mechanism with a `CamRoller` or a follower; its speed tells which way the crank turns.
+    force : str
+        That of the contact: "contact_force" of a follower on a cam that turns, with its label.
 
     Returns
     -------
@@ -69,36 +71,36 @@ def lift_off_speed(solution):
     >>> round(ks.design.lift_off_speed(ks.solve(machine, 0.5, crank_speed=10.0, loads=spring)), 6)
     39.528471
     """
-    _require(solution, "lift_off_speed", "cam_force")
+    _require(solution, "lift_off_speed", force)
     fast = _speed(solution)
     angle = np.linspace(0.0, solution.period, SAMPLES, endpoint=False)
-    rest, moving, faster = (_force(solution, speed, angle) for speed in (CREEPING * fast, fast, 2.0 * fast))
+    rest, moving, faster = (_force(solution, force, speed, angle) for speed in (CREEPING * fast, fast, 2.0 * fast))
     side = np.sign(rest[int(np.argmax(np.abs(rest)))])
     if not np.all(side * rest > 0.0):
         return 0.0
     if np.max(np.abs(faster - rest - 4.0 * (moving - rest))) <= QUADRATIC * np.max(np.abs(faster)):
-        return _by_squares(solution, fast)
-    return _by_search(solution, fast, side, angle)
+        return _by_squares(solution, force, fast)
+    return _by_search(solution, force, fast, side, angle)
 
 
-def _by_squares(solution, fast):
+def _by_squares(solution, force, fast):
     """Where forces are F0 + F2 speed^2: the least speed for which they vanish at some crank angle."""
 
     def ratio(angle):
-        rest = _force(solution, CREEPING * fast, angle)
-        return (rest - _force(solution, fast, angle)) / (fast * fast * rest)
+        rest = _force(solution, force, CREEPING * fast, angle)
+        return (rest - _force(solution, force, fast, angle)) / (fast * fast * rest)
 
     peak = highest(ratio, 0.0, solution.period).value
     found = np.inf if peak <= 0.0 else float(1.0 / np.sqrt(peak))
     return found if found <= FASTEST * abs(fast) else np.inf
 
 
-def _by_search(solution, fast, side, angle):
+def _by_search(solution, force, fast, side, angle):
     """Where loads hang on the speed in another way."""
     from scipy.optimize import brentq
 
     def least(speed):
-        return float(np.min(side * _force(solution, np.copysign(speed, fast), angle)))
+        return float(np.min(side * _force(solution, force, np.copysign(speed, fast), angle)))
 
     low = CREEPING * abs(fast)
     for speed in abs(fast) * np.geomspace(0.01, FASTEST, 61):
@@ -106,6 +108,52 @@ def _by_search(solution, fast, side, angle):
             return float(brentq(least, low, speed, rtol=1e-12))
         low = speed
     return np.inf
+
+
+def lifted(solution, force="cam_force"):
+    """Crank angles between which a force of contact pulls, so that what it presses on would lift off.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of one design.
+    force : str
+        Positive where it presses: "contact_force" of a follower, with its label.
+
+    Returns
+    -------
+    tuple of (float, float)
+        Start and stop of each interval, rad; a stop beyond the period lies in the next one.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> follower = ks.RollerFollower(ks.laws.cosine(0.01, 0.05), follower=ks.Link(2.0))
+    >>> machine = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
+    >>> spring = ks.Spring(5e3, 0.04, on="follower")
+    >>> ks.design.lifted(ks.solve(machine, 0.0, crank_speed=40.0, loads=spring), "contact_force")
+    ()
+    >>> ((start, stop),) = ks.design.lifted(ks.solve(machine, 0.0, crank_speed=90.0, loads=spring), "contact_force")
+    >>> round(float(start), 6), round(float(stop), 6)
+    (-1.108026, 1.108026)
+    """
+    from scipy.optimize import brentq
+
+    _require(solution, "lifted", force)
+
+    def value(angle):
+        return solution.at(np.atleast_1d(np.mod(angle, solution.period))).scalar(force)
+
+    angle = np.linspace(0.0, solution.period, SAMPLES + 1)
+    pressing = value(angle) >= 0.0
+    if np.all(pressing) or not np.any(pressing):
+        return () if pressing[0] else ((0.0, solution.period),)
+    places = np.flatnonzero(pressing[1:] != pressing[:-1])
+    ends = [(brentq(lambda x: float(value(x)[0]), angle[n], angle[n + 1], xtol=1e-14), pressing[n]) for n in places]
+    starts, stops = ([float(end) for end, leaves in ends if leaves == wanted] for wanted in (True, False))
+    if stops[0] < starts[0]:
+        starts = [starts[-1] - solution.period, *starts[:-1]]
+    return tuple(zip(starts, stops, strict=True))
 
 
 def starting_torque(solution):
@@ -171,8 +219,9 @@ def spring_surge(solution, spring_mass):
 def _require(solution, owner, name):
     checks.require(owner, checks.solution("solution", solution))
     require_single(solution, owner, name)
-    if name == "cam_force" and "cam_force" not in solution.scalars:
+    if name == "cam_force" and name not in solution.scalars:
         raise ParameterError(f"{owner}: takes a mechanism with a CamRoller, a {solution.mechanism.name} has none")
+    checks.require(owner, checks.choice("force", name, tuple(solution.scalars)) if name else None)
 
 
 def _speed(solution):
@@ -184,5 +233,5 @@ def _at(solution, speed, angle):
     return Scene(solution.mechanism, speed, 0.0, solution.loads, solution.friction).solve(angle)
 
 
-def _force(solution, speed, angle):
-    return _at(solution, speed, angle).cam_force
+def _force(solution, name, speed, angle):
+    return _at(solution, speed, angle).scalar(name)

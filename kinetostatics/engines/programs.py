@@ -42,7 +42,7 @@ class Program:
         self.recording = recording
         self.outputs = recording.outputs if outputs is None else outputs
         self._slopes: dict[tuple[int, ...], Program] = {}
-        self._computed = 0
+        self._computed = 0.0
 
     def by_parameters(self, places):
         """Program of all outputs and, one after the other, their derivatives by each of the parameters at some places.

@@ -23,6 +23,7 @@ LINES: dict[str, dict[str, Any]] = {
     "slot": {"color": "white", "lw": 3.5, "solid_capstyle": "round", "zorder": 2.1},
     "spring": {"color": INK, "lw": 1, "zorder": 2.5},
     "damper": {"color": INK, "lw": 1, "zorder": 2.5},
+    "outline": {"color": ACCENT, "lw": 0.9, "ls": "-.", "zorder": 1.6},
     "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
     "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
 }

@@ -98,6 +98,9 @@ class Shape:
 
     def strokes(self, pose):
         """Lines and plates of all links in the poses of a motion, the hindmost first."""
+        for group in self.made.groups:
+            for link, points in group.outlines.items():
+                yield Stroke("outline", _on(pose, link, points))
         for link, corners in self.corners.items():
             order = _in_line(corners)
             if corners.shape[1] > 1:

@@ -56,3 +56,32 @@ def test_springs_surge_at_pi_times_the_root_of_stiffness_by_mass():
     assert found.order == pytest.approx(found.natural_frequency / 33.5)
     assert_allclose(found.amplitudes[:3], [2.0, 0.3, 0.0], atol=1e-12)
     assert found.speeds()[4] == pytest.approx(found.natural_frequency / 4)
+
+
+TURNING = ks.Mechanism(
+    "cam drive", ks.Crank(None), (ks.RollerFollower(ks.laws.cosine(0.01, 0.05), follower=ks.Link(2.0)),)
+)
+
+
+def turned(speed, free=0.04):
+    return ks.solve(TURNING, ANGLES, crank_speed=speed, loads=ks.Spring(5e3, free, on="follower"))
+
+
+def test_a_follower_on_a_turning_cam_lifts_off_from_where_inertia_exceeds_its_spring():
+    """M s'' omega^2 + k (s - s0) = 0 with s = 0.05 + 0.01 cos: at the top, 2 omega^2 = 5000 (0.02 / 0.01)."""
+    found = ks.design.lift_off_speed(turned(10.0), "contact_force")
+    assert found == pytest.approx(np.sqrt(5e3), rel=1e-9)
+    assert ks.design.lifted(turned(0.999 * found), "contact_force") == ()
+    ((start, stop),) = ks.design.lifted(turned(1.2 * found), "contact_force")
+    cosine = 0.01 / (0.01 * (1.44 * 2.0 - 1.0))
+    assert_allclose([start, stop], [-np.arccos(cosine), np.arccos(cosine)], atol=1e-9)
+
+
+def test_a_spring_that_pushes_the_wrong_way_never_presses():
+    assert ks.design.lifted(turned(1.0, free=0.1), "contact_force") == ((0.0, 2 * np.pi),)
+
+
+def test_a_force_that_is_not_there_is_refused_with_those_that_are():
+    for function in (ks.design.lifted, ks.design.lift_off_speed):
+        with pytest.raises(ks.ParameterError, match="'contact_force'"):
+            function(turned(10.0), "contact")

@@ -29,3 +29,14 @@ def test_strokes_of_a_pose_are_finite_lines_of_known_kinds():
     strokes = list(made.strokes(made.turn))
     assert len(strokes) >= 3
     assert all(stroke.points.shape[0] == 2 and stroke.points.shape[-1] == 36 for stroke in strokes)
+
+
+def test_a_cam_on_the_crank_is_drawn_through_its_roller_in_every_pose():
+    follower = ks.RollerFollower(ks.laws.cosine(0.02, 0.08), ks.Guide.at(0.7, 0.01))
+    made = shape(ks.Mechanism("cam drive", ks.Crank(0.1), (follower,)))
+    (outline,) = (stroke.points for stroke in made.strokes(made.turn) if stroke.kind == "outline")
+    roller = made.turn.position("R")
+    nearest = np.min(np.hypot(*(outline - roller[:, None, :])), axis=0)
+    assert np.max(nearest) < 2e-3
+    radius = np.hypot(*outline)
+    np.testing.assert_allclose(radius, np.broadcast_to(radius[:, :1], radius.shape), rtol=1e-12)

@@ -7,6 +7,7 @@ from ...mechanics.pushes import pushed, settled
 from ...numbers.lazy import cached_property
 from .acting import Acting
 from .constraints import ACCELERATION, FORCE, RATE
+from .followers import gap
 from .method import NotGivenError
 
 
@@ -28,6 +29,8 @@ class Configuration:
             residual[..., item.row] = self._in_slot(item, self.q).imag - item.offset
         if model.cam is not None:
             residual[..., model.contact] = self._contact[0]
+        for item in model.followings:
+            residual[..., item.row] = gap(self, item).distance
         return residual
 
     @cached_property
@@ -46,6 +49,11 @@ class Configuration:
         if model.cam is not None:
             cam, (_, normal, _) = jacobian[..., model.contact, :], self._contact
             cam[..., model.block], cam[..., size + model.block] = normal.real, normal.imag
+        for item in model.followings:
+            row, found = jacobian[..., item.row, :], gap(self, item)
+            for place, sign, turn in ((item.link, 1.0, found.link_turn), (item.crank, -1.0, found.crank_turn)):
+                row[..., place], row[..., size + place] = sign * found.normal.real, sign * found.normal.imag
+                row[..., 2 * size + place] = turn
         return jacobian
 
     def gamma(self, rates):
@@ -58,6 +66,8 @@ class Configuration:
             gamma[..., item.row] = turning * (2 * slides.real + turning * self._in_slot(item, self.q).imag)
         if model.cam is not None:
             gamma[..., model.contact] = self._contact[2] * np.abs(self._plane(rates)[..., model.block]) ** 2
+        for item in model.followings:
+            gamma[..., item.row] = -gap(self, item, rates).second
         return gamma
 
     def solve(self, right, transposed=False):

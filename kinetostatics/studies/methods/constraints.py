@@ -17,12 +17,15 @@ from ...machine.cam_roller import CamRoller
 from ...machine.cylinder_group import CylinderGroup
 from ...machine.dyad import Dyad
 from ...machine.group import FRAME
+from ...machine.guided_follower import GuidedFollower
 from ...machine.lever_group import LeverGroup
 from ...machine.pin import Pin
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
+from ...machine.swinging_follower import SwingingFollower
 from ...machine.yoke_group import YokeGroup
 from ...numbers.planar import left
+from .followers import Following
 from .method import NotGivenError
 
 POSITION, RATE, ACCELERATION, FORCE = range(4)
@@ -66,6 +69,7 @@ class Model:
         self.guides: dict[str, complex] = {}
         self.cam = None
         self.slidings: list[Sliding] = []
+        self.followings: list[Following] = []
         self._held: list[tuple[str, str | None, float]] = []
         *self._terms, (self._one, self._phi) = np.split(np.eye(5 * self.size + 2), np.arange(1, 6) * self.size)
         self._write()
@@ -134,6 +138,22 @@ class Model:
         self._slide("slot_force" + group.label, slider, block, np.exp(1j * group.slot_angle))
         self._turn("slot_moment" + group.label, block, slider, group.slot_angle)
 
+    def _write_guided(self, group):
+        (follower,) = group.links
+        self._add_guide(group, follower)
+        self._follow(group, follower, 0.0)
+
+    def _write_swinging(self, group):
+        (arm,) = group.links
+        self._pin(group.pivot_name, arm, group.pivot_name)
+        self._follow(group, arm, group.arm_length)
+
+    def _follow(self, group, link, along):
+        """Keep a point of a link on the cam of a group."""
+        places = self.names.index("crank"), self.names.index(link)
+        self.followings.append(Following(len(self.equations), *places, along, group))
+        self._add("contact_force" + group.label, 0.0 * self._one)
+
     _writers: ClassVar[dict[type, Any]] = {
         CamRoller: _write_roller,
         SliderGroup: _write_slider,
@@ -142,6 +162,8 @@ class Model:
         LeverGroup: _write_lever,
         CylinderGroup: _write_cylinder,
         YokeGroup: _write_yoke,
+        GuidedFollower: _write_guided,
+        SwingingFollower: _write_swinging,
         Pin: lambda self, group: None,
     }
 

@@ -13,12 +13,15 @@ from ...errors import NotGivenError
 from ...machine.cam_roller import CamRoller
 from ...machine.cylinder_group import CylinderGroup
 from ...machine.dyad import Dyad
+from ...machine.flat_follower import FlatFollower
 from ...machine.group import FRAME, TRAVELS
+from ...machine.guided_follower import GuidedFollower
 from ...machine.lever_group import LeverGroup
 from ...machine.loads import Gravity, Load, ProcessForce, Spring
 from ...machine.pin import Pin
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
+from ...machine.swinging_follower import SwingingFollower
 from ...machine.yoke_group import YokeGroup
 from ...mechanics.quantities import RATES
 from ...numbers import checks
@@ -215,6 +218,28 @@ class Machine(Posture, Acting):
         slot = self.slid("slot", group.label, at[group.on], next(ways), block, slider)
         return [*inner, *slot, *self.slid("guide", group.label, at[group.pin], next(ways), slider, None)]
 
+    def of_guided(self, group, at):
+        (follower,) = group.links
+        along = self.position["direction", follower]
+        guide = self.slid("guide", group.label, at[group.pin], along, follower, None)
+        if not isinstance(group, FlatFollower):
+            return [*guide, self.pressed(group, at[group.pin], follower)]
+        ahead, back = (dot(along, self.followed(group, self.angle + step)[0]) for step in (self.step, -self.step))
+        touched = along * self.mp.mpc(dot(along, at[group.pin]), (back - ahead) / (2 * self.step))
+        return [*guide, ("contact_force" + group.label, along, 0, touched, follower, "crank")]
+
+    def of_swinging(self, group, at):
+        (arm,) = group.links
+        pivot = self.held(group.pivot_name, group.pivot_name, at, arm)
+        return [*pivot, self.pressed(group, at[group.pin], arm)]
+
+    def pressed(self, group, at, link):
+        """Contact force of a roller, across its path on the cam, which it runs clockwise."""
+        angles = self.angle + self.step, self.angle - self.step
+        ahead, back = (self.followed(group, angle)[0] * self.mp.expj(-angle) for angle in angles)
+        outward = left((ahead - back) / abs(ahead - back)) * self.mp.expj(self.angle)
+        return "contact_force" + group.label, outward, 0, at, link, "crank"
+
     def gravity(self):
         items = (item for item in self.solution.loads if isinstance(item, Gravity))
         pulls = (self.number(item.acceleration) * self.mp.expj(self.number(item.direction)) for item in items)
@@ -271,5 +296,7 @@ UNKNOWN: Any = {
     LeverGroup: Machine.of_lever,
     CylinderGroup: Machine.of_cylinder,
     YokeGroup: Machine.of_yoke,
+    GuidedFollower: Machine.of_guided,
+    SwingingFollower: Machine.of_swinging,
 }
 """What each kind of group adds to the unknown wrenches."""

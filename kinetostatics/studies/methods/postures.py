@@ -11,10 +11,13 @@ from ...machine.change_points import FAR, MEETING, NEAR, OPPOSITE, SIDES, parted
 from ...machine.cylinder_group import CylinderGroup
 from ...machine.dyad import Dyad
 from ...machine.group import FRAME
+from ...machine.guided_follower import GuidedFollower
+from ...machine.laws import Cosine
 from ...machine.lever_group import LeverGroup
 from ...machine.pin import Pin
 from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
+from ...machine.swinging_follower import SwingingFollower
 from ...machine.yoke_group import YokeGroup
 
 
@@ -122,6 +125,32 @@ class Posture:
         joints[group.pin] = foot + cross(joints[group.on] - foot, way) / cross(along, way) * along
         links[block], links[slider] = (group.on, way), (group.pin, along)
 
+    def add_guided(self, group, joints, links):
+        (follower,) = group.links
+        joints[group.pin], direction = self.followed(group, self._angle)
+        links[follower] = group.pin, direction
+
+    def add_swinging(self, group, joints, links):
+        (arm,) = group.links
+        joints[group.pivot_name] = self.vector(group.pivot)
+        joints[group.pin], direction = self.followed(group, self._angle)
+        links[arm] = group.pivot_name, direction
+
+    def followed(self, group, angle):
+        """Roller centre, or middle of the face, and direction of a follower at a crank angle."""
+        law = group.cam.law
+        if not isinstance(law, Cosine):
+            raise NotGivenError(f"there is no independent formula for a law {type(law).__name__}")
+        mean, amplitude, phase = map(self.number, (law.mean, law.amplitude, law.phase))
+        value = mean + amplitude * self.mp.cos(angle - phase)
+        if isinstance(group, SwingingFollower):
+            pivot = self.vector(group.pivot)
+            direction = self.mp.expj(self.mp.arg(-pivot) - group.assembly * value)
+            return pivot + self.number(group.arm_length) * direction, direction
+        along = self.vector(group.guide.direction)
+        along /= abs(along)
+        return along * self.mp.mpc(value, self.number(group.guide.guide_offset)), along
+
     def roller(self, cam, angle):
         """Roller centre A on the crank ray."""
         mp = self.mp
@@ -153,6 +182,8 @@ ADD: Any = {
     LeverGroup: Posture.add_lever,
     CylinderGroup: Posture.add_cylinder,
     YokeGroup: Posture.add_yoke,
+    GuidedFollower: Posture.add_guided,
+    SwingingFollower: Posture.add_swinging,
 }
 """How each kind of group is placed."""
 

@@ -1,0 +1,158 @@
+"""How far a spring with a follower must be stretched at each crank angle to hold a given energy, exactly.
+
+A follower of mass m on a spring of rate k, moved by a cam on a crank of constant speed, holds with mu = m omega^2
+
+    mu x'^2 / 2 + k x^2 / 2 = C - E(phi)
+
+where x is the stretch, E the energy of the machine that it balances, C the level. By the derivative, the force of the
+cam is mu x'' + k x = -E' / x': it presses wherever the follower runs out as E falls, and back as E rises. Where E is
+least x' vanishes with x'' = a, a root of mu a^2 + k x a + E'' = 0, which is real for (k x)^2 > 4 mu E'' only.
+
+Solutions of the first-order equation run together from a greatest E outward to the least beside it, both ways: so one
+starts there, and goes from panel to panel by Chebyshev collocation. At a kink of E the follower keeps x, x' and x'',
+and swings over to the curve behind it.
+"""
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ..errors import ParameterError
+from ..numbers.panels import DEGREE, Panels
+
+NEWTON = 40
+"""Iterations at most."""
+SETTLED = 3e-15
+"""Change, relative to the stretch, at which iteration ends."""
+RESOLVED = 1e-13
+"""Last coefficients, relative to the largest stretch, from which on a panel is narrow enough."""
+ROUNDED = 1e-9
+"""Share of the fastest stretch that counts as standing still."""
+NARROWEST = 1e-7
+"""rad."""
+_T = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
+_FIT = np.linalg.inv(chebyshev.chebvander(_T, DEGREE))
+_RATE = np.array([chebyshev.chebval(_T, chebyshev.chebder(row)) for row in _FIT.T]).T
+"""Derivative at the points _T by values there."""
+
+
+def reserve(energy, low, level, mass, stiffness):
+    """Force of the spring at a least energy over what contact needs there, 2 sqrt(mu E''); `mass` is m omega^2."""
+    force = np.sqrt(2.0 * stiffness * (level - float(energy(low))))
+    return float(force / (2.0 * np.sqrt(mass * _bend(energy, low))))
+
+
+def _bend(energy, angle, beside=1e-9):
+    """E'' at a place, the larger of both sides of a kink."""
+    return max(float(energy.at(angle + side, 2)[2]) for side in (-beside, beside))
+
+
+def stretched(energy, level, mass, stiffness):
+    """Stretch x of the spring by crank angle, as `Panels`, for an energy in panels; `mass` is m omega^2.
+
+    Raises
+    ------
+    ParameterError
+        The follower lifts off: no smooth solution stays in contact, with the crank angle.
+    """
+    slope = Panels(energy.edges, _derived(energy))
+    turns = slope.roots
+    values = energy(turns)
+    found = []
+    for place, angle in enumerate(turns):
+        before, after = turns[place - 1], turns[(place + 1) % turns.size]
+        if values[place] > values[place - 1]:
+            after = after + energy.period * (after <= angle)
+            before = before - energy.period * (before >= angle)
+            if reserve(energy, after, level, mass, stiffness) <= 1.0:
+                raise ParameterError(_lifting(after))
+            for stop in (before, after):
+                found += _marched(energy, slope, angle, stop, level, mass, stiffness)
+    first = turns[int(np.argmax(values))]
+    moved = sorted(
+        (first + np.mod(low - first + 1e-9, energy.period) - 1e-9, high - low, row) for low, high, row in found
+    )
+    edges = [low for low, _, _ in moved]
+    edges[0] = first
+    return Panels(np.array([*edges, first + energy.period]), np.array([row for *_, row in moved]))
+
+
+def _derived(panels):
+    widths = np.diff(panels.edges)[:, None]
+    rows = chebyshev.chebder(panels.coefficients, axis=1) * (2.0 / widths)
+    return np.pad(rows, ((0, 0), (0, 1)))
+
+
+def _marched(energy, slope, start, stop, level, mass, stiffness):
+    """Panels (low, high, coefficients) from a greatest energy to the least beside it."""
+    forth = stop > start
+    edges = np.concatenate([energy.edges[:-1] + turn * energy.period for turn in (-1, 0, 1, 2)])
+    low, high = min(start, stop), max(start, stop)
+    inner = edges[(edges > low + NARROWEST) & (edges < high - NARROWEST)]
+    marks = list(inner if forth else inner[::-1]) + [stop]
+    found, at, value = [], start, None
+    while marks:
+        nodes = at + (_T + 1.0) / 2.0 * (marks[0] - at)
+        inside = np.clip(nodes, *sorted((at + 1e-13 * (marks[0] - at), marks[0] - 1e-13 * (marks[0] - at))))
+        rest = 2.0 * (level - energy(inside)) / stiffness
+        x = _collocated(rest, marks[0] - at, mass / stiffness, value)
+        if x is None:
+            if abs(marks[0] - at) < NARROWEST:
+                raise ParameterError(_lifting(at))
+            marks.insert(0, (at + marks[0]) / 2)
+            continue
+        rows = _FIT @ x
+        _require_contact(nodes, x, marks[0] - at, slope(inside), forth)
+        mirrored = rows if forth else rows * (-1.0) ** np.arange(DEGREE + 1)
+        found.append((*sorted((at, marks[0])), mirrored))
+        at, value = marks.pop(0), x[-1]
+    return found
+
+
+def _collocated(rest, width, share, value):
+    """Stretch at the points of a panel, by x^2 + share x'^2 = rest and its `value` at the start; None: not resolved."""
+    rate = 2.0 / width * _RATE
+    x = _stepped(rest, width, share, value)
+    for _ in range(NEWTON):
+        fast = rate @ x
+        off = (x * x + share * fast * fast - rest) / 2.0
+        matrix = np.diag(x) + share * fast[:, None] * rate
+        if value is not None:
+            off[0], matrix[0] = x[0] - value, np.eye(x.size)[0]
+        try:
+            step = np.linalg.solve(matrix, off)
+        except np.linalg.LinAlgError:
+            return None
+        x = x - step
+        size = np.max(np.abs(x))
+        if not np.isfinite(size):
+            return None
+        if np.max(np.abs(step)) <= SETTLED * size * 30:
+            tail = np.max(np.abs((_FIT @ x)[-3:]))
+            return x if tail <= RESOLVED * size and np.all(x > 0.0) else None
+    return None
+
+
+def _stepped(rest, width, share, value):
+    """The same by implicit Euler steps from point to point: roughly, but from anywhere."""
+    x = [np.sqrt(max(rest[0], 0.0)) if value is None else value]
+    for step, there in zip(np.diff(_T) * width / 2.0, rest[1:], strict=True):
+        q = share / (step * step)
+        square = (1.0 + q) * there - q * x[-1] * x[-1]
+        x.append((q * x[-1] + np.sqrt(max(square, 0.0))) / (1.0 + q))
+    return np.array(x)
+
+
+def _require_contact(nodes, x, width, slope, forth):
+    """Raise if the spring is let out where the energy rises."""
+    rate = 2.0 / width * (_RATE @ x)
+    wrong = rate * slope
+    worst = int(np.argmax(wrong))
+    if wrong[worst] > ROUNDED * np.max(np.abs(rate)) * np.max(np.abs(slope)):
+        raise ParameterError(_lifting(nodes[worst]))
+
+
+def _lifting(angle):
+    return (
+        f"the roller would lift off near crank angle {np.degrees(angle) % 360:.6g} deg: no motion of the follower "
+        "balances and stays in contact; preload the spring more, or make the follower lighter or its travel shorter"
+    )

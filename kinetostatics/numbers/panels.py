@@ -1,0 +1,173 @@
+"""A periodic function as Chebyshev polynomials on panels, which grow narrower where it needs it and end at its kinks.
+
+As chebfun does (Battles and Trefethen, SIAM J. Sci. Comput. 25, 2004), by values at points inside the panels only, so
+that a jump at the end of one belongs to none. A kink or jump is found where panels would have to become tiny: it is
+between the curves that continue from both sides.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ..errors import ParameterError
+
+DEGREE = 16
+FIRST = 16
+"""Panels to begin with."""
+DEPTH = 14
+"""How many times one is halved before it is taken to hold a kink."""
+RESOLVED = 1e-12
+"""Last coefficients, relative to the largest value, from which on a panel is narrow enough."""
+MOST = 400
+"""Panels at once that may be too wide; a function with more of them is rough everywhere."""
+TAIL = 3
+BESIDE = 0.01
+"""Width of the panels, relative to the period, that continue a curve up to a kink."""
+_NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))[::-1]
+_FIT = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
+
+
+@dataclass(frozen=True, eq=False)
+class Panels:
+    """Chebyshev coefficients (panels, degree + 1) between `edges`, which rise and span one period."""
+
+    edges: np.ndarray
+    coefficients: np.ndarray
+
+    @classmethod
+    def of(cls, function, period, breaks=()):
+        """Panels of a function of arrays; `breaks` are places where a kink is known to be.
+
+        Raises
+        ------
+        ParameterError
+            It is not smooth between finitely many kinks.
+        """
+        edges = np.unique([*np.linspace(0.0, period, FIRST + 1), *np.mod(breaks, period)])
+        found, rough = _refined(function, edges)
+        if rough and len(rough) <= MOST:
+            kinks = [_kink(function, low, high, period) for low, high in rough]
+            found, rough = _refined(function, np.unique([*edges, *np.mod(kinks, period)]), 4 * DEPTH)
+        if rough:
+            low, high = rough[0]
+            raise ParameterError(
+                f"it is not smooth between finitely many kinks: not near {np.degrees(low):.6g} deg, where panels of "
+                f"{np.degrees(high - low):.2g} deg do not resolve it"
+            )
+        starts = sorted(found)
+        return cls(np.array([*starts, period]), np.array([found[start] for start in starts]))
+
+    @property
+    def period(self):
+        return float(self.edges[-1] - self.edges[0])
+
+    def __call__(self, angle):
+        """Values at places anywhere."""
+        return self.at(angle, 0)[0]
+
+    def at(self, angle, order):
+        """Value and derivatives up to an order at places anywhere, one after the other."""
+        angle = self.edges[0] + np.mod(np.asarray(angle, dtype=float) - self.edges[0], self.period)
+        place = np.clip(np.searchsorted(self.edges, angle, side="right") - 1, 0, len(self.coefficients) - 1)
+        start, width = self.edges[place], np.diff(self.edges)[place]
+        t, found = 2.0 * (angle - start) / width - 1.0, []
+        coefficients = self.coefficients
+        for power in range(order + 1):
+            found.append(_sum(coefficients[place], t) * (2.0 / width) ** power)
+            coefficients = chebyshev.chebder(coefficients, axis=1)
+        return tuple(found)
+
+    @property
+    def mean(self):
+        widths = np.diff(self.edges)
+        whole = chebyshev.chebint(self.coefficients, lbnd=-1, axis=1).sum(axis=1)
+        return float(whole @ widths) / (2.0 * self.period)
+
+    def plus(self, constant):
+        """The same and a constant."""
+        coefficients = self.coefficients.copy()
+        coefficients[:, 0] += constant
+        return Panels(self.edges, coefficients)
+
+    @property
+    def integral(self):
+        """Integral from the first edge on, of a function whose mean is 0."""
+        half = np.diff(self.edges)[:, None] / 2.0
+        found = chebyshev.chebint(self.coefficients, lbnd=-1, axis=1) * half
+        found[1:, 0] += np.cumsum(found.sum(axis=1))[:-1]
+        return Panels(self.edges, found)
+
+    @property
+    def roots(self):
+        """Places where it changes its sign, jumps among them, in order."""
+        found = []
+        for start, stop, coefficients in zip(self.edges[:-1], self.edges[1:], self.coefficients, strict=True):
+            t = chebyshev.chebroots(chebyshev.chebtrim(coefficients, 1e-14 * np.max(np.abs(self.coefficients))))
+            t = np.real(t[(np.abs(np.imag(t)) < 1e-7) & (np.abs(np.real(t)) <= 1.0 + 1e-7)])
+            found += [*(start + (np.clip(t, -1.0, 1.0) + 1.0) / 2.0 * (stop - start)), start]
+        places = np.unique(found)
+        middles = (places + np.append(places[1:], places[0] + self.period)) / 2.0
+        signs = np.sign(self(middles))
+        return places[signs != np.roll(signs, 1)]
+
+
+def _sum(coefficients, t):
+    """Clenshaw's recurrence with coefficients (N, degree + 1) at N places, of any shape."""
+    ahead = after = np.zeros_like(t)
+    for order in range(coefficients.shape[-1] - 1, 0, -1):
+        ahead, after = coefficients[..., order] + 2.0 * t * ahead - after, ahead
+    return coefficients[..., 0] + t * ahead - after
+
+
+def places(low, high):
+    """Where values of a panel are taken, rising."""
+    return low + (_NODES + 1.0) / 2.0 * (high - low)
+
+
+def _refined(function, edges, depth=DEPTH):
+    """Coefficients by the start of each panel, and those that stay rough, neighbours as one."""
+    waiting = list(pairwise(edges))
+    found: dict[float, np.ndarray] = {}
+    rough, size = [], 0.0
+    for level in range(depth + 1):
+        if not waiting:
+            break
+        low, high = np.array(waiting).T
+        values = function(places(low[:, None], high[:, None]).ravel()).reshape(len(waiting), -1)
+        size = max(size, float(np.max(np.abs(values))))
+        coefficients = values @ _FIT.T
+        smooth = np.max(np.abs(coefficients[:, -TAIL:]), axis=1) <= RESOLVED * size
+        found |= dict(zip(low[smooth], coefficients[smooth], strict=True))
+        left = [pair for pair, done in zip(waiting, smooth, strict=True) if not done]
+        if level == depth or len(left) > MOST:
+            rough = left
+            break
+        waiting = [half for a, b in left for half in ((a, (a + b) / 2), ((a + b) / 2, b))]
+    joined: list = []
+    for low, high in sorted(rough):
+        if joined and joined[-1][1] == low:
+            joined[-1][1] = high
+        else:
+            joined.append([low, high])
+    return found, joined
+
+
+def _kink(function, low, high, period):
+    """The place between two curves, by halving: which of them continues there."""
+    width = BESIDE * period
+    sides = []
+    for start, stop in ((low - width, low), (high, high + width)):
+        sides.append((start, stop, _FIT @ function(np.mod(places(start, stop), period))))
+    for _ in range(60):
+        middle = (low + high) / 2
+        if not low < middle < high:
+            break
+        value = function(np.mod(np.array([middle]), period))[0]
+        off = [
+            abs(value - chebyshev.chebval(2.0 * (middle - start) / (stop - start) - 1.0, row))
+            for start, stop, row in sides
+        ]
+        low, high = (middle, high) if off[0] <= off[1] else (low, middle)
+    return high
