@@ -159,7 +159,7 @@ class _Turned:
         stacked = np.vstack(rows) * (self.problem.high - self.problem.low)
         if not np.isfinite(stacked).all():
             return np.eye(self.start.size)
-        _, sizes, turns = np.linalg.svd(stacked, full_matrices=True)
+        _, sizes, turns = np.linalg.svd(stacked, full_matrices=len(stacked) < self.start.size)
         lengths = np.ones(self.start.size)
         lengths[: sizes.size] = np.maximum(sizes, 1.0)
         return turns.T / lengths

@@ -97,7 +97,7 @@ def test_scenes_that_no_file_can_hold_are_refused_before_the_search(tmp_path, ca
     ("sent", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "term")]
 )
 def test_a_search_ends_in_order_with_nothing_half_written(tmp_path, sent, status, word):
-    saw = saw_with(STIFFER.replace("angles = 72", "angles = 100000\nstarts = 1000"), tmp_path)
+    saw = saw_with(STIFFER.replace("angles = 72", "angles = 20000\nstarts = 1000"), tmp_path)
     command = [sys.executable, "-m", "kinetostatics", "design", str(saw), "--out", str(tmp_path / "found.toml")]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
     assert process.stderr is not None
