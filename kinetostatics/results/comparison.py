@@ -1,6 +1,6 @@
 """Dynamic coefficients: how much one mechanism's torque and forces exceed another's."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -31,10 +31,11 @@ class Comparison:
         """Extrema of the balancing torque of the reference, and the matching ones of the balanced mechanism, N m.
 
         To each extremum of the reference belongs the balanced one of the same kind (maximum or minimum) nearest in
-        crank angle; NaN if there is none.
+        crank angle; NaN if there is none. The two sides of a jump on a flank, as friction makes at dead centres, are
+        none of them.
         """
-        reference = extremes(self.reference, "balancing_torque")
-        balanced = extremes(self.balanced, "balancing_torque")
+        reference = _without_jumps(extremes(self.reference, "balancing_torque"))
+        balanced = _without_jumps(extremes(self.balanced, "balancing_torque"))
         return reference, _matched(reference, balanced)
 
     @cached_property
@@ -158,6 +159,17 @@ def _matched(reference, balanced):
         return np.full(len(reference), np.nan)
     nearest = np.argmin(distance, axis=1)
     return np.where(np.isfinite(distance.min(axis=1)), balanced.value[nearest], np.nan)
+
+
+def _without_jumps(found):
+    """Extrema but those that are the two sides of a jump between the extrema before and behind it."""
+    keep = np.ones(len(found), dtype=bool)
+    for second in np.flatnonzero(_side(found)) if len(found) > 2 else ():
+        sides = slice(second - 1, second + 1)
+        low, high = sorted((found.value[second - 2], found.value[(second + 1) % len(found)]))
+        if ((low < found.value[sides]) & (found.value[sides] < high)).all():
+            keep[sides] = False
+    return replace(found, angle=found.angle[keep], value=found.value[keep], maximum=found.maximum[keep])
 
 
 def _side(found):

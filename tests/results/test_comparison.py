@@ -29,3 +29,15 @@ def test_the_table_has_a_row_for_each_coefficient_with_its_unit():
     row = table.loc["mean |balancing torque|"]
     assert (row["unit"], row["ratio"]) == ("N m", pytest.approx(2.0))
     assert table.loc["power residual", ["reference", "balanced"]].max() < 1e-12
+
+
+def test_the_two_sides_of_a_jump_on_a_flank_are_no_extremum_to_match():
+    """Friction makes the torque jump at dead centres, where it falls or rises on."""
+    case = ks.load_case("sawframe_2r63_friction")
+    plain, cam = (case.variants[name].solve(360) for name in ("plain", "cam-cosine"))
+    assert len(ks.extremes(plain, "balancing_torque")) == 6
+    found = ks.compare(plain, cam)
+    reference, matched = found.torque_extremes
+    np.testing.assert_allclose(np.degrees(reference.angle), [39.025, 125.585, 233.765, 320.438], atol=1e-3)
+    assert (reference.value * matched > 0).all()
+    assert (found.torque_extremum_ratios > 6.0).all()
