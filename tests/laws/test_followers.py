@@ -38,6 +38,7 @@ def test_the_torque_from_forces_is_that_of_the_powers(kind):
 
 
 def test_the_compiled_engine_agrees():
+    pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     drive = scene(KINDS["roller, offset"]())
     plain, compiled = (drive.solve(ANGLES, engine=engine) for engine in ("numpy", "compiled"))
     name = "contact_force" + drive.mechanism.groups[-1].label
