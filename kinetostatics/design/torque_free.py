@@ -161,7 +161,7 @@ def torque_free_cam(
     require_reference(compared, output, asked)
     outputs = (output, *(limit.output for limit in asked))
     angles = max(FEWEST, ENOUGH * max(cosine, sine))
-    require_resolved(angles, (output, *(limit.output for limit in asked)))
+    require_resolved(angles, outputs)
     quantities = (TORQUE, POSITION, *(item.quantity for item in outputs))
     problem = Problem(start.machine, start.vary | dict(vary or {}), quantities, compared, angles, engine)
     _require_possible(problem, start)

@@ -1,4 +1,4 @@
-"""A property is computed when first read, and kept; so is one that nobody reads of an instance."""
+"""A property is computed when first read, and kept; its class shows what it is."""
 
 from kinetostatics.numbers.lazy import cached_property
 
