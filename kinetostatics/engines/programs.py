@@ -148,9 +148,14 @@ class Program:
         return self._by_numbers(np.array([angle]), numbers, (1,))[:, 0].tolist()
 
     def _by_short_loop(self, angle, numbers, shape):
+        """The same by the loop, with the sines that plain numbers have."""
+        return self._of_one_design(angle, numbers, shape, lambda angle: (np.sin(angle), np.cos(angle)))
+
+    def _of_one_design(self, angle, numbers, shape, turn):
         angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
-        parameters = np.array([_plain_numbers(numbers)], dtype=float)
-        self.loop(angle, np.sin(angle), np.cos(angle), parameters, loops.NO_ROWS, results)
+        parameters = loops.table_of_parameters(_plain_numbers(numbers), ())
+        sine, cosine = turn(angle)
+        loops.run(self.loop, angle, sine, cosine, parameters, loops.NO_ROWS, results)
         return results.reshape(-1, *shape)
 
     def _by_numbers(self, angle, numbers, shape):
@@ -166,12 +171,7 @@ class Program:
     def by_loop(self, angle, numbers, rows, shape):
         """The same by the compiled loop."""
         if len(shape) == 1 and not rows:
-            results = np.empty((1, len(self.outputs), *shape))
-            angles = np.ascontiguousarray(angle.reshape(1, -1))
-            sine, cosine = loops.turn(angles)
-            parameters = loops.table_of_parameters(numbers, ())
-            loops.run(self.loop, angles, sine, cosine, parameters, loops.NO_ROWS, results)
-            return results[0]
+            return self._of_one_design(angle, numbers, shape, loops.turn)
         parameters = loops.table_of_parameters(numbers, shape[:-1])
         designs = len(parameters)
         own = math.prod(angle.shape[:-1]) > 1
