@@ -95,3 +95,7 @@ def __getattr__(name):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     found = globals()[name] = getattr(import_module(f"{__name__}.{_WHERE[name]}"), name)
     return found
+
+
+def __dir__():
+    return __all__

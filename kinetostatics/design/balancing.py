@@ -305,3 +305,7 @@ def _refuse_massless(mechanism):
         raise ParameterError(f"balancing works on one design at a time, got a batch of shape {mechanism.batch}")
     if not np.any(principal_points(mechanism).mass):
         raise ParameterError(f"the {mechanism.name} has no mass: there is nothing to balance")
+
+
+def __dir__():
+    return __all__

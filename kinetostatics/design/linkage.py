@@ -17,6 +17,18 @@ from ..numbers.planar import cross, dot
 from ..results.extremes import extremes
 from . import shapes
 
+__all__ = [
+    "Grashof",
+    "Swing",
+    "chain_unit",
+    "chain_unit_angle",
+    "characteristics",
+    "grashof",
+    "rocker_angle",
+    "swing",
+    "transmission_angle",
+]
+
 QUARTER, WHOLE = pi / 2, ((0.0, 2 * pi),)
 CHANGE_POINT = 1e-12
 """Difference of the sums of lengths, relative to them, below which a four-bar can reach a change point."""
@@ -315,3 +327,7 @@ def characteristics(solutions, reference):
     ]:
         table.loc[f"{ratio} to {reference}"] = table.loc[quantity] / table.loc[quantity, reference]
     return table
+
+
+def __dir__():
+    return __all__

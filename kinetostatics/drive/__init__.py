@@ -34,3 +34,7 @@ from .trajectory import Event, Trajectory
 from .transient import coast, start
 
 __all__ = ["Event", "Flywheel", "Motor", "Running", "Trajectory", "coast", "flywheel", "start", "steady"]
+
+
+def __dir__():
+    return __all__

@@ -196,3 +196,7 @@ class CosineLaw(checks.Checked, Cam):
         by_c = (w - 1.0) * g
         by_c_twice = k * g * (2.0 - w * (2.0 - g / root))
         return singular * root - c * excess, -s * by_c, s * s * by_c_twice - c * by_c
+
+
+def __dir__():
+    return __all__

@@ -13,7 +13,7 @@ from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .crank import Crank
-from .friction import Turning
+from .friction import Turning, kind_for
 from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved, smaller
 from .links import Wrench, arm, present
 
@@ -152,6 +152,11 @@ class Mechanism(Batched):
                 still = whole.get(pair.link, pair.link) == whole.get(against, against)
                 found[name] = pair._replace(against=pair.link if still else against)
         return found
+
+    @property
+    def friction_kinds(self):
+        """Kind of friction that each joint may have, by its name in `friction`: `PinFriction`, `GuideFriction` ..."""
+        return {name: kind_for(pair) for name, pair in self.pairs.items()}
 
     @property
     def _wholes(self):

@@ -8,9 +8,33 @@ from ..errors import MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
 from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
-from .methods import METHODS
-from .methods.certified import certified, relative_errors
+from .driving import study_motion, study_running
+from .methods import METHODS, Method
+from .methods.certified import Enclosure, certified, enclosure, relative_errors
+from .methods.motion import BENCHMARKS
+from .methods.motion import METHODS as MOTION_METHODS
+from .methods.running import METHODS as RUNNING_METHODS
 from .timing import circumstances, seconds
+
+__all__ = [
+    "BENCHMARKS",
+    "METHODS",
+    "MOTION_METHODS",
+    "RUNNING_METHODS",
+    "Enclosure",
+    "Method",
+    "case_study",
+    "certified",
+    "circumstances",
+    "components",
+    "enclosure",
+    "front",
+    "relative_errors",
+    "seconds",
+    "study",
+    "study_motion",
+    "study_running",
+]
 
 QUANTITY = "balancing_torque"
 BETTER_THAN = 1e-6
@@ -128,3 +152,7 @@ def kinds(case):
         parts = tuple(type(part) for group in variant.mechanism.groups for part in (group, *vars(group).values()))
         found.setdefault((variant.mechanism.name, parts), name)
     return list(found.values())
+
+
+def __dir__():
+    return __all__

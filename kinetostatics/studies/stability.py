@@ -174,3 +174,7 @@ def write(folder, places=PLACES, progress=None, page=None):
             frame.assign(**circumstances()).to_csv(temporary, index=False)
         paths.append(path)
     return [*paths, *(page(table, folder / "stability") if page else ())]
+
+
+def __dir__():
+    return __all__

@@ -14,6 +14,15 @@ from ..numbers import checks
 from ..numbers.headings import heading
 from ..numbers.spreads import LARGEST, axis, distributions, read
 
+__all__ = [
+    "distributions",
+    "grid",
+    "latin_hypercube",
+    "random",
+    "sample",
+    "sobol",
+]
+
 
 def grid(spreads) -> pd.DataFrame:
     """Every combination of evenly spaced values, the last parameter running fastest.
@@ -105,3 +114,7 @@ def _require_room(count, parameters):
 def columns(found):
     """Headings of parameters with units, from pairs that end with the unit, by parameter."""
     return [heading(name, unit) for name, (_, unit) in found.items()]
+
+
+def __dir__():
+    return __all__

@@ -5,7 +5,7 @@ import numpy as np
 from .canvas import INK, axes, display, styled
 
 
-def speed(runs, ax=None):
+def crank_speed(runs, ax=None):
     """Crank speed over the crank angle, its mean dotted; of a mapping of label to Running."""
     ax = axes(ax)
     for name, run, style in styled(runs):
@@ -15,7 +15,7 @@ def speed(runs, ax=None):
     return _finished(ax)
 
 
-def torques(run, ax=None):
+def drive_torques(run, ax=None):
     """Torques at the crank over the crank angle: of the motor, of the machine with its inertia, of the loads alone."""
     ax = axes(ax)
     ratio = 1.0 if run.motor is None else run.motor.transmission

@@ -20,6 +20,7 @@ from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressu
 from .canvas import INK, axes, closed, display, finished, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
+from .drives import crank_speed, drive_torques, energy_flow
 from .fronts import front
 from .labels import label
 from .lost_power import losses, lost_power
@@ -27,12 +28,16 @@ from .lost_power import losses, lost_power
 __all__ = [
     "acceleration_error",
     "animation",
+    "before_and_after",
     "cam_curvature",
     "cam_force",
     "cam_pressure_angle",
     "cam_profile",
     "chain_unit_motion",
     "contact_pressure",
+    "crank_speed",
+    "drive_torques",
+    "energy_flow",
     "error_by_distance",
     "front",
     "hodograph",
@@ -232,6 +237,23 @@ def shaking_force(solutions, by="direction", ax=None):
     return ax
 
 
+def before_and_after(found):
+    """Before and after a search: cam, torque, support reaction.
+
+    Parameters
+    ----------
+    found : Found
+        As `ks.design.torque_free_cam` and `ks.design.optimise` return it.
+
+    Returns
+    -------
+    Figure
+    """
+    from .designs import page
+
+    return page(found)
+
+
 def _require_turning(named):
     still = [name for name, solution in named.items() if np.any(np.asarray(solution.crank_speed) == 0)]
     require(
@@ -276,3 +298,7 @@ def _shared(degrees, points, near):
         labels.setdefault(first, []).append(f"{degrees[row]:.4g}°")
     for row, names in labels.items():
         yield ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}", points[:, row]
+
+
+def __dir__():
+    return __all__

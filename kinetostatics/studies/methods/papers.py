@@ -219,3 +219,7 @@ def _prepared(formulas):
 METHODS = (Method("papers' formulas", _prepared(by_the_papers)),)
 AS_PRINTED = Method("sawframe study as printed, wrong sign", _prepared(as_printed))
 """Apart from the others, which are right but for rounding: its error, a fifth, is that of one sign."""
+
+
+def __dir__():
+    return __all__
