@@ -3,7 +3,8 @@
 Call first
     >>> import kinetostatics as ks
     >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))  # m, kg, m, kg m2
-    >>> s = ks.solve(saw, 360, crank_speed=33.5, loads=[ks.Gravity()])  # 360 crank angles of a turn, rad/s
+    >>> scene = ks.Scene(saw, crank_speed=33.5, loads=[ks.Gravity()])  # rad/s
+    >>> s = scene.solve(360)  # at 360 crank angles of a turn
     >>> s.balancing_torque.shape, s.reaction("O").shape  # N m; N, x and y
     ((360,), (2, 360))
     >>> print(f"{ks.extremes(s, 'O').largest:.0f} N")  # the peak, between samples
