@@ -121,10 +121,10 @@ class DriveError(KinetostaticsError, ValueError):
     >>> import kinetostatics as ks
     >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 1.0, loads=[ks.Gravity(), ks.ProcessForce(9e3)])
     >>> try:
-    ...     ks.drive.start(saw, ks.drive.Motor.constant(500.0), 1000.0, from_angle=1.57)
+    ...     ks.drive.start(saw, ks.drive.Motor.linear(500.0, 50.0), 1000.0, from_angle=1.57)
     ... except ks.DriveError as error:
     ...     print(round(error.missing))
-    ?
+    2200
     """
 
     def __init__(self, message, missing=float("nan"), crank_angle=float("nan")):

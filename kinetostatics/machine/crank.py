@@ -38,6 +38,14 @@ class Crank(checks.Checked):
     """Crank of a given length with pin A at its end; `length=None` makes it the slotted guide of a `CamRoller`.
 
     The angle of the crank ray is the crank angle, from +x, counter-clockwise.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> crank = ks.Crank(0.3, ks.Link(mass=40.0, centre=-0.05))  # a weight behind O
+    >>> saw = ks.Mechanism("saw", crank, (ks.SliderGroup(2.0),))
+    >>> saw.links["crank"].mass
+    40.0
     """
 
     length: Any = None

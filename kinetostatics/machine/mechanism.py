@@ -63,6 +63,20 @@ class Mechanism(Batched):
     groups : tuple
         `CamRoller`, `SliderGroup`, `Pin` ...; each hangs on a joint, or a pin on a link, that the crank or an earlier
         group has placed.
+
+    Examples
+    --------
+    Two pistons on one crank pin, at right angles:
+
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> left, right = (
+    ...     ks.SliderGroup(0.2, guide=ks.Guide.at(angle), slider=ks.Link(0.5), pin=pin, label=label)
+    ...     for angle, pin, label in [(0.75 * np.pi, "B", ""), (0.25 * np.pi, "C", "2")]
+    ... )
+    >>> twin = ks.Mechanism("V twin", ks.Crank(0.05), (left, right))
+    >>> list(twin.links), list(twin.outputs)
+    (['crank', 'coupler', 'slider', 'coupler2', 'slider2'], ['A2', 'C', 'guide2', 'guide_force2', 'guide_moment2', 'A', 'B', 'guide', 'guide_force', 'guide_moment', 'O', 'balancing_torque'])
     """
 
     name: str

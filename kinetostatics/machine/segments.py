@@ -19,7 +19,16 @@ POLYNOMIALS = {"3-4-5": (3, 4, 5), "4-5-6-7": (4, 5, 6, 7)}
 
 @dataclass(frozen=True, eq=False)
 class Segment:
-    """A part of a turn in which the position goes from `start` to `end`, m, in `angle`, rad, by a curve."""
+    """A part of a turn in which the position goes from `start` to `end`, m, in `angle`, rad, by a curve.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> rise = ks.laws.cycloidal(1.7, 2.3, np.pi)
+    >>> [round(float(part), 6) for part in rise.at(np.pi / 2)]
+    [2.0, 0.381972, 0.0, -0.763944]
+    """
 
     start: float
     end: float
