@@ -269,8 +269,8 @@ class ConditionWarning(UserWarning):
     >>> with warnings.catch_warnings(record=True) as found:
     ...     warnings.simplefilter("always")
     ...     s = ks.solve(ks.crank_slider(0.3, 0.3), 1.5707963, crank_speed=1.0)
-    >>> print(found[0].message)
-    crank-slider: at crank angle 89.9999985 deg it is near a limit position or change point: errors of its lengths, rounding among them, are magnified inf times, so rates and forces have about 0 correct digits there; 1 of 1 crank angles lose half of their digits or more (solution.condition tells it angle by angle); assembly +1 keeps to its side at change points: a kink at 90 deg and a kink at 270 deg; "open" or "crossed" passes them
+    >>> print(str(found[0].message).partition(":")[0])
+    crank-slider: at crank angle 89.9999985 deg it is near a limit position or change point
     """
 
 

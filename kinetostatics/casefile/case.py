@@ -34,7 +34,32 @@ CAM_FORCE = ("smallest cam force", "largest cam force")
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """A scene of a case file, what the file says of it, and how it was balanced if it was."""
+    """A scene of a case file, what the file says of it, and how it was balanced if it was.
+
+    Of a case it is ``case.variants["plain"]``; the scene is what its file says in numbers, ready to be solved.
+
+    Attributes
+    ----------
+    scene : Scene
+    table : pydantic model
+        Its table of the file, checked.
+    balanced : Balanced or None
+        How the file's counterweights were found.
+    folder : Path
+        Of the file.
+    tabulated : mapping of keys to what was read
+        From files beside the case file: cams, tables. They are not read again.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63").variants["cam-circle"]
+    >>> saw.parameters["slider.mass"], saw.units["slider.mass"]
+    (600.0, 'kg')
+    >>> heavier = saw.varied({"slider.mass": 620.0})  # its spring balances the slider, so it follows
+    >>> round(heavier.loads[1].stiffness / saw.loads[1].stiffness, 6)
+    1.033333
+    """
 
     scene: Scene
     table: schema.MechanismVariant = field(repr=False)
@@ -159,6 +184,15 @@ class Case:
         How parameters spread, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
     designs : mapping of name to Design
         What the file wants to be found; `.find()` does.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> case = ks.load_case("sawframe_2r63")
+    >>> list(case.variants), case.reference
+    (['plain', 'cam-circle', 'cam-cosine'], 'plain')
+    >>> round(case.compare("plain", "cam-cosine").mean_torque_ratio, 3)
+    6.778
     """
 
     title: str
@@ -263,6 +297,14 @@ def load_case(path) -> Case:
         of units.
     UserWarning
         A sampled cam is noisy, or a file has the name of the shipped case that is read.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63").variants["plain"]
+    >>> s = saw.solve(360)
+    >>> print(f"{ks.extremes(s, 'O').largest:.0f} N")
+    286772 N
     """
     path, raw = reading.read(reading.place(path))
     head, problems = reading.validated(schema.CaseTable, raw, lambda keys: keys)

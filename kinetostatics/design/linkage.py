@@ -55,6 +55,13 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     ------
     ParameterError
         The coupler is shorter than the crank, so the parallel start is not possible.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> unit = ks.linkage.chain_unit(0.1, 1.0, 0.5)  # in lengths of the coupler
+    >>> [round(float(part), 6) for part in unit.groups[0].pivot]
+    [0.994987, -0.5]
     """
     checks.require(
         "chain unit",
@@ -75,13 +82,46 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
 
 
 def chain_unit_angle(angle):
-    """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad."""
+    """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad.
+
+    Parameters
+    ----------
+    angle : float or array
+        rad.
+
+    Returns
+    -------
+    float or array
+        rad.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> np.degrees(ks.linkage.chain_unit_angle(np.radians([0.0, 90.0, 120.0]))).round(9)
+    array([ 90.,   0., -30.])
+    """
     checks.require("chain unit", checks.table("angle", angle))
     return QUARTER - np.asarray(angle)
 
 
 def rocker_angle(solution, start=QUARTER):
-    """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad."""
+    """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of a four-bar.
+    start : float
+        rad; where crank and rocker of the chain unit are parallel unless told.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), 0.0, crank_speed=1.0)
+    >>> round(float(ks.linkage.rocker_angle(s)), 4)
+    0.2115
+    """
     link = _bars_of(solution).rocker.link
     checks.require("rocker_angle", checks.finite("start", start))
     here, before = (at.placement.links[link].direction for at in (solution, solution.at(start)))
@@ -89,7 +129,21 @@ def rocker_angle(solution, start=QUARTER):
 
 
 def transmission_angle(solution):
-    """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi."""
+    """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of a four-bar.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), 0.0, crank_speed=1.0)
+    >>> np.degrees(ks.extremes(s, ks.linkage.transmission_angle).range).round(3)
+    array([ 77.132, 102.868])
+    """
     bars, links = _bars_of(solution), solution.placement.links
     coupler, rocker = (links[bar.link].direction for bar in (bars.coupler, bars.rocker))
     return np.arctan2(abs(cross(coupler, rocker)), dot(coupler, rocker))
@@ -105,6 +159,14 @@ class Swing:
         Extreme rocker angles psi, rad.
     largest_at, smallest_at : float
         Crank angles where they are reached, rad, as the library counts them.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.linkage.chain_unit(0.5, 1.0, 0.8), 0.0, crank_speed=1.0)
+    >>> found = ks.linkage.swing(s)
+    >>> round(found.range, 6), round(found.asymmetry, 6)
+    (1.350263, 0.565195)
     """
 
     largest: float
@@ -146,6 +208,15 @@ def swing(solution, start=QUARTER):
     Returns
     -------
     Swing
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), 0.0, crank_speed=1.0)
+    >>> found = ks.linkage.swing(s)
+    >>> [round(float(np.degrees(angle)), 3) for angle in (found.smallest, found.largest)]
+    [-10.957, 12.117]
     """
     bars = _bars_of(solution)
     found_class = grashof(solution.mechanism)
@@ -172,6 +243,12 @@ class Grashof:
         Joints whose two links turn fully against each other.
     intervals : tuple of (float, float)
         Crank-angle intervals in which it closes, rad, start in [0, 2 pi); one whole turn if the crank turns fully.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> ks.linkage.grashof(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)))
+    Grashof(kind='crank-rocker', turning_joints=('O', 'A'), intervals=((0.0, 6.283185307179586),))
     """
 
     kind: str
@@ -198,6 +275,13 @@ def grashof(mechanism):
     Returns
     -------
     Grashof
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> found = ks.linkage.grashof(ks.four_bar(0.4, 0.3, 0.35, rocker_pivot=(0.3, 0.0)))
+    >>> found.kind, [[round(end, 4) for end in interval] for interval in found.intervals]
+    ('triple-rocker', [[3.9104, 8.656]])
     """
     crank, coupler, rocker, pivot = four_bar_of(mechanism)
     frame = np.hypot(*pivot)
@@ -297,6 +381,13 @@ def characteristics(solutions, reference):
     ------
     ParameterError
         There is no such reference, or a solution is of something else or of a crank that stands still.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> units = {f"rho {rho}": ks.solve(ks.linkage.chain_unit(rho, 1.0, 0.5), 0.0, crank_speed=1.0) for rho in (0.1, 0.2)}
+    >>> ks.linkage.characteristics(units, "rho 0.1").loc["amplitude ratio to rho 0.1"].round(4).to_dict()
+    {'rho 0.1': 1.0, 'rho 0.2': 2.1452}
     """
     import pandas as pd
 
