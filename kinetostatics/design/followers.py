@@ -30,6 +30,16 @@ class Surge(NamedTuple):
         Times it swings in a turn of the crank at the solution's mean speed.
     amplitudes : array
         Of the spring's end by order, m; the first is its mean, orders count turns.
+
+    Examples
+    --------
+    As `ks.design.spring_surge` returns it.
+
+    >>> import kinetostatics as ks
+    >>> at_work = ks.solve(ks.crank_slider(0.1, 0.3), 0.5, crank_speed=10.0, loads=ks.Spring(2e3, 0.3))
+    >>> found = ks.design.spring_surge(at_work, 0.5)
+    >>> print(f"{found.natural_frequency:.1f} rad/s, {found.order:.2f} swings a turn")
+    198.7 rad/s, 19.87 swings a turn
     """
 
     natural_frequency: float

@@ -25,6 +25,16 @@ class Front:
     designs : tuple of Found
     before : (float, float)
         Outputs of the source.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> spring = ks.Spring(600e3, free_position=2.0)
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
+    >>> vary = {"spring.stiffness": (100e3, 900e3)}
+    >>> found = ks.design.pareto(saw, vary, ("largest_absolute B", "rms balancing_torque"), points=3, angles=90)
+    >>> found.outputs, len(found.designs)
+    (('largest_absolute B', 'rms balancing_torque'), 3)
     """
 
     outputs: tuple[str, str]

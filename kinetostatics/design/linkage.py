@@ -385,7 +385,8 @@ def characteristics(solutions, reference):
     Examples
     --------
     >>> import kinetostatics as ks
-    >>> units = {f"rho {rho}": ks.solve(ks.linkage.chain_unit(rho, 1.0, 0.5), 0.0, crank_speed=1.0) for rho in (0.1, 0.2)}
+    >>> units = {f"rho {rho}": ks.linkage.chain_unit(rho, 1.0, 0.5) for rho in (0.1, 0.2)}
+    >>> units = {name: ks.solve(unit, 0.0, crank_speed=1.0) for name, unit in units.items()}
     >>> ks.linkage.characteristics(units, "rho 0.1").loc["amplitude ratio to rho 0.1"].round(4).to_dict()
     {'rho 0.1': 1.0, 'rho 0.2': 2.1452}
     """

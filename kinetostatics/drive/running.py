@@ -31,6 +31,16 @@ class Running:
         All inertia on the crank besides the links, that of the motor's rotor with it, kg m2.
     crank_angle : array (..., N)
         rad.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> work = ks.ProcessForce(ks.Table([0.15, 0.25], [-200.0, -200.0], over="travel", back=[0.0, 0.0]))
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=work)
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> run = ks.drive.steady(pump, motor, flywheel=0.05)
+    >>> print(f"{run.mean_power:.1f} W mean, {run.peak_power:.1f} W peak; {run.energy_per_turn:.4f} J a turn")
+    325.8 W mean, 563.8 W peak; 20.0000 J a turn
     """
 
     scene: Scene

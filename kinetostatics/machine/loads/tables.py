@@ -137,7 +137,7 @@ class Table:
         Examples
         --------
         >>> import kinetostatics as ks
-        >>> diagram = ks.shipped_cases()["compressor"].parent / "compressor_indicator.csv"  # travel [mm], pressure [bar] ...
+        >>> diagram = ks.shipped_cases()["compressor"].parent / "compressor_indicator.csv"  # travel [mm] ...
         >>> pressure = ks.ProcessForce(ks.Table.from_csv(diagram, area=-20e-4))
         >>> pump = ks.crank_slider(0.05, 0.198, slider=ks.Link(1.2))
         >>> s = ks.solve(pump, 0.1, crank_speed=100.0, loads=[pressure])
