@@ -173,6 +173,16 @@ def starting_torque(solution):
 
     Springs and weights must be overcome, and friction; inertia is not. Without sign.
 
+    Parameters
+    ----------
+    solution : Solution
+        Of one design; its crank angles do not matter, its speed only for its sense.
+
+    Returns
+    -------
+    Peak
+        ``.value``, N m, at ``.angle``, rad.
+
     Examples
     --------
     >>> import kinetostatics as ks

@@ -49,12 +49,14 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Parameters
     ----------
     source, vary, limits, variant, reference, starts, seed
-        As for `optimise`, as are `angles`, `engine` and `progress`.
+        As for `optimise`.
     minimise : (str, str)
         Two outputs; a "-" in front of one makes it greatest: ("largest_absolute cam_force", "-ratio mean_absolute
         balancing_torque").
     points : int
         Designs on the front, at least 2: evenly between the ends, by the second output, of a ratio by its logarithm.
+    **options
+        `angles`, `engine` and `progress` of `optimise`.
 
     Returns
     -------

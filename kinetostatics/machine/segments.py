@@ -102,9 +102,20 @@ def harmonic(start, end, angle):
 
 
 def cycloidal(start, end, angle):
-    """Segment: cycloidal motion, a sine of acceleration; parameters as for `harmonic`.
+    """Segment: cycloidal motion, a sine of acceleration.
 
     Peak velocity 2, acceleration 2 pi, jerk 4 pi^2 of a stroke of 1 in an angle of 1.
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
 
     Examples
     --------
@@ -116,7 +127,18 @@ def cycloidal(start, end, angle):
 
 
 def modified_sine(start, end, angle):
-    """Segment: modified sine, low velocity (Neklutin); parameters as for `harmonic`.
+    """Segment: modified sine, low velocity (Neklutin).
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
 
     Examples
     --------
@@ -128,7 +150,18 @@ def modified_sine(start, end, angle):
 
 
 def modified_trapezoid(start, end, angle):
-    """Segment: modified trapezoid, low acceleration (Neklutin); parameters as for `harmonic`.
+    """Segment: modified trapezoid, low acceleration (Neklutin).
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
 
     Examples
     --------

@@ -169,6 +169,19 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     ------
     NotGivenError
         No study has formulas for it.
+
+    Returns
+    -------
+    Solution
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> plain, circle = (saw.solve(name, 8) for name in ("plain", "cam-circle"))
+    >>> theirs = ks.papers.by_the_papers(plain)
+    >>> bool(abs(theirs.balancing_torque - plain.balancing_torque).max() < 1e-9)  # N m
+    True
     """
     given = {field.name: getattr(solution, field.name) for field in fields(Solution)}
     mechanism = replace(solution.mechanism, groups=_groups(solution.mechanism, sign))
@@ -179,6 +192,31 @@ def exactly_cancelled(solution):
     """The solution with a force that cancels the slider's inertia exactly, at every position, in place of the springs.
 
     So the sawframe study calculates, as if the circular cam gave the cosine law of motion that springs need for it.
+
+    Parameters
+    ----------
+    solution : Solution
+        With springs.
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    NotGivenError
+        It has no spring.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> plain, circle = (saw.solve(name, 8) for name in ("plain", "cam-circle"))
+    >>> cancelled = ks.papers.exactly_cancelled(circle)
+    >>> for solution in circle, cancelled:  # along the guide nothing is left for the slider's pin
+    ...     print(f"{abs(solution.reaction('B')[0]).max():.0f} N")
+    3941 N
+    0 N
     """
     others = tuple(load for load in solution.loads if not isinstance(load, Spring))
     if len(others) == len(solution.loads):
@@ -191,6 +229,28 @@ def as_printed(solution):
     """The solution by the sawframe study's equations to the letter: exact cancellation, and its sign in the slot force.
 
     Not right mechanics: it gives the study's dynamic coefficients, and fails the balance of powers.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of the saw with its circular cam and springs.
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    NotGivenError
+        The solution is of another machine.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> plain, circle = (saw.solve(name, 8) for name in ("plain", "cam-circle"))
+    >>> ks.papers.as_printed(circle).power_residual > 0.1 > 1e-12 > circle.power_residual  # it makes power of nothing
+    np.False_
     """
     mechanism = solution.mechanism
     cams = [type(group.cam).__name__ for group in mechanism.groups if isinstance(group, CamRoller)]
