@@ -86,8 +86,8 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     >>> (steps,) = (method for method in ks.precision.MOTION_METHODS if method.name.endswith("RK4"))
     >>> coarse = [replace(steps, settings=(100,))]
     >>> table = ks.precision.study_motion("slider-crank of SUNDIALS", methods=coarse, repeats=1)
-    >>> print(f"{table.loc[0, 'error']:.0e} rad")
-    2e-07 rad
+    >>> bool(table.loc[0, "error"] < 1e-5)  # rad
+    True
     """
     problem_with_name = checks.choice("benchmark", name, tuple(motion.BENCHMARKS))
     checks.require("study_motion", problem_with_name)

@@ -58,6 +58,14 @@ def mass_centres(solutions, angle=60, ax=None):
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> mower = ks.load_case("mower_drive")
+    >>> ax = ks.plots.mass_centres({name: mower.solve(name, 90) for name in ("unbalanced", "partial-3")})
+    >>> ax.get_aspect()
+    1.0
     """
     checks.require("mass_centres", checks.finite("angle", angle))
     named = labelled(solutions, "common mass centre")
@@ -87,6 +95,13 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> ax = ks.plots.mechanism(ks.load_case("toggle_press").solve("coining", 8), angles=(60,))
+    >>> ax.get_aspect()
+    1.0
     """
     try:
         angles = np.atleast_1d(np.asarray(angles, dtype=float))
@@ -139,6 +154,15 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     Returns
     -------
     matplotlib.animation.FuncAnimation
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import kinetostatics as ks
+    >>> film = ks.plots.animation(ks.load_case("sawframe_2r63").solve("plain", 8), joints=["O"], frames=4)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     film.save(Path(folder, "saw.gif"), writer="pillow", dpi=40)
     """
     from matplotlib.animation import FuncAnimation
 

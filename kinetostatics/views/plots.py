@@ -72,6 +72,15 @@ def over_turn(solutions, quantity, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> solutions = {name: saw.solve(name, 90) for name in ("plain", "cam-cosine")}
+    >>> ax = ks.plots.over_turn(solutions, "slider_velocity")
+    >>> ax.get_xlabel(), len(ax.get_legend().get_texts())
+    ('crank angle [deg]', 2)
     """
     ax = axes(ax)
     named = labelled(solutions, quantity)
@@ -84,17 +93,72 @@ def over_turn(solutions, quantity, ax=None):
 
 
 def torque(solutions, ax=None):
-    """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a)."""
+    """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> solutions = {name: saw.solve(name, 90) for name in ("plain", "cam-cosine")}
+    >>> ax = ks.plots.torque(solutions)
+    >>> ax.get_xlabel()  # ax.figure.savefig("torque.svg") keeps it
+    'crank angle [deg]'
+    """
     return over_turn(solutions, "balancing_torque", ax)
 
 
 def cam_force(solutions, ax=None):
-    """Force of the cam on the roller over the crank angle (figure 6b)."""
+    """Force of the cam on the roller over the crank angle (figure 6b).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        With a cam roller.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ks.plots.cam_force(saw.solve("cam-circle", 90)).get_xlabel()
+    'crank angle [deg]'
+    """
     return over_turn(solutions, "cam_force", ax)
 
 
 def pressure_angle(solutions, ax=None):
-    """Pressure angle of the cam pair over the crank angle (figure 5)."""
+    """Pressure angle of the cam pair over the crank angle (figure 5).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        With a cam roller.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ks.plots.pressure_angle(saw.solve("cam-circle", 90)).get_xlabel()
+    'crank angle [deg]'
+    """
     return over_turn(solutions, "pressure_angle", ax)
 
 
@@ -104,6 +168,24 @@ def acceleration_error(solutions, ax=None, slider=None):
     With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
     -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. The only slider, or that without a
     label, is meant unless told.
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        With a slider.
+    ax : Axes, optional
+    slider : str, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ks.plots.acceleration_error(saw.solve("cam-circle", 90)).get_xlabel()
+    'crank angle [deg]'
     """
     ax = axes(ax)
     named = labelled(solutions, "slider acceleration")
@@ -136,6 +218,14 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ax = ks.plots.hodograph(saw.solve("plain", 90), "O", marks=60)
+    >>> ax.get_aspect()
+    1.0
     """
     require("hodograph", problem("marks", marks, low=LEAST_MARKS))
     ax = axes(ax)
@@ -180,6 +270,13 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.linkage.chain_unit(0.1, 1.0, 0.5), 1.0).solve(90)
+    >>> ks.plots.chain_unit_motion(s, "rocker").get_xlabel()
+    'crank angle from +y, clockwise [deg]'
     """
     require(
         "chain_unit_motion",
@@ -219,6 +316,14 @@ def shaking_force(solutions, by="direction", ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> mower = ks.load_case("mower_drive")
+    >>> ax = ks.plots.shaking_force({name: mower.solve(name, 90) for name in ("unbalanced", "partial-3")})
+    >>> ax.name
+    'polar'
     """
     require("shaking_force", choice("by", by, ("direction", "crank angle")))
     if ax is None:
@@ -248,6 +353,14 @@ def before_and_after(found):
     Returns
     -------
     Figure
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> found = ks.design.torque_free_cam(ks.load_case("sawframe_2r63"), cosine=2, gravity=False)
+    >>> figure = ks.plots.before_and_after(found)
+    >>> len(figure.axes)
+    6
     """
     from .designs import page
 
