@@ -70,22 +70,27 @@ class Variant:
 
     @property
     def mechanism(self):
+        """Crank and groups."""
         return self.scene.mechanism
 
     @property
     def friction(self):
+        """Friction by joint."""
         return self.scene.friction
 
     @property
     def crank_speed(self):
+        """rad/s."""
         return self.scene.crank_speed
 
     @property
     def crank_acceleration(self):
+        """rad/s2."""
         return self.scene.crank_acceleration
 
     @property
     def loads(self):
+        """Loads, a tuple."""
         return self.scene.loads
 
     @cached_property

@@ -92,6 +92,7 @@ class TorqueBalancing:
 
     @cached_property
     def largest_contact_force(self) -> Peak:
+        """N, and the crank angle."""
         return highest(self._contact_force)
 
     @property

@@ -112,7 +112,14 @@ class Motor:
 
     @staticmethod
     def constant(torque, *, transmission=1.0, inertia=0.0) -> "Motor":
-        """Motor of the same torque at every speed, N m at its shaft; not 0, negative brakes.
+        """Motor of the same torque at every speed.
+
+        Parameters
+        ----------
+        torque : float
+            N m at the motor's shaft; not 0, negative brakes.
+        transmission, inertia
+            As for `kloss`.
 
         Examples
         --------

@@ -39,6 +39,18 @@ class Crank(checks.Checked):
 
     The angle of the crank ray is the crank angle, from +x, counter-clockwise.
 
+    Parameters
+    ----------
+    length : float or array, optional
+        O to A, m; arrays of shape (designs, 1) make a batch.
+    link : Link
+        Mass properties; reference joint O, along the crank ray.
+
+    Raises
+    ------
+    ParameterError
+        The length is not finite, or not greater than 0.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -87,10 +99,12 @@ class Crank(checks.Checked):
 
     @property
     def reaches(self):
+        """Length of the crank, if it has one, for a first look at the condition."""
         return () if self.length is None else (self.length,)
 
     @property
     def lengths(self):
+        """All lengths it has, the place of its mass centre among them, for a first look at the condition."""
         return (*self.link.centre, 0.0 if self.length is None else self.length)
 
     @property

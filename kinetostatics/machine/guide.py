@@ -150,6 +150,7 @@ class Guide(checks.Checked):
 
     @cached_property
     def line(self):
+        """The guide as kernels take it."""
         return Line(None if self.is_level else self.direction, present(self.guide_offset))
 
 

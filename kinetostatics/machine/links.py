@@ -104,6 +104,7 @@ class Link(checks.Checked):
 
     @cached_property
     def body(self):
+        """The numbers as kernels take them: None is a zero that costs nothing."""
         return Body(*map(present, (self.mass, *self.centre, self.inertia)))
 
 

@@ -15,6 +15,10 @@ import numpy as np
 class Motion(NamedTuple):
     """A position and its derivatives: by the crank angle m, m/rad, m/rad2, m/rad3; of a rise pure numbers.
 
+    Attributes
+    ----------
+    position, velocity, acceleration, jerk : array (..., N)
+
     Examples
     --------
     >>> import kinetostatics as ks

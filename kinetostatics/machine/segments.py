@@ -42,6 +42,7 @@ class Segment:
 
     @property
     def knots(self):
+        """Angles from its start at which its acceleration or jerk jumps, rad."""
         return tuple(self.angle * part for part in self.rise.breaks)
 
     def __call__(self, phi) -> Motion:

@@ -160,7 +160,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     >>> import tempfile
     >>> from pathlib import Path
     >>> import kinetostatics as ks
-    >>> film = ks.plots.animation(ks.load_case("sawframe_2r63").solve("plain", 8), joints=["O"], frames=4)
+    >>> film = ks.plots.animation(ks.load_case("sawframe_2r63").solve("plain", 8), joints=["O"], frames=2)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     film.save(Path(folder, "saw.gif"), writer="pillow", dpi=40)
     """
