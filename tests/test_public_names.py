@@ -27,21 +27,15 @@ def public_names():
 
 
 def constructors():
-    """Class methods that make an object, by the name that users call them by."""
+    """Methods of classes that make an object, by the name that users call them by."""
     return {
         f"{name}.{method}": getattr(item, method)
         for name, item in public_names().items()
         if inspect.isclass(item)
         for method, found in vars(item).items()
-        if isinstance(found, classmethod | staticmethod) and not method.startswith("_") and method != "forces"
+        if isinstance(found, classmethod | staticmethod) and not method.startswith("_")
+        if isinstance(found, classmethod) or found.__annotations__.get("return") == item.__name__
     }
-
-
-def members(kind):
-    """Public attributes and methods of a class that are the library's own, by name."""
-    own = [base for base in kind.__mro__ if base.__module__.startswith("kinetostatics")]
-    names = {name for base in own for name in (*vars(base), *vars(base).get("__annotations__", ()))}
-    return {name for name in names if not name.startswith("_")}
 
 
 def parameters(item):

@@ -19,6 +19,7 @@ from ..mechanics.quantities import all_found, of_scene, scale, values
 from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property
 from ..results.turn import Turn
+from . import contents
 from .angles import crank_angles
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
@@ -30,10 +31,9 @@ SCENE = tuple(field.name for field in fields(Motion))
 
 @dataclass(frozen=True, eq=False)
 class Solution(Energies, Motion):
-    """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
+    """Motion and forces of a mechanism; every result is computed when first asked for, and kept."""
 
-    The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
-    """
+    __doc__ = contents.__doc__
 
     engine: Any = NUMPY
     silent: bool = field(default=False, repr=False)
