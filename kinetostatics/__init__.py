@@ -71,7 +71,9 @@ from .errors import (
 
 if TYPE_CHECKING:
     from . import design, drive
-    from .casefile.case import Case, Variant, load_case, shipped_cases
+    from .casefile.case import Case, load_case
+    from .casefile.reading import shipped_cases
+    from .casefile.variant import Variant
     from .design import balancing, linkage
     from .design.counterweights import Counterweight
     from .machine import cams, laws
@@ -262,7 +264,9 @@ _WHERE = {
     "studies.methods": ["papers"],
     "studies.needs": ["Needs", "needs"],
     "studies.simplifications": ["two_mass_coupler"],
-    "casefile.case": ["Case", "Variant", "load_case", "shipped_cases"],
+    "casefile.case": ["Case", "load_case"],
+    "casefile.reading": ["shipped_cases"],
+    "casefile.variant": ["Variant"],
     "views": ["plots"],
 }
 """Names by where they are: loaded, with the libraries they need, when first used."""

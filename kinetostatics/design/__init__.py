@@ -3,7 +3,8 @@
 May import all rooms above: numbers to drive.
 
 balancing       full, partial, optimal counterweights
-linkage         classes of four-bars
+linkage         four-bars: swing, transmission, the chain unit
+grashof         their classes
 cam_contact     contact of a roller with its cam: side, curvature, Hertz pressure, limits
 hertz           line contact of two cylinders
 cam_rollers     the roller itself: spin and sliding, load and life of its pin

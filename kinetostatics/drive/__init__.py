@@ -16,6 +16,7 @@ energy_flow where the energy of a turn goes
 search      the flywheel with which a machine runs as evenly as is asked
 saving      two machines in periodic running compared: what balancing saves
 running_solution its solution at the true speed, for all that looks at solutions
+powers      what its motor gives and what takes it
 running     a machine in periodic running
 periodic    exact periodic running, by all of these
 summary     what running comes to, in one table

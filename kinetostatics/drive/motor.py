@@ -112,14 +112,7 @@ class Motor:
 
     @staticmethod
     def constant(torque, *, transmission=1.0, inertia=0.0) -> "Motor":
-        """Motor of the same torque at every speed.
-
-        Parameters
-        ----------
-        torque : float
-            N m at the motor's shaft; not 0, negative brakes.
-        transmission, inertia
-            As for `kloss`.
+        """Motor of one `torque`, N m at its shaft: not 0, negative brakes; `transmission`, `inertia` as for `kloss`.
 
         Examples
         --------
