@@ -33,6 +33,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ..machine.profile import Peak
     from .cam_contact import Contact, contact
     from .followers import Surge, lift_off_speed, lifted, spring_surge, starting_torque
     from .found import Found
@@ -49,6 +50,7 @@ __all__ = [
     "Contact",
     "Found",
     "Front",
+    "Peak",
     "Spread",
     "Surge",
     "TorqueBalancing",
@@ -71,6 +73,7 @@ _WHERE = {
     "Contact": "cam_contact",
     "Found": "found",
     "Front": "fronts",
+    "Peak": "cam_contact",
     "Spread": "robust",
     "Surge": "followers",
     "TorqueBalancing": "torque_balanced",

@@ -27,14 +27,28 @@ standstill  whether coasting ends
 transient   starting and coasting
 """
 
+from .energy_flow import EnergyFlow
 from .motor import Motor
 from .periodic import steady
 from .running import Running
+from .saving import DrivenComparison
 from .sizing import Flywheel, flywheel
 from .trajectory import Event, Trajectory
 from .transient import coast, start
 
-__all__ = ["Event", "Flywheel", "Motor", "Running", "Trajectory", "coast", "flywheel", "start", "steady"]
+__all__ = [
+    "DrivenComparison",
+    "EnergyFlow",
+    "Event",
+    "Flywheel",
+    "Motor",
+    "Running",
+    "Trajectory",
+    "coast",
+    "flywheel",
+    "start",
+    "steady",
+]
 
 
 def __dir__():

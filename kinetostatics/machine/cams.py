@@ -17,9 +17,10 @@ from .cam import Cam
 from .crank import ray as ray_at
 from .harmonic_cam import Harmonic
 from .law_cam import LawCam, from_law
+from .profile import Profile
 from .sampled_cam import Sampled
 
-__all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "LawCam", "Sampled", "from_law"]
+__all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "LawCam", "Profile", "Sampled", "from_law"]
 
 
 @dataclass(frozen=True, eq=False, init=False)
