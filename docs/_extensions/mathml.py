@@ -13,6 +13,10 @@ UNBRACED = re.compile(r"\\[dt]?frac\s*(?!\{)\S|\\[dt]?frac\s*\{[^{}]*\}\s*(?!\{)
 
 UNKNOWN = {"\\dots": "\\ldots", "°": r"^\circ "}
 """What the converter does not know, and what it does."""
+ACCENTED = re.compile(
+    r"(\\(?:dot|ddot|hat|widehat|bar|overline|vec|tilde)\s*(?:\{(?:[^{}]|\{[^{}]*\})*\}|\\[a-zA-Z]+|\w))\s*_"
+)
+"""An accented letter with an index, which the converter would set below the letter."""
 
 
 def formula(node, as_block):
@@ -20,8 +24,9 @@ def formula(node, as_block):
     latex = node.astext()
     for unknown, known in UNKNOWN.items():
         latex = latex.replace(unknown, known)
+    latex = ACCENTED.sub(r"\1{}_", latex)
     if UNBRACED.search(latex):
-        logger.warning("write braces around both parts of a fraction: %s", latex, location=node)
+        logger.warning("write braces around both parts of a fraction: %s", node.astext(), location=node)
     try:
         return tex2mathml(latex, as_block=as_block)
     except MathError as error:
