@@ -1,5 +1,6 @@
 """The documentation site: everything it shows and links to is made here, offline."""
 
+import os
 import shutil
 import sys
 from importlib.metadata import version as version_of
@@ -11,6 +12,18 @@ sys.path.insert(0, str(HERE / "_extensions"))
 # Notebooks live at the top of the repository; Sphinx reads what lies beside this file.
 shutil.rmtree(HERE / "notebooks", ignore_errors=True)
 shutil.copytree(HERE.parent / "notebooks", HERE / "notebooks", ignore=shutil.ignore_patterns(".*"))
+
+# Figures of the pages' code: SVG, small and sharp.
+kernel = HERE / "_build" / "ipython" / "profile_default" / "ipython_kernel_config.py"
+kernel.parent.mkdir(parents=True, exist_ok=True)
+kernel.write_text(
+    """c = get_config()
+c.InlineBackend.figure_formats = {"svg"}
+c.InlineBackend.rc = {"figure.figsize": (6.4, 3.6), "font.size": 9, "svg.hashsalt": "kinetostatics"}
+""",
+    encoding="utf-8",
+)
+os.environ["IPYTHONDIR"] = str(kernel.parents[1])
 
 project = "kinetostatics"
 author = "the kinetostatics developers"
@@ -35,6 +48,7 @@ nb_execution_mode = "auto"
 nb_execution_excludepatterns = ["notebooks/*.ipynb"]
 nb_execution_raise_on_error = True
 nb_execution_timeout = 120
+nb_execution_in_temp = True  # what pages write is gone
 nb_ipywidgets_js = {}  # widgets would load scripts from elsewhere
 nb_merge_streams = True
 html_math_renderer = "mathml"
