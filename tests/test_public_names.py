@@ -109,6 +109,16 @@ def test_every_argument_that_a_docstring_lists_exists():
     assert not strange
 
 
+def test_sections_of_docstrings_stand_in_the_usual_order():
+    order = ["Parameters", "Attributes", "Methods", "Returns", "Raises", "Warns", "Notes", "Examples"]
+    wrong = {}
+    for name, item in called().items():
+        sections = re.findall(r"^(\w+)\n-{5,}$", inspect.getdoc(item), flags=re.MULTILINE)
+        if sections != [section for section in order if section in sections]:
+            wrong[name] = sections
+    assert not wrong
+
+
 def test_every_public_method_is_explained():
     classes = {name: item for name, item in public().items() if inspect.isclass(item)}
     assert not {name: missing for name, item in classes.items() if (missing := undocumented(item))}

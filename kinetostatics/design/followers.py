@@ -74,6 +74,11 @@ def lift_off_speed(solution, force="cam_force"):
     float
         0 where both sides carry it already at rest, inf where none of 1000 times the speed lifts it off.
 
+    Raises
+    ------
+    ParameterError
+        The solution has no cam roller, or is of a batch of designs.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -137,6 +142,11 @@ def lifted(solution, force="cam_force"):
     tuple of (float, float)
         Start and stop of each interval, rad; a stop beyond the period lies in the next one.
 
+    Raises
+    ------
+    ParameterError
+        There is no such force, or the solution is of a batch of designs.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -183,6 +193,11 @@ def starting_torque(solution):
     Peak
         ``.value``, N m, at ``.angle``, rad.
 
+    Raises
+    ------
+    ParameterError
+        The solution is of a batch of designs.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -213,6 +228,11 @@ def spring_surge(solution, spring_mass):
     Returns
     -------
     Surge
+
+    Raises
+    ------
+    ParameterError
+        The solution has not one spring among its loads.
 
     Examples
     --------

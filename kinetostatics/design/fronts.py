@@ -62,6 +62,13 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     -------
     Front
 
+    Raises
+    ------
+    ParameterError
+        What is asked for cannot be read, or names what the machine has not.
+    DesignError
+        No design keeps the limits.
+
     Examples
     --------
     >>> import kinetostatics as ks

@@ -59,6 +59,11 @@ def grashof(mechanism):
     -------
     Grashof
 
+    Raises
+    ------
+    ParameterError
+        The mechanism is no four-bar of one design, or its pivots coincide.
+
     Examples
     --------
     >>> import kinetostatics as ks

@@ -53,6 +53,11 @@ def hardness_from_pressure(pressure):
     -------
     float
 
+    Raises
+    ------
+    ParameterError
+        The pressure is negative or no number.
+
     Examples
     --------
     >>> import kinetostatics as ks

@@ -93,6 +93,11 @@ def chain_unit_angle(angle):
     float or array
         rad.
 
+    Raises
+    ------
+    ParameterError
+        The angle is no number.
+
     Examples
     --------
     >>> import numpy as np
@@ -114,6 +119,16 @@ def rocker_angle(solution, start=QUARTER):
     start : float
         rad; where crank and rocker of the chain unit are parallel unless told.
 
+    Returns
+    -------
+    array (..., N)
+        rad.
+
+    Raises
+    ------
+    ParameterError
+        The solution is not of a four-bar.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -134,6 +149,16 @@ def transmission_angle(solution):
     ----------
     solution : Solution
         Of a four-bar.
+
+    Returns
+    -------
+    array (..., N)
+        rad.
+
+    Raises
+    ------
+    ParameterError
+        The solution is not of a four-bar.
 
     Examples
     --------
@@ -207,6 +232,11 @@ def swing(solution, start=QUARTER):
     Returns
     -------
     Swing
+
+    Raises
+    ------
+    ParameterError
+        The solution is not of a four-bar, its crank does not turn fully, or its rocker does.
 
     Examples
     --------

@@ -48,6 +48,11 @@ class Spread:
     seed : int
         Of the scrambled Sobol sequence.
 
+    Raises
+    ------
+    ParameterError
+        The quantile is not between 0 and 1, or a text cannot be read.
+
     Examples
     --------
     >>> import numpy as np
@@ -261,6 +266,11 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     -------
     array (samples,)
         For ``numpy.quantile``.
+
+    Raises
+    ------
+    ParameterError
+        What is asked for cannot be read, or names what the machine has not.
 
     Examples
     --------

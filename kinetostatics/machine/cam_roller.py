@@ -81,6 +81,11 @@ class CamRoller(checks.Checked, Group):
     block : Link
         Block with roller; reference joint A, along the crank ray.
 
+    Raises
+    ------
+    ParameterError
+        The cam gives no r, r', r''.
+
     Examples
     --------
     >>> import kinetostatics as ks

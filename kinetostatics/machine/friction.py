@@ -73,6 +73,11 @@ class PinFriction(checks.Checked, Batched):
     radius : float or array
         Of the pin, m.
 
+    Raises
+    ------
+    ParameterError
+        The coefficient is negative, or a size not greater than 0.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -100,6 +105,11 @@ class GuideFriction(checks.Checked, Batched):
         Half the length of the shoe, m: it carries the couple too by forces at its edges, which rub once the load
         leaves the middle half. Without, the force alone rubs.
 
+    Raises
+    ------
+    ParameterError
+        The coefficient is negative, or a size not greater than 0.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -125,6 +135,11 @@ class SlotFriction(checks.Checked, Batched):
     mu : float or array
     half_length : float or array, optional
         Half the length of the block or bush, m.
+
+    Raises
+    ------
+    ParameterError
+        The coefficient is negative, or a size not greater than 0.
 
     Examples
     --------
@@ -154,6 +169,11 @@ class RollerFriction(checks.Checked, Batched):
         In the pin, or of its bearing.
     pin_radius, roller_radius : float or array
         m.
+
+    Raises
+    ------
+    ParameterError
+        The coefficient is negative, a size not greater than 0, or mu times pin_radius not less than roller_radius.
 
     Examples
     --------

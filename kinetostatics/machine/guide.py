@@ -79,6 +79,15 @@ class Guide(checks.Checked):
         guide_offset : float or array
             Distance of the guide from O along its left normal, m; negative where it passes to the right of O.
 
+        Returns
+        -------
+        Guide
+
+        Raises
+        ------
+        ParameterError
+            A value is not finite.
+
         Examples
         --------
         >>> import numpy as np

@@ -64,6 +64,11 @@ class Mechanism(Batched):
         `CamRoller`, `SliderGroup`, `Pin` ...; each hangs on a joint, or a pin on a link, that the crank or an earlier
         group has placed.
 
+    Raises
+    ------
+    ParameterError
+        A group hangs on what no part before it places, or two things would have one name: all such problems at once.
+
     Examples
     --------
     >>> import numpy as np

@@ -118,6 +118,11 @@ def cycloidal(start, end, angle):
     -------
     Segment
 
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -141,6 +146,11 @@ def modified_sine(start, end, angle):
     -------
     Segment
 
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -163,6 +173,11 @@ def modified_trapezoid(start, end, angle):
     Returns
     -------
     Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -188,6 +203,11 @@ def polynomial(start, end, angle, powers="3-4-5"):
     -------
     Segment
 
+    Raises
+    ------
+    ParameterError
+        As for `harmonic`, or the powers are none.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -206,7 +226,23 @@ def polynomial(start, end, angle, powers="3-4-5"):
 
 
 def dwell(position, angle):
-    """Segment: rest at a position, m, for an angle, rad.
+    """Segment: rest at a position.
+
+    Parameters
+    ----------
+    position : float
+        m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
 
     Examples
     --------

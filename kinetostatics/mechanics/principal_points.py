@@ -142,6 +142,11 @@ def principal_points(mechanism):
         `.moduli` (h by link, m), `.vectors`, `.contour`, `.mass_centre`, `.mass_centre_velocity`,
         `.mass_centre_acceleration` and `.shaking_force` of a solution.
 
+    Raises
+    ------
+    ParameterError
+        It is given no mechanism.
+
     Examples
     --------
     >>> import numpy as np

@@ -79,6 +79,11 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     pandas.DataFrame
         As of `study_running`, with the error of the crank angle at the end, rad.
 
+    Raises
+    ------
+    ParameterError
+        There is no such benchmark.
+
     Examples
     --------
     >>> from dataclasses import replace

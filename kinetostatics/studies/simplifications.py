@@ -43,6 +43,10 @@ def two_mass_coupler(mechanism, only=None):
     only : str, optional
         What the couplers to be replaced are called without the labels of their groups; all unless told.
 
+    Returns
+    -------
+    Mechanism or None
+
     Raises
     ------
     NotGivenError

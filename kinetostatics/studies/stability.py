@@ -60,6 +60,11 @@ def study(places=None, methods=None, progress=None):
         largest value; the largest condition; how many angles lose digits, flip to the other assembly, are NaN; what
         was raised; why it is not given.
 
+    Raises
+    ------
+    MissingLibraryError
+        The `precision` extra is not installed.
+
     Examples
     --------
     >>> from dataclasses import replace

@@ -2,7 +2,8 @@
 
 Every function draws on `ax` (a new one if not given) and returns it; `animation` returns the film.
 
-Where a function takes `solutions`, give one `Solution` or a mapping of label to `Solution` to draw them together.
+Where a function takes `solutions`, give one `Solution` or a mapping of label to `Solution` to draw them together. A
+quantity that the mechanism has not is a `QuantityError`, a batch of designs a `ParameterError`.
 """
 
 from collections.abc import Mapping

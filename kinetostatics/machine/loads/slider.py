@@ -91,6 +91,11 @@ class Spring(OnSlider):
         -------
         Spring
 
+        Raises
+        ------
+        ParameterError
+            The mass is negative, or a value not finite.
+
         Examples
         --------
         >>> import kinetostatics as ks

@@ -129,6 +129,10 @@ class Table:
         over : "angle" or "travel", optional
             Which column to take where the file has both; unless told, the travel.
 
+        Returns
+        -------
+        Table
+
         Raises
         ------
         CaseError

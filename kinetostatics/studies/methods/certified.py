@@ -30,6 +30,10 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
     checks : int
         At how many crank angles, evenly chosen, the two paths are compared.
 
+    Returns
+    -------
+    Enclosure
+
     Raises
     ------
     KinetostaticsError
@@ -77,6 +81,11 @@ def relative_errors(found, reference: Enclosure):
     Returns
     -------
     array (N,)
+
+    Raises
+    ------
+    MissingLibraryError
+        python-flint is not installed.
 
     Examples
     --------

@@ -85,6 +85,10 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     digits : int
         No radius may exceed 10^-digits of the largest value.
 
+    Returns
+    -------
+    Enclosure
+
     Raises
     ------
     NotGivenError

@@ -165,14 +165,14 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     sign : float
         Of R40 sin(nu) in the slot force of a cam roller: `EQUILIBRIUM` or `PRINTED`.
 
+    Returns
+    -------
+    Solution
+
     Raises
     ------
     NotGivenError
         No study has formulas for it.
-
-    Returns
-    -------
-    Solution
 
     Examples
     --------
