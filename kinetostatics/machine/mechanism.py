@@ -71,9 +71,8 @@ class Mechanism(Batched):
 
     Examples
     --------
-    >>> import numpy as np
     >>> import kinetostatics as ks
-    >>> pistons = ks.SliderGroup(0.2), ks.SliderGroup(0.2, guide=ks.Guide.at(np.pi / 2), pin="C", label="2")
+    >>> pistons = ks.SliderGroup(0.2), ks.SliderGroup(0.2, guide=ks.Guide.at(1.5708), pin="C", label="2")
     >>> list(ks.Mechanism("V twin", ks.Crank(0.05), pistons).links)
     ['crank', 'coupler', 'slider', 'coupler2', 'slider2']
     """
