@@ -83,14 +83,15 @@ largest_force_term, largest_torque_term : float or array
 Methods
 -------
 reaction(joint)
-    Reaction at a joint, (2, ..., N), N, components along +x and +y. It acts on the body that comes last:
-    "O": ground on crank.
-    "A": on the coupler (rod, block of a lever or yoke, first link of a dyad), from what carries A: the crank, or the
-    block of a cam roller. Of groups hung on another joint, "C": on their coupler, from what carries C.
-    "B", pin of a slider: coupler on slider; pin of a rocker: coupler on rocker; pin of a dyad: dyad1 on dyad2.
-    "O2", fixed pivots: ground on rocker, on lever, on cylinder, on arm.
-    "guide": ground on slider, friction included; on follower.
-    On the other body it acts the other way round.
+    Reaction at a joint, (2, ..., N), N, components along +x and +y. It acts on the body named last, on the other body
+    the other way round:
+
+    - "O": ground on crank.
+    - "A": on the coupler (rod, block of a lever or yoke, first link of a dyad), from what carries A: the crank, or the
+      block of a cam roller. Of a group hung on another joint, "C": on its coupler, from what carries C.
+    - "B", pin of a slider: coupler on slider; pin of a rocker: coupler on rocker; pin of a dyad: dyad1 on dyad2.
+    - "O2", a fixed pivot: ground on rocker, on lever, on cylinder, on arm.
+    - "guide": ground on slider, or on follower; friction included.
 scalar(name)
     A force or moment by name, (..., N): those above, "slot_moment", "cylinder_force", "cylinder_moment",
     "contact_force" ...

@@ -205,7 +205,7 @@ class Solution(Energies, Motion):
 
     @property
     def balancing_torque(self):
-        """Torque on the crank that keeps the prescribed motion, from the crank's equilibrium, N m."""
+        """Torque on the crank that the drive must give, counter-clockwise positive, N m; times omega its power, W."""
         return self.scalar("balancing_torque")
 
     @property
