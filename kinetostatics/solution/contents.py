@@ -83,15 +83,7 @@ largest_force_term, largest_torque_term : float or array
 Methods
 -------
 reaction(joint)
-    Reaction at a joint, (2, ..., N), N, components along +x and +y. It acts on the body named last, on the other body
-    the other way round:
-
-    - "O": ground on crank.
-    - "A": on the coupler (rod, block of a lever or yoke, first link of a dyad), from what carries A: the crank, or the
-      block of a cam roller. Of a group hung on another joint, "C": on its coupler, from what carries C.
-    - "B", pin of a slider: coupler on slider; pin of a rocker: coupler on rocker; pin of a dyad: dyad1 on dyad2.
-    - "O2", a fixed pivot: ground on rocker, on lever, on cylinder, on arm.
-    - "guide": ground on slider, or on follower; friction included.
+    Reaction at a joint, (2, ..., N), N, components along +x and +y; the bodies that they act on are in the notes.
 scalar(name)
     A force or moment by name, (..., N): those above, "slot_moment", "cylinder_force", "cylinder_moment",
     "contact_force" ...
@@ -120,6 +112,15 @@ frame()
 
 Notes
 -----
+A reaction acts on the body named last, on the other body the other way round:
+
+- "O": ground on crank.
+- "A": on the coupler (rod, block of a lever or yoke, first link of a dyad), from what carries A: the crank, or the
+  block of a cam roller. Of a group hung on another joint, "C": on its coupler, from what carries C.
+- "B", pin of a slider: coupler on slider; pin of a rocker: coupler on rocker; pin of a dyad: dyad1 on dyad2.
+- "O2", a fixed pivot: ground on rocker, on lever, on cylinder, on arm.
+- "guide": ground on slider, or on follower; friction included.
+
 For groups and loads of one's own there are `placement` (joints and links as kinematic coefficients), `spot`,
 `as_vector`, `accelerating`; inside the library `dynamics`, `sampled`, `sampled_for_forces`, `apart`, `kind`,
 `first_look`, `proportion`, `loads_are_given`, `is_given`, `check` and `warn`.

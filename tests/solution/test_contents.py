@@ -53,7 +53,7 @@ def test_every_method_is_listed_with_its_arguments():
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_every_reaction_is_listed_with_the_body_that_it_acts_on(name):
-    section = " ".join(TEXT[TEXT.index("reaction(joint)") : TEXT.index("scalar(name)")].split())
+    section = " ".join(TEXT[TEXT.index("A reaction acts") : TEXT.index("For groups and loads")].split())
     for joint, output in MACHINES[name].outputs.items():
         if not output.vector:
             continue
