@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-NEEDS_FLINT = re.compile(r"(certified|enclosure|relative_errors|precision\.study\w*|stability\.study)\(")
+NEEDS_FLINT = re.compile(r"(certified|enclosure|relative_errors|precision\.study(_running)?|stability\.study)\(")
 """Calls that compute at many digits (extra `precision`)."""
 
 

@@ -125,8 +125,8 @@ class Balanced:
     >>> found = ks.balancing.partial(mower, "overall", crank=ks.Counterweight(arm=-0.05))
     >>> round(found.added_mass, 3), round(found.ratio, 6)
     (3.547, 0.5)
-    >>> found.effect(crank_speed=62.8).loc["largest shaking force [N]"].round(1).to_dict()
-    {'before': 1231.6, 'after': 532.2, 'change [%]': -56.8}
+    >>> found.report()["counterweight arm [m]"].to_dict()
+    {'crank': -0.05}
     """
 
     bare: Mechanism

@@ -92,8 +92,8 @@ class CamRoller(checks.Checked, Group):
     >>> roller = ks.CamRoller(ks.cams.Circle(0.3, centre=(-0.0219, 0.0)), block=ks.Link(20.0))
     >>> saw = ks.Mechanism("saw with a cam", ks.Crank(), (roller, ks.SliderGroup(2.0219, slider=ks.Link(600.0))))
     >>> s = ks.solve(saw, 0.0, crank_speed=33.5)
-    >>> round(float(s.cam_force)), round(float(s.slot_force), 6)  # N: the cam pulls slider and block back inward
-    (205131, -0.0)
+    >>> print(f"{s.cam_force:.0f} N")  # a ring around the roller pushes slider and block back inward
+    205131 N
     """
 
     cam: Any

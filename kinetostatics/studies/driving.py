@@ -89,9 +89,9 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     >>> from dataclasses import replace
     >>> import kinetostatics as ks
     >>> (steps,) = (method for method in ks.precision.MOTION_METHODS if method.name.endswith("RK4"))
-    >>> coarse = [replace(steps, settings=(100,))]
+    >>> coarse = [replace(steps, settings=(25,))]
     >>> table = ks.precision.study_motion("slider-crank of SUNDIALS", methods=coarse, repeats=1)
-    >>> bool(table.loc[0, "error"] < 1e-5)  # rad
+    >>> bool(table.loc[0, "error"] < 1e-3)  # rad
     True
     """
     problem_with_name = checks.choice("benchmark", name, tuple(motion.BENCHMARKS))

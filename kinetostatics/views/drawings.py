@@ -62,9 +62,10 @@ def mass_centres(solutions, angle=60, ax=None):
     Examples
     --------
     >>> import kinetostatics as ks
-    >>> mower = ks.load_case("mower_drive")
-    >>> ax = ks.plots.mass_centres({name: mower.solve(name, 90) for name in ("unbalanced", "partial-3")})
-    >>> ax.get_aspect()
+    >>> bare = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> balanced = ks.balancing.partial(bare, crank=ks.Counterweight(arm=-0.05)).mechanism
+    >>> solutions = {name: ks.Scene(item, 62.8).solve(90) for name, item in (("bare", bare), ("half", balanced))}
+    >>> ks.plots.mass_centres(solutions).get_aspect()
     1.0
     """
     checks.require("mass_centres", checks.finite("angle", angle))
@@ -99,8 +100,8 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     Examples
     --------
     >>> import kinetostatics as ks
-    >>> ax = ks.plots.mechanism(ks.load_case("toggle_press").solve("coining", 8), angles=(60,))
-    >>> ax.get_aspect()
+    >>> shaper = ks.slotted_lever(0.1, pivot=(0.0, -0.2), lever=ks.Link(8.0, 0.3, 0.4))
+    >>> ks.plots.mechanism(ks.Scene(shaper, 6.0, loads=[ks.Gravity()]).solve(8), angles=(60,)).get_aspect()
     1.0
     """
     try:
@@ -160,7 +161,8 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     >>> import tempfile
     >>> from pathlib import Path
     >>> import kinetostatics as ks
-    >>> film = ks.plots.animation(ks.load_case("sawframe_2r63").solve("plain", 8), joints=["O"], frames=2)
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5).solve(8)
+    >>> film = ks.plots.animation(s, joints=["O"], frames=2)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     film.save(Path(folder, "saw.gif"), writer="pillow", dpi=40)
     """

@@ -77,9 +77,10 @@ def shaking_force(solutions, by="direction", ax=None):
     Examples
     --------
     >>> import kinetostatics as ks
-    >>> mower = ks.load_case("mower_drive")
-    >>> ax = ks.plots.shaking_force({name: mower.solve(name, 90) for name in ("unbalanced", "partial-3")})
-    >>> ax.name
+    >>> bare = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> balanced = ks.balancing.partial(bare, crank=ks.Counterweight(arm=-0.05)).mechanism
+    >>> solutions = {name: ks.Scene(item, 62.8).solve(90) for name, item in (("bare", bare), ("half", balanced))}
+    >>> ks.plots.shaking_force(solutions).name
     'polar'
     """
     require("shaking_force", choice("by", by, ("direction", "crank angle")))
