@@ -77,6 +77,7 @@ if TYPE_CHECKING:
     from .machine.mechanism import Mechanism
     from .machine.pin import Pin
     from .machine.rocker_group import RockerGroup
+    from .machine.roller import Face, Roller
     from .machine.roller_follower import RollerFollower
     from .machine.slider_group import SliderGroup
     from .machine.swinging_follower import SwingingFollower
@@ -107,6 +108,7 @@ __all__ = [
     "DesignError",
     "DriveError",
     "Dyad",
+    "Face",
     "FlatFollower",
     "Force",
     "Gravity",
@@ -127,6 +129,7 @@ __all__ = [
     "ProcessForce",
     "QuantityError",
     "RockerGroup",
+    "Roller",
     "RollerFollower",
     "RollerFriction",
     "Scene",
@@ -195,6 +198,7 @@ _WHERE = {
     ],
     "machine.mechanism": ["Mechanism"],
     "machine.rocker_group": ["RockerGroup"],
+    "machine.roller": ["Face", "Roller"],
     "machine.roller_follower": ["RollerFollower"],
     "machine.pin": ["Pin"],
     "machine.slider_group": ["SliderGroup"],

@@ -5,7 +5,6 @@ May import all rooms above: numbers to drive.
 balancing       full, partial, optimal counterweights
 linkage         classes of four-bars
 cam_contact     contact of a roller with its cam: side, curvature, Hertz pressure, limits
-hertz           line contact of two cylinders
 cam_rollers     the roller itself: spin and sliding, load and life of its pin
 hardness        the pressure that steel bears
 followers       lift-off, surge of springs, torque to start

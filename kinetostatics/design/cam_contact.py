@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
+from ..machine import hertz
 from ..machine.cam_roller import CamRoller
 from ..machine.profile import POSITIVE, SAMPLES, Peak, curvature, highest, surface_curvature
 from ..machine.profile import profile as working_curve
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..results.turn import require_single
-from . import hertz
 from .cam_rollers import Roller
 from .followers import lift_off_speed, starting_torque
 from .hardness import hardness_from_pressure
@@ -93,14 +93,14 @@ class Contact:
     @property
     def curvature_radius(self):
         """Radius of the working curve that carries the roller, m: positive where convex, negative where hollow."""
-        bend = surface_curvature(self._bend, self.roller_radius, np.where(self.cam_force > 0.0, 1.0, -1.0))
+        bend = surface_curvature(self._bend, self.roller_radius, _side_of(self.cam_force))
         with np.errstate(divide="ignore"):
             return 1.0 / bend
 
     @property
     def relative_radius(self):
         """Radius of the cylinder that presses a plane as the roller does the cam, m."""
-        return hertz.relative_radius(self._bend, self.roller_radius, self.cam_force)
+        return hertz.relative_radius(self._bend, self.roller_radius, _side_of(self.cam_force))
 
     @property
     def pressure(self):
@@ -117,7 +117,7 @@ class Contact:
         return curvature(self.cam, self.crank_angle)
 
     def _pressure(self, force, bend):
-        radius = hertz.relative_radius(bend, self.roller_radius, force)
+        radius = hertz.relative_radius(bend, self.roller_radius, _side_of(force))
         return hertz.pressure(force, self.width, self.modulus, radius)
 
     # over the period
@@ -332,10 +332,15 @@ def contact(
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
     roller = Roller(cams[0], radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
     limits = {name: float(value) for name, value in (limits or {}).items()}
-    found = Contact(solution, cams[0], radius, values["width"], hertz.modulus(materials), roller, limits)
+    found = Contact(solution, cams[0], radius, values["width"], hertz.modulus(*materials), roller, limits)
     for side in found.sides:
         working_curve(found.cam, radius, 8, side)
     return found
+
+
+def _side_of(force):
+    """Side of the pitch curve on which a cam is that presses so: +1 around it, -1 inside."""
+    return np.where(force > 0.0, 1.0, -1.0)
 
 
 def _limit_problems(limits, load_rating):

@@ -18,6 +18,7 @@ from ..machine.harmonic_cam import Harmonic
 from ..machine.links import Link
 from ..machine.loads import KINDS, Gravity
 from ..machine.loads.places import Between, Place
+from ..machine.roller import Roller
 from ..machine.slider_group import SliderGroup
 from ..numbers import checks
 from ..numbers.files import written_whole
@@ -130,6 +131,8 @@ def _keys(item):
         elif isinstance(value, Link):
             link = _link(value)
             found |= {name: _inline(link)} if link else {}
+        elif isinstance(value, Roller):
+            found[name] = _inline(_keys(value))
         elif name == "cam":
             found["cam"] = _cam(value)
         else:

@@ -330,4 +330,5 @@ def _name_problems(parts):
         endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
         add(forces, "quantity", kind, [f"{link}{ending}" for link in part.links for ending in endings])
         add(forces, "quantity", kind, part.motions)
+        add(forces, "quantity", kind, part.contacts)
     return problems

@@ -198,6 +198,19 @@ class Solution(Energies, Motion):
         """Force of the cam on the roller along the normal, positive toward the inside of the pitch curve, N."""
         return self.scalar("cam_force")
 
+    def pressure(self, name="contact_pressure"):
+        """Largest Hertz pressure of a contact by name, (..., N), Pa; NaN where there is no such contact.
+
+        Of a cam that has a `Roller`, or a follower's `Face`; a second follower's name ends with its label.
+        """
+        known = of_scene(self)
+        return self._found(name) if name in known and known[name].kind == "contact" else self.dynamics.pressure(name)
+
+    @property
+    def contact_pressure(self):
+        """Largest Hertz pressure between cam and roller, Pa, of a cam that has a `Roller`."""
+        return self.pressure()
+
     @property
     def slot_force(self):
         """Force of the slotted crank on the block across the ray, positive with growing crank angle, N."""

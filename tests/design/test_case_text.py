@@ -23,7 +23,7 @@ def test_groups_loads_and_friction_of_every_kind_are_written(tmp_path):
     bar, link = ks.Link(2.0, (0.1, 0.02), 0.01), ks.Link(1.0)
     cam = ks.cams.Harmonic((0.1, 0.01), (0.002,), 0.3)
     groups = (
-        ks.CamRoller(cam, link),
+        ks.CamRoller(cam, link, ks.Roller(0.01, 0.02, 210e9, 0.3, cam_youngs_modulus=110e9)),
         ks.SliderGroup(0.4, ks.Guide.at(0.3, 0.01), coupler=bar, slider=link),
         ks.Pin("coupler", (0.2, 0.05), name="C"),
         ks.Dyad(0.3, 0.35, on=("C", "B"), pin="D", link1=bar)
@@ -45,7 +45,7 @@ def test_groups_loads_and_friction_of_every_kind_are_written(tmp_path):
     scene = ks.Scene(ks.Mechanism("odd one", ks.Crank(None, link), groups), 12.0, 3.0, loads, friction)
     read = ks.load_case(case_text.write(tmp_path / "odd.toml", "Odd", {"one": scene})).variant("one").scene
     assert read.mechanism.name == "odd one"
-    for name in ("O", "guide", "D", "cam_force", "balancing_torque"):
+    for name in ("O", "guide", "D", "cam_force", "contact_pressure", "balancing_torque"):
         one, other = (ks.extremes(item.solve(12), name).range for item in (scene, read))
         np.testing.assert_allclose(one, other, rtol=1e-12)
 
