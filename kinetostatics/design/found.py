@@ -8,10 +8,11 @@ import numpy as np
 
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
+from . import measures
 from .demands import Demand
 from .derived import scene_of
 from .problem import compared_value
-from .search import side_of
+from .search import is_raised, side_of
 
 TAKEN = ("reference", "before")
 """Variants of the case file beside the design's own."""
@@ -147,8 +148,7 @@ def prices(problem, goal, limits, values):
     """
     from scipy.optimize import lsq_linear
 
-    output, sign = goal
-    slopes = sign * (output(values) if callable(output) else problem.output(output, values))[1]
+    slopes = _slopes(problem, goal, values)
     reach = problem.high - problem.low
     names, columns, free = [], [], []
     for limit in limits:
@@ -168,12 +168,27 @@ def prices(problem, goal, limits, values):
     matrix = np.array(columns).T * reach[:, None]
     weight = np.linalg.norm(matrix, axis=0)
     weight[weight == 0] = 1.0
-    low = np.where(free, -np.inf, 0.0)
-    solved = lsq_linear(matrix / weight, -slopes * reach, (low, np.full(low.size, np.inf)))
+    first, others = slopes[:, 0] * reach, (slopes[:, 1:] - slopes[:, :1]) * reach[:, None]
+    shares = others.shape[1]  # of the goal's peaks beside the first, where several compete
+    low = np.concatenate([np.where(free, -np.inf, 0.0), np.zeros(shares)])
+    solved = lsq_linear(np.hstack([matrix / weight, others]), -first, (low, np.full(low.size, np.inf)))
     found: dict[str, float] = {}
-    for name, price in zip(names, solved.x / weight, strict=True):
+    for name, price in zip(names, solved.x[: len(names)] / weight, strict=True):
         found[name] = found.get(name, 0.0) + float(price)
     return tuple(found), found
+
+
+def _slopes(problem, goal, values):
+    """Derivatives (n, peaks) of the goal, of a largest value those of each peak as high as it, the highest first."""
+    output, sign = goal
+    if callable(output):
+        return sign * output(values)[1][:, None]
+    if not is_raised(goal):
+        return sign * problem.output(output, values)[1][:, None]
+    heights, slopes = measures.bounded(output.reduction, problem.curves(values)[output.quantity], problem.turns)
+    order = np.argsort(-heights)
+    near = order[heights[order] >= heights.max() - BINDS * abs(heights.max())]
+    return slopes[:, near]
 
 
 def found_of(problem, goal, limits, reached, outputs, label, **more):

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..drive.sizing import flywheel
 from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..numbers import checks
 from ..results.extremes import extrema
-from .demands import TOPS, Demand, demands, wanted
+from .demands import Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
@@ -20,6 +21,8 @@ ANGLES = 720
 """Crank angles over the period."""
 FEWEST_ANGLES = 12
 """Crank angles below which curves say nothing."""
+TRUE = ("largest", "smallest", "largest_absolute", "range")
+"""Reductions whose true values are true extremes."""
 TIGHTER = 4
 """How often limits are drawn in until true extremes keep them."""
 
@@ -285,7 +288,9 @@ def true_excess(limit, scene):
 
 def true_extreme(output, scene):
     """Value of an output of a scene; extremes are true ones."""
-    if output.ratio or output.reduction not in (*TOPS, "range"):
+    if (output.reduction, output.quantity, output.ratio) == ("swing", "balancing_torque", False) and scene.crank_speed:
+        return flywheel(scene, 1.0).energy
+    if output.ratio or output.reduction not in TRUE:
         return true_value(output, scene)
     low, high = extrema(scene.solve(12), output.quantity).range
     if output.reduction == "range":

@@ -20,7 +20,7 @@ from ..solution.compile import compile as compiled
 from . import measures
 from .demands import wanted
 from .derived import Derived, scene_of
-from .problem import chosen, own
+from .problem import chosen, own, turns_of
 
 ANGLES, TOGETHER = 180, 16
 """Crank angles of each sample, and samples computed at a time."""
@@ -98,7 +98,7 @@ class Sampled:
         checks.require("spread", *(checks.choice("parameter", path, tuple(scene.units)) for path in spread.spreads))
         self.count = spread.samples if samples is None else samples
         self._shares, self._deviations = _deviations(spread, scene.units, self.count)
-        self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
+        self.angle, self.turns = np.linspace(0.0, scene.period, angles, endpoint=False), turns_of(scene)
         self._derived: Any = Derived(problem.source, problem.names) if problem.names else None
         designed = self._derived.paths if self._derived else ()
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
@@ -151,7 +151,7 @@ class Sampled:
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
             own_slopes = slopes[place] if sloped else np.zeros((0, curve.size))
-            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes))
+            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes), self.turns)
             if self.output.ratio:
                 value, row = above[place] / value, -above[place] / value**2 * row
             found[place] = value
@@ -175,7 +175,11 @@ class Sampled:
 
     def _above(self, numbers):
         """The reference's output for each sample."""
-        return own(self.output).reduced(self._of_reference(numbers)) if self.output.ratio else None
+        return self._reduced(self._of_reference(numbers)) if self.output.ratio else None
+
+    def _reduced(self, curves):
+        """The output, not its ratio, of curves (samples, N)."""
+        return own(self.output).estimated(curves, self.turns)[0]
 
     def _of_reference(self, numbers):
         """Curves of the reference, with those of the numbers that spread that it has too."""
@@ -191,15 +195,16 @@ class Sampled:
         slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
         (low, low_slopes), (high, high_slopes) = (self._curves(at, changes, sloped) for at in (slow, fast))
         below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
-        reduced = own(self.output).reduced
 
         def outputs(share):
-            found = reduced(_between(low, high, share[:, None]))
-            return self.sign * (reduced(_between(below, above, share[:, None])) / found if self.output.ratio else found)
+            found = self._reduced(_between(low, high, share[:, None]))
+            if self.output.ratio:
+                found = self._reduced(_between(below, above, share[:, None])) / found
+            return self.sign * found
 
         share = _least(outputs, len(low))[:, None]
         slopes = _between(low_slopes, high_slopes, share[..., None]) if sloped else None
-        compared = reduced(_between(below, above, share)) if self.output.ratio else None
+        compared = self._reduced(_between(below, above, share)) if self.output.ratio else None
         return _between(low, high, share), slopes, compared
 
     def _at_speed(self, numbers, share):

@@ -13,7 +13,7 @@ RULES = {"cam": Lawful(), "pin": checks.Name(), "label": checks.Name(may_be_empt
 
 
 class Follower(checks.Checked, Group):
-    """Follower of one link, `moved`, whose coordinate is a law of the crank angle; `pressed` is what touches the cam."""
+    """Follower of one link, `moved`, by a law of the crank angle; `pressed` is what touches the cam, or None."""
 
     cam: Any
     pin: str

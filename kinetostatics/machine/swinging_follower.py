@@ -230,8 +230,8 @@ class SwingingFollower(follower.Follower):
 
     def requirement(self, placement):
         return (
-            f"the {self.moved} must stay on its side of the line from O to {self.pivot_name}, its angle from it between "
-            "0 and pi"
+            f"the {self.moved} must stay on its side of the line from O to {self.pivot_name}, its angle from it "
+            "between 0 and pi"
         )
 
     def resolve(self, placement, loads, along) -> Resolved:

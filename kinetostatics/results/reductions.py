@@ -2,6 +2,10 @@
 
 Written as text, the reduction before the quantity: "largest O", "mean_absolute balancing_torque",
 "harmonic_2 balancing_torque", "ratio mean_absolute balancing_torque".
+
+"swing balancing_torque" is the energy, J, that a flywheel takes up and gives back while the crank gets the mean of the
+torque: the range of the integral of torque less mean over the crank angle. For a coefficient of fluctuation delta the
+flywheel is nearly swing / (delta omega^2), as textbooks have it (`drive.flywheel`).
 """
 
 import math
@@ -24,6 +28,8 @@ PEAK = 1e-4
 MEAN = 1e-2
 """Error of a mean, relative to it, from which so many samples do not tell it; and a tenth of that of the peak."""
 PEAKS = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
+OVER_THE_ANGLE = ("largest_at", "smallest_at", "swing")
+"""Reductions that are as many times as large where the same values come over several turns."""
 SCRATCH = 2**18
 """Bytes of memory for short use that each thread keeps."""
 TINY = np.finfo(float).tiny
@@ -193,6 +199,31 @@ def _rms(values):
     return found, np.abs(size(values[:, ::2]) - found) * (values.shape[-1] % 2 == 0)
 
 
+def gained(values):
+    """Integral over the crank angle, in rad over one turn, of values less their mean, at the same angles.
+
+    By their Fourier series: exact for what so many values tell, linear in them.
+    """
+    count = values.shape[-1]
+    series = np.fft.rfft(values)
+    orders = np.arange(series.shape[-1])
+    orders[0] = 1
+    series = series / (1j * orders)
+    series[..., :: count // 2 if count % 2 == 0 else count] = 0.0  # the mean, and what is told of by its sign alone
+    return np.fft.irfft(series, count)
+
+
+def _swing(values):
+    """Range of the integral of values less their mean, and how far that of every other value is from it."""
+
+    def swing(some):
+        integral = gained(some)
+        return _peak(integral)[0] + _peak(integral, -1.0)[0]
+
+    found = swing(values)
+    return found, np.abs(swing(values[:, ::2]) - found) * (values.shape[-1] % 2 == 0)
+
+
 def _highest_at(sign):
     def place(values):
         highest, where, error = _peak(values, sign)
@@ -229,6 +260,7 @@ FOUND = {
     "mean": _mean,
     "mean_absolute": _mean_absolute,
     "rms": _rms,
+    "swing": _swing,
 }
 """By name: function of values (designs, N) evenly over the period to numbers and about how much they may be wrong."""
 
@@ -273,9 +305,17 @@ class Output:
         QuantityError
             The mechanism has no such quantity; the message lists those it has.
         ParameterError
-            It is of a force that grows without bound at change points that the mechanism passes.
+            It is of a force that grows without bound at change points that the mechanism passes; or the swing of
+            something else than a torque.
         """
         unit, mechanism = quantity(scene, self.quantity).unit, scene.mechanism
+        if self.reduction == "swing":
+            if unit != "N m":
+                raise ParameterError(
+                    f"output {str(self)!r}: swing is the energy that a torque gives and takes in turn, of a quantity "
+                    f"in N m such as balancing_torque; {self.quantity} is in {unit}"
+                )
+            unit = "J"
         if mechanism.grows(self.quantity):
             raise ParameterError(
                 f"output {str(self)!r}: {self.quantity} grows as one over the distance from change points that "
@@ -314,7 +354,7 @@ class Output:
             some = values[rough]
             size = np.abs(some).max(axis=-1) if mean else np.ptp(some, axis=-1)
             rough[rough] = error[rough] > (MEAN / 10 if mean else PEAK / 100) * size
-        return found * turns if self.reduction.endswith("_at") else found, rough
+        return found * turns if self.reduction in OVER_THE_ANGLE else found, rough
 
 
 def parsed(text) -> Output:
