@@ -41,8 +41,8 @@ class AssemblyError(KinetostaticsError, ValueError):
         What does not hold, without the advice.
     """
 
-    def __init__(self, condition, intervals=()):
-        super().__init__(f'{condition}. Change the lengths, or pass on_gap="nan" to get NaN there and the rest exact')
+    def __init__(self, condition, intervals=(), remedy=', or pass on_gap="nan" to get NaN there and the rest exact'):
+        super().__init__(f"{condition}. Change the lengths{remedy}")
         self.condition = condition
         self.intervals = tuple(intervals)
 
