@@ -12,6 +12,7 @@ from . import measures
 from .demands import Demand
 from .derived import scene_of
 from .problem import compared_value
+from .robust import quantile
 from .search import is_raised, side_of
 
 TAKEN = ("reference", "before")
@@ -46,6 +47,8 @@ class Found:
         The goal that each start came to; infinite, or a ratio of 0, where it kept not its limits.
     bound : float
         Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
+    spread : (Output, Spread, float) or None
+        Of a robust design what a quantile of was made least, or greatest (sign -1), and over what.
     """
 
     scene: Any
@@ -60,6 +63,7 @@ class Found:
     evaluations: int = 0
     starts: list[float] = field(default_factory=list)
     bound: float = np.inf
+    spread: tuple | None = field(default=None, repr=False)
 
     def __repr__(self):
         numbers = f"{len(self.values)} numbers of {self.scene.mechanism.name} varied"
@@ -74,6 +78,14 @@ class Found:
         for limit in self.limits:
             limits.setdefault(str(limit.output), []).append(limit)
         rows = {}
+        if self.spread is not None:
+            output, spread, sign = self.spread
+            before, after = (
+                quantile(scene, self.reference, output, spread, sign) if output.quantity in known(scene) else np.nan
+                for scene in (self.before, self.scene)
+            )
+            alone = {"limit": "", "binds": False, "price": np.nan}
+            rows[f"{spread.quantile:g} quantile of {output.column}"] = {"before": before, "after": after, **alone}
         for output in self.outputs:
             own = limits.get(str(output), [])
             rows[output.column] = {
@@ -205,5 +217,6 @@ def found_of(problem, goal, limits, reached, outputs, label, **more):
         tuple(outputs),
         active,
         cost,
+        spread=(goal.output.output, goal.output.spread, goal.sign) if callable(goal.output) else None,
         **more,
     )

@@ -106,7 +106,7 @@ class Sampled:
         zeros = [path for path in self.paths if self._own[path] == 0.0]
         self.program = compiled(scene, output.quantity, zeros, problem.engine)
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
-        self._weights = _harrell_davis(spread.quantile, self.count)
+        self.weights = _harrell_davis(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
 
@@ -117,7 +117,7 @@ class Sampled:
         except KinetostaticsError:  # a machine within the spread that cannot be built
             return np.nan, np.full(values.size, np.nan)
         order = np.argsort(found)
-        return self._weights @ found[order], self._weights @ slopes[order]
+        return self.weights @ found[order], self.weights @ slopes[order]
 
     def outputs(self, values):
         """The output of each sample."""
@@ -271,8 +271,22 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     checks.require("over_spread", not_spread("spread", spread), _samples_problem(samples))
     item, compared = chosen(source, variant, reference)
     text = wanted(output, scene_of(item))
-    bare = SimpleNamespace(source=item, reference=compared, names=(), engine="numpy", start=np.empty(0))
-    return Sampled(bare, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+    return _fixed(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+
+
+def quantile(scene, reference, output, spread, sign):
+    """The quantile of an output of a scene over its spread; NaN where a machine within it cannot be built."""
+    try:
+        sampled = _fixed(scene, reference, output, spread, sign)
+        return float(sampled.weights @ np.sort(sampled.outputs(np.empty(0))))
+    except KinetostaticsError:
+        return np.nan
+
+
+def _fixed(scene, reference, output, spread, sign, samples=None):
+    """An output over a spread of a scene of which no design varies anything."""
+    bare = SimpleNamespace(source=scene, reference=reference, names=(), engine="numpy", start=np.empty(0))
+    return Sampled(bare, output, spread, sign, samples)
 
 
 def _between(one, other, share):
