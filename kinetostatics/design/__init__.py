@@ -5,6 +5,7 @@ May import all rooms above: numbers to drive.
 balancing       full, partial, optimal counterweights
 linkage         classes of four-bars
 cam_contact     contact of a roller with its cam: side, curvature, Hertz pressure, limits
+contact_asked   what it is asked with: the roller, both materials, limits
 cam_rollers     the roller itself: spin and sliding, load and life of its pin
 hardness        the pressure that steel bears
 followers       lift-off, surge of springs, torque to start
@@ -31,7 +32,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .cam_contact import Contact, contact
+    from .cam_contact import Contact
+    from .contact_asked import contact
     from .followers import Surge, lift_off_speed, lifted, spring_surge, starting_torque
     from .found import Found
     from .fronts import Front, pareto
@@ -72,7 +74,7 @@ _WHERE = {
     "Spread": "robust",
     "Surge": "followers",
     "TorqueBalancing": "torque_balanced",
-    "contact": "cam_contact",
+    "contact": "contact_asked",
     "hardness_from_pressure": "hardness",
     "lift_off_speed": "followers",
     "lifted": "followers",

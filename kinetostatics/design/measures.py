@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..results.reductions import REACH, THROUGH, gained
+from ..results.peaks import REACH, THROUGH
+from ..results.reductions import gained
 
 SECTORS = 72
 """Parts of the period whose largest values are limited one by one: where peaks compete, each counts."""

@@ -156,7 +156,7 @@ class CamRoller(checks.Checked, Group):
         return {} if self.roller is None else {"contact_pressure": Touch(self.roller, "cam_force")}
 
     def relative_radius(self, name, placement, side):
-        return self.roller.relative_radius(bend(*placement.details["cam"]), side)
+        return self.contacts[name].body.relative_radius(bend(*placement.details["cam"]), side)
 
     def sliding(self, name, placement):
         return Slide(placement.ray, placement.details["cam"][1])

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..engines import compiled
 from ..numbers.elementary import ROUNDING
-from .reductions import INNER, MEAN, PEAK, REACH, THROUGH, TINY
+from .peaks import INNER, REACH, THROUGH, TINY
+from .reductions import MEAN, PEAK
 from .turn import NEAR
 
 KINDS = (

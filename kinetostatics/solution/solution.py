@@ -20,6 +20,7 @@ from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property
 from ..results.turn import Turn
 from .angles import crank_angles
+from .contacts import Contacts
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
 
@@ -29,7 +30,7 @@ SCENE = tuple(field.name for field in fields(Motion))
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Energies, Motion):
+class Solution(Energies, Contacts, Motion):
     """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
 
     The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
@@ -197,19 +198,6 @@ class Solution(Energies, Motion):
     def cam_force(self):
         """Force of the cam on the roller along the normal, positive toward the inside of the pitch curve, N."""
         return self.scalar("cam_force")
-
-    def pressure(self, name="contact_pressure"):
-        """Largest Hertz pressure of a contact by name, (..., N), Pa; NaN where there is no such contact.
-
-        Of a cam that has a `Roller`, or a follower's `Face`; a second follower's name ends with its label.
-        """
-        known = of_scene(self)
-        return self._found(name) if name in known and known[name].kind == "contact" else self.dynamics.pressure(name)
-
-    @property
-    def contact_pressure(self):
-        """Largest Hertz pressure between cam and roller, Pa, of a cam that has a `Roller`."""
-        return self.pressure()
 
     @property
     def slot_force(self):
