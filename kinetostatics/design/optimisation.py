@@ -55,8 +55,8 @@ def optimise(
     vary : dict of path to (low, high)
         Numbers in SI or texts with units: ``{"spring.stiffness": ("600 kN/m", "900 kN/m")}``.
     minimise, maximise : str
-        One of the two: an output as sweeps have them, "mean_absolute balancing_torque", "largest O",
-        "ratio mean_absolute balancing_torque" ...
+        One of the two: an output as sweeps have them, "mean_absolute balancing_torque", "largest O", "largest
+        contact_pressure", "swing balancing_torque", "ratio mean_absolute balancing_torque" ...
     limits : sequence of str
         "largest O <= 0.75 kN", "largest slider_position = 2.3 m", "ratio mean_absolute balancing_torque >= 50" ...
     variant, reference : str

@@ -84,7 +84,7 @@ class Roller(Pressed):
     >>> saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600.0), roller=roller)
     >>> solution = ks.solve(saw, 0.5, crank_speed=10.0, loads=ks.Spring.balancing(600.0, 11.0, 2.0))
     >>> print(f"{float(solution.contact_pressure) / 1e6:.1f} MPa")
-    265.8 MPa
+    249.0 MPa
     """
 
     radius: Any
