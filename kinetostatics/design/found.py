@@ -49,6 +49,19 @@ class Found:
         Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
     spread : (Output, Spread, float) or None
         Of a robust design what a quantile of was made least, or greatest (sign -1), and over what.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> spring = ks.Spring(600e3, free_position=2.0)
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
+    >>> found = ks.design.optimise(
+    ...     saw, {"spring.stiffness": (500e3, 900e3)}, minimise="rms balancing_torque", angles=90
+    ... )
+    >>> print(f"{found.values['spring.stiffness'] / 1e3:.0f} kN/m")
+    687 kN/m
+    >>> found.scene.solve(4).shape, found.active
+    ((4,), ())
     """
 
     scene: Any

@@ -30,6 +30,6 @@ def test_figures_show_speed_and_the_torques_at_the_crank():
 
 @pytest.mark.parametrize("given", [None, 3, {}, {"saw": None}, {"saw": ks.Scene(ks.crank_slider(0.1, 0.4), 10.0)}])
 def test_what_is_no_running_is_refused_in_words(given):
-    for figure in (drives.speed, drives.energy_flow, drives.torques):
+    for figure in (drives.crank_speed, drives.energy_flow, drives.drive_torques):
         with pytest.raises(ks.ParameterError, match=r"runs must be a dict of label to Running, as \{"):
             figure(given)
