@@ -103,6 +103,7 @@ if TYPE_CHECKING:
     from .machine.mechanism import Mechanism
     from .machine.pin import Pin
     from .machine.rocker_group import RockerGroup
+    from .machine.roller import Face, Roller
     from .machine.roller_follower import RollerFollower
     from .machine.slider_group import SliderGroup
     from .machine.swinging_follower import SwingingFollower
@@ -141,6 +142,7 @@ __all__ = [
     "DriveError",
     "Dyad",
     "Extremes",
+    "Face",
     "FileError",
     "FlatFollower",
     "Force",
@@ -168,6 +170,7 @@ __all__ = [
     "Program",
     "QuantityError",
     "RockerGroup",
+    "Roller",
     "RollerFollower",
     "RollerFriction",
     "Scene",
@@ -241,6 +244,7 @@ _WHERE = {
     ],
     "machine.mechanism": ["Mechanism"],
     "machine.rocker_group": ["RockerGroup"],
+    "machine.roller": ["Face", "Roller"],
     "machine.roller_follower": ["RollerFollower"],
     "machine.pin": ["Pin"],
     "machine.slider_group": ["SliderGroup"],

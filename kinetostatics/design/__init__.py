@@ -6,7 +6,7 @@ balancing       full, partial, optimal counterweights
 linkage         four-bars: swing, transmission, the chain unit
 grashof         their classes
 cam_contact     contact of a roller with its cam: side, curvature, Hertz pressure, limits
-hertz           line contact of two cylinders
+contact_asked   what it is asked with: the roller, both materials, limits
 cam_rollers     the roller itself: spin and sliding, load and life of its pin
 hardness        the pressure that steel bears
 followers       lift-off, surge of springs, torque to start
@@ -34,7 +34,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ..machine.profile import Peak
-    from .cam_contact import Contact, contact
+    from .cam_contact import Contact
+    from .contact_asked import contact
     from .followers import Surge, lift_off_speed, lifted, spring_surge, starting_torque
     from .found import Found
     from .fronts import Front, pareto
@@ -77,7 +78,7 @@ _WHERE = {
     "Spread": "robust",
     "Surge": "followers",
     "TorqueBalancing": "torque_balanced",
-    "contact": "cam_contact",
+    "contact": "contact_asked",
     "hardness_from_pressure": "hardness",
     "lift_off_speed": "followers",
     "lifted": "followers",

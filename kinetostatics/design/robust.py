@@ -20,7 +20,7 @@ from ..solution.compile import compile as compiled
 from . import measures
 from .demands import wanted
 from .derived import Derived, scene_of
-from .problem import chosen, own
+from .problem import chosen, own, turns_of
 
 ANGLES, TOGETHER = 180, 16
 """Crank angles of each sample, and samples computed at a time."""
@@ -114,7 +114,7 @@ class Sampled:
         checks.require("spread", *(checks.choice("parameter", path, tuple(scene.units)) for path in spread.spreads))
         self.count = spread.samples if samples is None else samples
         self._shares, self._deviations = _deviations(spread, scene.units, self.count)
-        self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
+        self.angle, self.turns = np.linspace(0.0, scene.period, angles, endpoint=False), turns_of(scene)
         self._derived: Any = Derived(problem.source, problem.names) if problem.names else None
         designed = self._derived.paths if self._derived else ()
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
@@ -122,7 +122,7 @@ class Sampled:
         zeros = [path for path in self.paths if self._own[path] == 0.0]
         self.program = compiled(scene, output.quantity, zeros, problem.engine)
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
-        self._weights = _harrell_davis(spread.quantile, self.count)
+        self.weights = _harrell_davis(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
 
@@ -133,7 +133,7 @@ class Sampled:
         except KinetostaticsError:  # a machine within the spread that cannot be built
             return np.nan, np.full(values.size, np.nan)
         order = np.argsort(found)
-        return self._weights @ found[order], self._weights @ slopes[order]
+        return self.weights @ found[order], self.weights @ slopes[order]
 
     def outputs(self, values):
         """The output of each sample."""
@@ -167,7 +167,7 @@ class Sampled:
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
             own_slopes = slopes[place] if sloped else np.zeros((0, curve.size))
-            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes))
+            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes), self.turns)
             if self.output.ratio:
                 value, row = above[place] / value, -above[place] / value**2 * row
             found[place] = value
@@ -191,7 +191,11 @@ class Sampled:
 
     def _above(self, numbers):
         """The reference's output for each sample."""
-        return own(self.output).reduced(self._of_reference(numbers)) if self.output.ratio else None
+        return self._reduced(self._of_reference(numbers)) if self.output.ratio else None
+
+    def _reduced(self, curves):
+        """The output, not its ratio, of curves (samples, N)."""
+        return own(self.output).estimated(curves, self.turns)[0]
 
     def _of_reference(self, numbers):
         """Curves of the reference, with those of the numbers that spread that it has too."""
@@ -207,15 +211,16 @@ class Sampled:
         slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
         (low, low_slopes), (high, high_slopes) = (self._curves(at, changes, sloped) for at in (slow, fast))
         below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
-        reduced = own(self.output).reduced
 
         def outputs(share):
-            found = reduced(_between(low, high, share[:, None]))
-            return self.sign * (reduced(_between(below, above, share[:, None])) / found if self.output.ratio else found)
+            found = self._reduced(_between(low, high, share[:, None]))
+            if self.output.ratio:
+                found = self._reduced(_between(below, above, share[:, None])) / found
+            return self.sign * found
 
         share = _least(outputs, len(low))[:, None]
         slopes = _between(low_slopes, high_slopes, share[..., None]) if sloped else None
-        compared = reduced(_between(below, above, share)) if self.output.ratio else None
+        compared = self._reduced(_between(below, above, share)) if self.output.ratio else None
         return _between(low, high, share), slopes, compared
 
     def _at_speed(self, numbers, share):
@@ -287,8 +292,22 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     checks.require("over_spread", not_spread("spread", spread), _samples_problem(samples))
     item, compared = chosen(source, variant, reference)
     text = wanted(output, scene_of(item))
-    bare = SimpleNamespace(source=item, reference=compared, names=(), engine="numpy", start=np.empty(0))
-    return Sampled(bare, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+    return _fixed(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+
+
+def quantile(scene, reference, output, spread, sign):
+    """The quantile of an output of a scene over its spread; NaN where a machine within it cannot be built."""
+    try:
+        sampled = _fixed(scene, reference, output, spread, sign)
+        return float(sampled.weights @ np.sort(sampled.outputs(np.empty(0))))
+    except KinetostaticsError:
+        return np.nan
+
+
+def _fixed(scene, reference, output, spread, sign, samples=None):
+    """An output over a spread of a scene of which no design varies anything."""
+    bare = SimpleNamespace(source=scene, reference=reference, names=(), engine="numpy", start=np.empty(0))
+    return Sampled(bare, output, spread, sign, samples)
 
 
 def _between(one, other, share):
