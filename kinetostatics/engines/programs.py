@@ -15,6 +15,7 @@ from ..numbers.elementary import ROUNDING
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves
 from . import loops, writing
+from .bounds import Bounds
 from .compiled import _loaded, available
 from .derivatives import gradients
 from .recent import kept_for_same_angles
@@ -62,6 +63,18 @@ class Program:
             rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
             self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
         return self._slopes[places]
+
+    @cached_property
+    def bounded(self):
+        """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
+
+        Raises
+        ------
+        NotGivenError
+            Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
+        """
+        recording = self.recording
+        return Program(recording, (*self.outputs, *Bounds(recording.graph, recording.inputs).of(self.outputs)))
 
     @cached_property
     def unrecorded(self):
@@ -235,6 +248,11 @@ def _root_of(square, unit, out):
     np.copyto(out, np.nan, where=np.less(square, -ROUNDING * unit))
 
 
+def _multiply_add(one, other, more, out):
+    np.multiply(one, other, out=out)
+    np.add(out, more, out=out)
+
+
 def _sqrt(square):
     return math.sqrt(square) if square >= 0.0 else math.nan
 
@@ -248,6 +266,7 @@ PLAIN = {
     "copysign": math.copysign,
     "root": _plain_root,
     "divisor": _plain_divisor,
+    "fma": lambda one, other, more: one * other + more,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -260,6 +279,7 @@ _BY_DESIGN = {
     "copysign": np.copysign,
     "root": _root,
     "divisor": np.maximum,
+    "fma": lambda one, other, more: one * other + more,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -277,6 +297,7 @@ _ARRAYS = {
     "absolute": np.absolute,
     "sign_of": lambda value, out: np.copysign(1.0, value, out),
     "root_of": _root_of,
+    "multiply_add": _multiply_add,
     "maximum": lambda one, other, out: np.maximum(one, other, out=out),
 }
 

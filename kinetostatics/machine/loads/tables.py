@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import CaseError, ParameterError
 from ...numbers import checks
+from ...numbers.elementary import UNIT
 from ...numbers.leaves import with_fields
 from . import rows
 from .period import TURN, WholeTurns
@@ -239,10 +240,32 @@ class Table:
         slope = np.where(returning, (np.diff(self.back) / step)[piece], (np.diff(y) / step)[piece])
         return x[piece], np.where(returning, self.back[piece], y[piece]), slope
 
+    def rounding(self, motion):
+        """Bound on the error of values read by crank angle, N or N m."""
+        slope, angle = np.max(np.abs(np.diff(self.y) / np.diff(self.x))), np.abs(np.asarray(motion.crank_angle))
+        wrap = abs(self.y[0] - self.y[-1]) / (self.x[0] + self.period - self.x[-1])
+        return 8 * UNIT * (max(slope, wrap) * (angle + np.max(np.abs(self.x)) + self.period) + abs(self.largest))
+
+    def kinks_within(self, motion):
+        """Over travel, what bounds need to know of its kinks and jumps (see `engines.record`).
+
+        By how much slopes differ at most, N/m or N m/m; how far the value may jump near the end of a stroke; and the
+        rate of the slider, m a radian, up to which it is near.
+        """
+        sides = [self.y] if self.back is None else [self.y, self.back]
+        steepest = max(float(np.max(np.abs(np.diff(side) / np.diff(self.x)))) for side in sides)
+        jump = 0.0 if self.back is None else float(np.max(np.abs(self.y - self.back)))
+        near = 1e-6 * float(self.x[-1] - self.x[0])
+        return 2.0 * steepest, np.where(np.abs(self.rate(motion)) <= near, jump, 0.0), near
+
+    def rate(self, motion):
+        """Rate of the slider along its guide by the crank angle, m."""
+        return motion.placement.travels[self._slider(motion)].first
+
     def returns(self, motion):
         """Whether the slider is on its stroke with negative velocity; standing still, as if the crank turned on."""
         forward = np.where(np.asarray(motion.crank_speed) < 0, -1.0, 1.0)
-        return forward * motion.placement.travels[self._slider(motion)].first < 0
+        return forward * self.rate(motion) < 0
 
     def period_on(self, mechanism):
         """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""

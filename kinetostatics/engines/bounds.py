@@ -1,0 +1,231 @@
+"""Proven bounds on the rounding errors of recorded outputs, as further nodes of the same graph.
+
+Running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, section 3.3): beside each value v
+go a number k, which the structure fixes, and E, which is computed along with it, so that exact arithmetic on the same
+inputs gives a number within ``UNIT (k |v| + E)`` of v. Products, quotients and roots of what has few relative errors
+(k) have few as well; E begins where sums cancel. Terms of second order are in it, and what is too small for a double.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from ..numbers.elementary import UNIT
+from ..numbers.planar import plus
+from .trace import INPUTS, Node, needed
+
+SAFE = 1.0 + 1e-9
+"""What a bound is enlarged by for the rounding of its own arithmetic, each time by a few `UNIT` of it."""
+DUST = 2.0**-960
+"""In `UNIT`: more than what is lost where a product or quotient, of bounds too, is too small for a double."""
+CAP = 2.0**100
+"""Largest input, in SI, for which dust stays dust."""
+ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0}
+"""Largest relative error of a function of any backend, in `UNIT`; tests hold NumPy and compiled loops to it."""
+
+
+class Error(NamedTuple):
+    """Bound on the error of a value, in `UNIT`: `relative` times the value, and `rest`.
+
+    The rest is None, a number if it is dust only, or a node.
+    """
+
+    relative: float
+    rest: Any
+
+
+EXACT = Error(0.0, None)
+
+
+class Bounds:
+    """Bounds for the nodes of a graph, each found once.
+
+    Parameters
+    ----------
+    graph : Graph
+    inputs : mapping of Node to function
+        ``input(bounds) -> Error`` of inputs that are not exact.
+    """
+
+    def __init__(self, graph, inputs=None):
+        self._graph, self._inputs = graph, inputs or {}
+        self._errors: dict[Node, Error] = {}
+        self._totals: dict[Node, Any] = {}
+        self._clear: dict[Node, Any] = {}
+        self._over: dict[Node, Any] = {}
+        self._caps: dict[Node, float | None] = {}
+
+    def of(self, outputs):
+        """A bound for each output, not negative; infinite or NaN where there is none."""
+        for node in needed(outputs):
+            if node not in self._errors:
+                self._errors[node] = self._found(node)
+        totals = (self.total(part) for part in outputs)
+        return tuple(0.0 if total is None else (SAFE * UNIT) * total for total in totals)
+
+    def _found(self, node):
+        if node.operation in INPUTS:
+            return self._inputs[node](self) if node in self._inputs else EXACT
+        return _RULES[node.operation](self, node, *node.arguments)
+
+    def error(self, part) -> Error:
+        return self._errors[part] if isinstance(part, Node) else EXACT
+
+    def total(self, part):
+        """The whole bound of a part of an operation; None where it is exact."""
+        relative, rest = self.error(part)
+        if relative and part not in self._totals:
+            self._totals[part] = self.fused(relative, size(part), rest)
+        return self._totals[part] if relative else rest
+
+    def largest(self, part):
+        """Bound on the magnitude of the exact value, but for relative errors."""
+        return self.fused(UNIT, self.error(part).rest, size(part))
+
+    def clear(self, part):
+        """What is left of a value's magnitude when its error is taken off; 0 where nothing is."""
+        if part not in self._clear:
+            total = self.total(part)
+            self._clear[part] = size(part) if total is None else self.above(size(part), total)
+        return self._clear[part]
+
+    def above(self, value, total, floor=0.0):
+        """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
+        taken = floor if total is None else (SAFE * UNIT) * total + floor
+        return self._graph.node("divisor", value - taken, 0.0)
+
+    def over(self, part):
+        """Bound on one over the magnitude of the exact value."""
+        if part not in self._over:
+            self._over[part] = 1.0 / self.clear(part) if isinstance(part, Node) else 1.0 / abs(part)
+        return self._over[part]
+
+    def dust(self, rest, part):
+        """A rest that is dust times the magnitude of a part: a number still where the part's cap is known."""
+        if rest is None:
+            return None
+        cap = self.cap(part)
+        return rest * (size(part) if cap is None else 2.0 * cap)
+
+    def fused(self, one, other, more):
+        """Product and sum, in one operation where the processor has it."""
+        plain = [part for part in (one, other) if not isinstance(part, Node)]
+        if more is None or len(plain) == 2 or 1.0 in plain:
+            return plus(one * other, more)
+        return self._graph.node("fma", one, other, more)
+
+    def cap(self, part):
+        """Largest magnitude of a part for inputs up to `CAP`; None if only the computed value tells."""
+        if not isinstance(part, Node):
+            return abs(part)
+        if part not in self._caps:
+            rule = _CAPS.get(part.operation)
+            caps = [] if part.operation in INPUTS else [self.cap(argument) for argument in part.arguments]
+            self._caps[part] = None if rule is None or None in caps else rule(*caps)
+        return self._caps[part]
+
+
+def size(part):
+    """Magnitude of a part of an operation."""
+    if not isinstance(part, Node):
+        return abs(part)
+    square = part.operation == "*" and part.arguments[0] is part.arguments[1]
+    return part if square or part.operation in _POSITIVE else abs(part)
+
+
+_POSITIVE = ("abs", "sqrt", "root", "divisor")
+_CAPS: dict[str, Callable[..., float]] = {
+    "parameter": lambda: CAP,
+    "table": lambda: CAP,
+    "+": lambda left, right: left + right,
+    "-": lambda *parts: sum(parts),
+    "*": lambda left, right: left * right,
+    "sin": lambda angle: 1.0,
+    "cos": lambda angle: 1.0,
+    "abs": lambda value: value,
+    "held": lambda value: value,
+    "sqrt": math.sqrt,
+}
+
+
+def _of_sum(bounds, node, *parts):
+    if len(parts) == 1:
+        return bounds.error(parts[0])
+    return Error(1.0, plus(*(bounds.total(part) for part in parts)))
+
+
+def _of_product(bounds, node, left, right):
+    for factor, other in ((left, right), (right, left)):
+        if _is_scaling(factor):
+            relative, rest = bounds.error(other)
+            return Error(relative, None if rest is None else abs(factor) * rest)
+    if isinstance(bounds.error(right).rest, Node):
+        left, right = right, left
+    (first, own), (second, other) = bounds.error(left), bounds.error(right)
+    relative = first + second + 1.0
+    if isinstance(own, Node):
+        across = bounds.fused(bounds.largest(left), other, DUST) if other is not None else DUST
+        return Error(relative, bounds.fused(size(right), own, across))
+    return Error(relative, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), DUST))
+
+
+def _of_quotient(bounds, node, above, below):
+    if _is_scaling(below):
+        relative, rest = bounds.error(above)
+        return Error(relative, None if rest is None else rest / abs(below))
+    (first, own), (second, other) = bounds.error(above), bounds.error(below)
+    relative = first + second + 1.0
+    top = own if other is None else bounds.fused(size(node), other, own)
+    return Error(relative, DUST if top is None else bounds.fused(bounds.over(below), top, DUST))
+
+
+def _of_root(bounds, node, square, unit=None):
+    relative, rest = bounds.error(square)
+    if isinstance(rest, Node):
+        rest = bounds.fused(0.5 * rest, node / bounds.clear(square), DUST)
+    elif rest is not None:
+        rest = math.sqrt(rest / UNIT)
+    return Error(0.5 * relative + 1.0, rest)
+
+
+def _of_divisor(bounds, node, root, unit):
+    """As of the root; none where the guard may act."""
+    relative, rest = bounds.error(root)
+    return Error(relative, plus(rest, 0.0 / bounds.above(root, bounds.total(root), unit)))
+
+
+def _of_sign(bounds, node, value):
+    """None where the sign may be the other."""
+    return EXACT if bounds.total(value) is None else Error(0.0, 0.0 / bounds.clear(value))
+
+
+def _of_function(bounds, node, argument):
+    """Of one that changes no faster than its argument."""
+    return Error(ULP[node.operation], bounds.total(argument))
+
+
+def _as_of_argument(bounds, node, argument):
+    return bounds.error(argument)
+
+
+def _is_scaling(part):
+    """Whether a factor is a power of two, near one: it loses no digit but of dust."""
+    return not isinstance(part, Node) and part in _SCALINGS
+
+
+_SCALINGS = [sign * 2.0**power for power in range(-4, 5) for sign in (1, -1)]
+_RULES: dict[str, Callable[..., Error]] = {
+    "+": _of_sum,
+    "-": _of_sum,
+    "*": _of_product,
+    "/": _of_quotient,
+    "sqrt": _of_root,
+    "root": _of_root,
+    "divisor": _of_divisor,
+    "sin": _of_function,
+    "cos": _of_function,
+    "atan": _of_function,
+    "abs": _as_of_argument,
+    "held": _as_of_argument,
+    "sign": _of_sign,
+}
