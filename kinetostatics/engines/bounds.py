@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
+from .derivatives import adjoints
 from .trace import INPUTS, Node, needed
 
 SAFE = 1.0 + 1e-9
@@ -20,7 +21,7 @@ DUST = 2.0**-960
 """In `UNIT`: more than what is lost where a product or quotient, of bounds too, is too small for a double."""
 CAP = 2.0**100
 """Largest input, in SI, for which dust stays dust."""
-ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0}
+ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
 """Largest relative error of a function of any backend, in `UNIT`; tests hold NumPy and compiled loops to it."""
 
 
@@ -60,27 +61,61 @@ class Bounds:
         for node in needed(outputs):
             if node not in self._errors:
                 self._errors[node] = self._found(node)
-        totals = (self.total(part) for part in outputs)
-        return tuple(0.0 if total is None else (SAFE * UNIT) * total for total in totals)
+        return tuple(_whole(self.total(part)) for part in outputs)
+
+    def tight(self, output):
+        """A bound for one output, as `of` gives it, from what the error of each operation makes of the output.
+
+        Derivatives of the output say so, bounded for all values within the bounds of `of`.
+        """
+        self.of([output])
+        unsure = {node for node in needed([output]) if self.total(node) is not None}
+        slopes = adjoints(self._graph, output, unsure) if output in unsure else {}
+        self.of(slopes.values())
+        total = None
+        for node, slope in slopes.items():
+            own = self.total(node) if node.operation in INPUTS else self._sum(self.own(node), node)
+            if own is not None:
+                total = self.fused(self.largest(slope), own, total)
+        return _whole(total)
 
     def _found(self, node):
         if node.operation in INPUTS:
             return self._inputs[node](self) if node in self._inputs else EXACT
-        return _RULES[node.operation](self, node, *node.arguments)
+        relative, rest = self.own(node)
+        carried = _CARRIED[node.operation](self, rest, node, *node.arguments)
+        return Error(relative + carried.relative, carried.rest)
+
+    def own(self, node) -> Error:
+        """What an operation itself adds to the error of its result."""
+        kind, arguments = node.operation, node.arguments
+        if kind in ("*", "/"):
+            return EXACT if any(map(_is_scaling, arguments[kind == "/" :])) else Error(1.0, DUST)
+        if kind in ("+", "-"):
+            return Error(1.0, None) if len(arguments) == 2 else EXACT
+        if kind == "divisor":  # none is proven where the guard may act
+            root, unit = arguments
+            return Error(0.0, 0.0 / self.above(root, self.total(root), unit))
+        if kind == "sign" and self.total(arguments[0]) is not None:  # nor where it may be the other
+            return Error(0.0, 0.0 / self.clear(arguments[0]))
+        return Error(ULP.get(kind, 0.0), None)
 
     def error(self, part) -> Error:
         return self._errors[part] if isinstance(part, Node) else EXACT
 
     def total(self, part):
         """The whole bound of a part of an operation; None where it is exact."""
-        relative, rest = self.error(part)
-        if relative and part not in self._totals:
-            self._totals[part] = self.fused(relative, size(part), rest)
-        return self._totals[part] if relative else rest
+        if isinstance(part, Node) and part not in self._totals:
+            self._totals[part] = self._sum(self._errors[part], part)
+        return self._totals[part] if isinstance(part, Node) else None
+
+    def _sum(self, error, part):
+        return self.fused(error.relative, size(part), error.rest) if error.relative else error.rest
 
     def largest(self, part):
         """Bound on the magnitude of the exact value, but for relative errors."""
-        return self.fused(UNIT, self.error(part).rest, size(part))
+        rest = self.error(part).rest
+        return size(part) if rest is None else self.fused(UNIT, rest, size(part))
 
     def clear(self, part):
         """What is left of a value's magnitude when its error is taken off; 0 where nothing is."""
@@ -130,10 +165,77 @@ def size(part):
     if not isinstance(part, Node):
         return abs(part)
     square = part.operation == "*" and part.arguments[0] is part.arguments[1]
-    return part if square or part.operation in _POSITIVE else abs(part)
+    return part if square or part.operation in ("abs", "sqrt", "root", "divisor") else abs(part)
 
 
-_POSITIVE = ("abs", "sqrt", "root", "divisor")
+def _whole(total):
+    return 0.0 if total is None else (SAFE * UNIT) * total
+
+
+def _is_scaling(part):
+    """Whether a factor is a power of two near one: it loses no digit but of dust."""
+    return not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
+
+
+# What a result has of the errors of its arguments, and some more
+
+
+def _of_sum(bounds, more, node, *parts):
+    if len(parts) == 1:
+        return bounds.error(parts[0])
+    return Error(0.0, plus(*(bounds.total(part) for part in parts)))
+
+
+def _of_product(bounds, more, node, left, right):
+    if isinstance(bounds.error(right).rest, Node):
+        left, right = right, left
+    (first, own), (second, other) = bounds.error(left), bounds.error(right)
+    if isinstance(own, Node):
+        across = more if other is None else bounds.fused(bounds.largest(left), other, more)
+        return Error(first + second, bounds.fused(size(right), own, across))
+    return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), more))
+
+
+def _of_quotient(bounds, more, node, above, below):
+    (first, own), (second, other) = bounds.error(above), bounds.error(below)
+    top = own if other is None else bounds.fused(size(node), other, own)
+    return Error(first + second, more if top is None else bounds.fused(bounds.over(below), top, more))
+
+
+def _of_root(bounds, more, node, square, unit=None):
+    relative, rest = bounds.error(square)
+    if isinstance(rest, Node):
+        rest = bounds.fused(0.5 * rest, node / bounds.clear(square), more)
+    elif rest is not None:
+        rest = math.sqrt(rest / UNIT)
+    return Error(0.5 * relative, rest)
+
+
+def _of_function(bounds, more, node, argument):
+    """Of one that changes no faster than its argument."""
+    return Error(0.0, bounds.total(argument))
+
+
+def _as_of_argument(bounds, more, node, argument, unit=None):
+    relative, rest = bounds.error(argument)
+    return Error(relative, plus(rest, more))
+
+
+_CARRIED: dict[str, Callable[..., Error]] = {
+    "+": _of_sum,
+    "-": _of_sum,
+    "*": _of_product,
+    "/": _of_quotient,
+    "sqrt": _of_root,
+    "root": _of_root,
+    "sin": _of_function,
+    "cos": _of_function,
+    "atan": _of_function,
+    "abs": _as_of_argument,
+    "held": _as_of_argument,
+    "divisor": _as_of_argument,
+    "sign": lambda bounds, more, node, value: Error(0.0, more),
+}
 _CAPS: dict[str, Callable[..., float]] = {
     "parameter": lambda: CAP,
     "table": lambda: CAP,
@@ -145,87 +247,4 @@ _CAPS: dict[str, Callable[..., float]] = {
     "abs": lambda value: value,
     "held": lambda value: value,
     "sqrt": math.sqrt,
-}
-
-
-def _of_sum(bounds, node, *parts):
-    if len(parts) == 1:
-        return bounds.error(parts[0])
-    return Error(1.0, plus(*(bounds.total(part) for part in parts)))
-
-
-def _of_product(bounds, node, left, right):
-    for factor, other in ((left, right), (right, left)):
-        if _is_scaling(factor):
-            relative, rest = bounds.error(other)
-            return Error(relative, None if rest is None else abs(factor) * rest)
-    if isinstance(bounds.error(right).rest, Node):
-        left, right = right, left
-    (first, own), (second, other) = bounds.error(left), bounds.error(right)
-    relative = first + second + 1.0
-    if isinstance(own, Node):
-        across = bounds.fused(bounds.largest(left), other, DUST) if other is not None else DUST
-        return Error(relative, bounds.fused(size(right), own, across))
-    return Error(relative, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), DUST))
-
-
-def _of_quotient(bounds, node, above, below):
-    if _is_scaling(below):
-        relative, rest = bounds.error(above)
-        return Error(relative, None if rest is None else rest / abs(below))
-    (first, own), (second, other) = bounds.error(above), bounds.error(below)
-    relative = first + second + 1.0
-    top = own if other is None else bounds.fused(size(node), other, own)
-    return Error(relative, DUST if top is None else bounds.fused(bounds.over(below), top, DUST))
-
-
-def _of_root(bounds, node, square, unit=None):
-    relative, rest = bounds.error(square)
-    if isinstance(rest, Node):
-        rest = bounds.fused(0.5 * rest, node / bounds.clear(square), DUST)
-    elif rest is not None:
-        rest = math.sqrt(rest / UNIT)
-    return Error(0.5 * relative + 1.0, rest)
-
-
-def _of_divisor(bounds, node, root, unit):
-    """As of the root; none where the guard may act."""
-    relative, rest = bounds.error(root)
-    return Error(relative, plus(rest, 0.0 / bounds.above(root, bounds.total(root), unit)))
-
-
-def _of_sign(bounds, node, value):
-    """None where the sign may be the other."""
-    return EXACT if bounds.total(value) is None else Error(0.0, 0.0 / bounds.clear(value))
-
-
-def _of_function(bounds, node, argument):
-    """Of one that changes no faster than its argument."""
-    return Error(ULP[node.operation], bounds.total(argument))
-
-
-def _as_of_argument(bounds, node, argument):
-    return bounds.error(argument)
-
-
-def _is_scaling(part):
-    """Whether a factor is a power of two, near one: it loses no digit but of dust."""
-    return not isinstance(part, Node) and part in _SCALINGS
-
-
-_SCALINGS = [sign * 2.0**power for power in range(-4, 5) for sign in (1, -1)]
-_RULES: dict[str, Callable[..., Error]] = {
-    "+": _of_sum,
-    "-": _of_sum,
-    "*": _of_product,
-    "/": _of_quotient,
-    "sqrt": _of_root,
-    "root": _of_root,
-    "divisor": _of_divisor,
-    "sin": _of_function,
-    "cos": _of_function,
-    "atan": _of_function,
-    "abs": _as_of_argument,
-    "held": _as_of_argument,
-    "sign": _of_sign,
 }
