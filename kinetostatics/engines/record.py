@@ -286,6 +286,7 @@ def _of_pieces(pieces, within, travel, rate):
     def of_value(bounds):
         bounds.of((travel, rate))
         jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
+        jumps = plus(jumps, 0.0 / bounds.above(near, bounds.total(travel)))
         return Error(0.0, bounds.fused(steepest, bounds.total(travel), jumps))
 
     return {value: of_value, slope: lambda bounds: Error(4.0, None)}

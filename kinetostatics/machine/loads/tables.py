@@ -241,22 +241,32 @@ class Table:
         return x[piece], np.where(returning, self.back[piece], y[piece]), slope
 
     def rounding(self, motion):
-        """Bound on the error of values read by crank angle, N or N m."""
-        slope, angle = np.max(np.abs(np.diff(self.y) / np.diff(self.x))), np.abs(np.asarray(motion.crank_angle))
-        wrap = abs(self.y[0] - self.y[-1]) / (self.x[0] + self.period - self.x[-1])
-        return 8 * UNIT * (max(slope, wrap) * (angle + np.max(np.abs(self.x)) + self.period) + abs(self.largest))
+        """Bound on the error of values read by crank angle: of the angle in its own turn, N or N m."""
+        angle, (start, value, slope) = np.asarray(motion.crank_angle), self.pieces(motion)
+        steps = np.append(self.x, self.x[0] + self.period), np.append(self.y, self.y[0])
+        steepest = np.max(np.abs(np.diff(steps[1]) / np.diff(steps[0])))
+        own = (angle >= self.x[0]) & (angle < self.x[0] + self.period)
+        turned = np.where(own, 0.0, steepest * (np.abs(angle) + self.period))
+        return 8 * UNIT * (np.abs(slope * (angle - start)) + np.abs(value) + turned)
 
     def kinks_within(self, motion):
         """Over travel, what bounds need to know of its kinks and jumps (see `engines.record`).
 
-        By how much slopes differ at most, N/m or N m/m; how far the value may jump near the end of a stroke; and the
-        rate of the slider, m a radian, up to which it is near.
+        By how much the slope changes at the row beside each place, N/m or N m/m, how far the value may jump there, and
+        how near, m or m a radian, a row or the end of a stroke must be for it not to be zero.
         """
+        near = 1e-6 * float(self.x[-1] - self.x[0])
+        place = np.asarray(self.place(motion), dtype=float)
         sides = [self.y] if self.back is None else [self.y, self.back]
         steepest = max(float(np.max(np.abs(np.diff(side) / np.diff(self.x)))) for side in sides)
+        row = np.clip(np.searchsorted(self.x, place), 1, self.x.size - 1)
+        beside = np.minimum(np.abs(place - self.x[row - 1]), np.abs(place - self.x[row])) <= near
         jump = 0.0 if self.back is None else float(np.max(np.abs(self.y - self.back)))
-        near = 1e-6 * float(self.x[-1] - self.x[0])
-        return 2.0 * steepest, np.where(np.abs(self.rate(motion)) <= near, jump, 0.0), near
+        return (
+            np.where(beside, 2.0 * steepest, 0.0),
+            np.where(np.abs(self.rate(motion)) <= near, jump, 0.0),
+            near,
+        )
 
     def rate(self, motion):
         """Rate of the slider along its guide by the crank angle, m."""
