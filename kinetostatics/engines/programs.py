@@ -43,6 +43,7 @@ class Program:
         self.recording = recording
         self.outputs = recording.outputs if outputs is None else outputs
         self._slopes: dict[tuple[int, ...], Program] = {}
+        self._bounded: dict[bool, Program] = {}
         self._computed = 0.0
 
     def by_parameters(self, places):
@@ -64,8 +65,7 @@ class Program:
             self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
         return self._slopes[places]
 
-    @cached_property
-    def bounded(self):
+    def bounded(self, tight=False):
         """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
 
         Raises
@@ -73,8 +73,11 @@ class Program:
         NotGivenError
             Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
         """
-        recording = self.recording
-        return Program(recording, (*self.outputs, *Bounds(recording.graph, recording.inputs).of(self.outputs)))
+        if tight not in self._bounded:
+            bounds = Bounds(self.recording.graph, self.recording.inputs)
+            found = map(bounds.tight, self.outputs) if tight else bounds.of(self.outputs)
+            self._bounded[tight] = Program(self.recording, (*self.outputs, *found))
+        return self._bounded[tight]
 
     @cached_property
     def unrecorded(self):

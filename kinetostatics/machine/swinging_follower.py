@@ -16,7 +16,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import cos, namespace, sin
+from ..numbers.elementary import atan, cos, sin
 from ..numbers.planar import added, cross, dot, left, length, number, stretched, subtracted, turned
 from .disk_cam import DiskCam
 from .follower_law import Lawful
@@ -215,7 +215,7 @@ class SwingingFollower(checks.Checked, Group):
     def motion(self, name, placement):
         found = placement.details[self._arm]
         sine = dot(found.arm.direction, found.across)
-        return namespace(sine).atan(abs(sine / found.lever))
+        return atan(abs(sine / found.lever))
 
     def place(self, placement):
         swing = self.cam.polar(placement.angle, placement.ray)
