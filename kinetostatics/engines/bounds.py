@@ -1,7 +1,7 @@
 """Proven bounds on the rounding errors of recorded outputs, as further nodes of the same graph.
 
-Running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, section 3.3): beside each value v
-go a number k, which the structure fixes, and E, which is computed along with it, so that exact arithmetic on the same
+Running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, section 3.3): beside each value
+v go a number k, which the structure fixes, and E, which is computed along with it, so that exact arithmetic on the same
 inputs gives a number within ``UNIT (k |v| + E)`` of v. Products, quotients and roots of what has few relative errors
 (k) have few as well; E begins where sums cancel. Terms of second order are in it, and what is too small for a double.
 """

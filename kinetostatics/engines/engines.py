@@ -30,8 +30,8 @@ class Kernels:
 
     def with_bounds(self, state, names, tight=False):
         raise NotGivenError(
-            f"{state.mechanism.name}: bounds belong to recorded arithmetic, and this solution is computed by the kernels "
-            "themselves, or in another way; solve it with plain numbers"
+            f"{state.mechanism.name}: bounds belong to recorded arithmetic, and this solution is computed by the "
+            "kernels themselves, or in another way; solve it with plain numbers"
         )
 
     def _values(self, state, name):

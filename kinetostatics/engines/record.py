@@ -5,7 +5,7 @@ recorded arithmetic holds for all scenes of that structure, whatever their numbe
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -73,7 +73,7 @@ class Recording:
     parameters: tuple[Node, ...]
     tables: tuple[Table, ...]
     graph: Graph
-    inputs: dict[Node, Callable[[Any], Error]]
+    inputs: dict[Node, Callable[[Any], Error]] = field(default_factory=dict)
 
     def named(self, rows):
         """Results by name from rows (outputs, ...): (...) of a number, (rows, ...) of a vector and the closure."""
@@ -271,8 +271,8 @@ def _rounded_once(bounds):
 def _unproven(what):
     def error(bounds):
         raise NotGivenError(
-            f"no bound can be given: {what} does more than arithmetic with sin, cos and sqrt of `elementary`, so its own "
-            "rounding is not known"
+            f"no bound can be given: {what} does more than arithmetic with sin, cos and sqrt of `elementary`, so its "
+            "own rounding is not known"
         )
 
     return error

@@ -53,6 +53,11 @@ class Certainty:
     dynamics: Any
     engine: Any
     crank_angle: Any
+    mechanism: Any
+    crank_speed: Any
+    crank_acceleration: Any
+    loads: Any
+    friction: Any
 
     def error_bound(self, quantity, tight=False):
         """Proven bound on the rounding error of each value of a quantity, by running error analysis.
@@ -135,7 +140,7 @@ class Certainty:
         >>> s.uncertainty("balancing_torque", {"crank_length": 1e-5, "slider.mass": 0.01}).tolerance.round(4)
         array([0.1489, 0.0873])
         """
-        from .compile import compile
+        from .compile import compile as compiled
         from .scene import Scene
 
         inputs = checks.singles("uncertainty", **{path: (value, {"low": 0.0}) for path, value in dict(inputs).items()})
@@ -144,7 +149,7 @@ class Certainty:
         if not inputs:
             return Uncertainty({}, rounding)
         scene = Scene(self.mechanism, self.crank_speed, self.crank_acceleration, self.loads, self.friction)
-        program = compile(scene, name, tuple(inputs), engine="compiled" if self.engine.compiled else "numpy")
+        program = compiled(scene, name, tuple(inputs), engine="compiled" if self.engine.compiled else "numpy")
         slopes = program.derivatives(self.crank_angle, tuple(inputs))[name]
         if name != quantity:
             x, y = quantities.components(self, name)

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from support.bounded import FAMILIES, errors, solution
-from support.every import every
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
@@ -11,6 +9,8 @@ from kinetostatics.engines import bounds, programs
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.methods.enclosures import enclosure
+from support.bounded import FAMILIES, errors, solution
+from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False)
 
@@ -23,7 +23,7 @@ def bounded(scene, quantity, angles=TURN):
 @every("family", FAMILIES)
 def test_no_value_of_random_machines_is_off_by_more_than_its_bound(family):
     pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-    made = next(found for found in map(lambda seed: solution(family, seed), range(9)) if found is not None)
+    made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)
     found = errors(made, ("balancing_torque", *made.reactions, "crank_angular_acceleration", "kinetic_energy"))
     assert found.values > 10
     assert found.wrong == []
@@ -86,7 +86,9 @@ def test_what_is_too_small_for_a_double_is_bounded_too():
 def test_elementary_functions_of_numpy_keep_to_their_ulp(function, exact):
     flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
     random = np.random.default_rng(1)
-    angles = np.concatenate([random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)])
+    angles = np.concatenate(
+        [random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)]
+    )
     own = getattr(np, function)(angles)
     with flint.ctx.workprec(200):
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]

@@ -32,7 +32,9 @@ def main(count=1_000_000, engine="numpy"):
                 print("WRONG", family, seed, *wrong)
         seed += 1
     for family, (values, unbounded, wrong, share) in totals.items():
-        print(f"{family:10s} {values:9d} values, {unbounded:6d} without a bound, {wrong} wrong, largest share {share:.3f}")
+        print(
+            f"{family:10s} {values:9d} values, {unbounded:6d} without a bound, {wrong} wrong, largest share {share:.3f}"
+        )
     print(f"{seed} seeds, {time.perf_counter() - begun:.0f} s")
 
 

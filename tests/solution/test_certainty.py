@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from support.every import every
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError, ParameterError, QuantityError
+from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
@@ -67,8 +67,10 @@ def test_uncertainty_is_what_a_monte_carlo_spread_shows():
     found = s.uncertainty("balancing_torque", spreads)
     random = np.random.default_rng(0)
     scene = ks.Scene(SAW, 33.5, loads=(ks.Gravity(),))
-    drawn = {path: scene_value + spread * random.standard_normal((2000, 1)) for (path, spread), scene_value in
-             zip(spreads.items(), (0.3, 600.0, 0.0), strict=True)}
+    drawn = {
+        path: scene_value + spread * random.standard_normal((2000, 1))
+        for (path, spread), scene_value in zip(spreads.items(), (0.3, 600.0, 0.0), strict=True)
+    }
     values = ks.compile(scene, "balancing_torque", parameters=tuple(spreads))(TURN, drawn)["balancing_torque"]
     np.testing.assert_allclose(values.std(axis=0), found.tolerance, rtol=0.06, atol=0.06 * found.tolerance.max())
 

@@ -112,7 +112,9 @@ def errors(solution, names=None):
     with ctx.workprec(BITS):
         exact = on_arb(arb, with_fields(solution, engine=solution.engine))
         for name in names or known:
-            own, bounds = (_rows(known[name], found) for found in (components(solution, name), solution.error_bound(name)))
+            own, bounds = (
+                _rows(known[name], found) for found in (components(solution, name), solution.error_bound(name))
+            )
             for value, bound, middle in zip(own, bounds, components(exact, name), strict=True):
                 for place, truth in enumerate(np.broadcast_to(np.asarray(middle, dtype=object), np.shape(value))):
                     truth = arb(truth)
@@ -122,7 +124,9 @@ def errors(solution, names=None):
                     values += 1
                     unbounded += not np.isfinite(bound[place])
                     if np.isfinite(bound[place]) and not error.abs_lower() <= arb(float(bound[place])):
-                        wrong.append((name, float(solution.crank_angle[place]), float(error.mid()), float(bound[place])))
+                        wrong.append(
+                            (name, float(solution.crank_angle[place]), float(error.mid()), float(bound[place]))
+                        )
                     if bound[place] > 0:
                         share = max(share, float(error.abs_lower()) / bound[place])
     return Found(values, wrong, unbounded, share)

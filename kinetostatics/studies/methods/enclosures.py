@@ -1,8 +1,8 @@
 """Enclosures: the library's own kernels on `arb` numbers, intervals that hold what exact arithmetic would give.
 
 (Johansson 2017, *Arb: efficient arbitrary-precision midpoint-radius interval arithmetic*.) The mechanism is the one
-whose numbers are the doubles that the solution holds, each taken exactly. Of the direction of a guide through two points
-only the direction counts: its length is 1 but for rounding, and no guide has any other.
+whose numbers are the doubles that the solution holds, each taken exactly. Of a guide through two points only the
+direction of its unit vector counts: its length is 1 but for rounding.
 """
 
 import importlib
