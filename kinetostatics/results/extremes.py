@@ -42,6 +42,15 @@ class Extremes:
         Crank angles around which no value has a correct digit, rad.
     solution : Solution or None
         None for a function of the user's.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 0.0, crank_speed=33.5)
+    >>> found = ks.extremes(s, "slider_velocity")
+    >>> np.degrees(found.angle).round(3), found.value.round(4), found.maximum
+    (array([ 81.651, 278.349]), array([-10.1625,  10.1625]), array([False,  True]))
     """
 
     quantity: str
@@ -123,6 +132,15 @@ def extremes(solution, quantity):
     ConditionWarning
         Values around some crank angles have no correct digit, or the quantity grows without bound there; or friction
         jams there.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 0.0, crank_speed=33.5)
+    >>> ks.extremes(s, "balancing_torque").value.round(1)  # N m
+    array([ 34479. , -28315.7,  28315.7, -34479. ])
+    >>> print(f"{ks.extremes(s, 'O').largest:.1f} N")  # magnitude of the reaction
+    232305.7 N
     """
     checks.require("extremes", checks.solution("solution", solution), checks.quantity(quantity, function=True))
     found = extrema(solution, quantity)
