@@ -111,6 +111,7 @@ if TYPE_CHECKING:
     from .results.comparison import Comparison, compare
     from .results.extremes import Extremes, extremes
     from .results.losses import Losses
+    from .solution.certainty import Uncertainty
     from .solution.compile import Program, compile  # noqa: A004 - the contract's name
     from .solution.group_check import check
     from .solution.scene import Scene, solve
@@ -181,6 +182,7 @@ __all__ = [
     "Torque",
     "TorsionDamper",
     "TorsionSpring",
+    "Uncertainty",
     "Variant",
     "YokeGroup",
     "balancing",
@@ -250,6 +252,7 @@ _WHERE = {
     "results.comparison": ["Comparison", "compare"],
     "results.extremes": ["Extremes", "extremes"],
     "results.losses": ["Losses"],
+    "solution.certainty": ["Uncertainty"],
     "solution.compile": ["Program", "compile"],
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],
