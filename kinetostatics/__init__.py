@@ -112,6 +112,7 @@ if TYPE_CHECKING:
     from .results.comparison import Comparison, compare
     from .results.extremes import Extremes, extremes
     from .results.losses import Losses
+    from .solution.certainty import Uncertainty
     from .solution.compile import Program, compile  # noqa: A004 - the contract's name
     from .solution.group_check import check
     from .solution.scene import Scene, solve
@@ -184,6 +185,7 @@ __all__ = [
     "Torque",
     "TorsionDamper",
     "TorsionSpring",
+    "Uncertainty",
     "Variant",
     "YokeGroup",
     "balancing",
@@ -254,6 +256,7 @@ _WHERE = {
     "results.comparison": ["Comparison", "compare"],
     "results.extremes": ["Extremes", "extremes"],
     "results.losses": ["Losses"],
+    "solution.certainty": ["Uncertainty"],
     "solution.compile": ["Program", "compile"],
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],

@@ -15,6 +15,7 @@ from ..numbers.elementary import ROUNDING
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves
 from . import loops, writing
+from .bounds import Bounds
 from .compiled import _loaded, available
 from .derivatives import gradients
 from .recent import kept_for_same_angles
@@ -42,6 +43,7 @@ class Program:
         self.recording = recording
         self.outputs = recording.outputs if outputs is None else outputs
         self._slopes: dict[tuple[int, ...], Program] = {}
+        self._bounded: dict[bool, Program] = {}
         self._computed = 0.0
 
     def by_parameters(self, places):
@@ -62,6 +64,20 @@ class Program:
             rows = gradients(recording.graph, self.outputs, [recording.parameters[place] for place in places])
             self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
         return self._slopes[places]
+
+    def bounded(self, tight=False):
+        """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
+
+        Raises
+        ------
+        NotGivenError
+            Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
+        """
+        if tight not in self._bounded:
+            bounds = Bounds(self.recording.graph, self.recording.inputs)
+            found = map(bounds.tight, self.outputs) if tight else bounds.of(self.outputs)
+            self._bounded[tight] = Program(self.recording, (*self.outputs, *found))
+        return self._bounded[tight]
 
     @cached_property
     def unrecorded(self):
@@ -235,6 +251,11 @@ def _root_of(square, unit, out):
     np.copyto(out, np.nan, where=np.less(square, -ROUNDING * unit))
 
 
+def _multiply_add(one, other, more, out):
+    np.multiply(one, other, out=out)
+    np.add(out, more, out=out)
+
+
 def _sqrt(square):
     return math.sqrt(square) if square >= 0.0 else math.nan
 
@@ -248,6 +269,7 @@ PLAIN = {
     "copysign": math.copysign,
     "root": _plain_root,
     "divisor": _plain_divisor,
+    "fma": lambda one, other, more: one * other + more,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -260,6 +282,7 @@ _BY_DESIGN = {
     "copysign": np.copysign,
     "root": _root,
     "divisor": np.maximum,
+    "fma": lambda one, other, more: one * other + more,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -277,6 +300,7 @@ _ARRAYS = {
     "absolute": np.absolute,
     "sign_of": lambda value, out: np.copysign(1.0, value, out),
     "root_of": _root_of,
+    "multiply_add": _multiply_add,
     "maximum": lambda one, other, out: np.maximum(one, other, out=out),
 }
 

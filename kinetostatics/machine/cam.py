@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..numbers.elementary import namespace
+from ..numbers.elementary import atan
 from ..numbers.planar import curvature
 from .crank import ray as ray_at
 
@@ -46,7 +46,7 @@ class Cam:
     def pressure_angle(self, phi):
         """Angle between the cam normal and the crank ray, atan(r'/r), rad; positive where the radius grows."""
         r, slope, _ = self.radius(phi)
-        return namespace(r).atan(slope / r)
+        return atan(slope / r)
 
     def curvature_radius(self, phi):
         """Signed radius of curvature of the pitch curve, m; negative where it is hollow."""

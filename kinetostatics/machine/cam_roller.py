@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import namespace, sqrt
+from ..numbers.elementary import atan, sqrt
 from ..numbers.planar import cross, dot, minus, vector
 from .cam import bend
 from .crank import ray
@@ -177,7 +177,7 @@ class CamRoller(checks.Checked, Group):
 
     def motion(self, name, placement):
         radius, slope, _ = placement.details["cam"]
-        return namespace(slope).atan(slope / radius)
+        return atan(slope / radius)
 
     def place(self, placement):
         polar = self.cam.polar(placement.angle, placement.ray)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import namespace, sqrt
+from ..numbers.elementary import atan, sqrt
 from ..numbers.planar import minus, number, plus, turned, unturned, vector
 from .group import Output
 from .guided_follower import RULES, FollowerForces, GuidedFollower
@@ -101,7 +101,7 @@ class RollerFollower(GuidedFollower):
 
     def motion(self, name, placement):
         reach, climb = self._across(placement)
-        return namespace(climb).atan(climb / reach)
+        return atan(climb / reach)
 
     def pitch(self, law):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""

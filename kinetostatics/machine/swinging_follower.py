@@ -16,7 +16,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import cos, namespace, sin
+from ..numbers.elementary import atan, cos, sin
 from ..numbers.planar import added, cross, dot, left, length, number, stretched, subtracted, turned
 from . import follower
 from .friction import Turning
@@ -205,7 +205,7 @@ class SwingingFollower(follower.Follower):
     def motion(self, name, placement):
         found = placement.details[self.moved]
         sine = dot(found.arm.direction, found.across)
-        return namespace(sine).atan(abs(sine / found.lever))
+        return atan(abs(sine / found.lever))
 
     def place(self, placement):
         swing = self.cam.polar(placement.angle, placement.ray)

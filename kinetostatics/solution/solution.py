@@ -21,6 +21,7 @@ from ..numbers.lazy import cached_property
 from ..results.turn import Turn
 from . import contents
 from .angles import crank_angles
+from .certainty import Certainty
 from .contacts import Contacts
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
@@ -31,7 +32,7 @@ SCENE = tuple(field.name for field in fields(Motion))
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Energies, Contacts, Motion):
+class Solution(Certainty, Energies, Contacts, Motion):
     """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
 
     The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
