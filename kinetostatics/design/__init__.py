@@ -18,6 +18,7 @@ progress        bars that count its steps
 search          the search by SciPy's optimisers
 found           its result: the machine, what binds, what it costs
 case_text       scenes as case files
+spread          how numbers spread, and which quantile counts
 robust          quantiles over spreads as what is made least or greatest
 optimisation    any machine under limits
 fronts          the best of one output for each value of another
@@ -41,7 +42,8 @@ if TYPE_CHECKING:
     from .fronts import Front, pareto
     from .hardness import hardness_from_pressure, pressure_from_hardness
     from .optimisation import optimise
-    from .robust import Spread, over_spread
+    from .robust import over_spread
+    from .spread import Spread
     from .torque_balanced import TorqueBalancing
     from .torque_balancing import torque_balancing_cam
     from .torque_free import torque_free_cam
@@ -75,7 +77,7 @@ _WHERE = {
     "Found": "found",
     "Front": "fronts",
     "Peak": "cam_contact",
-    "Spread": "robust",
+    "Spread": "spread",
     "Surge": "followers",
     "TorqueBalancing": "torque_balanced",
     "contact": "contact_asked",

@@ -14,8 +14,9 @@ from .derived import scene_of
 from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
 from .progress import shown
-from .robust import Sampled, not_spread
+from .robust import Sampled
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
+from .spread import not_spread
 
 ANGLES = 720
 """Crank angles over the period."""

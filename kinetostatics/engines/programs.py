@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError, QuantityError
-from ..numbers.elementary import ROUNDING
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves
 from . import loops, writing
 from .bounds import Bounds
 from .compiled import _loaded, available
 from .derivatives import gradients
+from .operations import ARRAYS, BY_DESIGN, PLAIN
 from .recent import kept_for_same_angles
 from .record import record
 from .trace import needed, operations
@@ -92,7 +92,7 @@ class Program:
     @cached_property
     def _buffered(self):
         source, count = writing.buffered_line(self.outputs)
-        return [made(source, _ARRAYS | by_design) for by_design in (PLAIN, _BY_DESIGN)], count
+        return [made(source, ARRAYS | by_design) for by_design in (PLAIN, BY_DESIGN)], count
 
     @cached_property
     def loop(self):
@@ -226,83 +226,6 @@ def _buffers(count, shape):
     if held is None or held.size < size:
         held = _memory.held = np.empty(max(size, 1))
     return held[:size].reshape(count, *shape)
-
-
-# What operations are called on plain numbers, and on arrays
-
-
-def _plain_root(square, unit):
-    if square > 0.0:
-        return math.sqrt(square)
-    return 0.0 if square >= -ROUNDING * unit else math.nan
-
-
-def _plain_divisor(root, unit):
-    return unit if root < unit else root
-
-
-def _root(square, unit):
-    return np.where(square >= -ROUNDING * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
-
-
-def _root_of(square, unit, out):
-    np.maximum(square, 0.0, out=out)
-    np.sqrt(out, out)
-    np.copyto(out, np.nan, where=np.less(square, -ROUNDING * unit))
-
-
-def _multiply_add(one, other, more, out):
-    np.multiply(one, other, out=out)
-    np.add(out, more, out=out)
-
-
-def _sqrt(square):
-    return math.sqrt(square) if square >= 0.0 else math.nan
-
-
-PLAIN = {
-    "sin": lambda angle: float(np.sin(angle)),
-    "cos": lambda angle: float(np.cos(angle)),
-    "atan": lambda slope: float(np.arctan(slope)),
-    "sqrt": _sqrt,
-    "abs": abs,
-    "copysign": math.copysign,
-    "root": _plain_root,
-    "divisor": _plain_divisor,
-    "fma": lambda one, other, more: one * other + more,
-    "nan": math.nan,
-    "inf": math.inf,
-}
-_BY_DESIGN = {
-    "sin": np.sin,
-    "cos": np.cos,
-    "atan": np.arctan,
-    "sqrt": np.sqrt,
-    "abs": np.abs,
-    "copysign": np.copysign,
-    "root": _root,
-    "divisor": np.maximum,
-    "fma": lambda one, other, more: one * other + more,
-    "nan": math.nan,
-    "inf": math.inf,
-}
-_ARRAYS = {
-    "add": np.add,
-    "subtract": np.subtract,
-    "multiply": np.multiply,
-    "divide": np.divide,
-    "negative": np.negative,
-    "positive": np.positive,
-    "sin_of": np.sin,
-    "cos_of": np.cos,
-    "sqrt_of": np.sqrt,
-    "arctan": np.arctan,
-    "absolute": np.absolute,
-    "sign_of": lambda value, out: np.copysign(1.0, value, out),
-    "root_of": _root_of,
-    "multiply_add": _multiply_add,
-    "maximum": lambda one, other, out: np.maximum(one, other, out=out),
-}
 
 
 # Programs kept by structure

@@ -87,6 +87,7 @@ class FlatFollower(GuidedFollower):
 
     @property
     def pressed(self):
+        """What the cam presses on: its `Face`, or None."""
         return self.face
 
     def relative_radius(self, name, placement, side):

@@ -58,6 +58,7 @@ class GuidedFollower(follower.Follower):
 
     @property
     def moved(self):
+        """Name of the link that the cam moves."""
         return "follower" + self.label
 
     @property

@@ -92,6 +92,7 @@ class RollerFollower(GuidedFollower):
 
     @property
     def pressed(self):
+        """What the cam presses on: its `Roller`, or None."""
         return self.roller
 
     @property

@@ -174,10 +174,12 @@ class SwingingFollower(follower.Follower):
 
     @property
     def moved(self):
+        """Name of the link that the cam moves."""
         return "arm" + self.label
 
     @property
     def pressed(self):
+        """What the cam presses on: its `Roller`, or None."""
         return self.roller
 
     @property

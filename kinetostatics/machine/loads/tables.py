@@ -257,8 +257,8 @@ class Table:
     def rounding(self, motion):
         """Bound on the error of values read by crank angle: of the angle in its own turn, N or N m."""
         angle, (start, value, slope) = np.asarray(motion.crank_angle), self.pieces(motion)
-        steps = np.append(self.x, self.x[0] + self.period), np.append(self.y, self.y[0])
-        steepest = np.max(np.abs(np.diff(steps[1]) / np.diff(steps[0])))
+        x, y = np.append(self.x, self.x[0] + self.period), np.append(self.y, self.y[0])
+        steepest = np.max(np.abs(np.diff(y) / np.diff(x)))
         own = (angle >= self.x[0]) & (angle < self.x[0] + self.period)
         turned = np.where(own, 0.0, steepest * (np.abs(angle) + self.period))
         return 8 * UNIT * (np.abs(slope * (angle - start)) + np.abs(value) + turned)
@@ -276,11 +276,8 @@ class Table:
         row = np.clip(np.searchsorted(self.x, place), 1, self.x.size - 1)
         beside = np.minimum(np.abs(place - self.x[row - 1]), np.abs(place - self.x[row])) <= near
         jump = 0.0 if self.back is None else float(np.max(np.abs(self.y - self.back)))
-        return (
-            np.where(beside, 2.0 * steepest, 0.0),
-            np.where(np.abs(self.rate(motion)) <= near, jump, 0.0),
-            near,
-        )
+        standing = np.abs(self.rate(motion)) <= near
+        return np.where(beside, 2.0 * steepest, 0.0), np.where(standing, jump, 0.0), near
 
     def rate(self, motion):
         """Rate of the slider along its guide by the crank angle, m."""
