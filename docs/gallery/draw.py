@@ -5,20 +5,18 @@ Without names all are drawn, into this folder.
 
 import re
 import sys
-from io import StringIO
 from pathlib import Path
-
-import matplotlib as mpl
-
-mpl.use("agg")
-
-import matplotlib.pyplot as plt
-import numpy as np
-
-import kinetostatics as ks
 
 FOLDER = Path(__file__).parent
 PAGE = FOLDER.parent / "gallery.md"
+sys.path.insert(0, str(FOLDER.parent))
+
+import matplotlib.pyplot as plt
+import numpy as np
+from pictures import as_svg, look
+
+import kinetostatics as ks
+
 SIZES = {
     "mechanism": (8.0, 2.6),
     "film": (8.0, 2.6),
@@ -31,10 +29,6 @@ SIZES = {
 """Inches; others are 6.4 by 4."""
 ROUNDING = {"stability"}
 """Pictures that show rounding errors, which differ from machine to machine."""
-PLACE = re.compile(r' (?:d|x|y|width|height)="[^"]*"')
-"""Places in a picture, in points: a hundredth of one is enough."""
-DECIMALS = re.compile(r"-?\d+\.\d{3,}(?:e-?\d+)?")
-NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
 
 
 def snippets():
@@ -45,42 +39,14 @@ def snippets():
 
 def drawn(name):
     """A picture as SVG, by the lines of the page."""
-    look = {
-        "svg.hashsalt": name,
-        "font.size": 9,
-        "figure.figsize": SIZES.get(name, (6.4, 4.0)),
-        "figure.constrained_layout.use": True,
-    }
-    with mpl.rc_context(look):
+    with look(name, SIZES.get(name, (6.4, 4.0))):
         names = {"ks": ks, "np": np, "plt": plt}
         exec(compile(snippets()[name], f"{PAGE.name}, {name}", "exec"), names)
         if "film" in names:
             plt.gcf().canvas.draw()  # starts a film
-        text = StringIO()
-        plt.gcf().savefig(text, format="svg", metadata={"Date": None})
+        svg = as_svg(plt.gcf())
         plt.close("all")
-    lines = (line.rstrip() for line in text.getvalue().splitlines())
-    return PLACE.sub(lambda found: DECIMALS.sub(_rounded, found[0]), "\n".join(lines)) + "\n"
-
-
-def _rounded(number):
-    return f"{float(number[0]):.2f}"
-
-
-def version(svg):
-    """Version of matplotlib that a picture was drawn by, as (major, minor)."""
-    return re.search(r"Matplotlib v(\d+)\.(\d+)", svg).groups()
-
-
-def texts(svg):
-    """All that is written in a picture: titles, labels, the numbers of its axes."""
-    return re.findall(r"<!-- (.*?) -->", svg)
-
-
-def strokes(svg):
-    """Coordinates in a picture, and what stands between them."""
-    body = svg.partition("</metadata>")[2]
-    return np.array(NUMBER.findall(body), dtype=float), NUMBER.split(body)
+    return svg
 
 
 if __name__ == "__main__":
