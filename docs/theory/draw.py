@@ -145,7 +145,7 @@ def apart(solution, link, place, degrees, gap=0.36):
         ax.annotate(name, (place, top), (0, 16), textcoords="offset points", ha="center", style="italic")
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
-    ax.margins(0.05)
+    ax.margins(0.08)
     ax.axis("off")
     return figure
 
@@ -160,7 +160,7 @@ def _unit(degrees):
 def crank_slider():
     machine = ks.crank_slider(0.1, 0.25, guide_angle=np.radians(10))
     s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.ProcessForce(-500.0)])
-    return apart(s, "slider", (0.0, 0.0), 190)
+    return apart(s, "slider", (0.0, 0.0), 190, gap=0.45)
 
 
 def four_bar():
@@ -305,15 +305,15 @@ def friction():
 
 
 DRAWINGS = {
-    "signs": (signs, (7.0, 3.4)),
-    "groups": (groups, (9.0, 4.6)),
-    "crank_slider": (crank_slider, (8.4, 2.4)),
-    "four_bar": (four_bar, (8.4, 2.6)),
-    "lever": (lever, (7.6, 3.6)),
-    "cylinder": (cylinder, (8.0, 2.4)),
-    "yoke": (yoke, (7.6, 2.6)),
-    "cam_roller": (cam_roller, (9.4, 2.4)),
-    "friction": (friction, (7.0, 2.8)),
+    "signs": (signs, (6.4, 3.1)),
+    "groups": (groups, (7.6, 4.0)),
+    "crank_slider": (crank_slider, (6.4, 1.7)),
+    "four_bar": (four_bar, (6.4, 1.9)),
+    "lever": (lever, (6.4, 2.9)),
+    "cylinder": (cylinder, (6.4, 2.0)),
+    "yoke": (yoke, (6.4, 2.3)),
+    "cam_roller": (cam_roller, (7.0, 1.6)),
+    "friction": (friction, (6.4, 2.5)),
 }
 """How each is drawn, and its size in inches."""
 
