@@ -1,26 +1,13 @@
 """The gallery shows what its lines draw: few lines, pictures that come out the same, and small."""
 
-import importlib.util
-from pathlib import Path
-
 import matplotlib as mpl
 import numpy as np
 import pytest
 
-DOCS = Path(__file__).parent.parent.parent / "docs"
-MOVED = 0.1
-"""Points of the page by which a stroke may lie elsewhere."""
-pytestmark = pytest.mark.skipif(not DOCS.is_dir(), reason="the pages are not beside the tests")
+from support import pages
 
-
-def loaded(path):
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-gallery = loaded(DOCS / "gallery" / "draw.py") if DOCS.is_dir() else None
+pytestmark = pages.needed
+gallery, pictures = pages.script("draw_gallery"), pages.script("pictures")
 SNIPPETS = gallery.snippets() if gallery else {}
 
 
@@ -46,30 +33,21 @@ def test_a_picture_takes_six_lines_and_less_than_100_kb_and_bears_no_date(name):
 @pytest.mark.filterwarnings("ignore:Animation was deleted")
 @pytest.mark.parametrize("name", SNIPPETS)
 def test_a_picture_comes_out_as_it_is_shown(name):
-    """Its texts with any matplotlib, so the numbers on its axes too; each stroke with the one that drew it."""
     if name == "stability":
-        pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-        pytest.importorskip("mpmath", reason="mpmath is not installed (extra: precision)")
-        pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-    shown, now = committed(name), gallery.drawn(name)
-    assert gallery.texts(now) == gallery.texts(shown), "redraw it: python docs/gallery/draw.py"
-    if name not in gallery.ROUNDING and gallery.version(shown) == gallery.version(now):
-        (places, between), (were, beside) = gallery.strokes(now), gallery.strokes(shown)
-        assert between == beside, "redraw it: python docs/gallery/draw.py"
-        np.testing.assert_allclose(places, were, rtol=0, atol=MOVED, err_msg="redraw it: python docs/gallery/draw.py")
+        for library, extra in {"flint": "precision", "mpmath": "precision", "numba": "fast"}.items():
+            pytest.importorskip(library, reason=f"{library} is not installed (extra: {extra})")
+    before = dict(mpl.rcParams)
+    pages.same_picture(committed(name), gallery.drawn(name), strokes=name not in gallery.ROUNDING)
+    assert dict(mpl.rcParams) == before
 
 
 def test_a_picture_that_differs_is_found():
     svg = committed("torque")
-    places, between = gallery.strokes(svg)
-    other, _ = gallery.strokes(svg.replace("M ", "M 1", 1))
-    assert not np.allclose(places, other, rtol=0, atol=MOVED)
-    assert gallery.texts(svg)[0] == "0"
-    assert len(gallery.texts(svg)) > 10
+    pages.same_picture(svg, svg)
+    with pytest.raises(AssertionError, match="anew"):
+        pages.same_picture(svg, svg.replace("<!-- 90 -->", "<!-- 80 -->", 1))
+    assert len(pictures.texts(svg)) > 10
+    places, between = pictures.strokes(svg)
     assert len(between) == len(places) + 1
-
-
-def test_drawing_leaves_settings_as_they_were():
-    before = dict(mpl.rcParams)
-    gallery.drawn("losses")
-    assert dict(mpl.rcParams) == before
+    moved = svg.replace("M ", "M 1", 1)
+    assert not np.allclose(pictures.strokes(moved)[0], places, rtol=0, atol=pages.MOVED)

@@ -1,10 +1,7 @@
-"""The drawings of the theory: python docs/theory/draw.py [NAME ...]. Without names all are drawn, into this folder."""
+"""The drawings of the theory: python docs/draw_theory.py [NAME ...]. Without names all are drawn, into docs/theory."""
 
 import sys
 from pathlib import Path
-
-FOLDER = Path(__file__).parent
-sys.path.insert(0, str(FOLDER.parent))
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,6 +15,7 @@ from kinetostatics.views.canvas import ACCENT, INK, LOAD, STEEL
 from kinetostatics.views.drawings import LINES, PLATES
 from kinetostatics.views.shape import Shape
 
+FOLDER = Path(__file__).parent / "theory"
 TURN = np.radians(np.arange(720) / 2)
 SHAFT = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11, "lw": 1.4}
 
@@ -30,7 +28,7 @@ def forces(solution):
     made, found = solution.mechanism, {name: [] for name in solution.mechanism.links}
     for name, pair in made.pairs.items():
         point, against = solution.position(pair.joint)[:, 0], getattr(pair, "against", "frame")
-        if isinstance(pair, Turning) or name in made.outputs and made.outputs[name].vector:
+        if isinstance(pair, Turning) or (name in made.outputs and made.outputs[name].vector):
             force = solution.reaction(name)[:, 0]
             text = name
         else:
@@ -158,36 +156,46 @@ def _unit(degrees):
 
 
 def crank_slider():
+    """Crank-slider on an inclined guide."""
     machine = ks.crank_slider(0.1, 0.25, guide_angle=np.radians(10))
     s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.ProcessForce(-500.0)])
     return apart(s, "slider", (0.0, 0.0), 190, gap=0.45)
 
 
 def four_bar():
+    """Four-bar with a force on its rocker."""
     machine = ks.four_bar(0.1, 0.25, 0.18, rocker_pivot=(0.25, -0.02))
-    s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.Force(300.0, at=("rocker", 0.1, 0.0), direction=np.radians(200))])
+    s = ks.solve(
+        machine, POSE, crank_speed=1.0, loads=[ks.Force(300.0, at=("rocker", 0.1, 0.0), direction=np.radians(200))]
+    )
     return apart(s, "rocker", (0.1, 0.0), 200)
 
 
 def lever():
+    """Slotted lever with a force on it."""
     machine = ks.slotted_lever(0.1, pivot=(0.0, -0.2))
     s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.Force(-300.0, at=("lever", 0.12, 0.0))])
     return apart(s, "lever", (0.12, 0.0), 180)
 
 
 def cylinder():
+    """Swinging cylinder with a force on it."""
     machine = ks.Mechanism("swinging cylinder", ks.Crank(0.1), (ks.CylinderGroup((0.3, -0.1)),))
-    s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.Force(300.0, at=("cylinder", 0.1, 0.0), direction=np.radians(-90))])
+    s = ks.solve(
+        machine, POSE, crank_speed=1.0, loads=[ks.Force(300.0, at=("cylinder", 0.1, 0.0), direction=np.radians(-90))]
+    )
     return apart(s, "cylinder", (0.1, 0.0), -90)
 
 
 def yoke():
+    """Scotch yoke with an inclined slot."""
     machine = ks.Mechanism("yoke", ks.Crank(0.1), (ks.YokeGroup(ks.Guide.at(0.0), slot_angle=np.radians(75)),))
     s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.ProcessForce(-500.0)])
     return apart(s, "slider", (0.0, 0.0), 180, gap=0.55)
 
 
 def cam_roller():
+    """Cam-guided crank-slider."""
     machine = ks.cam_crank_slider(ks.cams.Circle(0.1, (-0.05, -0.02)), 0.28)
     s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.ProcessForce(-500.0)])
     return apart(s, "slider", (0.0, 0.0), 180)

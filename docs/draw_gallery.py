@@ -1,15 +1,11 @@
-"""The pictures of gallery.md, each drawn by the lines that stand below it there: python docs/gallery/draw.py [NAME ...].
+"""The pictures of gallery.md, each by the lines that stand below it there: python docs/draw_gallery.py [NAME ...].
 
-Without names all are drawn, into this folder.
+Without names all are drawn, into docs/gallery.
 """
 
 import re
 import sys
 from pathlib import Path
-
-FOLDER = Path(__file__).parent
-PAGE = FOLDER.parent / "gallery.md"
-sys.path.insert(0, str(FOLDER.parent))
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,6 +13,8 @@ from pictures import as_svg, look
 
 import kinetostatics as ks
 
+PAGE = Path(__file__).parent / "gallery.md"
+FOLDER = PAGE.with_suffix("")
 SIZES = {
     "mechanism": (8.0, 2.6),
     "film": (8.0, 2.6),
