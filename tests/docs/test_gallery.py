@@ -34,8 +34,8 @@ def test_a_picture_takes_six_lines_and_less_than_100_kb_and_bears_no_date(name):
 @pytest.mark.parametrize("name", SNIPPETS)
 def test_a_picture_comes_out_as_it_is_shown(name):
     if name == "stability":
-        for library, extra in {"flint": "precision", "mpmath": "precision", "numba": "fast"}.items():
-            pytest.importorskip(library, reason=f"{library} is not installed (extra: {extra})")
+        for library in ("flint", "mpmath"):
+            pytest.importorskip(library, reason=f"{library} is not installed (extra: precision)")
     before = dict(mpl.rcParams)
     pages.same_picture(committed(name), gallery.drawn(name), strokes=name not in gallery.ROUNDING)
     assert dict(mpl.rcParams) == before
