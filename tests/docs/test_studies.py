@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from support import pages
+from support import drawn_pages as pages
 
 pytestmark = pages.needed
 FIGURES = {
