@@ -77,7 +77,7 @@ class Certainty:
         Parameters
         ----------
         quantity : str
-            "balancing_torque", a joint (its reaction), "slider_velocity" ...; "|O|" for the magnitude of a vector.
+            "balancing_torque", a joint (its reaction), "slider_velocity" ...; ``"|O|"`` for the magnitude of a vector.
         tight : bool
             Whether it may take some ten times as long, and be up to ten times smaller.
 

@@ -112,7 +112,7 @@ at(crank_angle)
 condition_of(quantity)
     Condition of one quantity, cancellation of its terms counted in.
 error_bound(quantity, tight)
-    Proven bound on the rounding error of each value, in the quantity's shape and unit; "|O|" for a magnitude.
+    Proven bound on the rounding error of each value, in the quantity's shape and unit; ``"|O|"`` for a magnitude.
 uncertainty(quantity, inputs)
     What standard uncertainties of inputs, by path, and rounding do to each value, as `Uncertainty`.
 frame()
