@@ -35,11 +35,14 @@ class Table(NamedTuple):
         ``compute(motion, arrays) -> rows``, from the scene's motion and the tables among its leaves.
     moved_by : str
         Code of the user's whose values may hang on parameters in a way that is not recorded; "" without.
+    names : tuple of (str, int, str)
+        What each row is: its name, how many times it is differentiated by the crank angle, its unit.
     """
 
     rows: range
     compute: Callable[[Any, Any], Any]
     moved_by: str = ""
+    names: tuple = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +109,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     way : function, optional
         Other way to the placement, as `Dynamics` takes it.
     """
-    recorder = _Recorder(structure, way)
+    recorder = Recorder(structure, way)
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -126,10 +129,10 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
 
 def recorded(structure):
     """The scene of a structure with a `Node` for each of its numbers."""
-    return _Recorder(structure, None).recorded
+    return Recorder(structure, None).recorded
 
 
-class _Recorder:
+class Recorder:
     """Puts nodes in place of the numbers of a structure."""
 
     def __init__(self, structure, way):
@@ -153,12 +156,12 @@ class _Recorder:
     def _array(self):
         place = self._arrays
         self._arrays += 1
-        return self._tabled(1, lambda motion, arrays: [arrays[place]])[0]
+        return self._tabled((("value", 0, ""),), lambda motion, arrays: [arrays[place]])[0]
 
-    def _tabled(self, rows, compute, moved_by=""):
-        first, self._rows = self._rows, self._rows + rows
-        self.tables.append(Table(range(first, self._rows), compute, moved_by))
-        return [self._nodes(self.graph.row(first + place)) for place in range(rows)]
+    def _tabled(self, names, compute, moved_by=""):
+        first, self._rows = self._rows, self._rows + len(names)
+        self.tables.append(Table(range(first, self._rows), compute, moved_by, names))
+        return [self._nodes(self.graph.row(row)) for row in range(first, self._rows)]
 
     def _nodes(self, *nodes):
         return np.array(nodes, dtype=object)
@@ -170,7 +173,7 @@ class _Recorder:
         ):
             return group
         values = self._tabled(
-            3,
+            tuple(("r", order, "m") for order in range(3)),
             lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle),
             "" if group.cam is None else type(group.cam).__name__,
         )
@@ -185,7 +188,7 @@ class _Recorder:
             return ProcessForce(self._given(load, place), load.on)
         value = load.value_now
         if isinstance(value, loads.Table):
-            return with_fields(load, **{load.VALUE: self._read(value, place, idle)})
+            return with_fields(load, **{load.VALUE: self._read(value, load.UNIT, place, idle)})
         if not callable(value) or self._is_elementwise(
             value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]
         ):
@@ -194,18 +197,20 @@ class _Recorder:
 
     def _given(self, load, place):
         """What code of the user's gives for a load, from a table."""
-        (values,) = self._tabled(1, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load))
+        names = ((title_of(load), 0, getattr(load, "UNIT", "N")),)
+        (values,) = self._tabled(names, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load))
         return values
 
-    def _read(self, table, place, idle):
+    def _read(self, table, unit, place, idle):
         """Values of a table; over travel by recorded arithmetic on its pieces, which are found beforehand."""
 
         def item(motion):
             return motion.loads[place].value_now
 
         if table.over == "angle":
-            return self._tabled(1, lambda motion, arrays: [item(motion)(motion)])[0]
-        return table.read(idle, self._tabled(3, lambda motion, arrays: item(motion).pieces(motion)))
+            return self._tabled((("value", 0, unit),), lambda motion, arrays: [item(motion)(motion)])[0]
+        names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
+        return table.read(idle, self._tabled(names, lambda motion, arrays: item(motion).pieces(motion)))
 
     def _is_elementwise(self, part, compute):
         """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""

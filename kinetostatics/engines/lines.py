@@ -1,0 +1,349 @@
+"""The lines of a calculation: which recorded numbers are told by a formula of their own, their values, and their units.
+
+A formula ends at what the mechanism names and at what a kernel's `TERMS` explain; at another line of a kernel where it
+is used more than once, or where the formula would grow too long. So every value that stands in a formula is a number
+given or a line before it.
+"""
+
+from heapq import heapify, heappop, heappush
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .formulas import formula, names_in
+from .naming import Named, Symbol
+from .programs import Program
+from .record import Recording
+from .trace import INPUTS, Node
+
+LONGEST = 12
+"""Named numbers and constants in one formula; with more it is parted."""
+NOISE = 1e-14
+"""Size of a value, relative to the terms that it is a difference of, below which it is their rounding."""
+
+
+class Line(NamedTuple):
+    """A number, how it is found, and its value.
+
+    Attributes
+    ----------
+    named : Named
+    tree : tuple or None
+        Its formula, see `formulas`; None of what is given.
+    value : float
+    unit : str
+    is_noise : bool
+        Whether it is zero but for rounding.
+    node : Node
+    """
+
+    named: Named
+    tree: Any
+    value: float
+    unit: str
+    is_noise: bool
+    node: Node
+
+
+def lines(names, outputs, recorder, state):
+    """Lines that lead to some recorded numbers, those given first.
+
+    Parameters
+    ----------
+    names : Names
+    outputs : sequence of Node
+    recorder : Recorder
+    state : Dynamics
+        The scene at one crank angle.
+    """
+    ends = _ends(names, outputs)
+    trees, ordered = {}, []
+    waiting = list(outputs)
+    while waiting:
+        node = waiting.pop()
+        if node not in trees:
+            trees[node] = _tree(names, node, ends)
+            waiting += (names.graph[place] for place in names_in(trees[node])) if trees[node] else ()
+    ordered = _ordered(names, trees)
+    values, sizes = _values(names, ordered, recorder, state)
+    units = _Units(names)
+    found = []
+    for node in ordered:
+        value = values[node]
+        found.append(Line(names.of[node], trees[node], value, units.of(node), abs(value) <= NOISE * sizes[node], node))
+    return found
+
+
+def _ordered(names, trees):
+    """Nodes of lines, each after those that it is computed from, by headings as far as possible."""
+    ranks = {title: rank for rank, title in enumerate(names.titles)}
+    first: dict[Any, int] = {}
+
+    def whole(named):
+        return named.title, named.symbol._replace(axis="")
+
+    for node in trees:
+        key = whole(names.of[node])
+        first[key] = min(first.get(key, node.index), node.index)
+    before = {
+        node: {names.graph[place] for place in names_in(tree)} if tree and node not in names.laws else set()
+        for node, tree in trees.items()
+    }
+    after: dict[Node, list[Node]] = {node: [] for node in trees}
+    for node, needs in before.items():
+        for need in needs:
+            after[need].append(node)
+
+    def priority(node):
+        named = names.of[node]
+        return ranks.get(named.title, -1), first[whole(named)], named.symbol.axis, node.index
+
+    ready = [priority(node) for node, needs in before.items() if not needs]
+    heapify(ready)
+    found = []
+    while ready:
+        node = names.graph[heappop(ready)[-1]]
+        found.append(node)
+        for one in after[node]:
+            before[one].discard(node)
+            if not before[one]:
+                heappush(ready, priority(one))
+    return found
+
+
+def _tree(names, node, ends):
+    if node in names.laws:
+        law = names.laws[node]
+        return ("name", law.index) if law in ends else formula(law, ends)
+    return None if node.operation in INPUTS else formula(node, ends)
+
+
+def _ends(names, outputs):
+    """Nodes at which formulas end."""
+    found = _reached(names, outputs)
+    users = dict.fromkeys(found, 0)
+    for node in found:
+        for part in set(_parts(names, node)):
+            users[part] += 1
+    ends = {node for node in found if node.operation in INPUTS or names.is_told(node)}
+    sizes: dict[Any, int] = {}
+    count = 0
+    for node in found:
+        parts = _parts(names, node)
+        while sum(1 if part in ends else sizes[part] for part in parts) > LONGEST:
+            whole = _largest(parts, ends, sizes, names)
+            if whole not in names.of:
+                count += 1
+                names.of[whole] = Named(Symbol("k", "", str(count)), _title_after(names, found, whole), kind="line")
+            ends.add(whole)
+        sizes[node] = max(1, sum(1 if part in ends else sizes[part] for part in parts))
+        if node in names.of and _stands_alone(names.of[node].kind, node, sizes[node], users[node]):
+            ends.add(node)
+    return ends
+
+
+def _stands_alone(kind, node, size, users):
+    """Whether a named line of a kernel is told, and not part of the formulas that need it."""
+    if node.operation in ("divisor", "held"):
+        return False
+    return size > 1 if kind == "term" else users > 1 and size > 2
+
+
+def _largest(parts, ends, sizes, names):
+    """The largest part that is no end yet; of one that has no name, the largest with one inside of it, if large."""
+    whole = max((part for part in parts if part not in ends), key=sizes.__getitem__)
+    inner = whole
+    while inner not in names.of:
+        below = [part for part in _parts(names, inner) if part not in ends]
+        if not below or max(map(sizes.__getitem__, below)) < LONGEST // 3:
+            return whole
+        inner = max(below, key=sizes.__getitem__)
+    return inner
+
+
+def _title_after(names, found, node):
+    """Heading of the first named number that comes after a node."""
+    return next(
+        names.of[one].title
+        for one in found
+        if one.index >= node.index and one in names.of and one.operation not in INPUTS
+    )
+
+
+def _parts(names, node):
+    """Nodes that a formula of a node may name."""
+    if node in names.laws:
+        law = names.laws[node]
+        return [law] if isinstance(law, Node) else []
+    return [part for part in node.arguments if isinstance(part, Node)]
+
+
+def _reached(names, outputs):
+    """Nodes that outputs are computed from, in order; not what friction is found by."""
+    found: set[Node] = set()
+    waiting = list(outputs)
+    while waiting:
+        node = waiting.pop()
+        if node not in found:
+            found.add(node)
+            waiting += _parts(names, node)
+    return sorted(found, key=lambda node: (node in names.laws, node.index))
+
+
+def _values(names, nodes, recorder, state):
+    """Values by node, and the sizes of the largest terms that they are sums of."""
+    every = [node for node in _everything(nodes)]
+    recording = Recording((), tuple(every), (), (), tuple(recorder.parameters), tuple(recorder.tables), recorder.graph)
+    _, leaves = state.apart
+    with np.errstate(all="ignore"):
+        rows = Program(recording).run(state, leaves)
+    values = dict(zip(every, rows.reshape(len(every)).tolist(), strict=True))
+    sizes: dict[Any, float] = {}
+    for node in every:
+        sizes[node] = _size(node, values, sizes)
+    return values, sizes
+
+
+def _everything(nodes):
+    from .trace import needed
+
+    return needed(nodes)
+
+
+def _size(node, values, sizes):
+    value = abs(values[node])
+    parts = (
+        [sizes[part] if isinstance(part, Node) else abs(part) for part in node.arguments]
+        if node.operation not in INPUTS
+        else []
+    )
+    kind = node.operation
+    if kind in ("+", "-"):
+        return sum(parts)
+    if kind == "*":
+        return parts[0] * parts[1]
+    if kind == "/":
+        under = node.arguments[1]
+        return parts[0] / abs(values[under] if isinstance(under, Node) else under) if value else 0.0
+    if kind in ("sin", "cos"):
+        return 1.0
+    return parts[0] if kind == "held" else value
+
+
+# Units, from those of what is given
+
+
+BASES = {
+    "m": (1, 0, 0),
+    "kg": (0, 1, 0),
+    "s": (0, 0, 1),
+    "N": (1, 1, -2),
+    "J": (2, 1, -2),
+    "Pa": (-1, 1, -2),
+    "W": (2, 1, -3),
+}
+SPELLED = {
+    (0, 0, 0): "1",
+    (1, 0, 0): "m",
+    (2, 0, 0): "m2",
+    (3, 0, 0): "m3",
+    (4, 0, 0): "m4",
+    (-1, 0, 0): "1/m",
+    (-2, 0, 0): "1/m2",
+    (0, 1, 0): "kg",
+    (1, 1, 0): "kg m",
+    (2, 1, 0): "kg m2",
+    (0, 0, -1): "rad/s",
+    (0, 0, -2): "rad2/s2",
+    (1, 0, -1): "m/s",
+    (1, 0, -2): "m/s2",
+    (1, 1, -2): "N",
+    (0, 1, -2): "N/m",
+    (2, 1, -2): "N m",
+    (3, 1, -2): "N m2",
+    (2, 1, -3): "W",
+    (1, 1, -1): "N s",
+    (0, 1, -1): "N s/m",
+}
+
+
+def dimension(unit):
+    """Powers of m, kg and s in a unit such as "N*m*s/rad"."""
+    found, sign = [0.0, 0.0, 0.0], 1
+    for over, part in enumerate(unit.replace("**", "^").replace(" ", "*").split("/")):
+        for factor in part.split("*"):
+            base, _, power = factor.partition("^")
+            digits = base.lstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")
+            if digits and base != digits:
+                base, power = base.removesuffix(digits), digits
+            for place, count in enumerate(BASES.get(base, (0, 0, 0))):
+                found[place] += (-1 if over else 1) * count * int(power or 1)
+    return tuple(found)
+
+
+def spelled(dimension):
+    """A unit of these powers."""
+    if dimension is None:
+        return "1"
+    if dimension in SPELLED:
+        return SPELLED[dimension]
+    parts = [
+        base + (f"{count:g}" if count != 1 else "")
+        for base, count in zip(("m", "kg", "s"), dimension, strict=True)
+        if count
+    ]
+    return " ".join(parts)
+
+
+class _Units:
+    def __init__(self, names):
+        self.names, self.known = names, {}
+
+    def of(self, node):
+        """Unit of a recorded number."""
+        named = self.names.of.get(node)
+        if named is not None and named.unit:
+            return named.unit.replace("**", "").replace("*", " ")
+        return spelled(self.powers(node))
+
+    def powers(self, node):
+        """Powers of m, kg and s; None of a constant."""
+        if not isinstance(node, Node):
+            return None
+        if node not in self.known:
+            waiting = [node]
+            while waiting:
+                top = waiting[-1]
+                missing = [part for part in _operands(top) if isinstance(part, Node) and part not in self.known]
+                if missing and not self._is_told(top):
+                    waiting += missing
+                else:
+                    self.known[top] = self._powers(top)
+                    waiting.pop()
+        return self.known[node]
+
+    def _is_told(self, node):
+        named = self.names.of.get(node)
+        return named is not None and bool(named.unit)
+
+    def _powers(self, node):
+        if self._is_told(node):
+            return dimension(self.names.of[node].unit)
+        if node.operation in INPUTS:
+            return (0, 0, 0)
+        parts = [self.known[part] if isinstance(part, Node) else None for part in _operands(node)]
+        kind = node.operation
+        if kind in ("sin", "cos", "atan", "sign"):
+            return (0, 0, 0)
+        if kind in ("*", "/"):
+            sign = 1 if kind == "*" else -1
+            if parts[1] is None:
+                return parts[0]
+            return tuple(a + sign * b for a, b in zip(parts[0] or (0, 0, 0), parts[1], strict=True))
+        if kind in ("sqrt", "root"):
+            return None if parts[0] is None else tuple(part / 2 for part in parts[0])
+        return next((part for part in parts if part is not None), None)
+
+
+def _operands(node):
+    return () if node.operation in INPUTS else node.arguments
