@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from html import escape
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import APART
@@ -17,25 +18,30 @@ UNSEEN = 1e-250
 ONE, ZERO = ("number", 1.0), ("number", 0.0)
 
 
-def formula(node, ends):
+def formula(node, ends, stands_for=MappingProxyType({})):
     """Tree of a recorded number: tuples of a kind and its parts.
 
-    Kinds are "number" of a value, "name" of a node by its place in the graph, "sum" of pairs (sign, part), "product" of parts, "negative",
-    "quotient", "power" and "call".
+    Kinds are "number" of a value, "name" of a node by its place in the graph, "sum" of pairs (sign, part), "product" of
+    parts, "negative", "quotient", "power" and "call".
 
     Parameters
     ----------
     node : Node or float
     ends : container of Node
         Where a formula ends; not at the node itself.
+    stands_for : dict of Node to Node
+        What stands in formulas for another of the same value.
     """
     if not isinstance(node, Node):
         return ("negative", ("number", -float(node))) if node < 0 else ("number", float(node))
-    return _OPERATIONS[node.operation](*(_part(part, ends) for part in node.arguments if not _is_nothing(part)))
 
+    def part_of(part):
+        found = stands_for.get(part, part) if isinstance(part, Node) else part
+        if found is not node:
+            part = found
+        return ("name", part.index) if isinstance(part, Node) and part in ends else formula(part, ends, stands_for)
 
-def _part(node, ends):
-    return ("name", node.index) if isinstance(node, Node) and node in ends else formula(node, ends)
+    return _OPERATIONS[node.operation](*(part_of(part) for part in node.arguments if not _is_nothing(part)))
 
 
 def _is_nothing(part):
@@ -73,6 +79,8 @@ def _terms(part):
 
 
 def _negative(part):
+    if part == ZERO:
+        return ZERO
     return part[1] if part[0] == "negative" else ("negative", part)
 
 
@@ -227,7 +235,20 @@ def shown(value, digits=6):
     return f"{value:.{digits}g}" if value else "0"
 
 
-GREEK = {"phi": "φ", "omega": "ω", "alpha": "α", "theta": "θ", "beta": "β", "mu": "μ", "gamma": "γ"}
+GREEK = dict(
+    alpha="α",
+    beta="β",
+    gamma="γ",
+    eta="η",
+    theta="θ",
+    kappa="κ",
+    mu="μ",
+    xi="ξ",
+    sigma="σ",
+    tau="τ",
+    phi="φ",
+    omega="ω",
+) | {"lambda": "λ", "Delta": "Δ"}
 
 
 def _latex_number(value, digits=6):
@@ -236,7 +257,7 @@ def _latex_number(value, digits=6):
 
 
 def _latex_word(word):
-    word = word.replace("_", r"\_")
+    word = word.replace("_", "~")
     return word if len(word) == 1 else rf"\mathrm{{{word}}}"
 
 

@@ -5,7 +5,6 @@ is used more than once, or where the formula would grow too long. So every value
 given or a line before it.
 """
 
-from heapq import heapify, heappop, heappush
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -75,47 +74,49 @@ def lines(names, outputs, recorder, state):
 
 
 def _ordered(names, trees):
-    """Nodes of lines, each after those that it is computed from, by headings as far as possible."""
+    """Nodes of lines as they were named, components of a vector together, each after those that it is computed from."""
+    places = {node: place for place, node in enumerate(names.of)}
     ranks = {title: rank for rank, title in enumerate(names.titles)}
-    first: dict[Any, int] = {}
-
-    def whole(named):
-        return named.title, named.symbol._replace(axis="")
-
-    for node in trees:
-        key = whole(names.of[node])
-        first[key] = min(first.get(key, node.index), node.index)
-    before = {
-        node: {names.graph[place] for place in names_in(tree)} if tree and node not in names.laws else set()
-        for node, tree in trees.items()
-    }
-    after: dict[Node, list[Node]] = {node: [] for node in trees}
-    for node, needs in before.items():
-        for need in needs:
-            after[need].append(node)
-
-    def priority(node):
+    wholes: dict[Any, list[Node]] = {}
+    for node in sorted(trees, key=places.__getitem__):
         named = names.of[node]
-        return ranks.get(named.title, -1), first[whole(named)], named.symbol.axis, node.index
+        whole = (named.title, named.symbol._replace(axis="")) if named.kind == "told" else node
+        wholes.setdefault(whole, []).append(node)
+    whole_of = {node: nodes for nodes in wholes.values() for node in nodes}
+    found: dict[Node, None] = {}
+    begun: set[Node] = set()
 
-    ready = [priority(node) for node, needs in before.items() if not needs]
-    heapify(ready)
-    found = []
-    while ready:
-        node = names.graph[heappop(ready)[-1]]
-        found.append(node)
-        for one in after[node]:
-            before[one].discard(node)
-            if not before[one]:
-                heappush(ready, priority(one))
-    return found
+    def needs(node):
+        return [names.graph[place] for place in names_in(trees[node])] if trees[node] and node not in names.laws else []
+
+    def tell_whole(node):
+        if node not in begun:
+            begun.update(whole_of[node])
+            for part in whole_of[node]:
+                for need in needs(part):
+                    tell_whole(need)
+        for part in whole_of[node]:
+            tell(part)
+
+    def tell(node):
+        if node not in found:
+            for need in needs(node):
+                tell(need)
+            found[node] = None
+
+    given = [node for node in trees if names.of[node].kind == "given"]
+    for node in sorted(given, key=lambda node: node.index):
+        tell(node)
+    for node in sorted(trees, key=lambda node: (ranks.get(names.of[node].title, -1), places[node])):
+        tell_whole(node)
+    return list(found)
 
 
 def _tree(names, node, ends):
     if node in names.laws:
         law = names.laws[node]
-        return ("name", law.index) if law in ends else formula(law, ends)
-    return None if node.operation in INPUTS else formula(node, ends)
+        return ("name", law.index) if law in ends else formula(law, ends, names.stands_for)
+    return None if node.operation in INPUTS else formula(node, ends, names.stands_for)
 
 
 def _ends(names, outputs):
@@ -127,14 +128,14 @@ def _ends(names, outputs):
             users[part] += 1
     ends = {node for node in found if node.operation in INPUTS or names.is_told(node)}
     sizes: dict[Any, int] = {}
-    count = 0
-    for node in found:
+    found = [node for node in found if node not in names.laws]
+    for place, node in enumerate(found):
         parts = _parts(names, node)
         while sum(1 if part in ends else sizes[part] for part in parts) > LONGEST:
             whole = _largest(parts, ends, sizes, names)
             if whole not in names.of:
-                count += 1
-                names.of[whole] = Named(Symbol("k", "", str(count)), _title_after(names, found, whole), kind="line")
+                titles = (names.of[one].title for one in found[place:] if names.is_told(one))
+                names.of[whole] = Named(Symbol("k"), next(titles, names.titles[-1]), kind="line")
             ends.add(whole)
         sizes[node] = max(1, sum(1 if part in ends else sizes[part] for part in parts))
         if node in names.of and _stands_alone(names.of[node].kind, node, sizes[node], users[node]):
@@ -146,7 +147,7 @@ def _stands_alone(kind, node, size, users):
     """Whether a named line of a kernel is told, and not part of the formulas that need it."""
     if node.operation in ("divisor", "held"):
         return False
-    return size > 1 if kind == "term" else users > 1 and size > 2
+    return size > 1 or node.operation in ("sqrt", "root") if kind == "term" else users > 1 and size > 2
 
 
 def _largest(parts, ends, sizes, names):
@@ -161,21 +162,14 @@ def _largest(parts, ends, sizes, names):
     return inner
 
 
-def _title_after(names, found, node):
-    """Heading of the first named number that comes after a node."""
-    return next(
-        names.of[one].title
-        for one in found
-        if one.index >= node.index and one in names.of and one.operation not in INPUTS
-    )
-
-
 def _parts(names, node):
     """Nodes that a formula of a node may name."""
     if node in names.laws:
         law = names.laws[node]
-        return [law] if isinstance(law, Node) else []
-    return [part for part in node.arguments if isinstance(part, Node)]
+        return [names.stands_for.get(law, law)] if isinstance(law, Node) else []
+    own = names.stands_for.get(node.arguments[0]) is node if node.operation == "held" else False
+    nodes = (part for part in node.arguments if isinstance(part, Node))
+    return [part if own else names.stands_for.get(part, part) for part in nodes]
 
 
 def _reached(names, outputs):
@@ -187,7 +181,22 @@ def _reached(names, outputs):
         if node not in found:
             found.add(node)
             waiting += _parts(names, node)
-    return sorted(found, key=lambda node: (node in names.laws, node.index))
+    return _after_one_another(names, found)
+
+
+def _after_one_another(names, nodes):
+    """Nodes, each after its parts."""
+    found: dict[Node, None] = {}
+    for last in sorted(nodes, key=lambda node: (node in names.laws, node.index)):
+        waiting = [last]
+        while waiting:
+            node = waiting[-1]
+            missing = [] if node in names.laws else [part for part in _parts(names, node) if part not in found]
+            if missing:
+                waiting += missing
+            else:
+                found[waiting.pop()] = None
+    return list(found)
 
 
 def _values(names, nodes, recorder, state):
@@ -335,6 +344,8 @@ class _Units:
         kind = node.operation
         if kind in ("sin", "cos", "atan", "sign"):
             return (0, 0, 0)
+        if kind == "*" and 0.0 in [part for part in node.arguments if not isinstance(part, Node)]:
+            return None
         if kind in ("*", "/"):
             sign = 1 if kind == "*" else -1
             if parts[1] is None:

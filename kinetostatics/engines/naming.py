@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .trace import Node
+from .trace import INPUTS, Node
 
 KERNELS = ("kinetostatics.machine", "kinetostatics.mechanics.energy", "kinetostatics.mechanics.principal_points")
 """Modules whose local variables are names."""
@@ -81,11 +81,14 @@ class Names:
     of : dict of Node to Named
     laws : dict of Node to formula
         Law that a number satisfies which was found by iteration: its own operations are not told.
+    stands_for : dict of Node to Node
+        Named number of the same value that formulas end at instead.
     """
 
     def __init__(self, graph, modules=()):
         self.graph, self.modules, self.of = graph, modules, {}
         self.laws: dict[Node, Any] = {}
+        self.stands_for: dict[Node, Node] = {}
         self.title, self.reading = "", True
         self.titles: list[str] = []
 
@@ -109,7 +112,7 @@ class Names:
             self.title = before
 
     def _read(self, frame):
-        """Name what a kernel that returns has computed; names of the outermost win, but for those of its arguments."""
+        """Name what a kernel that returns has computed; names of the outermost win, arguments have none."""
         module = frame.f_globals.get("__name__", "")
         if module in GENERIC or not (module.startswith(KERNELS) or module in self.modules):
             return
@@ -118,13 +121,13 @@ class Names:
         if kernel.startswith("<"):
             return
         terms = frame.f_globals.get("TERMS", {})
-        for variable, value in [
-            (name, value) for name, value in found.items() if name not in arguments and name[0] != "_"
-        ]:
+        for variable, value in list(found.items()):
+            if variable[0] == "_" or (variable in arguments and f"{kernel}.{variable}" not in terms):
+                continue
             base, words = terms.get(f"{kernel}.{variable}") or terms.get(variable) or (variable, "")
             kind = "term" if words else "line"
             for path, axis, node in _flat(value):
-                if node.operation in ("parameter", "angle") or self._is_better(node, kind, path):
+                if node.operation in INPUTS or self._is_better(node, kind, path):
                     continue
                 stem = base.rstrip("'")
                 symbol = Symbol(".".join((stem, *path)), axis, primes=len(base) - len(stem))
@@ -138,34 +141,47 @@ class Names:
             return True
         return kind == "line" and (known.kind == "term" or bool(path))
 
-    def number(self, value, symbol, words="", unit="", again=False, onward=True):
+    def number(self, value, symbol, words="", unit="", again=False, turned="onward"):
         """Name a number; what has a name of the mechanism's is repeated under the new one if it is told `again`.
 
-        Returns the number to go `onward` with, which keeps its name where arithmetic would take in its sign.
+        Arithmetic takes in the sign of a number that is another one `turned`; to keep its name, what is returned takes
+        its place "onward", or "everywhere"; else it is named "within" the arithmetic alone. What is zero whatever
+        happens has no name, but as a result, that is "always" told.
         """
         node = node_of(value)
-        if node is None:
+        if node is None or self.is_told(node) and (not again or self.of[node].symbol == symbol):
             return value
-        if self.is_told(node) and (not again or self.of[node].symbol == symbol):
+        if _vanishes(node) and turned != "always":
             return value
-        if self.is_told(node) or (onward and node.operation == "-" and len(node.arguments) == 1):
-            node = Node(self.graph, "held", (node,), node.varies)
-            value = np.array([node], dtype=object)
+        is_turned = node.operation == "-" and len(node.arguments) == 1 and turned in ("onward", "everywhere")
+        if self.is_told(node) or is_turned:
+            held = Node(self.graph, "held", (node,), node.varies)
+            if turned == "everywhere" and not self.is_told(node):
+                self.stands_for[node] = held
+            node, value = held, np.array([held], dtype=object)
+        self.of.pop(node, None)
         self.of[node] = Named(symbol, self.title, words, unit)
         return value
 
-    def vector(self, parts, symbol, words="", unit="", again=False, onward=True):
+    def vector(self, parts, symbol, words="", unit="", again=False, turned="onward"):
         """Name both components of a vector, which may be absent."""
         if parts is None:
             return None
         return tuple(
-            self.number(part, symbol._replace(axis=symbol.axis + axis), words, unit, again, onward)
+            self.number(part, symbol._replace(axis=symbol.axis + axis), words, unit, again, turned)
             for part, axis in zip(parts, AXES, strict=True)
         )
 
     def is_told(self, node):
         """Whether a node has a name of the mechanism's, at which every formula ends."""
         return node in self.of and self.of[node].kind in ("told", "given")
+
+    def satisfies(self, node, law):
+        """Tell a number by the law that it satisfies, in which numbers after it may stand."""
+        if node is not None and law is not None and law is not node:
+            self.laws[node] = law
+            named = self.of[node]
+            self.of[node] = named._replace(words=f"{named.words}, found together with the reactions")
 
     def symbols(self, nodes):
         """Symbols of nodes, told apart where several are spelled alike."""
@@ -176,6 +192,18 @@ class Names:
             counts[symbol] = counts.get(symbol, 0) + 1
             found[node] = symbol._replace(again=counts[symbol])
         return found
+
+
+def _vanishes(node, depth=4):
+    """Whether a recorded number is plainly zero, whatever it is computed from."""
+    if not isinstance(node, Node):
+        return node == 0.0
+    if node.operation in INPUTS or not depth:
+        return False
+    parts = [_vanishes(part, depth - 1) for part in node.arguments]
+    if node.operation == "*":
+        return any(parts)
+    return all(parts) if node.operation in ("+", "-", "held") else node.operation == "/" and parts[0]
 
 
 def node_of(value):

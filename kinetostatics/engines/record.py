@@ -37,12 +37,15 @@ class Table(NamedTuple):
         Code of the user's whose values may hang on parameters in a way that is not recorded; "" without.
     names : tuple of (str, int, str)
         What each row is: its name, how many times it is differentiated by the crank angle, its unit.
+    of : str or int
+        The cam, or which of the loads, that it is read for.
     """
 
     rows: range
     compute: Callable[[Any, Any], Any]
     moved_by: str = ""
     names: tuple = ()
+    of: str | int = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,9 +161,9 @@ class Recorder:
         self._arrays += 1
         return self._tabled((("value", 0, ""),), lambda motion, arrays: [arrays[place]])[0]
 
-    def _tabled(self, names, compute, moved_by=""):
+    def _tabled(self, names, compute, moved_by="", of=""):
         first, self._rows = self._rows, self._rows + len(names)
-        self.tables.append(Table(range(first, self._rows), compute, moved_by, names))
+        self.tables.append(Table(range(first, self._rows), compute, moved_by, names, of))
         return [self._nodes(self.graph.row(row)) for row in range(first, self._rows)]
 
     def _nodes(self, *nodes):
@@ -173,9 +176,10 @@ class Recorder:
         ):
             return group
         values = self._tabled(
-            tuple(("r", order, "m") for order in range(3)),
+            tuple((group.LAW[0], order, group.LAW[1]) for order in range(3)),
             lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle),
             "" if group.cam is None else type(group.cam).__name__,
+            f"cam{group.label}",
         )
         object.__setattr__(group, "cam", _Tabled(tuple(values)))
         return group
@@ -188,7 +192,7 @@ class Recorder:
             return ProcessForce(self._given(load, place), load.on)
         value = load.value_now
         if isinstance(value, loads.Table):
-            return with_fields(load, **{load.VALUE: self._read(value, load.UNIT, place, idle)})
+            return with_fields(load, **{load.VALUE: self._read(value, load.UNIT, place)})
         if not callable(value) or self._is_elementwise(
             value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]
         ):
@@ -197,20 +201,23 @@ class Recorder:
 
     def _given(self, load, place):
         """What code of the user's gives for a load, from a table."""
-        names = ((title_of(load), 0, getattr(load, "UNIT", "N")),)
-        (values,) = self._tabled(names, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load))
+        names = (("value", 0, getattr(load, "UNIT", "N")),)
+        (values,) = self._tabled(
+            names, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load), place
+        )
         return values
 
-    def _read(self, table, unit, place, idle):
-        """Values of a table; over travel by recorded arithmetic on its pieces, which are found beforehand."""
+    def _read(self, table, unit, place):
+        """Values of a table; over travel a function of the motion, by its pieces, which are found beforehand."""
 
         def item(motion):
             return motion.loads[place].value_now
 
         if table.over == "angle":
-            return self._tabled((("value", 0, unit),), lambda motion, arrays: [item(motion)(motion)])[0]
+            return self._tabled((("value", 0, unit),), lambda motion, arrays: [item(motion)(motion)], of=place)[0]
         names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
-        return table.read(idle, self._tabled(names, lambda motion, arrays: item(motion).pieces(motion)))
+        pieces = self._tabled(names, lambda motion, arrays: item(motion).pieces(motion), of=place)
+        return lambda motion: table.read(motion, pieces)
 
     def _is_elementwise(self, part, compute):
         """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""

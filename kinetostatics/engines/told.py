@@ -41,17 +41,22 @@ def told(state, paths, units):
         symbol = of_path(path) if path else Symbol("c", "", str(place + 1))
         names.of[node] = Named(symbol, GIVEN, path or "a number of the scene", units.get(path, ""), "given")
     names.of[recorder.graph[recorder.angle[0].index]] = Named(Symbol("phi"), GIVEN, "crank angle", "rad", "given")
-    rows = {row: spelled for table in recorder.tables for row, spelled in zip(table.rows, table.names, strict=True)}
+    heads = [(title_of(item), key) for item, key in zip(state.loads, keys_of(state.loads), strict=True)]
+    rows = {
+        row: (table, *spelled)
+        for table in recorder.tables
+        for row, spelled in zip(table.rows, table.names, strict=True)
+    }
     for node in [node for node in recorder.graph if node.operation == "table"]:
-        name, primes, unit = rows[node.arguments[0]]
-        names.of[node] = Named(Symbol(name, "", "table", primes), GIVEN, "computed beforehand", unit, "given")
+        table, name, primes, unit = rows[node.arguments[0]]
+        owner = heads[table.of][1] if isinstance(table.of, int) else table.of
+        words = "read at this crank angle"
+        names.of[node] = Named(Symbol(name, "", owner, primes), GIVEN, words, unit, "given")
     made = object.__new__(Told)
     vars(made).update(vars(scene))
     for name in ("placement", "rubbing", "resolved", "wrenches", "pushes"):
         vars(made).pop(name, None)
-    vars(made).update(
-        names=names, heads=[(title_of(item), key) for item, key in zip(state.loads, keys_of(state.loads), strict=True)]
-    )
+    vars(made).update(names=names, heads=heads)
     return made, recorder
 
 
@@ -61,8 +66,8 @@ def result(made, quantity, found):
     with made.names.under("Result"):
         symbol, words = symbol_of(quantity), found.label
         if found.vector:
-            return made.names.vector(tuple(parts), symbol, words, found.unit)
-        return (made.names.number(parts, symbol, words, found.unit),)
+            return made.names.vector(tuple(parts), symbol, words, found.unit, turned="always")
+        return (made.names.number(parts, symbol, words, found.unit, turned="always"),)
 
 
 class Told(Dynamics):
@@ -77,15 +82,20 @@ class Told(Dynamics):
         names, crank = self.names, self.mechanism.crank
         with names.under("Crank"):
             placement = crank.place(self.crank_angle)
-            self._placed(placement, crank, {})
+            self._placed(placement, crank)
         for group in self.mechanism.groups:
             with names.under(_moving(group)):
-                before = dict(placement.details)
+                for slider, guide in group.guides.items():
+                    symbol = Symbol("u", "", f"guide{group.label}")
+                    names.vector(guide.direction, symbol, f"unit vector of the guide of the {slider}", "1")
                 group.place(placement)
-                self._placed(placement, group, before)
+                self._placed(placement, group)
+        for name, link in self.mechanism.links.items():
+            with names.under(f"Mass centre of the {name}"):
+                self._name_centre(name, placement.links[name], link.body)
         return placement
 
-    def _placed(self, placement, part, before):
+    def _placed(self, placement, part):
         """Name joints, links and coordinates along guides of a part; what is kept of it goes on under these names."""
         names = self.names
         for name in part.links:
@@ -138,7 +148,6 @@ class Told(Dynamics):
         what = "inertia" if gravity is None else "inertia and weight"
         for name, link in self.mechanism.links.items():
             with self.names.under(f"{what} of the {name}".capitalize()):
-                self._name_centre(name, links[name], link.body)
                 wrench = load(links[name], link.body, *self.accelerating, gravity)
                 found[name] = self._wrench(wrench, ("P", "K"), name, f"{what} of the {name}")
         return found
@@ -147,21 +156,19 @@ class Told(Dynamics):
         """Name the arm of a mass centre, and its kinematic coefficients."""
         if body.mass is None:
             return
-        reference = self.mechanism.references[name]
-        words = f"from {reference} to the mass centre of the {name}"
-        to_centre = self.names.vector(arm(motion.direction, body.along, body.across), Symbol("r", "", name), words, "m")
+        words = f"from {self.mechanism.references[name]} to the mass centre of the {name}"
+        place = arm(motion.direction, body.along, body.across)
+        to_centre = self.names.vector(place, Symbol("r", "", name), words, "m")
         if to_centre is not None:
-            for order, coefficient in ((1, first_at), (2, second_at)):
-                if order == 2 or self.accelerating[1] is not None:
-                    part = coefficient(motion, to_centre)
-                    words = _derivative(order, f"position of the mass centre of the {name}")
-                    for axis, value in zip(AXES, part or (), strict=False):
-                        self.names.number(value, Symbol(axis, "", f"S,{name}", order), words, "m")
+            for order, part in enumerate((first_at(motion, to_centre), second_at(motion, to_centre)), 1):
+                words = _derivative(order, f"position of the mass centre of the {name}")
+                for axis, value in zip(AXES, part or (), strict=False):
+                    self.names.number(value, Symbol(axis, "", f"S_{name}", order), words, "m", turned="everywhere")
 
     def _wrench(self, wrench, letters, owner, words):
         force, moment = letters
         return Wrench(
-            self.names.vector(wrench.force, Symbol(force, "", owner), f"force of {words}", "N"),
+            self.names.vector(wrench.force, Symbol(force, "", owner), f"force of {words}", "N", False, "everywhere"),
             self.names.number(wrench.moment, Symbol(moment, "", owner), f"moment of {words}", "N m"),
         )
 
@@ -191,6 +198,19 @@ class Told(Dynamics):
         return pushes
 
     @cached_property
+    def powers(self):
+        """Power of each load divided by the crank speed."""
+        owners = [(name, "") for name in (*self.mass_loads, *(name for name, _ in self.wrenches))]
+        owners += [(name, "s") for name in self.pushes]
+        with self.names.under("Powers"):
+            return [
+                self.names.number(
+                    power, Symbol("W", axis, owner), f"power of what acts on the {owner} over the crank speed", "N m"
+                )
+                for (owner, axis), power in zip(owners, super().powers, strict=True)
+            ]
+
+    @cached_property
     def rubbing(self):
         """What resolves each part, with friction or without."""
         return _Telling(self.mechanism, self.friction, driving(self.crank_speed, self.crank_acceleration), self.names)
@@ -217,7 +237,7 @@ class _Telling(Rubbing):
             names.reading = True
             for law, amount in self.laws:
                 size = number(product(law.factor, size_of(law.kind, law.watched(resolved))))
-                names.laws[node_of(amount)] = node_of(size)
+                names.satisfies(node_of(amount), node_of(size))
         return resolved
 
     def _total(self, wrench, name):
@@ -232,7 +252,7 @@ class _Telling(Rubbing):
         for law, amount in zip(laws, super()._amounts(system, laws, placement), strict=True):
             moment = law.kind in ("length", "itself")
             symbol = Symbol("M" if moment else "F", "", f"friction_{law.name}")
-            words = f"friction {'moment' if moment else 'force'} at {law.name}, found together with the reactions"
+            words = f"friction {'moment' if moment else 'force'} at {law.name}"
             found.append(self.names.number(amount, symbol, words, "N m" if moment else "N", again=True))
             self.laws.append((law, found[-1]))
         self.names.reading = True
@@ -245,10 +265,10 @@ class _Telling(Rubbing):
             words = f"{name.replace('_', ' ')}{', ' * bool(text)}{text}"
             if vector:
                 reactions[name] = names.vector(
-                    reactions[name], Symbol("R", "", name), f"reaction {words}", unit, True, False
+                    reactions[name], Symbol("R", "", name), f"reaction {words}", unit, True, "within"
                 )
             else:
-                scalars[name] = names.number(scalars[name], symbol_of(name), words, unit, True, False)
+                scalars[name] = names.number(scalars[name], symbol_of(name), words, unit, True, "within")
         return Resolved(reactions, scalars, resolved.demands)
 
 
@@ -270,6 +290,9 @@ LAST = {
     "stiffness": "k",
     "coefficient": "c",
     "radius": "r",
+    "pin_radius": "r",
+    "roller_radius": "R",
+    "half_length": "h",
     "mu": "mu",
     "free_position": "s0",
     "free_length": "l0",
@@ -342,9 +365,7 @@ def _listed(names):
 
 def _moving(group):
     joints = f"joint {_listed(group.joints)}" if group.joints else ""
-    return (
-        f"Motion of {_listed(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else joints.capitalize()
-    )
+    return f"Motion of {_listed(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else f"J{joints[1:]}"
 
 
 def _carrying(part):

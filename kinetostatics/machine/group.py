@@ -274,6 +274,8 @@ class Group:
         """The group as it is on the pins of a crank: what its structure owes to lengths that are not its own."""
         return self
 
+    LAW = ("r", "m")
+    """What a curve in its field `cam` gives: its letter, and unit."""
     passage = ""
     """How it passes change points, which belongs to its structure; "" where there are none."""
 

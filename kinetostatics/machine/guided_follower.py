@@ -44,6 +44,7 @@ class GuidedFollower(checks.Checked, Group):
     pin: str = "R"
     label: str = ""
 
+    LAW = ("s", "m")
     PATHS: ClassVar = {"guide": ""}
     forces: ClassVar[Any]
 

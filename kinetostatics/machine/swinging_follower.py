@@ -24,6 +24,13 @@ from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench, between
 
+TERMS = {
+    "distance": ("a", "from O to the pivot"),
+    "inward": ("n", "unit vector from the pivot to O"),
+    "reach": ("h", "from the pivot to the roller centre"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
 
 class SwingingMotion(NamedTuple):
     """A placed follower; `across`: the way of the roller centre along the cam, turned outward; `lever`: Q x p."""
@@ -139,6 +146,7 @@ class SwingingFollower(checks.Checked, Group):
             yield checks.Problem("the follower's pivot must not be at O", at)
 
     TRUSTED = True
+    LAW = ("beta", "rad")
     PATHS: ClassVar = {"pivot": "follower_pivot"}
     RULES = checks.Rules(
         "swinging follower",

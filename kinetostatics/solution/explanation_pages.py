@@ -9,7 +9,7 @@ from ..engines.formulas import shown
 
 WIDTH = 80
 STYLE = (
-    "<style>.explanation math{font-size:1.05em}.explanation .step{margin:.15em 0 .15em 1.5em;overflow-x:auto}"
+    "<style>.explanation math{font-size:1.05em}.explanation .step{margin:.15em 0 .15em 1.5em;overflow:auto hidden;padding:.1em 0}"
     ".explanation p{margin:.5em 0 0 .75em;color:#555}.explanation h4{margin:1.2em 0 .2em}"
     ".explanation td{padding:0 1.2em 0 0}.explanation table{margin-left:1.5em;border-collapse:collapse}</style>"
 )
@@ -53,7 +53,12 @@ def _value(step):
 def _table(steps):
     rows = [(step.symbol, _value(step), step.words) for step in steps]
     first, second = (max(len(row[place]) for row in rows) for place in (0, 1))
-    return [f"  {symbol:{first}} = {value:{second}}  {words}".rstrip() for symbol, value, words in rows]
+    indent = " " * min(first + second + 7, WIDTH // 2)
+    return [
+        line
+        for symbol, value, words in rows
+        for line in wrap(f"  {symbol:{first}} = {value:{second}}  {words}", WIDTH, subsequent_indent=indent)
+    ]
 
 
 def _set(step):
@@ -66,7 +71,7 @@ def _set(step):
     found = []
     for place, part in enumerate(parts):
         start = f"    {step.symbol} = " if place == 0 else f"{indent}= "
-        found += _broken(start, part, indent + "    ")
+        found += _broken(start + part, indent + "    ")
     return found
 
 
@@ -75,33 +80,29 @@ def _different(step, numbers, value):
     return [] if numbers.strip("()") == value else [numbers]
 
 
-def _broken(start, part, indent):
-    """A formula over as many lines as it takes, broken before its operators."""
-    found, line = [], start
-    pieces = part.replace(" + ", "\n+ ").replace(" - ", "\n- ").split("\n")
-    for number, piece in enumerate(pieces):
-        piece = piece if number == 0 else f" {piece}"
-        if number and len(line) + len(piece) > WIDTH:
-            found.append(line)
-            line = indent + piece.lstrip()
-        else:
-            line += piece
-    for long in [*found, line]:
-        yield from _cut(long, indent)
-
-
-def _cut(line, indent):
-    """A line that is still too long, broken after an operator."""
+def _broken(line, indent):
+    """A formula over as many lines as it takes, broken where it is held together least."""
     while len(line) > WIDTH:
-        place = max(line.rfind(sign, len(indent) + 8, WIDTH) for sign in "*/(")
-        if place < 0:
+        place = _break(line, len(indent))
+        if not place:
             break
-        yield line[: place + 1]
-        line = indent + line[place + 1 :]
+        yield line[:place].rstrip()
+        line = indent + line[place:].lstrip()
     yield line
 
 
-UNITS = {"1": ""}
+def _break(line, start):
+    """Where to break a line: before a sum's sign or after a product's, outside of as many brackets as possible."""
+    found, depth = (0, 0), 0
+    for place, sign in enumerate(line[: WIDTH + 1]):
+        depth += (sign == "(") - (sign == ")")
+        if place <= start + 4:
+            continue
+        if line[place : place + 3] in (" + ", " - "):
+            found = max(found, (-2 * depth, place)) if found[1] else (-2 * depth, place)
+        elif sign in "*/" and place < WIDTH:
+            found = max(found, (-2 * depth - 1, place + 1)) if found[1] else (-2 * depth - 1, place + 1)
+    return found[1]
 
 
 def latex(made):
@@ -166,7 +167,7 @@ def html(made):
 
 
 def _math(inner):
-    return f"<math><mrow>{inner}</mrow></math>"
+    return f'<math displaystyle="true"><mrow>{inner}</mrow></math>'
 
 
 def _mathml_value(step):

@@ -22,6 +22,12 @@ MEETING, AHEAD = (8.0 * NEAR) ** 2, 2.0**23
 that distance their motion is followed there."""
 TINY = 1e-280
 """Square of a distance, m2, below which there is only zero."""
+TERMS = {
+    "d": ("d", "from the second point to the first"),
+    "distance": ("D", "distance of both points"),
+    "shortening": ("z", "rate at which the points part, over their distance"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 @dataclass(frozen=True, eq=False)
