@@ -235,20 +235,8 @@ def shown(value, digits=6):
     return f"{value:.{digits}g}" if value else "0"
 
 
-GREEK = dict(
-    alpha="α",
-    beta="β",
-    gamma="γ",
-    eta="η",
-    theta="θ",
-    kappa="κ",
-    mu="μ",
-    xi="ξ",
-    sigma="σ",
-    tau="τ",
-    phi="φ",
-    omega="ω",
-) | {"lambda": "λ", "Delta": "Δ"}
+LETTERS = "alpha α beta β gamma γ eta η theta θ kappa κ lambda λ mu μ xi ξ sigma σ tau τ phi φ omega ω".split()
+GREEK = dict(zip(LETTERS[::2], LETTERS[1::2], strict=True))
 
 
 def _latex_number(value, digits=6):

@@ -9,11 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..numbers.dimensions import NONE, dimension, spelled
 from .formulas import formula, names_in
 from .naming import Named, Symbol
 from .programs import Program
 from .record import Recording
-from .trace import INPUTS, Node
+from .trace import INPUTS, Node, needed
 
 LONGEST = 12
 """Named numbers and constants in one formula; with more it is parted."""
@@ -201,7 +202,7 @@ def _after_one_another(names, nodes):
 
 def _values(names, nodes, recorder, state):
     """Values by node, and the sizes of the largest terms that they are sums of."""
-    every = [node for node in _everything(nodes)]
+    every = needed(nodes)
     recording = Recording((), tuple(every), (), (), tuple(recorder.parameters), tuple(recorder.tables), recorder.graph)
     _, leaves = state.apart
     with np.errstate(all="ignore"):
@@ -211,12 +212,6 @@ def _values(names, nodes, recorder, state):
     for node in every:
         sizes[node] = _size(node, values, sizes)
     return values, sizes
-
-
-def _everything(nodes):
-    from .trace import needed
-
-    return needed(nodes)
 
 
 def _size(node, values, sizes):
@@ -239,72 +234,9 @@ def _size(node, values, sizes):
     return parts[0] if kind == "held" else value
 
 
-# Units, from those of what is given
-
-
-BASES = {
-    "m": (1, 0, 0),
-    "kg": (0, 1, 0),
-    "s": (0, 0, 1),
-    "N": (1, 1, -2),
-    "J": (2, 1, -2),
-    "Pa": (-1, 1, -2),
-    "W": (2, 1, -3),
-}
-SPELLED = {
-    (0, 0, 0): "1",
-    (1, 0, 0): "m",
-    (2, 0, 0): "m2",
-    (3, 0, 0): "m3",
-    (4, 0, 0): "m4",
-    (-1, 0, 0): "1/m",
-    (-2, 0, 0): "1/m2",
-    (0, 1, 0): "kg",
-    (1, 1, 0): "kg m",
-    (2, 1, 0): "kg m2",
-    (0, 0, -1): "rad/s",
-    (0, 0, -2): "rad2/s2",
-    (1, 0, -1): "m/s",
-    (1, 0, -2): "m/s2",
-    (1, 1, -2): "N",
-    (0, 1, -2): "N/m",
-    (2, 1, -2): "N m",
-    (3, 1, -2): "N m2",
-    (2, 1, -3): "W",
-    (1, 1, -1): "N s",
-    (0, 1, -1): "N s/m",
-}
-
-
-def dimension(unit):
-    """Powers of m, kg and s in a unit such as "N*m*s/rad"."""
-    found, sign = [0.0, 0.0, 0.0], 1
-    for over, part in enumerate(unit.replace("**", "^").replace(" ", "*").split("/")):
-        for factor in part.split("*"):
-            base, _, power = factor.partition("^")
-            digits = base.lstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")
-            if digits and base != digits:
-                base, power = base.removesuffix(digits), digits
-            for place, count in enumerate(BASES.get(base, (0, 0, 0))):
-                found[place] += (-1 if over else 1) * count * int(power or 1)
-    return tuple(found)
-
-
-def spelled(dimension):
-    """A unit of these powers."""
-    if dimension is None:
-        return "1"
-    if dimension in SPELLED:
-        return SPELLED[dimension]
-    parts = [
-        base + (f"{count:g}" if count != 1 else "")
-        for base, count in zip(("m", "kg", "s"), dimension, strict=True)
-        if count
-    ]
-    return " ".join(parts)
-
-
 class _Units:
+    """Units of recorded numbers, from those of what is given."""
+
     def __init__(self, names):
         self.names, self.known = names, {}
 
@@ -339,18 +271,18 @@ class _Units:
         if self._is_told(node):
             return dimension(self.names.of[node].unit)
         if node.operation in INPUTS:
-            return (0, 0, 0)
+            return NONE
         parts = [self.known[part] if isinstance(part, Node) else None for part in _operands(node)]
         kind = node.operation
         if kind in ("sin", "cos", "atan", "sign"):
-            return (0, 0, 0)
+            return NONE
         if kind == "*" and 0.0 in [part for part in node.arguments if not isinstance(part, Node)]:
             return None
         if kind in ("*", "/"):
             sign = 1 if kind == "*" else -1
             if parts[1] is None:
                 return parts[0]
-            return tuple(a + sign * b for a, b in zip(parts[0] or (0, 0, 0), parts[1], strict=True))
+            return tuple(a + sign * b for a, b in zip(parts[0] or NONE, parts[1], strict=True))
         if kind in ("sqrt", "root"):
             return None if parts[0] is None else tuple(part / 2 for part in parts[0])
         return next((part for part in parts if part is not None), None)

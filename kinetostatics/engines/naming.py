@@ -149,7 +149,7 @@ class Names:
         happens has no name, but as a result, that is "always" told.
         """
         node = node_of(value)
-        if node is None or self.is_told(node) and (not again or self.of[node].symbol == symbol):
+        if node is None or (self.is_told(node) and (not again or self.of[node].symbol == symbol)):
             return value
         if _vanishes(node) and turned != "always":
             return value

@@ -188,7 +188,7 @@ class Told(Dynamics):
     @cached_property
     def pushes(self):
         """Applied force along its guide by slider, N."""
-        pushes = {}
+        pushes: dict[str, Any] = {}
         for item, (title, key) in zip(self.loads, self.heads, strict=True):
             if hasattr(item, "push"):
                 with self.names.under(title):
@@ -274,11 +274,11 @@ class _Telling(Rubbing):
 
 def keys_of(loads):
     """What each load is called: as in paths, with its number where there are several of a kind."""
-    found: list[str] = []
+    found, counts = [], dict[str, int]()
     for item in loads:
         key = getattr(item, "PATH", "") or type(item).__name__
-        count = sum(other.startswith(key) and other[len(key) :].isdecimal() or other == key for other in found)
-        found.append(f"{key}{count + 1}" if count else key)
+        counts[key] = counts.get(key, 0) + 1
+        found.append(f"{key}{counts[key]}" if counts[key] > 1 else key)
     return found
 
 

@@ -12,7 +12,7 @@ from ..engines.formulas import LATEX, MATHML, TEXT, written
 from ..engines.lines import lines
 from ..engines.naming import node_of
 from ..engines.told import result, told
-from ..errors import HintWarning, ParameterError
+from ..errors import HintWarning, ParameterError, QuantityError
 from ..mechanics import quantities
 from ..numbers import checks, paths
 from ..numbers.kinds import Numbered
@@ -25,15 +25,23 @@ from .scene import Scene
 
 def explain(solution, quantity, angle, design=None):
     """Hand calculation of a quantity of a solution; see `Solution.explain`."""
+    found = _quantity(solution, quantity)
     state = _alone(solution, angle, design)
-    found = quantities.quantity(state, quantity)
     scene = Scene(state.mechanism, state.crank_speed, state.crank_acceleration, state.loads, state.friction)
     made, recorder = told(state.dynamics, _numbered(scene, state.dynamics), scene.units)
     nodes = [part for part in map(node_of, result(made, quantity, found)) if part is not None]
     steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics)) if nodes else ()
     value = quantities.components(state, quantity)
     value = np.array(value) if found.vector else float(value[0])
-    return Explanation(state.mechanism.name, quantity, float(state.crank_angle), steps, value, found.unit)
+    return Explanation(state.mechanism.name, quantity, found.label, float(state.crank_angle), steps, value, found.unit)
+
+
+def _quantity(solution, name):
+    """The quantity of that name, if it is one of mechanics."""
+    known = {key: found for key, found in quantities.of_scene(solution).items() if found.kind != "check"}
+    if not isinstance(name, str) or name not in known:
+        raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", name, tuple(known)))
+    return known[name]
 
 
 def _steps(names, found):
@@ -65,7 +73,7 @@ def _alone(solution, angle, design):
     asked = crank_angles(angle, "explain")
     checks.require("explain", None if asked.size == 1 else f"one crank angle is told at a time, got {asked.size}")
     asked = float(asked.reshape(()))
-    batch = solution.shape[:-1] if np.ndim(solution.crank_angle) else solution.shape
+    batch = solution.shape[:-1]
     place = _design(batch, design)
     index = _index(solution, asked, place)
 
@@ -77,10 +85,9 @@ def _alone(solution, angle, design):
         fits = index is not None and np.shape(leaf)[-1] == solution.shape[-1]
         return float(np.broadcast_to(leaf, solution.shape)[place][index]) if fits else leaf
 
-    drive = mapped((solution.crank_speed, solution.crank_acceleration), number)
-    parts = (mapped(part, number) for part in (solution.mechanism, solution.loads))
-    mechanism, loads = parts
-    scene = Scene(mechanism, *map(float, drive), loads, mapped(solution.friction, number))
+    speed, acceleration = map(number, (solution.crank_speed, solution.crank_acceleration))
+    mechanism, loads = (mapped(part, number) for part in (solution.mechanism, solution.loads))
+    scene = Scene(mechanism, speed, acceleration, loads, mapped(solution.friction, number))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", HintWarning)  # told when it was solved
         return scene.solve(asked, engine="numpy")

@@ -52,8 +52,8 @@ class Explanation:
 
     Attributes
     ----------
-    mechanism, quantity : str
-        Names.
+    mechanism, quantity, label : str
+        Names, of the quantity also in words.
     angle : float
         Crank angle, rad.
     steps : tuple of Step
@@ -64,6 +64,7 @@ class Explanation:
 
     mechanism: str
     quantity: str
+    label: str
     angle: float
     steps: tuple[Step, ...]
     value: Any
@@ -72,8 +73,9 @@ class Explanation:
     @property
     def title(self):
         """Mechanism, quantity and crank angle."""
-        name = self.quantity.replace("_", " ")
-        return f"{self.mechanism}: {name} at crank angle {shown(self.angle)} rad = {shown(degrees(self.angle))} deg"
+        return (
+            f"{self.mechanism}: {self.label} at crank angle {shown(self.angle)} rad = {shown(degrees(self.angle))} deg"
+        )
 
     @property
     def conclusion(self):
@@ -100,6 +102,11 @@ class Explanation:
     def html(self):
         """The calculation as a piece of HTML, formulas as MathML; it asks for nothing from elsewhere."""
         return explanation_pages.html(self)
+
+    @property
+    def page(self):
+        """The same as a whole page of HTML."""
+        return explanation_pages.page(self)
 
     def __str__(self):
         return self.text

@@ -8,23 +8,28 @@ from textwrap import wrap
 from ..engines.formulas import shown
 
 WIDTH = 80
+NOTE = (
+    "A prime is a derivative by the crank angle phi: velocities are first derivatives times the crank speed omega, "
+    "accelerations second ones times omega squared, and first ones times the crank acceleration alpha. Moments on a "
+    "link are about its reference joint. Values stand to 6 digits, rounding as 0."
+)
 STYLE = (
-    "<style>.explanation math{font-size:1.05em}.explanation .step{margin:.15em 0 .15em 1.5em;overflow:auto hidden;padding:.1em 0}"
-    ".explanation p{margin:.5em 0 0 .75em;color:#555}.explanation h4{margin:1.2em 0 .2em}"
-    ".explanation td{padding:0 1.2em 0 0}.explanation table{margin-left:1.5em;border-collapse:collapse}</style>"
+    "<style>.explanation math{font-size:1.05em}.explanation p{margin:.5em 0 0 .75em;color:#555}"
+    ".explanation .step{margin:.15em 0 .15em 1.5em;padding:.1em 0;overflow:auto hidden}"
+    ".explanation h4{margin:1.2em 0 .2em}.explanation td{padding:0 1.2em 0 0}"
+    ".explanation table{margin-left:1.5em;border-collapse:collapse}</style>"
 )
 
 
 def text(made):
     """Lines of 80 characters."""
-    found = wrap(made.title, WIDTH)
+    found = [*wrap(made.title, WIDTH), "", *wrap(NOTE, WIDTH)]
     for title, steps in _sections(made):
         found += ["", title]
         if not steps[0].formula:
             found += _table(steps)
             continue
-        for words, alike in groupby(steps, key=lambda step: step.words):
-            alike = list(alike)
+        for words, alike in _alike(steps):
             head = _head(words, alike)
             found += wrap(head, WIDTH, initial_indent="  ", subsequent_indent="    ") if head else []
             for step in alike:
@@ -35,6 +40,11 @@ def text(made):
 def _sections(made):
     """Headings, each with its steps."""
     return [(title, list(steps)) for title, steps in groupby(made.steps, key=lambda step: step.title)]
+
+
+def _alike(steps):
+    """Words, each with the steps that they stand over."""
+    return [(words, list(alike)) for words, alike in groupby(steps, key=lambda step: step.words)]
 
 
 def _head(words, steps):
@@ -63,7 +73,7 @@ def _table(steps):
 
 def _set(step):
     """Lines of a step: one if it fits."""
-    parts = [step.formula, *_different(step, step.numbers, step.shown), _value(step)]
+    parts = _parts(step, step.formula, step.numbers, _value(step))
     whole = f"    {step.symbol} = {' = '.join(parts)}"
     if len(whole) <= WIDTH:
         return [whole]
@@ -75,9 +85,9 @@ def _set(step):
     return found
 
 
-def _different(step, numbers, value):
-    """The numbers of a step if they say more than its value."""
-    return [] if numbers.strip("()") == value else [numbers]
+def _parts(step, formula, numbers, value):
+    """What stands behind the signs of equality: numbers are left out where they say no more than the value."""
+    return [formula, value] if step.numbers.strip("()") == step.shown else [formula, numbers, value]
 
 
 def _broken(line, indent):
@@ -107,16 +117,16 @@ def _break(line, start):
 
 def latex(made):
     """Paragraphs and aligned equations."""
-    found = [rf"\section*{{{_plain(made.title)}}}"]
+    found = [rf"\section*{{{_plain(made.title)}}}", _plain(NOTE)]
     for title, steps in _sections(made):
         found.append(rf"\paragraph{{{_plain(title)}}}")
         found.append(r"\begin{align*}")
         rows = []
         for step in steps:
             symbol, formula, numbers, value = step.latex
-            parts = [formula, *_different(step, numbers, step.shown)] if formula else []
             unit = "" if step.unit == "1" else rf"\,\mathrm{{{_latex_unit(step.unit)}}}"
-            rows.append(f"{symbol} &= {' = '.join([*parts, value + unit])}")
+            parts = _parts(step, formula, numbers, value + unit) if formula else [value + unit]
+            rows.append(f"{symbol} &= {' = '.join(parts)}")
         found += [" \\\\\n".join(rows), r"\end{align*}"]
     return "\n".join([*found, _plain(made.conclusion)])
 
@@ -142,7 +152,7 @@ def _with_powers(unit, form):
 
 def html(made):
     """A heading, and sections of words and formulas."""
-    found = [f'<div class="explanation">{STYLE}<h3>{escape(made.title)}</h3>']
+    found = [f'<div class="explanation">{STYLE}<h3>{escape(made.title)}</h3>', f"<p>{escape(NOTE)}</p>"]
     for title, steps in _sections(made):
         found.append(f"<h4>{escape(title)}</h4>")
         if not steps[0].formula:
@@ -154,16 +164,21 @@ def html(made):
             ]
             found.append("</table>")
             continue
-        for words, alike in groupby(steps, key=lambda step: step.words):
-            alike = list(alike)
+        for words, alike in _alike(steps):
             head = _head(words, alike)
             found += [f"<p>{escape(head)}</p>"] if head else []
             for step in alike:
                 symbol, formula, numbers, _ = step.mathml
-                parts = [formula, *_different(step, numbers, step.mathml[3]), _mathml_value(step)]
+                parts = _parts(step, formula, numbers, _mathml_value(step))
                 sides = " ".join(_math(f"<mo>=</mo>{part}") for part in parts)
                 found.append(f'<div class="step">{_math(symbol)} {sides}</div>')
     return "\n".join([*found, f"<p><strong>{escape(made.conclusion)}</strong></p></div>"])
+
+
+def page(made):
+    """A whole page of HTML."""
+    head = f'<meta charset="utf-8"><title>{escape(made.title)}</title>'
+    return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head><body>\n{html(made)}\n</body></html>'
 
 
 def _math(inner):
