@@ -245,7 +245,7 @@ class _Units:
         named = self.names.of.get(node)
         if named is not None and named.unit:
             return named.unit.replace("**", "").replace("*", " ")
-        return spelled(self.powers(node))
+        return spelled(self.powers(node) or NONE)
 
     def powers(self, node):
         """Powers of m, kg and s; None of a constant."""

@@ -15,37 +15,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .symbols import Symbol
 from .trace import INPUTS, Node
 
 KERNELS = ("kinetostatics.machine", "kinetostatics.mechanics.energy", "kinetostatics.mechanics.principal_points")
 """Modules whose local variables are names."""
 GENERIC = ("kinetostatics.machine.group", "kinetostatics.machine.friction")
 AXES = ("x", "y")
-
-
-class Symbol(NamedTuple):
-    """What a number is called: F of ("F", "x", "slider") is the x component of force F of the slider.
-
-    Attributes
-    ----------
-    base, axis, owner : str
-    primes : int
-        How many times it is differentiated by the crank angle.
-    again : int
-        Which of several that are spelled alike.
-    """
-
-    base: str
-    axis: str = ""
-    owner: str = ""
-    primes: int = 0
-    again: int = 1
-
-    @property
-    def text(self):
-        count = str(self.again) if self.again > 1 else ""
-        stem = "_".join(part for part in (self.base + self.axis + count, self.owner) if part)
-        return stem + "'" * self.primes
 
 
 class Named(NamedTuple):

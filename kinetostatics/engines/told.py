@@ -14,8 +14,9 @@ from ..mechanics.friction_laws import size_of
 from ..mechanics.pushes import pushed, settled, title_of
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number, plus, product
-from .naming import AXES, Named, Names, Symbol, node_of
+from .naming import AXES, Named, Names, node_of
 from .record import Recorder
+from .symbols import Symbol, keys_of, of_path, symbol_of
 
 GIVEN, WEIGHT = "Given", "Weight"
 ORDERS = ("", "first", "second")
@@ -270,81 +271,6 @@ class _Telling(Rubbing):
             else:
                 scalars[name] = names.number(scalars[name], symbol_of(name), words, unit, True, "within")
         return Resolved(reactions, scalars, resolved.demands)
-
-
-def keys_of(loads):
-    """What each load is called: as in paths, with its number where there are several of a kind."""
-    found, counts = [], dict[str, int]()
-    for item in loads:
-        key = getattr(item, "PATH", "") or type(item).__name__
-        counts[key] = counts.get(key, 0) + 1
-        found.append(f"{key}{counts[key]}" if counts[key] > 1 else key)
-    return found
-
-
-LAST = {
-    "mass": "m",
-    "inertia": "J",
-    "along": "a",
-    "across": "b",
-    "stiffness": "k",
-    "coefficient": "c",
-    "radius": "r",
-    "pin_radius": "r",
-    "roller_radius": "R",
-    "half_length": "h",
-    "mu": "mu",
-    "free_position": "s0",
-    "free_length": "l0",
-    "free_angle": "theta0",
-}
-WHOLE = {
-    "crank_speed": "omega",
-    "crank_acceleration": "alpha",
-    "gravity.acceleration": "g",
-    "gravity.direction": "gamma",
-}
-
-
-def of_path(path):
-    """Symbol of a number of the scene."""
-    if path in WHOLE:
-        return Symbol(WHOLE[path])
-    *owner, last = [part for part in path.split(".") if part != "centre"]
-    if last in ("x", "y"):
-        return Symbol(last, "", "_".join(owner))
-    if last.isdecimal() and owner:
-        last = owner.pop() + last
-    for name, letter in (("_length", "l"), ("guide_angle", "beta"), ("guide_offset", "e")):
-        stem, found, label = last.partition(name)
-        if found:
-            return Symbol(letter, "", "_".join((*owner, stem + label)).strip("_"))
-    return Symbol(LAST.get(last, last), "", "_".join(owner))
-
-
-ENDINGS = {
-    "_force": "F",
-    "_moment": "M",
-    "_position": "s",
-    "_velocity": "v",
-    "_angular_acceleration": "alpha",
-    "_acceleration": "a",
-    "_rate": "omega",
-    "_energy": "E",
-    "_friction_loss": "P",
-}
-"""Letters of quantities whose names end so."""
-
-
-def symbol_of(quantity):
-    """Symbol of a quantity by name."""
-    if quantity.startswith("balancing_torque"):
-        return Symbol("T")
-    for ending, letter in ENDINGS.items():
-        stem, found, label = quantity.partition(ending)
-        if found:
-            return Symbol(letter, "", stem + label)
-    return Symbol(quantity)
 
 
 def _modules(state):

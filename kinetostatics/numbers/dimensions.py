@@ -1,5 +1,9 @@
 """Dimensions of numbers: powers of m, kg and s; radians count as 1."""
 
+import re
+
+import numpy as np
+
 NONE = (0.0, 0.0, 0.0)
 BASES = {
     "m": (1, 0, 0),
@@ -10,6 +14,7 @@ BASES = {
     "Pa": (-1, 1, -2),
     "W": (2, 1, -3),
 }
+"""Powers of m, kg and s of units that others are made of."""
 SPELLED = {
     (0, 0, 0): "1",
     (1, 0, 0): "m",
@@ -35,29 +40,21 @@ SPELLED = {
 }
 
 
+_FACTOR = re.compile(r"([A-Za-z]+)(?:\*\*|\^)?(\d*)")
+
+
 def dimension(unit):
-    """Powers of m, kg and s in a unit such as "N*m*s/rad"."""
-    found = [0.0, 0.0, 0.0]
-    for over, part in enumerate(unit.replace("**", "^").replace(" ", "*").split("/")):
-        for factor in part.split("*"):
-            base, _, power = factor.partition("^")
-            digits = base.lstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")
-            if digits and base != digits:
-                base, power = base.removesuffix(digits), digits
-            for place, count in enumerate(BASES.get(base, (0, 0, 0))):
-                found[place] += (-1 if over else 1) * count * int(power or 1)
-    return tuple(found)
+    """Powers of m, kg and s in a unit such as "N*m*s/rad" or "m/s2"."""
+    found = np.zeros(3)
+    for over, part in enumerate(unit.split("/")):
+        for base, power in _FACTOR.findall(part):
+            found += (-1 if over else 1) * int(power or 1) * np.array(BASES.get(base, NONE))
+    return tuple(found.tolist())
 
 
 def spelled(dimension):
     """A unit of these powers."""
-    if dimension is None:
-        return "1"
     if dimension in SPELLED:
         return SPELLED[dimension]
-    parts = [
-        base + (f"{count:g}" if count != 1 else "")
-        for base, count in zip(("m", "kg", "s"), dimension, strict=True)
-        if count
-    ]
-    return " ".join(parts)
+    named = zip(("m", "kg", "s"), dimension, strict=True)
+    return " ".join(base + (f"{count:g}" if count != 1 else "") for base, count in named if count)

@@ -8,9 +8,9 @@ import warnings
 import numpy as np
 
 from ..engines import programs
-from ..engines.formulas import LATEX, MATHML, TEXT, written
 from ..engines.lines import lines
 from ..engines.naming import node_of
+from ..engines.styles import LATEX, MATHML, TEXT, written
 from ..engines.told import result, told
 from ..errors import HintWarning, ParameterError, QuantityError
 from ..mechanics import quantities

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines.formulas import shown
+from ..engines.styles import shown
 from ..numbers.lazy import cached_property
 from . import explanation_pages
 

@@ -5,7 +5,7 @@ from itertools import groupby
 from math import atan2, degrees
 from textwrap import wrap
 
-from ..engines.formulas import shown
+from ..engines.styles import shown
 
 WIDTH = 80
 NOTE = (
