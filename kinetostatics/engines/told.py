@@ -57,7 +57,7 @@ def told(state, paths, units):
     vars(made).update(vars(scene))
     for name in ("placement", "rubbing", "resolved", "wrenches", "pushes"):
         vars(made).pop(name, None)
-    vars(made).update(names=names, heads=heads)
+    vars(made).update(names=names, heads=heads, runs=bool(state.crank_speed != 0))
     return made, recorder
 
 
@@ -76,6 +76,7 @@ class Told(Dynamics):
 
     names: Any
     heads: Any
+    runs: bool
 
     @cached_property
     def placement(self):
@@ -214,7 +215,8 @@ class Told(Dynamics):
     @cached_property
     def rubbing(self):
         """What resolves each part, with friction or without."""
-        return _Telling(self.mechanism, self.friction, driving(self.crank_speed, self.crank_acceleration), self.names)
+        way = driving(self.crank_speed, None if self.runs else self.crank_acceleration)
+        return _Telling(self.mechanism, self.friction, way, self.names)
 
 
 class _Telling(Rubbing):

@@ -30,10 +30,13 @@ def explain(solution, quantity, angle, design=None):
     scene = Scene(state.mechanism, state.crank_speed, state.crank_acceleration, state.loads, state.friction)
     made, recorder = told(state.dynamics, _numbered(scene, state.dynamics), scene.units)
     nodes = [part for part in map(node_of, result(made, quantity, found)) if part is not None]
-    steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics)) if nodes else ()
+    steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics)) if nodes else {}
+    results, angle = tuple(steps[node] for node in nodes), float(state.crank_angle)
     value = quantities.components(state, quantity)
     value = np.array(value) if found.vector else float(value[0])
-    return Explanation(state.mechanism.name, quantity, found.label, float(state.crank_angle), steps, value, found.unit)
+    return Explanation(
+        state.mechanism.name, quantity, found.label, angle, tuple(steps.values()), results, value, found.unit
+    )
 
 
 def _quantity(solution, name):
@@ -45,9 +48,10 @@ def _quantity(solution, name):
 
 
 def _steps(names, found):
+    """Steps by node, in order."""
     symbols = {node.index: symbol for node, symbol in names.symbols([line.node for line in found]).items()}
     values = {line.node.index: 0.0 if line.is_noise else line.value for line in found}
-    steps = []
+    steps = {}
     for line in found:
         symbol, value = symbols[line.node.index], values[line.node.index]
         ways = []
@@ -57,8 +61,9 @@ def _steps(names, found):
             ways.append((style.symbol(symbol), formula, numbers, style.number(value)))
         (spelled, formula, numbers, text), *rest = ways
         named = line.named
-        steps.append(Step(named.title, named.words, spelled, formula, numbers, line.value, line.unit, text, *rest))
-    return tuple(steps)
+        parts = named.title, named.words, spelled, formula, numbers, line.value, line.unit, text
+        steps[line.node] = Step(*parts, *rest)
+    return steps
 
 
 def _numbered(scene, state):

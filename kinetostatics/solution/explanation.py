@@ -57,6 +57,8 @@ class Explanation:
     angle : float
         Crank angle, rad.
     steps : tuple of Step
+    results : tuple of Step
+        Those of them that give the quantity, of a vector its components.
     value : float or array (2,)
         The quantity as the solution gives it.
     unit : str
@@ -67,6 +69,7 @@ class Explanation:
     label: str
     angle: float
     steps: tuple[Step, ...]
+    results: tuple[Step, ...]
     value: Any
     unit: str
 
@@ -80,7 +83,7 @@ class Explanation:
     @property
     def conclusion(self):
         """The quantity and its value, of a vector the magnitude too."""
-        values = [step.shown for step in self.steps[-np.size(self.value) :]] or [shown(float(self.value))]
+        values = [step.shown for step in self.results] or [shown(float(part)) for part in np.ravel(self.value)]
         unit = "" if self.unit == "1" else f" {self.unit}"
         if np.ndim(self.value):
             size = shown(hypot(*self.value))
