@@ -40,14 +40,20 @@ def formula(node, ends, stands_for=MappingProxyType({})):
             part = found
         return ("name", part.index) if isinstance(part, Node) and part in ends else formula(part, ends, stands_for)
 
-    return _OPERATIONS[node.operation](*(part_of(part) for part in node.arguments if not _is_nothing(part)))
+    return _OPERATIONS[node.operation](
+        *(part_of(part) for part in node.arguments if not _is_nothing(part, node.operation))
+    )
 
 
-def _is_nothing(part):
+def _is_nothing(part, operation):
     """Whether an argument only keeps a number off zero, as `elementary.apart` does, and changes no digit."""
     if isinstance(part, Node):
-        return part.operation == "*" and any(isinstance(one, float) and one == APART for one in part.arguments)
-    return 0.0 < abs(part) < UNSEEN
+        return (
+            operation == "+"
+            and part.operation == "*"
+            and any(isinstance(one, float) and one == APART for one in part.arguments)
+        )
+    return operation == "+" and 0.0 < abs(part) < UNSEEN
 
 
 def _sum(left, right=ZERO):

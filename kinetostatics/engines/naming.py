@@ -70,22 +70,26 @@ class Names:
 
     @contextmanager
     def under(self, title):
-        """What is computed within stands under a heading; local variables of kernels are names."""
+        """What is computed within stands under a heading; local variables of kernels are names.
+
+        Where a profiler runs already it is left alone, and kernels' lines have no names.
+        """
         before, self.title = self.title, title
         if title not in self.titles:
             self.titles.append(title)
         known = sys.getprofile()
-
-        def returned(frame, event, value):
-            if event == "return" and self.reading:
-                self._read(frame)
-
-        sys.setprofile(returned)
+        if known is None:
+            sys.setprofile(self._returned)
         try:
             yield
         finally:
-            sys.setprofile(known if callable(known) else None)
+            if known is None:
+                sys.setprofile(None)
             self.title = before
+
+    def _returned(self, frame, event, value):
+        if event == "return" and self.reading:
+            self._read(frame)
 
     def _read(self, frame):
         """Name what a kernel that returns has computed; names of the outermost win, arguments have none."""

@@ -47,7 +47,7 @@ def _written(tree, style, name):
             return style.symbol(found), POWER if found.primes else ATOM
         return style.number(found), _hold_of(found)
     if kind == "number":
-        return style.number(parts[0], 12), _hold_of(parts[0])
+        return style.number(parts[0], True), _hold_of(parts[0])
     if kind == "sum":
         (sign, first), *rest = parts
         text = style.sign + inner(first, PRODUCT) if sign < 0 else inner(first, NEGATIVE)
@@ -71,9 +71,11 @@ def _hold_of(value):
     return NEGATIVE if value < 0 else PRODUCT if "e" in shown(value) else ATOM
 
 
-def shown(value, digits=6):
-    """A number to so many digits."""
-    return f"{value:.{digits}g}" if value else "0"
+def shown(value, exactly=False):
+    """A number to 6 digits, or as short as tells it exactly."""
+    if exactly:
+        return repr(value).removesuffix(".0")
+    return f"{value:.6g}" if value else "0"
 
 
 GREEK = {
@@ -93,8 +95,8 @@ GREEK = {
 }
 
 
-def _latex_number(value, digits=6):
-    digits, found, power = shown(value, digits).partition("e")
+def _latex_number(value, exactly=False):
+    digits, found, power = shown(value, exactly).partition("e")
     return rf"{digits} \cdot 10^{{{int(power)}}}" if found else digits
 
 
@@ -114,8 +116,8 @@ def _below(symbol):
     return [part for part in (symbol.axis, symbol.owner, str(symbol.again) if symbol.again > 1 else "") if part]
 
 
-def _mathml_number(value, digits=6):
-    digits, found, power = shown(value, digits).replace("-", "−").partition("e")
+def _mathml_number(value, exactly=False):
+    digits, found, power = shown(value, exactly).replace("-", "−").partition("e")
     if found:
         power = int(power.replace("−", "-"))
         return (

@@ -1,5 +1,6 @@
 """Symbols of hand calculations: what numbers of a scene, and quantities of a solution, are called in formulas."""
 
+import re
 from typing import NamedTuple
 
 
@@ -25,7 +26,7 @@ class Symbol(NamedTuple):
     def text(self):
         count = str(self.again) if self.again > 1 else ""
         stem = "_".join(part for part in (self.base + self.axis + count, self.owner) if part)
-        return stem + "'" * self.primes
+        return re.sub(r"[^\w.]", "_", stem) + "'" * self.primes
 
 
 def keys_of(loads):

@@ -95,7 +95,7 @@ def largest_error(told, chained=False):
             found = evaluated(step.formula, before)
             worst = max(worst, _error(found, step.value))
             if chained:
-                known[step.symbol] = Sized(found.value)
+                known[step.symbol] = found
     return max([worst, *(_error(evaluated(step.formula, known), step.value) / 100 for step in laws)])
 
 

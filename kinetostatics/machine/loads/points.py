@@ -25,6 +25,8 @@ TINY = 1e-280
 TERMS = {
     "d": ("d", "from the second point to the first"),
     "distance": ("D", "distance of both points"),
+    "near": ("N", "square of a distance at which both points would count as meeting"),
+    "share": ("h", "share of their motion in their direction, nothing unless they meet"),
     "shortening": ("z", "rate at which the points part, over their distance"),
 }
 """What hand calculations call lines of the kernels, and what they are."""
