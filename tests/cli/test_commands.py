@@ -418,7 +418,7 @@ def test_explain_prints_the_hand_calculation_and_writes_it(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "options, words",
+    ("options", "words"),
     [
         (["--angle", "39.3 deg", "--quantity", "torque"], "quantity is 'torque', allowed: 'balancing_torque'"),
         (["--angle", "39.3 deg", "--variant", "cam"], "'cam'"),

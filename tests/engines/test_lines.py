@@ -1,5 +1,7 @@
 """Lines: where formulas end, in what order they stand, their units and noise."""
 
+from itertools import pairwise
+
 import numpy as np
 
 import kinetostatics as ks
@@ -20,7 +22,7 @@ def found(solution, quantity):
 
 @every("name", ["circle cam, everything", "four-bar", "six-bar"])
 def test_formulas_are_short_and_name_lines_before_them(name):
-    names, told_lines = found(solve(SCENES[name], np.array(0.7)), "balancing_torque")
+    _, told_lines = found(solve(SCENES[name], np.array(0.7)), "balancing_torque")
     before = set()
     for line in told_lines:
         if line.tree:
@@ -29,7 +31,7 @@ def test_formulas_are_short_and_name_lines_before_them(name):
             assert before.issuperset(needed)
         before.add(line.node.index)
     titles = [line.named.title for line in told_lines]
-    assert sum(one != other for one, other in zip(titles, titles[1:], strict=False)) < 1.5 * len(set(titles))
+    assert sum(one != other for one, other in pairwise(titles)) < 1.5 * len(set(titles))
 
 
 def test_a_line_that_is_used_once_and_not_explained_is_part_of_the_formula_that_uses_it():

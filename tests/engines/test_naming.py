@@ -83,7 +83,7 @@ def test_zero_has_no_name_but_as_a_result():
 
 
 def test_symbols_spelled_alike_are_told_apart():
-    graph, names, given, _ = recorded()
+    _, names, given, _ = recorded()
     others = [given * 11.0, given * 13.0]
     for node in others:
         names.number(node, Symbol("q"))

@@ -1,6 +1,6 @@
 """Styles: the same formula as text, LaTeX and MathML."""
 
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 from kinetostatics.engines.styles import GREEK, LATEX, MATHML, TEXT, shown, written
 from kinetostatics.engines.symbols import Symbol
@@ -39,7 +39,7 @@ def test_numbers_are_bracketed_where_they_must(value, text):
 @every("name", TREES)
 def test_mathml_is_well_formed(name):
     for given in (SYMBOLS.__getitem__, [-1.5e-7, 3.0].__getitem__):
-        ElementTree.fromstring(f"<math>{written(TREES[name], MATHML, given)}</math>")
+        ET.fromstring(f"<math>{written(TREES[name], MATHML, given)}</math>")
 
 
 def test_values_have_six_digits_and_constants_all_theirs():

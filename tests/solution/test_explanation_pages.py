@@ -1,7 +1,7 @@
 """Pages of a hand calculation: 80 columns of text, LaTeX whose braces match, HTML that is well formed and alone."""
 
 import re
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 import pytest
 
@@ -33,7 +33,7 @@ def test_a_formula_broken_over_lines_is_the_same_formula(told):
 
 
 def test_html_is_well_formed_and_asks_for_nothing(told):
-    tree = ElementTree.fromstring(told.html.replace(STYLE, ""))
+    tree = ET.fromstring(told.html.replace(STYLE, ""))
     assert len(tree.findall(".//math")) > 2 * len(told.steps)
     assert not re.search(r"https?:|src=|href=|@import|url\(", told.page)
     assert told.page.startswith("<!DOCTYPE html>")
@@ -53,4 +53,4 @@ def test_names_with_signs_of_latex_and_html_are_escaped():
     told = ks.solve(pump, 0.7, crank_speed=9.0).explain("balancing_torque", 0.7)
     assert r"50\% \& <b>" in told.latex
     assert "50% &amp; &lt;b&gt;" in told.html
-    ElementTree.fromstring(told.html.replace(STYLE, ""))
+    ET.fromstring(told.html.replace(STYLE, ""))
