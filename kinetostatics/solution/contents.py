@@ -107,6 +107,8 @@ at(crank_angle)
     The same mechanism, speed and loads at other crank angles.
 condition_of(quantity)
     Condition of one quantity, cancellation of its terms counted in.
+explain(quantity, angle, design)
+    The hand calculation of a quantity at one crank angle, link by link: formula, numbers with units, result.
 frame()
     All results as a pandas DataFrame, units in the headings.
 

@@ -21,7 +21,7 @@ from tests.support.rubbing_machines import Drawn
 from tests.support.scenes import ANGLES, FORCES, OWN, SCENES, SPEED
 from tests.support.scenes import solve as solved
 
-STEP, CHAIN, VALUE = 1e-15, 1e-12, 1e-13
+STEP, CHAIN, VALUE = 1e-15, 1e-14, 1e-13
 LOADED = ks.Scene(
     ks.crank_slider(0.05, 0.2, coupler=ks.Link(0.5, (0.08, 0.01), 0.01), slider=ks.Link(1.0)), 100.0, loads=ks.Gravity()
 )

@@ -10,10 +10,11 @@ FOUND_TOGETHER = "found together"
 
 
 class Sized:
-    """A number, and the size of the terms that it is a sum of: what its rounding is relative to."""
+    """A number, and a bound to first order of its error: as many roundings as it comes of, each in units of 2^-53."""
 
-    def __init__(self, value, size=None):
-        self.value, self.size = float(value), abs(value) if size is None else size
+    def __init__(self, value, size=0.0):
+        self.value = float(value)
+        self.size = float(size) + abs(self.value)
 
     def __add__(self, other):
         other = _sized(other)
@@ -27,14 +28,15 @@ class Sized:
 
     def __mul__(self, other):
         other = _sized(other)
-        return Sized(self.value * other.value, self.size * other.size)
+        return Sized(self.value * other.value, self.size * abs(other.value) + abs(self.value) * other.size)
 
     def __truediv__(self, other):
         other = _sized(other)
-        return Sized(np.divide(self.value, other.value), np.divide(self.size, abs(other.value)))
+        quotient = float(np.divide(self.value, other.value))
+        return Sized(quotient, np.divide(self.size + abs(quotient) * other.size, abs(other.value)))
 
     def __pow__(self, count):
-        return Sized(self.value**count, self.size**count)
+        return Sized(self.value**count, count * abs(self.value) ** (count - 1) * self.size)
 
     def __abs__(self):
         return Sized(abs(self.value), self.size)
@@ -57,14 +59,15 @@ def _sized(number):
 
 
 def _root(number):
-    number, value = _sized(number), math.sqrt(max(_sized(number).value, 0.0))
-    return Sized(value, number.size / value if value > 1e-7 * math.sqrt(number.size) else math.sqrt(number.size) * 1e8)
+    number = _sized(number)
+    value = math.sqrt(max(number.value, 0.0))
+    return Sized(value, number.size / (2.0 * max(value, 1e-8 * math.sqrt(number.size))))
 
 
 FUNCTIONS = {
     "sqrt": _root,
-    "sin": lambda angle: Sized(math.sin(_sized(angle).value), 1.0),
-    "cos": lambda angle: Sized(math.cos(_sized(angle).value), 1.0),
+    "sin": lambda angle: Sized(math.sin(_sized(angle).value), _sized(angle).size),
+    "cos": lambda angle: Sized(math.cos(_sized(angle).value), _sized(angle).size),
     "atan": lambda slope: Sized(math.atan(_sized(slope).value), _sized(slope).size),
     "abs": abs,
     "sign": lambda number: Sized(math.copysign(1.0, _sized(number).value)),
@@ -79,7 +82,7 @@ def evaluated(formula, known):
 
 
 def largest_error(told, chained=False):
-    """Largest error of a step beside its own formula, relative to the terms of the formula.
+    """Largest error of a step beside its own formula, relative to what each rounding may change.
 
     Numbers in formulas are those given, and values of steps before; `chained`: as computed here, from those given
     alone. Friction that is found by iteration is taken as shown, and its law looked at in the end.
