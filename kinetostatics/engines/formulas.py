@@ -17,7 +17,7 @@ UNSEEN = 1e-250
 ONE, ZERO = ("number", 1.0), ("number", 0.0)
 
 
-def formula(node, ends, stands_for=MappingProxyType({})):
+def formula(node, ends, stands_for=MappingProxyType({}), raised=()):
     """Tree of a recorded number: tuples of a kind and its parts.
 
     Kinds are "number" of a value, "name" of a node by its place in the graph, "sum" of pairs (sign, part), "product" of
@@ -30,6 +30,8 @@ def formula(node, ends, stands_for=MappingProxyType({})):
         Where a formula ends; not at the node itself.
     stands_for : dict of Node to Node
         What stands in formulas for another of the same value.
+    raised : container of Node
+        Numbers to divide by that are kept off zero: there the limit is told too.
     """
     if not isinstance(node, Node):
         return ("negative", ("number", -float(node))) if node < 0 else ("number", float(node))
@@ -38,8 +40,12 @@ def formula(node, ends, stands_for=MappingProxyType({})):
         found = stands_for.get(part, part) if isinstance(part, Node) else part
         if found is not node:
             part = found
-        return ("name", part.index) if isinstance(part, Node) and part in ends else formula(part, ends, stands_for)
+        return (
+            ("name", part.index) if isinstance(part, Node) and part in ends else formula(part, ends, stands_for, raised)
+        )
 
+    if node in raised:
+        return ("call", "max", *map(part_of, node.arguments))
     return _OPERATIONS[node.operation](
         *(part_of(part) for part in node.arguments if not _is_nothing(part, node.operation))
     )

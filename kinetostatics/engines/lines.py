@@ -18,8 +18,8 @@ from .trace import INPUTS, Node, needed
 
 LONGEST = 12
 """Named numbers and constants in one formula; with more it is parted."""
-NOISE = 1e-14
-"""Size of a value, relative to the terms that it is a difference of, below which it is their rounding."""
+NOISE = 2.0**-51
+"""Size of a value, relative to what it is made of (`_size`), up to which it is rounding."""
 
 
 class Line(NamedTuple):
@@ -56,19 +56,18 @@ def lines(names, outputs, recorder, state):
     state : Dynamics
         The scene at one crank angle.
     """
-    ends = _ends(names, outputs)
-    trees, ordered = {}, []
+    values, sizes = _values(names, outputs, recorder, state)
+    raised = {node for node in values if node.operation == "divisor" and values[node] != values[node.arguments[0]]}
+    ends = _ends(names, outputs, raised)
+    trees: dict[Node, Any] = {}
     waiting = list(outputs)
     while waiting:
         node = waiting.pop()
         if node not in trees:
-            trees[node] = _tree(names, node, ends)
+            trees[node] = _tree(names, node, ends, raised)
             waiting += (names.graph[place] for place in names_in(trees[node])) if trees[node] else ()
-    ordered = _ordered(names, trees)
-    values, sizes = _values(names, ordered, recorder, state)
-    units = _Units(names)
-    found = []
-    for node in ordered:
+    units, found = _Units(names), []
+    for node in _ordered(names, trees):
         value = values[node]
         found.append(Line(names.of[node], trees[node], value, units.of(node), abs(value) <= NOISE * sizes[node], node))
     return found
@@ -113,14 +112,14 @@ def _ordered(names, trees):
     return list(found)
 
 
-def _tree(names, node, ends):
-    if node in names.laws:
-        law = names.laws[node]
-        return ("name", law.index) if law in ends else formula(law, ends, names.stands_for)
-    return None if node.operation in INPUTS else formula(node, ends, names.stands_for)
+def _tree(names, node, ends, raised):
+    law = names.laws.get(node, node)
+    if law is not node and law in ends:
+        return ("name", law.index)
+    return None if law.operation in INPUTS else formula(law, ends, names.stands_for, raised)
 
 
-def _ends(names, outputs):
+def _ends(names, outputs, raised):
     """Nodes at which formulas end."""
     found = _reached(names, outputs)
     users = dict.fromkeys(found, 0)
@@ -200,9 +199,9 @@ def _after_one_another(names, nodes):
     return list(found)
 
 
-def _values(names, nodes, recorder, state):
-    """Values by node, and the sizes of the largest terms that they are sums of."""
-    every = needed(nodes)
+def _values(names, outputs, recorder, state):
+    """Values by node, and the sizes that their rounding is relative to."""
+    every = needed([*outputs, *names.laws.values(), *names.stands_for.values()])
     recording = Recording((), tuple(every), (), (), tuple(recorder.parameters), tuple(recorder.tables), recorder.graph)
     _, leaves = state.apart
     with np.errstate(all="ignore"):
@@ -215,23 +214,24 @@ def _values(names, nodes, recorder, state):
 
 
 def _size(node, values, sizes):
-    value = abs(values[node])
-    parts = (
-        [sizes[part] if isinstance(part, Node) else abs(part) for part in node.arguments]
-        if node.operation not in INPUTS
-        else []
-    )
-    kind = node.operation
+    """How much the value is, and to first order what the sizes of its arguments make of it."""
+    value, kind = values[node], node.operation
+    if kind in INPUTS:
+        return abs(value)
+    (a, x), (b, y) = [
+        (values[part], sizes[part]) if isinstance(part, Node) else (part, 0.0) for part in (*node.arguments, 0.0)[:2]
+    ]
     if kind in ("+", "-"):
-        return sum(parts)
-    if kind == "*":
-        return parts[0] * parts[1]
-    if kind == "/":
-        under = node.arguments[1]
-        return parts[0] / abs(values[under] if isinstance(under, Node) else under) if value else 0.0
-    if kind in ("sin", "cos"):
-        return 1.0
-    return parts[0] if kind == "held" else value
+        made = x + y
+    elif kind == "*":
+        made = abs(a) * y + abs(b) * x
+    elif kind == "/":
+        made = (x + abs(value) * y) / abs(b) if b else 0.0
+    elif kind in ("sqrt", "root"):
+        made = x / (2.0 * value) if value else 0.0
+    else:
+        made = 0.0 if kind == "sign" else x
+    return abs(value) + made
 
 
 class _Units:

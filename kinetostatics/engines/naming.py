@@ -144,7 +144,7 @@ class Names:
         return value
 
     def vector(self, parts, symbol, words="", unit="", again=False, turned="onward"):
-        """Name both components of a vector, which may be absent."""
+        """Name both components of a vector, which may be absent; arguments as for `number`."""
         if parts is None:
             return None
         return tuple(

@@ -55,8 +55,6 @@ def told(state, paths, units):
         names.of[node] = Named(Symbol(name, "", owner, primes), GIVEN, words, unit, "given")
     made = object.__new__(Told)
     vars(made).update(vars(scene))
-    for name in ("placement", "rubbing", "resolved", "wrenches", "pushes"):
-        vars(made).pop(name, None)
     vars(made).update(names=names, heads=heads, runs=bool(state.crank_speed != 0))
     return made, recorder
 
@@ -267,11 +265,10 @@ class _Telling(Rubbing):
         for name, (unit, vector, text, *_) in outputs.items():
             words = f"{name.replace('_', ' ')}{', ' * bool(text)}{text}"
             if vector:
-                reactions[name] = names.vector(
-                    reactions[name], Symbol("R", "", name), f"reaction {words}", unit, True, "within"
-                )
+                symbol, words = Symbol("R", "", name), f"reaction {words}"
+                reactions[name] = names.vector(reactions.get(name), symbol, words, unit, True, "within")
             else:
-                scalars[name] = names.number(scalars[name], symbol_of(name), words, unit, True, "within")
+                scalars[name] = names.number(scalars.get(name), symbol_of(name), words, unit, True, "within")
         return Resolved(reactions, scalars, resolved.demands)
 
 
@@ -293,7 +290,9 @@ def _listed(names):
 
 def _moving(group):
     joints = f"joint {_listed(group.joints)}" if group.joints else ""
-    return f"Motion of {_listed(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else f"J{joints[1:]}"
+    return (
+        f"Motion of {_listed(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else f"Motion of {joints}"
+    )
 
 
 def _carrying(part):

@@ -15,7 +15,7 @@ NOTE = (
 )
 STYLE = (
     "<style>.explanation math{font-size:1.05em}.explanation p{margin:.5em 0 0 .75em;color:#555}"
-    ".explanation .step{margin:.15em 0 .15em 1.5em;padding:.1em 0;overflow:auto hidden}"
+    ".explanation .step{margin:.15em 0 .15em 1.5em;padding:.3em 0;overflow:auto hidden}"
     ".explanation h4{margin:1.2em 0 .2em}.explanation td{padding:0 1.2em 0 0}"
     ".explanation table{margin-left:1.5em;border-collapse:collapse}</style>"
 )
