@@ -14,6 +14,8 @@ SWEEP_OUTPUTS = ("mean_absolute balancing_torque", "largest O")
 LOST = "mean friction_loss"
 """What it tells besides of a variant with friction."""
 TABLE_ENDINGS = (".csv", ".parquet")
+EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
+"""What is written of an explanation, by the ending of its file."""
 FIGURE_ENDINGS = (".png", ".svg", ".pdf")
 
 
@@ -98,6 +100,21 @@ def compare(options):
     for name, table in tables.items():
         print(f"\n{case.reference} / {name}\n")
         print_table(table)
+
+
+def explain(options):
+    from ..casefile.case import load_case
+
+    case = load_case(options.case)
+    _require_writable(case, "--out", options.out, tuple(EXPLANATIONS))
+    variant = case.variant(case.reference if options.variant is None else options.variant)
+    told = variant.scene.solve(options.angle).explain(options.quantity, options.angle)
+    print(told)
+    if options.out:
+        written = getattr(told, EXPLANATIONS[Path(options.out).suffix.lower()])
+        with files.written_whole(options.out) as temporary:
+            Path(temporary).write_text(f"{written}\n", encoding="utf-8")
+        print(f"\nwrote {options.out}")
 
 
 def plot(options):

@@ -33,6 +33,14 @@ def parser():
     compare = _command(group, "compare", commands.compare, "dynamic coefficients against the reference variant")
     compare.add_argument("--variant", type=_text, metavar="NAME", help="only this variant against the reference")
 
+    explain = _command(group, "explain", commands.explain, "the hand calculation of a quantity at one crank angle")
+    explain.add_argument("--angle", type=_angle, required=True, metavar="ANGLE", help='crank angle, "39.3 deg"')
+    explain.add_argument(
+        "--quantity", type=_text, default="balancing_torque", metavar="NAME", help="or a joint's reaction (%(default)s)"
+    )
+    explain.add_argument("--variant", type=_text, metavar="NAME", help="of this variant (the reference)")
+    explain.add_argument("--out", type=_text, metavar="FILE", help="write it, as .html, .tex or .txt")
+
     drive = _command(group, "drive", commands.drive, "speed, power and start-up under the motor of the case")
     drive.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
     drive.add_argument(

@@ -39,11 +39,17 @@ class Table(NamedTuple):
         ``compute(motion, arrays) -> rows``, from the scene's motion and the tables among its leaves.
     moved_by : str
         Code of the user's whose values may hang on parameters in a way that is not recorded; "" without.
+    names : tuple of (str, int, str)
+        What each row is: its name, how many times it is differentiated by the crank angle, its unit.
+    of : str or int
+        The cam, or which of the loads, that it is read for.
     """
 
     rows: range
     compute: Callable[[Any, Any], Any]
     moved_by: str = ""
+    names: tuple = ()
+    of: str | int = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +119,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     way : function, optional
         Other way to the placement, as `Dynamics` takes it.
     """
-    recorder = _Recorder(structure, way)
+    recorder = Recorder(structure, way)
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -134,10 +140,10 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
 
 def recorded(structure):
     """The scene of a structure with a `Node` for each of its numbers."""
-    return _Recorder(structure, None).recorded
+    return Recorder(structure, None).recorded
 
 
-class _Recorder:
+class Recorder:
     """Puts nodes in place of the numbers of a structure."""
 
     def __init__(self, structure, way):
@@ -164,12 +170,12 @@ class _Recorder:
     def _array(self):
         place = self._arrays
         self._arrays += 1
-        return self._tabled(1, lambda motion, arrays: [arrays[place]])[0]
+        return self._tabled((("value", 0, ""),), lambda motion, arrays: [arrays[place]])[0]
 
-    def _tabled(self, rows, compute, moved_by=""):
-        first, self._rows = self._rows, self._rows + rows
-        self.tables.append(Table(range(first, self._rows), compute, moved_by))
-        found = [self.graph.row(first + place) for place in range(rows)]
+    def _tabled(self, names, compute, moved_by="", of=""):
+        first, self._rows = self._rows, self._rows + len(names)
+        self.tables.append(Table(range(first, self._rows), compute, moved_by, names, of))
+        found = [self.graph.row(row) for row in range(first, self._rows)]
         if moved_by:
             self.inputs.update((node, _unproven(moved_by)) for node in found)
         return [self._nodes(node) for node in found]
@@ -184,9 +190,10 @@ class _Recorder:
         ):
             return group
         values = self._tabled(
-            3,
+            tuple((group.LAW[0], order, group.LAW[1]) for order in range(3)),
             lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle),
             "" if group.cam is None else type(group.cam).__name__,
+            f"cam{group.label}",
         )
         object.__setattr__(group, "cam", _Tabled(tuple(values)))
         return group
@@ -199,7 +206,7 @@ class _Recorder:
             return ProcessForce(self._given(load, place), load.on)
         value = load.value_now
         if isinstance(value, loads.Table):
-            return with_fields(load, **{load.VALUE: self._read(value, place, idle)})
+            return with_fields(load, **{load.VALUE: self._read(value, load.UNIT, place)})
         if not callable(value) or self._is_elementwise(
             value, lambda angle: [value(moving(replace(idle, crank_angle=angle)))]
         ):
@@ -208,29 +215,33 @@ class _Recorder:
 
     def _given(self, load, place):
         """What code of the user's gives for a load, from a table."""
-        (values,) = self._tabled(1, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load))
+        names = (("value", 0, getattr(load, "UNIT", "N")),)
+        (values,) = self._tabled(
+            names, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load), place
+        )
         return values
 
-    def _read(self, table, place, idle):
-        """Values of a table; over travel by recorded arithmetic on its pieces, which are found beforehand."""
+    def _read(self, table, unit, place):
+        """Values of a table; over travel a function of the motion, by its pieces, which are found beforehand."""
 
         def item(motion):
             return motion.loads[place].value_now
 
         if table.over == "angle":
-            (values,) = self._tabled(1, lambda motion, arrays: [item(motion)(motion)])
-            (errors,) = self._tabled(1, lambda motion, arrays: [item(motion).rounding(motion) / UNIT])
+            (values,) = self._tabled((("value", 0, unit),), lambda motion, arrays: [item(motion)(motion)], of=place)
+            (errors,) = self._tabled(ERRORS[:1], lambda motion, arrays: [item(motion).rounding(motion) / UNIT])
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
-        pieces = self._tabled(3, lambda motion, arrays: item(motion).pieces(motion))
-        within = self._tabled(3, lambda motion, arrays: item(motion).kinks_within(motion))
-        self.inputs |= _of_pieces(
-            [part[0] for part in pieces],
-            [part[0] for part in within],
-            table.place(idle)[0],
-            np.ravel(table.rate(idle))[0],
-        )
-        return table.read(idle, pieces)
+        names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
+        pieces = self._tabled(names, lambda motion, arrays: item(motion).pieces(motion), of=place)
+        within = self._tabled(ERRORS, lambda motion, arrays: item(motion).kinks_within(motion))
+
+        def read(motion):
+            travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
+            self.inputs |= _of_pieces([part[0] for part in pieces], [part[0] for part in within], travel, rate)
+            return table.read(motion, pieces)
+
+        return read
 
     def _is_elementwise(self, part, compute):
         """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""
@@ -262,6 +273,9 @@ class _Tabled:
 
 
 # What is known of inputs that are not exact
+
+ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""))
+"""Names of rows that only bounds need."""
 
 
 def _rounded_once(bounds):

@@ -117,7 +117,7 @@ def buffered_line(outputs) -> tuple[str, int]:
     rows: dict[Node, int] = {}
     copies = []
     for place, part in enumerate(outputs):
-        if isinstance(part, Node) and part not in rows and _is_computed_by_angle(part) and part.operation != "table":
+        if isinstance(part, Node) and part not in rows and _is_computed_by_angle(part) and not _is_given(part):
             rows[part] = place
         else:
             copies.append((place, part))

@@ -34,6 +34,15 @@ PAIRS = {
     "cam": Rolling("block", "A", "cam_force"),
 }
 MOTIONS = {"pressure_angle": Output("rad", False, "of the cam pair, atan(r'/r), positive where the radius grows")}
+TERMS = {
+    "place.radius": ("r", "radius of the pitch curve"),
+    "place.slope": ("r'", "its first derivative by phi"),
+    "place.curvature": ("r''", "its second derivative by phi"),
+    "resolve.force": ("Q", "all that acts on the block, with friction"),
+    "resolve.lean": ("tau", "tangent of the pressure angle"),
+    "resolve.outward": ("N", "force on the block along the ray"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 class RollerForces(NamedTuple):

@@ -21,6 +21,14 @@ from .profile import Profile
 from .sampled_cam import Sampled
 
 __all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "LawCam", "Profile", "Sampled", "from_law"]
+TERMS = {
+    "along": ("u", "centre of the circle along the ray"),
+    "across": ("v", "centre of the circle across the ray, to the left"),
+    "root": ("w", "root of the pitch curve"),
+    "singular": ("c0", "cosine of the singular angle"),
+    "excess": ("d", "that root less the coordinate of the slider"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 @dataclass(frozen=True, eq=False, init=False)

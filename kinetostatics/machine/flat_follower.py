@@ -18,6 +18,12 @@ from .guided_follower import RULES, FollowerForces, GuidedFollower
 from .links import Wrench
 from .roller import Face
 
+TERMS = {
+    "pushed": ("N", "force of the cam along the guide"),
+    "lever": ("b", "from the pin to the contact, to the right"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
 
 def forces(travel, guide, load, push):
     """Forces on the follower (kernel).

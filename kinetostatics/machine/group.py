@@ -64,6 +64,10 @@ belongs to its structure, and gives `turns` and `change_points`; `kink(crank)` s
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
 forces and power; tests/machine/test_a_group_of_ones_own.py has a whole example.
 
+*Hand calculations.* `Solution.explain` tells what the kernels compute, under the names of local variables. The module
+may say in ``TERMS`` how an engineer writes a variable, and what it is: ``{"across": ("d", "from pin to guide")}``, of
+one kernel alone as ``"resolve.across"``, which may be an argument too; primes count derivatives, ``"r'"``.
+
 Nothing else in the library knows what a group looks like, nor the names of its links.
 """
 
@@ -276,6 +280,8 @@ class Group:
         """The group as it is on the pins of a crank: what its structure owes to lengths that are not its own."""
         return self
 
+    LAW = ("r", "m")
+    """What a curve in its field `cam` gives: its letter, and unit."""
     passage = ""
     """How it passes change points, which belongs to its structure; "" where there are none."""
 

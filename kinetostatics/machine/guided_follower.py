@@ -41,6 +41,7 @@ class GuidedFollower(follower.Follower):
     pin: str = "R"
     label: str = ""
 
+    LAW = ("s", "m")
     PATHS: ClassVar = {"guide": ""}
     forces: ClassVar[Any]
 

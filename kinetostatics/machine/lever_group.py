@@ -23,6 +23,19 @@ from .links import Joint, Link, LinkMotion, Wrench, present
 
 SMALLEST = 2.0**-53
 """Part of the distance from pivot to pin that the reach along the slot is not divided by less than."""
+TERMS = {
+    "d": ("d", "from the pivot to the joint"),
+    "square": ("D", "square of that distance"),
+    "distance": ("a", "that distance"),
+    "reach": ("w", "coordinate of the joint along the slot"),
+    "along": ("t", "derivative by phi of the joint along the slot"),
+    "across": ("n", "derivative by phi of the joint across the slot"),
+    "sliding": ("z", "rate at which the joint slides along the slot"),
+    "swing": ("q", "what turning and sliding together add across the slot"),
+    "resolve.moment": ("K", "moment of both links about the pivot"),
+    "resolve.on_block": ("Q", "force of the slot on what slides in it"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 class LeverMotion(NamedTuple):

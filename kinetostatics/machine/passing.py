@@ -14,6 +14,16 @@ SMALLEST = 2.0**-27
 """Root of a margin that is not divided by less."""
 UNSEEN = 2.0**-984
 """Distance that makes the smallest number there is of a zero, and changes no other."""
+TERMS = {
+    "cosine": ("c", "cosine of half the crank angle from the line to the pivot, or of a quarter"),
+    "sine": ("s", "sine of that"),
+    "height": ("w", "root of the closure"),
+    "square": ("D", "square of the distance of the joint from the pivot, or of the reach"),
+    "turning": ("q", "rate of the line from the joint to the pivot, or of what is mirrored in it"),
+    "rate": ("z", "rate of the links besides"),
+    "arm": ("h", "from the pivot to the pin"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 class PassedMotion(NamedTuple):

@@ -23,6 +23,24 @@ from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
+TERMS = {
+    "d": ("d", "from the inner joint to the pivot"),
+    "square": ("D", "square of that distance"),
+    "a": ("a", "that distance"),
+    "heron": ("H", "square of four times the area of the triangle of both links, by Heron"),
+    "size": ("S", "four times that area"),
+    "along": ("xi", "share of d by which the pin lies along it"),
+    "across": ("eta", "share of d by which the pin lies across it, to the left"),
+    "reach": ("w", "from the inner joint to the pin"),
+    "divided": ("sigma", "sine of the transmission angle"),
+    "cosine": ("kappa", "cosine of the transmission angle"),
+    "arm": ("h", "from the pivot to the pin"),
+    "lag": ("q", "length of the first link times the square of its ratio"),
+    "swing_lag": ("z", "length of the second link times the square of its ratio"),
+    "along_coupler": ("U", "force of the pin on the second link along the first"),
+    "along_rocker": ("V", "force of the pin on the second link along itself"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 class RockerMotion(NamedTuple):

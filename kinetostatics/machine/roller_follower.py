@@ -22,6 +22,12 @@ from .guided_follower import RULES, FollowerForces, GuidedFollower
 from .links import Wrench
 from .roller import Roller
 
+TERMS = {
+    "pushed": ("N", "force of the cam along the guide"),
+    "lean": ("tau", "tangent of the pressure angle"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
 
 def forces(travel, guide, load, push):
     """Forces on the follower (kernel).

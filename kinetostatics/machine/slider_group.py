@@ -37,6 +37,17 @@ from .links import Joint, Link, LinkMotion, Wrench, between
 
 SMALLEST = 2.0**-27
 """Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
+TERMS = {
+    "position": ("p", "inner joint along the guide (x) and across it (y)"),
+    "first": ("p'", "first derivative by phi of that"),
+    "second": ("p''", "second derivative by phi of that"),
+    "across": ("d", "from the inner joint across to the guide"),
+    "along": ("w", "reach of the coupler along the guide"),
+    "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
+    "resolve.along": ("U", "force of the pin on the slider along the guide"),
+    "resolve.across": ("V", "force of the pin on the slider across the guide"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 class SliderMotion(NamedTuple):

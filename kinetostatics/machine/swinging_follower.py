@@ -24,6 +24,13 @@ from .group import FRAME, Bar, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench, between
 from .roller import Roller
 
+TERMS = {
+    "distance": ("a", "from O to the pivot"),
+    "inward": ("n", "unit vector from the pivot to O"),
+    "reach": ("h", "from the pivot to the roller centre"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
 
 class SwingingMotion(NamedTuple):
     """A placed follower; `across`: the way of the roller centre along the cam, turned outward; `lever`: Q x p."""
@@ -143,6 +150,7 @@ class SwingingFollower(follower.Follower):
             yield checks.Problem("the follower's pivot must not be at O", at)
 
     TRUSTED = True
+    LAW = ("beta", "rad")
     PATHS: ClassVar = {"pivot": "follower_pivot"}
     RULES = checks.Rules(
         "swinging follower",

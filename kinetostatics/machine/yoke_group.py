@@ -19,6 +19,14 @@ from .links import Joint, Link, LinkMotion, Wrench
 
 PARALLEL = 1e-9
 """Sine of the slot's angle from which on it counts as parallel to the guide."""
+TERMS = {
+    "lean": ("lambda", "cotangent of the angle of the slot"),
+    "rise": ("h", "height of the joint over the guide"),
+    "back": ("b", "from the joint back to the pin along the guide"),
+    "resolve.along": ("Q", "force on the slider along its guide"),
+    "resolve.across": ("V", "force on the slider across its guide"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 class YokeMotion(NamedTuple):

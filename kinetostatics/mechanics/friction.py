@@ -93,7 +93,7 @@ class Rubbing:
         unloaded = dict.fromkeys(own, Wrench((NOTHING, NOTHING), NOTHING))
         columns = [part.resolve(placement, *_with(unloaded, {}, [(channel, 1.0)], own)) for channel in inner]
         system = _System(laws, [channel.name for channel in inner], free, columns)
-        amounts = system.solved(self.friction.passes, placement.angle)
+        amounts = self._amounts(system, laws, placement)
         self._keep(system, laws, amounts, rates)
         acting = [
             (channel, amount if way > 0 else -amount)
@@ -105,6 +105,10 @@ class Rubbing:
         for law in laws:
             self.bending += bends(law.kind, law.watched(resolved))
         return self._completed(resolved, part, placement, acting, own)
+
+    def _amounts(self, system, laws, placement):
+        """Friction of each law."""
+        return system.solved(self.friction.passes, placement.angle)
 
     def _laws(self, part, name, placement, rates):
         """Laws of a pair; what it moves at goes into `rates`."""

@@ -115,6 +115,8 @@ error_bound(quantity, tight)
     Proven bound on the rounding error of each value, in the quantity's shape and unit; ``"|O|"`` for a magnitude.
 uncertainty(quantity, inputs)
     What standard uncertainties of inputs, by path, and rounding do to each value, as `Uncertainty`.
+explain(quantity, angle, design)
+    The hand calculation of a quantity at one crank angle, link by link: formula, numbers with units, result.
 frame()
     All results as a pandas DataFrame, units in the headings.
 

@@ -25,6 +25,7 @@ from .certainty import Certainty
 from .contacts import Contacts
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
+from .explanation import Explained
 
 SHARE = 100_000
 """Values over designs and angles up to which all forces are computed together."""
@@ -32,7 +33,7 @@ SCENE = tuple(field.name for field in fields(Motion))
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Certainty, Energies, Contacts, Motion):
+class Solution(Certainty, Energies, Contacts, Explained, Motion):
     """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
 
     The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.

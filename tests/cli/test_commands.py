@@ -402,3 +402,31 @@ def test_run_and_compare_of_a_saw_that_starts_from_rest_have_no_losses(tmp_path,
     printed = capsys.readouterr().out
     assert "reaction O" in printed
     assert not re.search("mean power lost|efficiency", printed)
+
+
+def test_explain_prints_the_hand_calculation_and_writes_it(tmp_path, capsys):
+    asked = ["explain", "sawframe_2r63", "--angle", "39.3 deg", "--variant", "cam-circle"]
+    for ending, start in {
+        ".html": "<!DOCTYPE html>",
+        ".tex": r"\section*{",
+        ".txt": "cam-balanced crank-slider",
+    }.items():
+        path = tmp_path / f"told{ending}"
+        assert main([*asked, "--out", str(path)]) == 0
+        printed = capsys.readouterr().out
+        assert "balancing torque at crank angle 0.685914 rad = 39.3 deg" in " ".join(printed.split())
+        assert f"wrote {path}" in printed
+        assert path.read_text(encoding="utf-8").startswith(start)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--angle", "39.3 deg", "--quantity", "torque"], "quantity is 'torque', allowed: 'balancing_torque'"),
+        (["--angle", "39.3 deg", "--variant", "cam"], "'cam'"),
+        (["--angle", "39.3 deg", "--out", "told.pdf"], ".html"),
+    ],
+)
+def test_explain_refuses_what_is_not_there(options, words, capsys):
+    assert main(["explain", "sawframe_2r63", *options]) == 2
+    assert words in capsys.readouterr().err

@@ -7,6 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import programs, writing
+from kinetostatics.engines.record import Recording
+from kinetostatics.engines.trace import Graph
 
 ANGLE = np.linspace(0.0, 6.0, 9)
 S = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(3.0)), ANGLE, crank_speed=5.0, loads=ks.Gravity())
@@ -59,3 +61,13 @@ def test_many_outputs_are_those_of_few_to_the_last_bit(recorded, angles):
     one, other = (each.by_loop(angle, leaves.numbers, (), angle.shape) for each in (few, many))
     assert np.array_equal(other[:-1], np.tile(one, (writing.ROWS_AT_ONCE, 1)))
     assert (other[-1] == 2.5).all()
+
+
+def test_an_output_that_is_a_sine_of_the_crank_angle_itself_is_computed_too():
+    graph = Graph()
+    angle, radius = graph.angle(), graph.parameter(0)
+    outputs = angle.sin(), radius * angle.cos(), angle.cos(), angle
+    program = programs.Program(Recording((), outputs, (), (), (radius,), (), graph))
+    angles = np.linspace(0.0, 6.0, 50)
+    found = program.by_numpy(angles, [2.0], (), angles.shape)
+    np.testing.assert_array_equal(found, [np.sin(angles), 2.0 * np.cos(angles), np.cos(angles), angles])

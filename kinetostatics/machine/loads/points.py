@@ -22,6 +22,14 @@ MEETING, AHEAD = (8.0 * NEAR) ** 2, 2.0**23
 that distance their motion is followed there."""
 TINY = 1e-280
 """Square of a distance, m2, below which there is only zero."""
+TERMS = {
+    "d": ("d", "from the second point to the first"),
+    "distance": ("D", "distance of both points"),
+    "near": ("N", "square of a distance at which both points would count as meeting"),
+    "share": ("h", "share of their motion in their direction, nothing unless they meet"),
+    "shortening": ("z", "rate at which the points part, over their distance"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,6 +17,11 @@ from .period import TURN
 
 SAMPLES = 720
 """Crank angles a turn at which the angle of a torsion spring is looked at."""
+TERMS = {
+    "_angle.cosine": ("c", "cosine of the angle from where the spring is free"),
+    "_angle.sine": ("s", "sine of that angle"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 class Couple(Load):

@@ -1,0 +1,178 @@
+"""Formulas of recorded numbers: trees that end at named numbers.
+
+What is only there for rounding is left out, and signs and factors are gathered as by hand; nothing else is rearranged.
+"""
+
+from collections.abc import Callable
+from types import MappingProxyType
+from typing import Any
+
+from ..numbers.elementary import APART
+from .trace import Node
+
+CALLS = {"sqrt": "sqrt", "root": "sqrt", "sin": "sin", "cos": "cos", "atan": "atan", "abs": "abs", "sign": "sign"}
+"""Functions by recorded operation; the second argument of a root only says what rounding is."""
+UNSEEN = 1e-250
+"""Constant that is added to keep a square or distance off zero."""
+ONE, ZERO = ("number", 1.0), ("number", 0.0)
+
+
+def formula(node, ends, stands_for=MappingProxyType({}), raised=()):
+    """Tree of a recorded number: tuples of a kind and its parts.
+
+    Kinds are "number" of a value, "name" of a node by its place in the graph, "sum" of pairs (sign, part), "product" of
+    parts, "negative", "quotient", "power" and "call".
+
+    Parameters
+    ----------
+    node : Node or float
+    ends : container of Node
+        Where a formula ends; not at the node itself.
+    stands_for : dict of Node to Node
+        What stands in formulas for another of the same value.
+    raised : container of Node
+        Numbers to divide by that are kept off zero: there the limit is told too.
+    """
+    if not isinstance(node, Node):
+        return ("negative", ("number", -float(node))) if node < 0 else ("number", float(node))
+
+    def part_of(part):
+        found = stands_for.get(part, part) if isinstance(part, Node) else part
+        if found is not node:
+            part = found
+        return (
+            ("name", part.index) if isinstance(part, Node) and part in ends else formula(part, ends, stands_for, raised)
+        )
+
+    if node in raised:
+        return ("call", "max", *map(part_of, node.arguments))
+    return _OPERATIONS[node.operation](
+        *(part_of(part) for part in node.arguments if not _is_nothing(part, node.operation))
+    )
+
+
+def _is_nothing(part, operation):
+    """Whether an argument only keeps a number off zero, as `elementary.apart` does, and changes no digit."""
+    if isinstance(part, Node):
+        return (
+            operation == "+"
+            and part.operation == "*"
+            and any(isinstance(one, float) and one == APART for one in part.arguments)
+        )
+    return operation == "+" and 0.0 < abs(part) < UNSEEN
+
+
+def _sum(left, right=ZERO):
+    terms = tuple(term for term in (*_terms(left), *_terms(right)) if term[1] != ZERO)
+    return _of_terms(terms)
+
+
+def _difference(left, right=None):
+    if right is None:
+        return _negative(left)
+    sign, part = (1, right[1]) if right[0] == "negative" else (-1, right)
+    return _of_terms(tuple(term for term in (*_terms(left), (sign, part)) if term[1] != ZERO))
+
+
+def _of_terms(terms):
+    if len(terms) > 1:
+        return ("sum", *terms)
+    if not terms:
+        return ZERO
+    ((sign, part),) = terms
+    return part if sign > 0 else _negative(part)
+
+
+def _terms(part):
+    if part[0] == "sum":
+        return part[1:]
+    return ((-1, part[1]),) if part[0] == "negative" else ((1, part),)
+
+
+def _negative(part):
+    if part == ZERO:
+        return ZERO
+    return part[1] if part[0] == "negative" else ("negative", part)
+
+
+def _product(left, right):
+    if ZERO in (left, right):
+        return ZERO
+    larger = _larger(left, right)
+    if larger:
+        return larger[0] if len(larger) == 1 else ("call", "max", *larger)
+    if left[0] == "negative" or right[0] == "negative":
+        parts = [part[1] if part[0] == "negative" else part for part in (left, right)]
+        whole = _product(*parts)
+        return whole if left[0] == right[0] else _negative(whole)
+    factors: list[Any] = []
+    for part in (left, right):
+        for factor in part[1:] if part[0] == "product" else (part,):
+            base, count = factor[1:] if factor[0] == "power" else (factor, 1)
+            known = next((place for place, (other, _) in enumerate(factors) if other == base), None)
+            if base == ONE:
+                continue
+            if known is None or base[0] == "number":
+                factors.append((base, count))
+            else:
+                factors[known] = base, factors[known][1] + count
+    made = [base if count == 1 else ("power", base, count) for base, count in factors]
+    return ("product", *made) if len(made) > 1 else made[0] if made else ONE
+
+
+def _quotient(left, right):
+    if left == ZERO:
+        return ZERO
+    if left[0] == "negative":
+        return _negative(_quotient(left[1], right))
+    if right[0] == "negative":
+        return _negative(_quotient(left, right[1]))
+    return ("quotient", left, right)
+
+
+def _call(name, part):
+    if part == ZERO and name in ("sqrt", "abs"):
+        return ZERO
+    if name == "abs" and part[0] == "negative":
+        return _call(name, part[1])
+    return part if name == "abs" and part[:2] == ("call", "abs") else ("call", name, part)
+
+
+def _larger(left, right):
+    """Parts of 0.5 (a + b + |a - b|), the larger of two; None if that is something else."""
+    if left != ("number", 0.5) or right[0] != "sum":
+        return None
+    terms = [part for sign, part in right[1:] if sign > 0]
+    if len(terms) != len(right) - 1:
+        return None
+    if len(terms) == 2 and terms[0] == terms[1]:
+        return terms[:1]
+    matches = len(terms) == 3 and terms[2] == ("call", "abs", ("sum", (1, terms[0]), (-1, terms[1])))
+    return terms[:2] if matches else None
+
+
+_OPERATIONS: dict[str, Callable[..., Any]] = {
+    "+": _sum,
+    "-": _difference,
+    "*": _product,
+    "/": _quotient,
+    "held": lambda part: part,
+    "divisor": lambda part, unit: part,
+    **{name: (lambda part, *unit, name=name: _call(CALLS[name], part)) for name in CALLS},
+}
+
+
+def names_in(tree):
+    """Places of the nodes that a formula names, in order, each once."""
+    found: dict[int, None] = {}
+
+    def look(part):
+        if part[0] == "name":
+            found[part[1]] = None
+        else:
+            for inner in part[1:]:
+                if isinstance(inner, tuple):
+                    look(inner[1] if isinstance(inner[0], int) else inner)
+
+    look(tree)
+    return list(found)

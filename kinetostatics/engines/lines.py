@@ -1,0 +1,292 @@
+"""The lines of a calculation: which recorded numbers are told by a formula of their own, their values, and their units.
+
+A formula ends at what the mechanism names and at what a kernel's `TERMS` explain; at another line of a kernel where it
+is used more than once, or where the formula would grow too long. So every value that stands in a formula is a number
+given or a line before it.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numbers.dimensions import NONE, dimension, spelled
+from .formulas import formula, names_in
+from .naming import Named, Symbol
+from .programs import Program
+from .record import Recording
+from .trace import INPUTS, Node, needed
+
+LONGEST = 12
+"""Named numbers and constants in one formula; with more it is parted."""
+NOISE = 2.0**-51
+"""Size of a value, relative to what it is made of (`_size`), up to which it is rounding."""
+
+
+class Line(NamedTuple):
+    """A number, how it is found, and its value.
+
+    Attributes
+    ----------
+    named : Named
+    tree : tuple or None
+        Its formula, see `formulas`; None of what is given.
+    value : float
+    unit : str
+    is_noise : bool
+        Whether it is zero but for rounding.
+    node : Node
+    """
+
+    named: Named
+    tree: Any
+    value: float
+    unit: str
+    is_noise: bool
+    node: Node
+
+
+def lines(names, outputs, recorder, state):
+    """Lines that lead to some recorded numbers, those given first.
+
+    Parameters
+    ----------
+    names : Names
+    outputs : sequence of Node
+    recorder : Recorder
+    state : Dynamics
+        The scene at one crank angle.
+    """
+    values, sizes = _values(names, outputs, recorder, state)
+    raised = {node for node in values if node.operation == "divisor" and values[node] != values[node.arguments[0]]}
+    ends = _ends(names, outputs, raised)
+    trees: dict[Node, Any] = {}
+    waiting = list(outputs)
+    while waiting:
+        node = waiting.pop()
+        if node not in trees:
+            trees[node] = _tree(names, node, ends, raised)
+            waiting += (names.graph[place] for place in names_in(trees[node])) if trees[node] else ()
+    units, found = _Units(names), []
+    for node in _ordered(names, trees):
+        value = values[node]
+        found.append(Line(names.of[node], trees[node], value, units.of(node), abs(value) <= NOISE * sizes[node], node))
+    return found
+
+
+def _ordered(names, trees):
+    """Nodes of lines as they were named, components of a vector together, each after those that it is computed from."""
+    places = {node: place for place, node in enumerate(names.of)}
+    ranks = {title: rank for rank, title in enumerate(names.titles)}
+    wholes: dict[Any, list[Node]] = {}
+    for node in sorted(trees, key=places.__getitem__):
+        named = names.of[node]
+        whole = (named.title, named.symbol._replace(axis="")) if named.kind == "told" else node
+        wholes.setdefault(whole, []).append(node)
+    whole_of = {node: nodes for nodes in wholes.values() for node in nodes}
+    found: dict[Node, None] = {}
+    begun: set[Node] = set()
+
+    def needs(node):
+        return [names.graph[place] for place in names_in(trees[node])] if trees[node] and node not in names.laws else []
+
+    def tell_whole(node):
+        if node not in begun:
+            begun.update(whole_of[node])
+            for part in whole_of[node]:
+                for need in needs(part):
+                    tell_whole(need)
+        for part in whole_of[node]:
+            tell(part)
+
+    def tell(node):
+        if node not in found:
+            for need in needs(node):
+                tell(need)
+            found[node] = None
+
+    given = [node for node in trees if names.of[node].kind == "given"]
+    for node in sorted(given, key=lambda node: node.index):
+        tell(node)
+    for node in sorted(trees, key=lambda node: (ranks.get(names.of[node].title, -1), places[node])):
+        tell_whole(node)
+    return list(found)
+
+
+def _tree(names, node, ends, raised):
+    law = names.laws.get(node, node)
+    if law is not node and law in ends:
+        return ("name", law.index)
+    return None if law.operation in INPUTS else formula(law, ends, names.stands_for, raised)
+
+
+def _ends(names, outputs, raised):
+    """Nodes at which formulas end."""
+    found = _reached(names, outputs)
+    users = dict.fromkeys(found, 0)
+    for node in found:
+        for part in set(_parts(names, node)):
+            users[part] += 1
+    ends = {node for node in found if node.operation in INPUTS or names.is_told(node)}
+    sizes: dict[Any, int] = {}
+    found = [node for node in found if node not in names.laws]
+    for place, node in enumerate(found):
+        parts = _parts(names, node)
+        while sum(1 if part in ends else sizes[part] for part in parts) > LONGEST:
+            whole = _largest(parts, ends, sizes, names)
+            if whole not in names.of:
+                titles = (names.of[one].title for one in found[place:] if names.is_told(one))
+                names.of[whole] = Named(Symbol("k"), next(titles, names.titles[-1]), kind="line")
+            ends.add(whole)
+        sizes[node] = max(1, sum(1 if part in ends else sizes[part] for part in parts))
+        if node in names.of and _stands_alone(names.of[node].kind, node, sizes[node], users[node]):
+            ends.add(node)
+    return ends
+
+
+def _stands_alone(kind, node, size, users):
+    """Whether a named line of a kernel is told, and not part of the formulas that need it."""
+    if node.operation in ("divisor", "held"):
+        return False
+    return size > 1 or node.operation in ("sqrt", "root") if kind == "term" else users > 1 and size > 2
+
+
+def _largest(parts, ends, sizes, names):
+    """The largest part that is no end yet; of one that has no name, the largest with one inside of it, if large."""
+    whole = max((part for part in parts if part not in ends), key=sizes.__getitem__)
+    inner = whole
+    while inner not in names.of:
+        below = [part for part in _parts(names, inner) if part not in ends]
+        if not below or max(map(sizes.__getitem__, below)) < LONGEST // 3:
+            return whole
+        inner = max(below, key=sizes.__getitem__)
+    return inner
+
+
+def _parts(names, node):
+    """Nodes that a formula of a node may name."""
+    if node in names.laws:
+        law = names.laws[node]
+        return [names.stands_for.get(law, law)] if isinstance(law, Node) else []
+    own = names.stands_for.get(node.arguments[0]) is node if node.operation == "held" else False
+    nodes = (part for part in node.arguments if isinstance(part, Node))
+    return [part if own else names.stands_for.get(part, part) for part in nodes]
+
+
+def _reached(names, outputs):
+    """Nodes that outputs are computed from, in order; not what friction is found by."""
+    found: set[Node] = set()
+    waiting = list(outputs)
+    while waiting:
+        node = waiting.pop()
+        if node not in found:
+            found.add(node)
+            waiting += _parts(names, node)
+    return _after_one_another(names, found)
+
+
+def _after_one_another(names, nodes):
+    """Nodes, each after its parts."""
+    found: dict[Node, None] = {}
+    for last in sorted(nodes, key=lambda node: (node in names.laws, node.index)):
+        waiting = [last]
+        while waiting:
+            node = waiting[-1]
+            missing = [] if node in names.laws else [part for part in _parts(names, node) if part not in found]
+            if missing:
+                waiting += missing
+            else:
+                found[waiting.pop()] = None
+    return list(found)
+
+
+def _values(names, outputs, recorder, state):
+    """Values by node, and the sizes that their rounding is relative to."""
+    every = needed([*outputs, *names.laws.values(), *names.stands_for.values()])
+    recording = Recording((), tuple(every), (), (), tuple(recorder.parameters), tuple(recorder.tables), recorder.graph)
+    _, leaves = state.apart
+    with np.errstate(all="ignore"):
+        rows = Program(recording).run(state, leaves)
+    values = dict(zip(every, rows.reshape(len(every)).tolist(), strict=True))
+    sizes: dict[Any, float] = {}
+    for node in every:
+        sizes[node] = _size(node, values, sizes)
+    return values, sizes
+
+
+def _size(node, values, sizes):
+    """How much the value is, and to first order what the sizes of its arguments make of it."""
+    value, kind = values[node], node.operation
+    if kind in INPUTS:
+        return abs(value)
+    (a, x), (b, y) = [
+        (values[part], sizes[part]) if isinstance(part, Node) else (part, 0.0) for part in (*node.arguments, 0.0)[:2]
+    ]
+    if kind in ("+", "-"):
+        made = x + y
+    elif kind == "*":
+        made = abs(a) * y + abs(b) * x
+    elif kind == "/":
+        made = (x + abs(value) * y) / abs(b) if b else 0.0
+    elif kind in ("sqrt", "root"):
+        made = x / (2.0 * value) if value else 0.0
+    else:
+        made = 0.0 if kind == "sign" else x
+    return abs(value) + made
+
+
+class _Units:
+    """Units of recorded numbers, from those of what is given."""
+
+    def __init__(self, names):
+        self.names, self.known = names, {}
+
+    def of(self, node):
+        """Unit of a recorded number."""
+        named = self.names.of.get(node)
+        if named is not None and named.unit:
+            return named.unit.replace("**", "").replace("*", " ")
+        return spelled(self.powers(node) or NONE)
+
+    def powers(self, node):
+        """Powers of m, kg and s; None of a constant."""
+        if not isinstance(node, Node):
+            return None
+        if node not in self.known:
+            waiting = [node]
+            while waiting:
+                top = waiting[-1]
+                missing = [part for part in _operands(top) if isinstance(part, Node) and part not in self.known]
+                if missing and not self._is_told(top):
+                    waiting += missing
+                else:
+                    self.known[top] = self._powers(top)
+                    waiting.pop()
+        return self.known[node]
+
+    def _is_told(self, node):
+        named = self.names.of.get(node)
+        return named is not None and bool(named.unit)
+
+    def _powers(self, node):
+        if self._is_told(node):
+            return dimension(self.names.of[node].unit)
+        if node.operation in INPUTS:
+            return NONE
+        parts = [self.known[part] if isinstance(part, Node) else None for part in _operands(node)]
+        kind = node.operation
+        if kind in ("sin", "cos", "atan", "sign"):
+            return NONE
+        if kind == "*" and 0.0 in [part for part in node.arguments if not isinstance(part, Node)]:
+            return None
+        if kind in ("*", "/"):
+            sign = 1 if kind == "*" else -1
+            if parts[1] is None:
+                return parts[0]
+            return tuple(a + sign * b for a, b in zip(parts[0] or NONE, parts[1], strict=True))
+        if kind in ("sqrt", "root"):
+            return None if parts[0] is None else tuple(part / 2 for part in parts[0])
+        return next((part for part in parts if part is not None), None)
+
+
+def _operands(node):
+    return () if node.operation in INPUTS else node.arguments

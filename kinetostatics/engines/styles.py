@@ -1,0 +1,192 @@
+"""How formulas are written: as text, LaTeX and MathML."""
+
+from collections.abc import Callable
+from html import escape
+from typing import NamedTuple
+
+from .formulas import CALLS
+from .symbols import Symbol
+
+SUM, NEGATIVE, PRODUCT, POWER, ATOM = range(5)
+"""How tightly parts of a formula hold together."""
+
+
+class Style(NamedTuple):
+    """A way to write: templates of text, LaTeX or MathML."""
+
+    number: Callable[..., str]
+    symbol: Callable[[Symbol], str]
+    plus: str
+    minus: str
+    times: str
+    quotient: str
+    power: str
+    brackets: str
+    calls: dict[str, str]
+    sign: str
+    stands_alone: bool
+    """Whether a quotient needs no brackets, being a fraction with a bar."""
+
+
+def written(tree, style, name):
+    """A formula in a style; ``name(place)`` gives what stands for a named number, a `Symbol` or a float."""
+    return _written(tree, style, name)[0]
+
+
+def _written(tree, style, name):
+    """Text of a formula, and how tightly it holds together."""
+    kind, *parts = tree
+
+    def inner(part, least):
+        text, hold = _written(part, style, name)
+        return text if hold >= least else style.brackets.format(text)
+
+    if kind == "name":
+        found = name(parts[0])
+        if isinstance(found, Symbol):
+            return style.symbol(found), POWER if found.primes else ATOM
+        return style.number(found), _hold_of(found)
+    if kind == "number":
+        return style.number(parts[0], True), _hold_of(parts[0])
+    if kind == "sum":
+        (sign, first), *rest = parts
+        text = style.sign + inner(first, PRODUCT) if sign < 0 else inner(first, NEGATIVE)
+        for sign, part in rest:
+            text += (style.plus if sign > 0 else style.minus) + inner(part, PRODUCT)
+        return text, SUM
+    if kind == "negative":
+        return style.sign + inner(parts[0], PRODUCT), NEGATIVE
+    if kind == "product":
+        later = PRODUCT if style.stands_alone else POWER
+        return style.times.join((inner(parts[0], PRODUCT), *(inner(part, later) for part in parts[1:]))), PRODUCT
+    if kind == "quotient":
+        over, under = (0, 0) if style.stands_alone else (PRODUCT, POWER)
+        return style.quotient.format(inner(parts[0], over), inner(parts[1], under)), PRODUCT
+    if kind == "power":
+        return style.power.format(inner(parts[0], ATOM), parts[1]), POWER
+    return style.calls[parts[0]].format(*(_written(part, style, name)[0] for part in parts[1:])), ATOM
+
+
+def _hold_of(value):
+    return NEGATIVE if value < 0 else PRODUCT if "e" in shown(value) else ATOM
+
+
+def shown(value, exactly=False):
+    """A number to 6 digits, or as short as tells it exactly."""
+    if exactly:
+        return repr(value).removesuffix(".0")
+    return f"{value:.6g}" if value else "0"
+
+
+GREEK = {
+    "alpha": "α",
+    "beta": "β",
+    "gamma": "γ",
+    "eta": "η",
+    "theta": "θ",
+    "kappa": "κ",
+    "lambda": "λ",
+    "mu": "μ",
+    "xi": "ξ",
+    "sigma": "σ",
+    "tau": "τ",
+    "phi": "φ",
+    "omega": "ω",
+}
+
+
+def _latex_number(value, exactly=False):
+    digits, found, power = shown(value, exactly).partition("e")
+    return rf"{digits} \cdot 10^{{{int(power)}}}" if found else digits
+
+
+def _latex_word(word):
+    word = word.replace("_", "~")
+    return word if len(word) == 1 else rf"\mathrm{{{word}}}"
+
+
+def _latex_symbol(symbol):
+    base = f"\\{symbol.base}" if symbol.base in GREEK else _latex_word(symbol.base)
+    below = ",".join(_latex_word(part) for part in _below(symbol))
+    return base + (f"_{{{below}}}" if below else "") + "'" * symbol.primes
+
+
+def _below(symbol):
+    """What stands below the line."""
+    return [part for part in (symbol.axis, symbol.owner, str(symbol.again) if symbol.again > 1 else "") if part]
+
+
+def _mathml_number(value, exactly=False):
+    digits, found, power = shown(value, exactly).replace("-", "−").partition("e")
+    if found:
+        power = int(power.replace("−", "-"))
+        return (
+            f"<mrow><mn>{digits}</mn><mo>·</mo><msup><mn>10</mn><mn>{str(power).replace('-', '−')}</mn></msup></mrow>"
+        )
+    return f"<mn>{digits}</mn>"
+
+
+def _mathml_symbol(symbol):
+    base = f"<mi>{escape(GREEK.get(symbol.base, symbol.base))}</mi>"
+    below = escape(", ".join(_below(symbol)).replace("_", " "))
+    prime = ["", "<mo>′</mo>", "<mo>″</mo>"][symbol.primes]
+    if below and prime:
+        return f"<msubsup>{base}<mtext>{below}</mtext>{prime}</msubsup>"
+    if below:
+        return f"<msub>{base}<mtext>{below}</mtext></msub>"
+    return f"<msup>{base}{prime}</msup>" if prime else base
+
+
+TEXT = Style(
+    shown,
+    lambda symbol: symbol.text,
+    " + ",
+    " - ",
+    "*",
+    "{}/{}",
+    "{}^{}",
+    "({})",
+    {**{name: f"{name}({{}})" for name in CALLS.values()}, "max": "max({}, {})"},
+    "-",
+    False,
+)
+LATEX = Style(
+    _latex_number,
+    _latex_symbol,
+    " + ",
+    " - ",
+    r" \cdot ",
+    r"\frac{{{}}}{{{}}}",
+    "{}^{{{}}}",
+    r"\left({}\right)",
+    {
+        "sqrt": r"\sqrt{{{}}}",
+        "sin": r"\sin\left({}\right)",
+        "cos": r"\cos\left({}\right)",
+        "atan": r"\arctan\left({}\right)",
+        "abs": r"\left|{}\right|",
+        "sign": r"\operatorname{{sign}}\left({}\right)",
+        "max": r"\max\left({}, {}\right)",
+    },
+    "-",
+    True,
+)
+MATHML = Style(
+    _mathml_number,
+    _mathml_symbol,
+    "<mo>+</mo>",
+    "<mo>−</mo>",
+    "<mo>·</mo>",
+    "<mfrac><mrow>{}</mrow><mrow>{}</mrow></mfrac>",
+    "<msup><mrow>{}</mrow><mn>{}</mn></msup>",
+    "<mrow><mo>(</mo>{}<mo>)</mo></mrow>",
+    {
+        **{name: f"<mrow><mi>{name}</mi><mo>(</mo>{{}}<mo>)</mo></mrow>" for name in ("sin", "cos", "sign")},
+        "atan": "<mrow><mi>arctan</mi><mo>(</mo>{}<mo>)</mo></mrow>",
+        "sqrt": "<msqrt><mrow>{}</mrow></msqrt>",
+        "abs": "<mrow><mo>|</mo>{}<mo>|</mo></mrow>",
+        "max": "<mrow><mi>max</mi><mo>(</mo>{}<mo>,</mo>{}<mo>)</mo></mrow>",
+    },
+    "<mo>−</mo>",
+    True,
+)

@@ -1,0 +1,299 @@
+"""The kernels run once on recorded numbers, each result named as the mechanism calls it: what a hand calculation tells.
+
+Nothing is computed here that `Dynamics` does not compute; what is found gets a name and goes on under it.
+"""
+
+from typing import Any
+
+from ..machine.group import FRAME, Resolved
+from ..machine.links import Joint, Wrench, arm, first_at, load, second_at
+from ..machine.loads import value_of
+from ..mechanics.dynamics import Dynamics
+from ..mechanics.friction import Rubbing, driving
+from ..mechanics.friction_laws import size_of
+from ..mechanics.pushes import pushed, settled, title_of
+from ..numbers.lazy import cached_property
+from ..numbers.planar import number, plus, product
+from .naming import AXES, Named, Names, node_of
+from .record import Recorder
+from .symbols import Symbol, keys_of, of_path, symbol_of
+
+GIVEN, WEIGHT = "Given", "Weight"
+ORDERS = ("", "first", "second")
+
+
+def told(state, paths, units):
+    """The scene of a `Dynamics`, recorded with names, and what recorded it.
+
+    Parameters
+    ----------
+    state : Dynamics
+    paths : dict of int to str
+        What each number among its leaves is called, as in case files.
+    units : dict of str to str
+        SI unit by path.
+    """
+    structure, _ = state.apart
+    recorder = Recorder(structure, None)
+    scene, names = recorder.recorded, Names(recorder.graph, _modules(state))
+    names.title = GIVEN
+    for place, node in enumerate(recorder.parameters):
+        path = paths.get(place)
+        symbol = of_path(path) if path else Symbol("c", "", str(place + 1))
+        names.of[node] = Named(symbol, GIVEN, path or "a number of the scene", units.get(path, ""), "given")
+    names.of[recorder.graph[recorder.angle[0].index]] = Named(Symbol("phi"), GIVEN, "crank angle", "rad", "given")
+    heads = [(title_of(item), key) for item, key in zip(state.loads, keys_of(state.loads), strict=True)]
+    rows = {
+        row: (table, *spelled)
+        for table in recorder.tables
+        for row, spelled in zip(table.rows, table.names, strict=True)
+    }
+    for node in [node for node in recorder.graph if node.operation == "table"]:
+        table, name, primes, unit = rows[node.arguments[0]]
+        owner = heads[table.of][1] if isinstance(table.of, int) else table.of
+        words = "read at this crank angle"
+        names.of[node] = Named(Symbol(name, "", owner, primes), GIVEN, words, unit, "given")
+    made = object.__new__(Told)
+    vars(made).update(vars(scene))
+    vars(made).update(names=names, heads=heads, runs=bool(state.crank_speed != 0))
+    return made, recorder
+
+
+def result(made, quantity, found):
+    """Recorded numbers of a quantity, named; numbers that nothing makes are plain ones."""
+    parts = found.read(made)
+    with made.names.under("Result"):
+        symbol, words = symbol_of(quantity), found.label
+        if found.vector:
+            return made.names.vector(tuple(parts), symbol, words, found.unit, turned="always")
+        return (made.names.number(parts, symbol, words, found.unit, turned="always"),)
+
+
+class Told(Dynamics):
+    """A recorded scene that names what it finds; made by `told`."""
+
+    names: Any
+    heads: Any
+    runs: bool
+
+    @cached_property
+    def placement(self):
+        """Joints and links by name, as kinematic coefficients."""
+        names, crank = self.names, self.mechanism.crank
+        with names.under("Crank"):
+            placement = crank.place(self.crank_angle)
+            self._placed(placement, crank)
+        for group in self.mechanism.groups:
+            with names.under(_moving(group)):
+                for slider, guide in group.guides.items():
+                    symbol = Symbol("u", "", f"guide{group.label}")
+                    names.vector(guide.direction, symbol, f"unit vector of the guide of the {slider}", "1")
+                group.place(placement)
+                self._placed(placement, group)
+        for name, link in self.mechanism.links.items():
+            with names.under(f"Mass centre of the {name}"):
+                self._name_centre(name, placement.links[name], link.body)
+        return placement
+
+    def _placed(self, placement, part):
+        """Name joints, links and coordinates along guides of a part; what is kept of it goes on under these names."""
+        names = self.names
+        for name in part.links:
+            link = placement.links[name]
+            turning = Symbol("theta", "", name)
+            placement.links[name] = link._replace(
+                direction=names.vector(link.direction, Symbol("u", "", name), f"unit vector of the {name}", "1"),
+                ratio=names.number(
+                    link.ratio, turning._replace(primes=1), f"angular velocity ratio of the {name}", "1"
+                ),
+                ratio_slope=names.number(
+                    link.ratio_slope, turning._replace(primes=2), f"slope of that ratio of the {name}", "1"
+                ),
+            )
+        for slider in (name for name in part.links if name in placement.travels):
+            words = f"coordinate of the {slider} along its guide"
+            placement.travels[slider] = Joint(
+                *(
+                    names.number(value, Symbol("s", "", slider, order), _derivative(order, words), "m")
+                    for order, value in enumerate(placement.travels[slider])
+                )
+            )
+        for name in part.joints:
+            placement.joints[name] = self._named_joint(placement.joints[name], name)
+        for name, link in placement.links.items():
+            reference = self.mechanism.references[name]
+            if name in part.links and link.joint is not None and reference in placement.joints:
+                placement.links[name] = link._replace(joint=placement.joints[reference])
+
+    def _named_joint(self, joint, name):
+        found = []
+        for order, part in enumerate(joint):
+            words = _derivative(order, f"position of {name}")
+            named = (
+                self.names.number(value, Symbol(axis, "", name, order), words, "m", again=True)
+                for value, axis in zip(part or (), AXES, strict=False)
+            )
+            found.append(tuple(named) or None)
+        return Joint(*found)
+
+    @cached_property
+    def gravity(self):
+        """Acceleration by weight, m/s2; None without."""
+        with self.names.under(WEIGHT):
+            return self.names.vector(super().gravity, Symbol("g"), "acceleration by weight", "m/s2")
+
+    def _mass_loads(self, gravity):
+        links = self.placement.links
+        found = {}
+        what = "inertia" if gravity is None else "inertia and weight"
+        for name, link in self.mechanism.links.items():
+            with self.names.under(f"{what} of the {name}".capitalize()):
+                wrench = load(links[name], link.body, *self.accelerating, gravity)
+                found[name] = self._wrench(wrench, ("P", "K"), name, f"{what} of the {name}")
+        return found
+
+    def _name_centre(self, name, motion, body):
+        """Name the arm of a mass centre, and its kinematic coefficients."""
+        if body.mass is None:
+            return
+        words = f"from {self.mechanism.references[name]} to the mass centre of the {name}"
+        place = arm(motion.direction, body.along, body.across)
+        to_centre = self.names.vector(place, Symbol("r", "", name), words, "m")
+        if to_centre is not None:
+            for order, part in enumerate((first_at(motion, to_centre), second_at(motion, to_centre)), 1):
+                words = _derivative(order, f"position of the mass centre of the {name}")
+                for axis, value in zip(AXES, part or (), strict=False):
+                    self.names.number(value, Symbol(axis, "", f"S_{name}", order), words, "m", turned="everywhere")
+
+    def _wrench(self, wrench, letters, owner, words):
+        force, moment = letters
+        return Wrench(
+            self.names.vector(wrench.force, Symbol(force, "", owner), f"force of {words}", "N", False, "everywhere"),
+            self.names.number(wrench.moment, Symbol(moment, "", owner), f"moment of {words}", "N m"),
+        )
+
+    @cached_property
+    def wrenches(self):
+        """Pairs of a link and a wrench on it, of all loads that act so."""
+        found = []
+        for item, (title, key) in zip(self.loads, self.heads, strict=True):
+            if hasattr(item, "wrenches"):
+                with self.names.under(title):
+                    for link, wrench in settled(item, self).wrenches(self):
+                        if link != FRAME:
+                            words = f"{key.replace('_', ' ')} on the {link}"
+                            found.append((link, self._wrench(wrench, ("L", "K"), f"{key}_{link}", words)))
+        return found
+
+    @cached_property
+    def pushes(self):
+        """Applied force along its guide by slider, N."""
+        pushes: dict[str, Any] = {}
+        for item, (title, key) in zip(self.loads, self.heads, strict=True):
+            if hasattr(item, "push"):
+                with self.names.under(title):
+                    words = f"{key.replace('_', ' ')} along the guide of the {item.on}"
+                    push = self.names.number(pushed(item, self), Symbol("L", "", key), words, "N")
+                    pushes[item.on] = plus(pushes.get(item.on), push)
+        return pushes
+
+    @cached_property
+    def powers(self):
+        """Power of each load divided by the crank speed."""
+        owners = [(name, "") for name in (*self.mass_loads, *(name for name, _ in self.wrenches))]
+        owners += [(name, "s") for name in self.pushes]
+        with self.names.under("Powers"):
+            return [
+                self.names.number(
+                    power, Symbol("W", axis, owner), f"power of what acts on the {owner} over the crank speed", "N m"
+                )
+                for (owner, axis), power in zip(owners, super().powers, strict=True)
+            ]
+
+    @cached_property
+    def rubbing(self):
+        """What resolves each part, with friction or without."""
+        way = driving(self.crank_speed, None if self.runs else self.crank_acceleration)
+        return _Telling(self.mechanism, self.friction, way, self.names)
+
+
+class _Telling(Rubbing):
+    """Resolves parts, and names what acts on their links and what is found."""
+
+    def __init__(self, mechanism, friction, direction, names):
+        super().__init__(mechanism, friction, direction)
+        self.names, self.laws = names, []
+
+    def __call__(self, part, placement, loads, along):
+        names = self.names
+        with names.under(_carrying(part)):
+            loads, along = dict(loads), dict(along)
+            for name in part.links:
+                loads[name] = self._total(loads[name], name)
+                if name in along:
+                    words = f"all that acts on the {name} along its guide"
+                    along[name] = names.number(along[name], Symbol("F", "s", name), words, "N")
+            names.reading, self.laws = not any(name in self.acting for name in part.pairs), []
+            resolved = self._named(super().__call__(part, placement, loads, along), part)
+            names.reading = True
+            for law, amount in self.laws:
+                size = number(product(law.factor, size_of(law.kind, law.watched(resolved))))
+                names.satisfies(node_of(amount), node_of(size))
+        return resolved
+
+    def _total(self, wrench, name):
+        words = f"acts on the {name}, with its inertia and what hangs on it"
+        return Wrench(
+            self.names.vector(wrench.force, Symbol("F", "", name), f"force that {words}", "N"),
+            self.names.number(wrench.moment, Symbol("M", "", name), f"moment that {words}", "N m"),
+        )
+
+    def _amounts(self, system, laws, placement):
+        found = []
+        for law, amount in zip(laws, super()._amounts(system, laws, placement), strict=True):
+            moment = law.kind in ("length", "itself")
+            symbol = Symbol("M" if moment else "F", "", f"friction_{law.name}")
+            words = f"friction {'moment' if moment else 'force'} at {law.name}"
+            found.append(self.names.number(amount, symbol, words, "N m" if moment else "N", again=True))
+            self.laws.append((law, found[-1]))
+        self.names.reading = True
+        return found
+
+    def _named(self, resolved, part):
+        names, outputs = self.names, part.outputs
+        reactions, scalars = dict(resolved.reactions), dict(resolved.scalars)
+        for name, (unit, vector, text, *_) in outputs.items():
+            words = f"{name.replace('_', ' ')}{', ' * bool(text)}{text}"
+            if vector:
+                symbol, words = Symbol("R", "", name), f"reaction {words}"
+                reactions[name] = names.vector(reactions.get(name), symbol, words, unit, True, "within")
+            else:
+                scalars[name] = names.number(scalars.get(name), symbol_of(name), words, unit, True, "within")
+        return Resolved(reactions, scalars, resolved.demands)
+
+
+def _modules(state):
+    """Modules that groups, cams, loads and functions of the user's come from."""
+    parts = [*state.mechanism.groups, *(getattr(group, "cam", None) for group in state.mechanism.groups), *state.loads]
+    values = [value for value in map(value_of, state.loads) if callable(value)]
+    return {type(part).__module__ for part in parts} | {getattr(value, "__module__", "") for value in values}
+
+
+def _derivative(order, words):
+    return f"{ORDERS[order]} derivative by phi of the {words}" if order else words
+
+
+def _listed(names):
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _moving(group):
+    joints = f"joint {_listed(group.joints)}" if group.joints else ""
+    return (
+        f"Motion of {_listed(list(group.links))}{', ' * bool(joints)}{joints}" if group.links else f"Motion of {joints}"
+    )
+
+
+def _carrying(part):
+    return f"Forces on {_listed(list(part.links))}" if part.links else "Forces"

@@ -1,0 +1,123 @@
+"""Makes the hand calculation behind a quantity of a solution.
+
+The steps are the kernels' own arithmetic, recorded with names (engines `told`, `lines`): none is written down twice.
+"""
+
+import warnings
+
+import numpy as np
+
+from ..engines import programs
+from ..engines.lines import lines
+from ..engines.naming import node_of
+from ..engines.styles import LATEX, MATHML, TEXT, written
+from ..engines.told import result, told
+from ..errors import HintWarning, ParameterError, QuantityError
+from ..mechanics import quantities
+from ..numbers import checks, paths
+from ..numbers.kinds import Numbered
+from ..numbers.leaves import mapped
+from .angles import crank_angles
+from .drive_and_loads import over_the_angles
+from .explanation import Explanation, Step
+from .scene import Scene
+
+
+def explain(solution, quantity, angle, design=None):
+    """Hand calculation of a quantity of a solution; see `Solution.explain`."""
+    found = _quantity(solution, quantity)
+    state = _alone(solution, angle, design)
+    scene = Scene(state.mechanism, state.crank_speed, state.crank_acceleration, state.loads, state.friction)
+    made, recorder = told(state.dynamics, _numbered(scene, state.dynamics), scene.units)
+    nodes = [part for part in map(node_of, result(made, quantity, found)) if part is not None]
+    steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics)) if nodes else {}
+    results, angle = tuple(steps[node] for node in nodes), float(state.crank_angle)
+    value = quantities.components(state, quantity)
+    value = np.array(value) if found.vector else float(value[0])
+    return Explanation(
+        state.mechanism.name, quantity, found.label, angle, tuple(steps.values()), results, value, found.unit
+    )
+
+
+def _quantity(solution, name):
+    """The quantity of that name, if it is one of mechanics."""
+    known = {key: found for key, found in quantities.of_scene(solution).items() if found.kind != "check"}
+    if not isinstance(name, str) or name not in known:
+        raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", name, tuple(known)))
+    return known[name]
+
+
+def _steps(names, found):
+    """Steps by node, in order."""
+    symbols = {node.index: symbol for node, symbol in names.symbols([line.node for line in found]).items()}
+    values = {line.node.index: 0.0 if line.is_noise else line.value for line in found}
+    steps = {}
+    for line in found:
+        symbol, value = symbols[line.node.index], values[line.node.index]
+        ways = []
+        for style in (TEXT, LATEX, MATHML):
+            formula = written(line.tree, style, symbols.__getitem__) if line.tree else ""
+            numbers = written(line.tree, style, values.__getitem__) if line.tree else ""
+            ways.append((style.symbol(symbol), formula, numbers, style.number(value)))
+        (spelled, formula, numbers, text), *rest = ways
+        named = line.named
+        parts = named.title, named.words, spelled, formula, numbers, line.value, line.unit, text
+        steps[line.node] = Step(*parts, *rest)
+    return steps
+
+
+def _numbered(scene, state):
+    """Path of each number among the leaves of a scene."""
+    numbered = programs.numbered(state)
+    found = ((path, place.value(numbered)) for path, place in paths.places(scene).items())
+    return {int(number): path for path, number in found if isinstance(number, Numbered)}
+
+
+def _alone(solution, angle, design):
+    """The solution of one design at one crank angle, checked as `solve` does."""
+    asked = crank_angles(angle, "explain")
+    checks.require("explain", None if asked.size == 1 else f"one crank angle is told at a time, got {asked.size}")
+    asked = float(asked.reshape(()))
+    batch = solution.shape[:-1]
+    place = _design(batch, design)
+    index = _index(solution, asked, place)
+
+    def number(leaf):
+        if not np.ndim(leaf):
+            return float(leaf)
+        if np.shape(leaf)[-1] == 1:
+            return float(np.broadcast_to(leaf, (*batch, 1))[place][0])
+        fits = index is not None and np.shape(leaf)[-1] == solution.shape[-1]
+        return float(np.broadcast_to(leaf, solution.shape)[place][index]) if fits else leaf
+
+    speed, acceleration = map(number, (solution.crank_speed, solution.crank_acceleration))
+    mechanism, loads = (mapped(part, number) for part in (solution.mechanism, solution.loads))
+    scene = Scene(mechanism, speed, acceleration, loads, mapped(solution.friction, number))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", HintWarning)  # told when it was solved
+        return scene.solve(asked, engine="numpy")
+
+
+def _design(batch, design):
+    """Place of the design that is meant."""
+    if design is None:
+        if np.prod(batch, dtype=int) == 1:
+            return (0,) * len(batch)
+        raise ParameterError(f"explain: one design is told at a time, of shape {batch}; say which, as design=0")
+    place = design if isinstance(design, tuple) else (design,)
+    fits = len(place) == len(batch) and all(
+        isinstance(one, int | np.integer) and -count <= one < count for one, count in zip(place, batch, strict=True)
+    )
+    checks.require("explain", None if fits else f"there is no design {design!r} among those of shape {batch}")
+    return place
+
+
+def _index(solution, angle, place):
+    """Which of the crank angles given is meant; None where nothing has a value for each."""
+    if not over_the_angles(solution):
+        return None
+    known = np.broadcast_to(solution.crank_angle, solution.shape)[place]
+    fits = np.flatnonzero(known == angle)
+    if not fits.size:
+        solution.at(angle)  # says what is unknown between the crank angles
+    return int(fits[0])

@@ -1,0 +1,169 @@
+"""The hand calculation behind a quantity at one crank angle, step by step: formula, numbers, result.
+
+Made by `explaining` from the kernels' own arithmetic.
+"""
+
+from dataclasses import dataclass
+from math import degrees, hypot
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..engines.styles import shown
+from ..numbers.lazy import cached_property
+from . import explanation_pages
+
+
+class Step(NamedTuple):
+    """A step of a hand calculation.
+
+    Attributes
+    ----------
+    title : str
+        What it belongs to: a link, a load, the forces on a part.
+    words : str
+        What the number is; what is given is called by its path.
+    symbol : str
+    formula, numbers : str
+        In symbols of steps before, and with their values; "" of what is given.
+    value : float
+    unit : str
+    shown : str
+        The value as it is shown: to 6 digits, 0 where it is rounding.
+    latex, mathml : tuple of str
+        Symbol, formula, numbers and value with its unit.
+    """
+
+    title: str
+    words: str
+    symbol: str
+    formula: str
+    numbers: str
+    value: float
+    unit: str
+    shown: str
+    latex: tuple[str, ...]
+    mathml: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """A hand calculation; made by `Solution.explain`, shown by ``print``, as a page in notebooks.
+
+    Attributes
+    ----------
+    mechanism, quantity, label : str
+        Names, of the quantity also in words.
+    angle : float
+        Crank angle, rad.
+    steps : tuple of Step
+    results : tuple of Step
+        Those of them that give the quantity, of a vector its components.
+    value : float or array (2,)
+        The quantity as the solution gives it.
+    unit : str
+    """
+
+    mechanism: str
+    quantity: str
+    label: str
+    angle: float
+    steps: tuple[Step, ...]
+    results: tuple[Step, ...]
+    value: Any
+    unit: str
+
+    @property
+    def title(self):
+        """Mechanism, quantity and crank angle."""
+        return (
+            f"{self.mechanism}: {self.label} at crank angle {shown(self.angle)} rad = {shown(degrees(self.angle))} deg"
+        )
+
+    @property
+    def conclusion(self):
+        """The quantity and its value, of a vector the magnitude too."""
+        values = [step.shown for step in self.results] or [shown(float(part)) for part in np.ravel(self.value)]
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        if np.ndim(self.value):
+            size = shown(hypot(*self.value))
+            return f"{self.quantity} = ({', '.join(values)}){unit}, magnitude {size}{unit}"
+        angle = f" = {shown(degrees(self.value))} deg" if self.unit == "rad" else ""
+        return f"{self.quantity} = {values[-1]}{unit}{angle}"
+
+    @cached_property
+    def text(self):
+        """The calculation in lines of 80 characters."""
+        return explanation_pages.text(self)
+
+    @cached_property
+    def latex(self):
+        """The calculation for a LaTeX document with amsmath."""
+        return explanation_pages.latex(self)
+
+    @cached_property
+    def html(self):
+        """The calculation as a piece of HTML, formulas as MathML; it asks for nothing from elsewhere."""
+        return explanation_pages.html(self)
+
+    @property
+    def page(self):
+        """The same as a whole page of HTML."""
+        return explanation_pages.page(self)
+
+    def __str__(self):
+        return self.text
+
+    def __repr__(self):
+        return f"<Explanation: {self.title}, {len(self.steps)} steps; print it>"
+
+    def _repr_html_(self):
+        return self.html
+
+    def _repr_latex_(self):
+        return self.latex
+
+
+class Explained:
+    """What a solution tells of how it comes to its numbers."""
+
+    def explain(self, quantity, angle, design=None):
+        """The hand calculation of a quantity at one crank angle: formula, numbers with units, result, link by link.
+
+        The steps are the kernels' own arithmetic. Friction, which is found by iteration, is told by the law that it
+        satisfies.
+
+        Parameters
+        ----------
+        quantity : str
+            Any that the solution has: "balancing_torque", a joint (its reaction), "slider_acceleration" ...
+        angle : float
+            Crank angle, rad; it need not be one of those solved.
+        design : int or tuple of int, optional
+            Which one of several designs.
+
+        Returns
+        -------
+        Explanation
+            ``print`` it, or show it in a notebook; `.text`, `.latex`, `.html`, and `.steps` as data.
+
+        Raises
+        ------
+        QuantityError
+            There is no such quantity; the message lists those there are.
+        AssemblyError
+            The mechanism does not close at that crank angle.
+        ParameterError
+            Several designs and none said, several crank angles, or one between those of a table.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+        >>> told = ks.solve(pump, 0.0, crank_speed=100.0).explain("slider_velocity", 0.7)
+        >>> print(told.steps[-1].formula, "=", told.steps[-1].numbers, "=", told.steps[-1].shown, told.steps[-1].unit)
+        omega*s_slider' = 100*(-0.0384514) = -3.84514 m/s
+        """
+        from .explaining import explain
+
+        return explain(self, quantity, angle, design)

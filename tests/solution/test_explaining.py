@@ -1,0 +1,223 @@
+"""Hand calculations: every step follows from its own formula and steps before, and the last is the solution's value."""
+
+import math
+import sys
+import warnings
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.casefile.reading import shipped_cases
+from kinetostatics.mechanics.quantities import components, of_scene
+from kinetostatics.solution.drive_and_loads import over_the_angles
+from tests.support.chains import chain
+from tests.support.every import every
+from tests.support.followers import KINDS as FOLLOWERS
+from tests.support.followers import scene as with_follower
+from tests.support.retold import largest_error
+from tests.support.rubbing_machines import KINDS as RUBBING
+from tests.support.rubbing_machines import Drawn
+from tests.support.scenes import ANGLES, FORCES, OWN, SCENES, SPEED
+from tests.support.scenes import solve as solved
+
+STEP, CHAIN, VALUE = 1e-15, 1e-14, 1e-13
+LOADED = ks.Scene(
+    ks.crank_slider(0.05, 0.2, coupler=ks.Link(0.5, (0.08, 0.01), 0.01), slider=ks.Link(1.0)), 100.0, loads=ks.Gravity()
+)
+CHANGING = {
+    "antiparallelogram": ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="crossed", rocker=ks.Link(1.0)),
+    "parallelogram": ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="open", coupler=ks.Link(1.0, 0.2)),
+    "kite": ks.four_bar(0.1, 0.1, 0.4, rocker_pivot=(0.4, 0.0), assembly="open", rocker=ks.Link(1.0, 0.1)),
+    "one change point": ks.four_bar(0.1, 0.3, 0.25, rocker_pivot=(0.45, 0.0), assembly="open", rocker=ks.Link(1.0)),
+    "slider across": ks.crank_slider(0.1, 0.1, assembly="open", slider=ks.Link(1.0)),
+    "lever": ks.slotted_lever(0.2, pivot=(0.0, -0.2), assembly="open", lever=ks.Link(1.0, 0.1, 0.01)),
+}
+
+
+def ask(solution, quantity, angle, design=None):
+    """The calculation, looked at in every way."""
+    told = solution.explain(quantity, angle, design)
+    if not over_the_angles(solution):
+        place = () if design is None else (design, 0)
+        found = [np.asarray(part)[place] for part in components(solution.at(angle), quantity)]
+        np.testing.assert_allclose(np.ravel(told.value), found, rtol=VALUE, atol=VALUE * max(map(abs, found)))
+    if told.results:
+        np.testing.assert_array_equal([step.value for step in told.results], np.ravel(told.value))
+    assert largest_error(told) < STEP
+    assert largest_error(told, chained=True) < CHAIN
+    assert max(map(len, told.text.splitlines())) <= 80
+    return told
+
+
+def some(solution, seed, count=2):
+    """The torque, and a few other quantities."""
+    names = [name for name, found in of_scene(solution).items() if found.kind != "check" and name != "balancing_torque"]
+    return ["balancing_torque", *np.random.default_rng(seed).choice(names, count, replace=False).tolist()]
+
+
+@every("name", shipped_cases())
+def test_shipped_cases(name):
+    case = ks.load_case(name)
+    for seed, variant in enumerate({list(case.variants)[place] for place in (0, -1)}):
+        solution = case.variant(variant).scene.solve(2.3)
+        for quantity in some(solution, seed, 1):
+            ask(solution, quantity, 2.3)
+
+
+@every("seed", range(3))
+def test_random_chains_of_every_group(seed):
+    scene, angles = chain(seed)
+    solution = scene.solve(angles)
+    for quantity in some(solution, seed, 1):
+        ask(solution, quantity, float(angles[1]))
+
+
+@every("kind", FOLLOWERS)
+def test_followers(kind):
+    ask(with_follower(FOLLOWERS[kind]()).solve(3), "O", 0.7)
+
+
+@every("kind", RUBBING)
+def test_friction_is_told_by_the_law_that_it_satisfies(kind):
+    told = ask(Drawn(kind, 1).scene.solve(0.3), "balancing_torque", 0.3)
+    assert any("found together with the reactions" in step.words for step in told.steps)
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("name", CHANGING)
+def test_branches_that_pass_change_points(name):
+    solution = ks.solve(CHANGING[name], 0.7, crank_speed=9.0, loads=ks.Gravity())
+    for quantity in ("balancing_torque", "O"):
+        ask(solution, quantity, 0.7)
+
+
+@every("name", ["plain, everything", "circle cam, everything", "six-bar"])
+def test_crank_acceleration_inclined_guides_and_every_mass(name):
+    for quantity in ("balancing_torque", "shaking_moment", "kinetic_energy"):
+        ask(solved(SCENES[name], 1.1), quantity, 1.1)
+
+
+LOADS = {
+    "force along a link": ks.Force(30.0, at=("coupler", 0.1, 0.02), direction=0.4, along="coupler"),
+    "point force": ks.PointForce(30.0, between=("B", (0.0, 0.5))),
+    "point spring": ks.PointSpring(1e3, 0.1, between=("A", (0.0, 0.5))),
+    "spring of length 0": ks.PointSpring(1e3, between=("A", (0.0, 0.5))),
+    "point damper": ks.PointDamper(20.0, between=("B", (0.3, 0.5))),
+    "torque": ks.Torque(5.0, on="coupler", against="crank"),
+    "torsion spring": ks.TorsionSpring(5.0, 0.1, on="coupler", moment=0.3),
+    "torsion damper": ks.TorsionDamper(0.3, on="coupler", against="crank"),
+    "cubic spring": ks.Spring(1e3, 0.2, cubic=1e5),
+    "table over the angle": ks.ProcessForce(ks.Table([0.0, 2.0, 4.0], [1.0, 5.0, 2.0])),
+    "table over travel": ks.ProcessForce(ks.Table([0.1, 0.2, 0.3], [9.0, 5.0, 7.0], over="travel")),
+}
+
+
+@every("name", LOADS)
+def test_every_load(name):
+    scene = ks.Scene(LOADED.mechanism, 40.0, 30.0, (ks.Gravity(), LOADS[name]))
+    told = ask(scene.solve(0.7), "balancing_torque", 0.7)
+    assert len({step.title for step in told.steps}) > 5
+
+
+@every("name", OWN)
+def test_groups_and_cams_of_the_users_own_need_no_more_than_the_protocol(name):
+    told = ask(solved(OWN[name][0], 0.7), "balancing_torque", 0.7)
+    assert told.steps
+
+
+@every("name", ["function that can be recorded", "function of plain numbers"])
+def test_functions_of_the_users_own(name):
+    solution = ks.solve(LOADED.mechanism, 0.7, crank_speed=SPEED, loads=ks.ProcessForce(FORCES[name][0]))
+    ask(solution, "balancing_torque", 0.7)
+
+
+def test_an_array_over_the_crank_angles_is_read_at_one_of_them_and_unknown_between():
+    solution = ks.solve(LOADED.mechanism, ANGLES, crank_speed=SPEED, loads=ks.ProcessForce(1e3 * np.sin(ANGLES)))
+    told = ask(solution, "balancing_torque", float(ANGLES[40]))
+    assert told.value == pytest.approx(solution.balancing_torque[40], rel=VALUE)
+    with pytest.raises(ks.ParameterError, match="ProcessForce is a table over the crank angles given, unknown between"):
+        solution.explain("balancing_torque", 0.7)
+
+
+def test_a_machine_at_its_true_speed():
+    motor = ks.drive.Motor.kloss(2000.0, 150.0, synchronous_speed=157.0, overload=2.5, transmission=1.5)
+    run = ks.drive.steady(ks.Scene(LOADED.mechanism, 100.0, loads=ks.Gravity()), motor, flywheel=0.5).solution
+    told = ask(run, "balancing_torque", float(run.crank_angle[7]))
+    assert told.value == pytest.approx(run.balancing_torque[7], rel=1e-12)
+
+
+def test_one_of_several_designs():
+    sizes = np.array([[0.05], [0.06]])
+    mechanism = ks.crank_slider(sizes, 0.2, slider=ks.Link(2.0 * sizes), guide_angle=0.1)
+    solution = ks.solve(mechanism, [0.1, 0.2], crank_speed=50.0, loads=ks.ProcessForce(1e3 * sizes))
+    told = ask(solution, "balancing_torque", 0.7, design=1)
+    assert next(step.value for step in told.steps if step.words == "crank_length") == 0.06
+    with pytest.raises(
+        ks.ParameterError, match=r"one design is told at a time, of shape \(2,\); say which, as design=0"
+    ):
+        solution.explain("balancing_torque", 0.7)
+    with pytest.raises(ks.ParameterError, match=r"there is no design 2 among those of shape \(2,\)"):
+        solution.explain("balancing_torque", 0.7, design=2)
+
+
+@every(
+    "asked, words",
+    [
+        (("torque", 0.7), "quantity is 'torque', allowed: 'balancing_torque'"),
+        ((None, 0.7), "quantity is None"),
+        ((["O"], 0.7), "quantity is"),
+        (("friction_residual", 0.7), "quantity is 'friction_residual'"),
+        (("O", [0.1, 0.2]), "one crank angle is told at a time, got 2"),
+        (("O", math.nan), "finite"),
+        (("O", "0.7"), "crank_angle"),
+    ],
+)
+def test_what_cannot_be_told_is_one_error_of_the_library(asked, words):
+    with pytest.raises(ks.KinetostaticsError) as error:
+        LOADED.solve(0.0).explain(*asked)
+    assert words in str(error.value)
+
+
+def test_a_gap_is_an_assembly_error_with_its_numbers():
+    rocking = ks.four_bar(0.3, 0.4, 0.3, rocker_pivot=(0.5, 0.0), rocker=ks.Link(1.0))
+    solution = ks.solve(rocking, [0.5, 3.0], crank_speed=1.0, on_gap="nan")
+    with pytest.raises(ks.AssemblyError, match="the distance from A to O2"):
+        solution.explain("balancing_torque", 3.0)
+
+
+def test_hints_are_not_told_again():
+    odd = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0, 30.0))
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        solution = ks.solve(odd, 0.7, crank_speed=1.0)
+        count = len(told)
+        solution.explain("balancing_torque", 0.7)
+    assert count
+    assert len(told) == count
+
+
+def test_a_profiler_that_runs_goes_on_and_kernels_lines_have_no_names_then():
+    solution, calls = LOADED.solve(0.0), []
+
+    def profiler(frame, event, value):
+        calls.append(event)
+
+    sys.setprofile(profiler)
+    try:
+        told = solution.explain("balancing_torque", 0.7)
+        assert sys.getprofile() is profiler
+    finally:
+        sys.setprofile(None)
+    assert calls
+    assert largest_error(told) < STEP
+    assert told.value == solution.explain("balancing_torque", 0.7).value
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning", "ignore::kinetostatics.HintWarning")
+@every("angle", [math.pi / 2, math.pi / 2 - 1e-9])
+def test_at_a_limit_position_the_limit_of_the_divisor_is_told(angle):
+    solution = ks.solve(ks.crank_slider(0.1, 0.1, slider=ks.Link(1.0)), angle, crank_speed=9.0)
+    told = ask(solution, "balancing_torque", angle)
+    assert any("/max(w, " in step.formula for step in told.steps)
+    assert next(step.shown for step in told.steps if step.symbol == "theta_coupler''") != "0"
