@@ -94,6 +94,7 @@ if TYPE_CHECKING:
     from .sweeps.sweeps import sweep
     from .sweeps.tolerance import tolerances
     from .views import plots
+    from .views.report.making import report
 
 __version__ = "0.1.0"
 
@@ -159,6 +160,7 @@ __all__ = [
     "plots",
     "precision",
     "principal_points",
+    "report",
     "scotch_yoke",
     "slotted_lever",
     "solve",
@@ -216,6 +218,7 @@ _WHERE = {
     "studies.needs": ["needs"],
     "casefile.case": ["load_case"],
     "views": ["plots"],
+    "views.report.making": ["report"],
 }
 """Names by where they are: loaded, with the libraries they need, when first used."""
 
