@@ -68,6 +68,7 @@ def _found(subject, progress):
         "reactions": list(dict.fromkeys(name for item in moving["drawings"] for name in item["arrows"])),
         "colours": figures.COLOURS,
         "dashes": figures.STROKES,
+        "together": _together(subject),
         "wide": box[2] - box[0] > WIDE * (box[3] - box[1]),
         "note": "" if subject.case is None else subject.case.published.note,
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
@@ -78,6 +79,26 @@ def _found(subject, progress):
         "library": Markup(figures.script()),
         "speeds": [_speed(machine) for machine in subject.machines.values()],
     }
+
+
+def _together(subject):
+    """Sentence about machines whose torque is the same, so that their curves lie on one another; "" without any."""
+    groups: list[list] = []
+    for machine in subject.machines.values():
+        group = next((group for group in groups if _same(group[0], machine)), None)
+        if group is None:
+            groups.append([machine])
+        else:
+            group.append(machine)
+    same = [" and ".join(machine.name for machine in group) for group in groups if len(group) > 1]
+    return f"Curves lie on one another where machines take the same torque: {'; '.join(same)}." if same else ""
+
+
+def _same(first, second):
+    torques = first.solution.balancing_torque, second.solution.balancing_torque
+    if torques[0].shape != torques[1].shape:
+        return False
+    return bool(np.nanmax(np.abs(torques[0] - torques[1])) < 1e-9 * np.nanmax(np.abs(torques[0]), initial=1e-300))
 
 
 def _turning(subject):

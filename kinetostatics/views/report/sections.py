@@ -6,7 +6,7 @@ from ...errors import DriveError, NotGivenError
 from ...mechanics.quantities import label_of, of_scene
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
-from .tables import Table, of_frame, ratio, with_published
+from .tables import Table, digits_of, of_frame, times, with_published
 from .words import degrees, number, pretty
 
 FIGURES = 15.95
@@ -25,15 +25,15 @@ def glance(subject):
         peak = _largest(frame, "balancing torque")
         joint = "O" if "O" in solution.reactions else solution.reactions[-1]
         reaction = _largest(frame, label_of(solution, joint))
-        gain = ratio(base / mean) if mean > 1e-12 * base else "∞"
-        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, number(peak, 5)]
+        gain = "" if not rows else times(base / mean) if mean > 1e-12 * base else "∞"
+        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, number(abs(peak), 5)]
         lost = number(solution.losses.total, 5) if lose(solution) else ""
         rows.append([*cells, number(reaction, 5), lost, number(solution.power_residual, 2)])
-    heads = ["machine", "kind", "mean |torque| [N·m]", "mean, times less", "largest |torque| [N·m]"]
+    heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "largest |torque| [N·m]"]
     heads += ["largest reaction O [N]", "power lost [W]", "power balance"]
     note = (
-        f"Torque: what the drive must give on the crank, over one period. Times less: the mean of {subject.reference.name} "
-        "over that of the machine. Power balance: difference of the torques by equilibrium and by powers, over the "
+        f"Torque: what the drive must give on the crank, over one period. Ratio of means: that of {subject.reference.name} "
+        "over that of the machine; above 1 the machine takes less. Power balance: difference of the torques by equilibrium and by powers, over the "
         "largest power that flows."
     )
     return _without_empty(Table("", heads, rows, 2, note))
@@ -52,12 +52,8 @@ def _without_empty(table):
 
 
 def comparisons(subject):
-    """Dynamic coefficients of each machine against the reference, with published figures where a case has them."""
-    tables = []
-    for machine in subject.others:
-        frame = subject.comparison(machine)
-        note = f"Ratios are {subject.reference.name} over {machine.name}: above 1, {machine.name} is the better."
-        tables.append(_without_empty(of_frame(frame, f"{subject.reference.name} and {machine.name}", note)))
+    """Dynamic coefficients of each machine against the reference, and what a case tells besides; published figures."""
+    tables = [_coefficients(subject)] if subject.others else []
     case = subject.case
     if case is not None and set(case.variants) == set(subject.machines):
         for caption, frame, published in (
@@ -68,6 +64,32 @@ def comparisons(subject):
                 note = "Published figures in brackets." if published else ""
                 tables.append(_without_empty(with_published(frame, published, case.path, caption, note)))
     return tables
+
+
+def _coefficients(subject):
+    """One table of all machines: values, with what the reference has over them below."""
+    name = subject.reference.name
+    frames = {machine.name: subject.comparison(machine) for machine in subject.others}
+    rows = []
+    for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index):
+        known = [frame.loc[quantity] for frame in frames.values() if quantity in frame.index]
+        cells = [
+            _beside(frame.loc[quantity, other], frame.loc[quantity, "ratio"]) if quantity in frame.index else ""
+            for other, frame in frames.items()
+        ]
+        digits = digits_of(quantity)
+        first = next((number(row[name], digits) for row in known), "")
+        published = next((row["published"] for row in known if row.get("published")), "")
+        rows.append([quantity, pretty(known[0]["unit"]), first, *cells, published])
+    note = f"Below each value how many times larger that of {name} is: above 1, the machine has less than {name}."
+    return _without_empty(Table("", ["", "unit", name, *frames, "published"], rows, 2, note))
+
+
+def _beside(value, ratio):
+    """A value and its ratio; what is nothing beside the reference is 0."""
+    if np.isinf(ratio):
+        return "0"
+    return number(value, 2) if np.isnan(ratio) and abs(value) < 1e-12 else (number(value), times(ratio))
 
 
 def extremes(subject):

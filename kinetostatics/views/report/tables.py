@@ -1,6 +1,7 @@
 """Tables of a report: frames as text, units readable, published figures beside ours, bars for shares."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -20,19 +21,21 @@ class Table:
     ----------
     caption : str
     columns : list of str
-    rows : list of list of str
+    rows : list of list of str or (str, str)
+        A pair is a text with another below it, smaller.
     words : int
         Columns from the left that hold words, not numbers.
     note : str
+    code : bool
+        Whether the first column holds names as in files.
     """
 
     caption: str
     columns: list[str]
-    rows: list[list[str]]
+    rows: list[list[Any]]
     words: int = 1
     note: str = ""
-    code: bool = field(default=False)
-    """Whether the first column holds names as in files."""
+    code: bool = False
 
 
 def of_frame(frame, caption, note=""):
@@ -40,7 +43,7 @@ def of_frame(frame, caption, note=""):
     columns = [str(name) for name in frame.columns]
     rows = []
     for name, values in zip(frame.index, frame.itertuples(index=False), strict=True):
-        digits = [DIGITS_OF.get(str(name), DIGITS_OF.get(column, DIGITS)) for column in columns]
+        digits = [digits_of(str(name), column) for column in columns]
         cells = [
             pretty(value) if column == "unit" else number(value, most)
             for column, value, most in zip(columns, values, digits, strict=True)
@@ -76,8 +79,11 @@ def require_rows(frame, published, path):
         raise CaseError(path, [problem for problem in problems if problem])
 
 
-def ratio(value):
-    """How many times, and which way is better."""
-    if not np.isfinite(value):
-        return "" if np.isnan(value) else number(value)
-    return f"{number(value, 4)} ×"
+def digits_of(row, column=""):
+    """Digits in which a number is told."""
+    return DIGITS_OF.get(row, DIGITS_OF.get(column, DIGITS))
+
+
+def times(ratio):
+    """How many times, in words; "" for NaN."""
+    return "" if np.isnan(ratio) else f"{number(ratio, 4)} ×"

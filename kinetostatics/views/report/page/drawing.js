@@ -31,6 +31,7 @@ class Drawing {
       shapes: stroke.shapes && unpacked(stroke.shapes, Float32Array),
     }));
     this.hidden = new Set();
+    this.longer = 1;
     this.build();
   }
 
@@ -97,7 +98,7 @@ class Drawing {
 
   // A force of a round size as long as its arrow.
   rule(width, height) {
-    const { scale, force, forceUnit } = this.data;
+    const { force, forceUnit } = this.data, scale = this.longer * this.data.scale;
     if (!force) return;
     const most = 0.28 * width / (scale * this.scale) * forceUnit.factor;
     const power = 10 ** Math.floor(Math.log10(most));
@@ -149,7 +150,7 @@ class Drawing {
   point(name, [x, y], row) {
     const { group, path, text } = this.arrows[name];
     const [forceX, forceY] = this.forces(name, this.row, row);
-    let [alongX, alongY] = [this.data.scale * this.scale * forceX, -this.data.scale * this.scale * forceY];
+    let [alongX, alongY] = [forceX, -forceY].map((part) => this.longer * this.data.scale * this.scale * part);
     let length = Math.hypot(alongX, alongY);
     const longest = this.data.longest * this.scale;
     if (length > longest) { [alongX, alongY] = [alongX / length * longest, alongY / length * longest]; length = longest; }

@@ -101,6 +101,10 @@ window.report = (() => {
       drawing.show(index);
     });
   }));
+  byId("longer").addEventListener("change", (event) => drawings.forEach((drawing) => {
+    drawing.longer = Number(event.target.value);
+    drawing.build();
+  }));
   new ResizeObserver(() => drawings.forEach((drawing) => drawing.build())).observe(document.querySelector(".panels"));
   choose(data.start);
   document.documentElement.dataset.ready = "yes";
