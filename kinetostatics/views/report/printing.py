@@ -45,7 +45,7 @@ def print_page(path, pdf):
     with tempfile.TemporaryDirectory(prefix="kinetostatics") as folder:
         made = Path(folder) / "page.pdf"
         command = [
-            *(found, "--headless", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"),
+            *(found, "--headless", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", "--window-size=1010,1400"),
             *(f"--user-data-dir={folder}/profile", f"--virtual-time-budget={DRAWING}", "--no-pdf-header-footer"),
             *(["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []),
             *(f"--print-to-pdf={made}", Path(path).resolve().as_uri()),

@@ -7,7 +7,7 @@ from ...mechanics.quantities import label_of, of_scene
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
 from .tables import Table, digits_of, of_frame, times, with_published
-from .words import degrees, number, pretty
+from .words import angle, number, pretty
 
 FIGURES = 15.95
 """Digits of a double number."""
@@ -103,7 +103,8 @@ def _of_extremes(machine):
     for label, unit, low, low_at, high, high_at in machine.extremes.itertuples():
         digits, told = _digits(machine.solution, known[label])
         smallest, largest = (number(value, digits) for value in (low, high))
-        rows.append([label, pretty(unit), smallest, degrees(low_at), largest, degrees(high_at), told])
+        told = told if low or high else ""
+        rows.append([label, pretty(unit), smallest, angle(low_at), largest, angle(high_at), told])
     heads = ["", "unit", "smallest", "at [°]", "largest", "at [°]", "digits"]
     return Table(machine.name, heads, rows, 2)
 
@@ -139,7 +140,7 @@ def _certainty(solution):
     worst = int(np.nanargmax(condition))
     lost = condition[worst]
     found["condition: lengths' relative errors are magnified up to"] = (
-        f"{number(lost, 3)} at {degrees(np.degrees(solution.crank_angle[worst]))}°"
+        f"{number(lost, 3)} at {number(np.degrees(solution.crank_angle[worst]))}°"
     )
     found["condition at the middle of all crank angles"] = number(float(np.nanmedian(condition)), 3)
     if solution.friction.acting:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import CaseError
 from ...numbers import checks
-from .words import DIGITS, number, pretty
+from .words import DIGITS, angle, number, pretty
 
 DIGITS_OF = {"ratio": 4, "share [%]": 4, "power residual": 2}
 """Digits of what no reader takes so exactly, by column or row."""
@@ -45,7 +45,7 @@ def of_frame(frame, caption, note=""):
     for name, values in zip(frame.index, frame.itertuples(index=False), strict=True):
         digits = [digits_of(str(name), column) for column in columns]
         cells = [
-            pretty(value) if column == "unit" else number(value, most)
+            pretty(value) if column == "unit" else angle(value) if column.endswith("[deg]") else number(value, most)
             for column, value, most in zip(columns, values, digits, strict=True)
         ]
         rows.append([str(name), *cells])

@@ -35,6 +35,6 @@ def number(value, digits=DIGITS):
     return text.replace("inf", "∞")
 
 
-def degrees(value):
+def angle(value):
     """A crank angle in degrees, to a hundredth."""
-    return "" if math.isnan(value) else f"{value + 0.0:.2f}"
+    return "" if math.isnan(value) else f"{round(value, 2) + 0.0:.2f}"
