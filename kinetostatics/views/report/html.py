@@ -70,7 +70,7 @@ def _found(subject, progress):
         "dashes": figures.STROKES,
         "together": _together(subject),
         "wide": box[2] - box[0] > WIDE * (box[3] - box[1]),
-        "note": "" if subject.case is None else subject.case.published.note,
+        "published": _published(subject),
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
         "date": datetime.date.today().isoformat(),
         "data": {**moving, **_turning(subject), "quantities": values, "colours": figures.COLOURS},
@@ -79,6 +79,15 @@ def _found(subject, progress):
         "library": Markup(figures.script()),
         "speeds": [_speed(machine) for machine in subject.machines.values()],
     }
+
+
+def _published(subject):
+    """Where published figures are printed and how to read them, as paragraphs."""
+    if subject.case is None:
+        return []
+    printed = subject.case.published
+    where = f"Published figures: {printed.where} of {subject.source or 'the source'}." if printed.where else ""
+    return [text for text in (where, printed.note) if text]
 
 
 def _together(subject):

@@ -29,6 +29,11 @@ def packed(values, kind="<f4"):
     return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
 
 
+def unpacked(text, kind="<f4"):
+    """Numbers that were packed, in one row."""
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
 def movements(machines):
     """Drawings of machines by name, the box that holds them all, m, and the scales of forces and torques."""
     shapes = {name: Shape(machine.solution) for name, machine in machines.items()}

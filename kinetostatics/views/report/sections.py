@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from ...errors import DriveError, NotGivenError
-from ...mechanics.quantities import label_of, of_scene
+from ...errors import DriveError, NotGivenError, ParameterError
+from ...mechanics.quantities import label_of, of_scene, unit_of
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
 from .tables import Table, digits_of, of_frame, times, with_published
-from .words import angle, number, pretty
+from .words import DIGITS, angle, number, pretty
 
 FIGURES = 15.95
 """Digits of a double number."""
@@ -101,26 +101,23 @@ def _of_extremes(machine):
     known = {quantity.label: name for name, quantity in of_scene(machine.solution).items()}
     rows = []
     for label, unit, low, low_at, high, high_at in machine.extremes.itertuples():
-        digits, told = _digits(machine.solution, known[label])
-        smallest, largest = (number(value, digits) for value in (low, high))
-        told = told if low or high else ""
+        digits = _digits(machine.solution, known[label], np.nan_to_num([low_at, high_at]))
+        smallest, largest = (number(value, DIGITS if digits is None else digits) for value in (low, high))
+        told = str(digits) if digits is not None and (low or high) else ""
         rows.append([label, pretty(unit), smallest, angle(low_at), largest, angle(high_at), told])
     heads = ["", "unit", "smallest", "at [°]", "largest", "at [°]", "digits"]
     return Table(machine.name, heads, rows, 2)
 
 
-def _digits(solution, name):
-    """Significant digits of a quantity's largest value that are known, and in words."""
+def _digits(solution, name, degrees):
+    """Significant digits of a quantity's extremes that are known; None of places, and where no condition is given."""
+    if unit_of(solution, name) == "m":
+        return None
     try:
-        lost = np.log10(np.broadcast_to(solution.condition_of(name), solution.crank_angle.shape))
-    except NotGivenError:
-        return FIGURES, "not given"
-    known = np.clip(np.floor(FIGURES - lost), 0, 15)
-    known = known[~np.isnan(known)]
-    if not known.size:
-        return 0, "none"
-    usual, least = int(np.median(known)), int(known.min())
-    return usual, f"{usual}" if usual - least <= 2 else f"{usual}, least {least}"
+        lost = np.max(solution.at(np.radians(degrees)).condition_of(name))
+    except (NotGivenError, ParameterError):  # a load that is a table over the angles asked for
+        return None
+    return 0 if np.isnan(lost) else int(np.clip(np.floor(FIGURES - np.log10(lost)), 0, 15))
 
 
 def certainty(subject):

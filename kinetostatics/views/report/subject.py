@@ -17,7 +17,7 @@ from ...results.comparison import Comparison
 from ...results.tables import extremes_frame
 from ...solution.scene import Scene
 
-MOST = 3600
+MOST = 1440
 """Angles over the period that a reader can choose, at most."""
 
 
@@ -174,5 +174,6 @@ def _meant(path, value, derived):
 
 
 def _step(scenes):
+    """Degrees between the angles that can be chosen, of which a turn holds a whole number."""
     longest = max(period_of(scene.loads, scene.mechanism.turns) for scene in scenes)
-    return max(1, -(-round(np.degrees(longest)) // MOST))
+    return next(step for step in range(1, 361) if 360 % step == 0 and (step * MOST >= np.degrees(longest) or step == 360))

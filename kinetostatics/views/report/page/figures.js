@@ -19,6 +19,7 @@
     figures[name] = null;
     const manager = await Bokeh.embed.embed_item(items[name], place.id);
     const [view] = manager.roots;
+    if (matchMedia("(pointer: coarse)").matches) view.model.toolbar.tools.forEach((tool) => { tool.active = false; }); // a finger scrolls
     figures[name] = { view, place, model: view.model, cursor: view.model.center.find((item) => item.name === "cursor") };
     hidden.forEach((row) => appear(figures[name], row, false));
     if (name === "hodograph") chooseVector();
