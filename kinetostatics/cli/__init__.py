@@ -1,4 +1,4 @@
-"""The command line: ``kinetostatics run | compare | drive | plot | report | precision | sweep | design CASE``, and others.
+"""The command line: ``kinetostatics run | compare | drive | plot | report | sweep | design CASE``, and others.
 
 options
     What may be written on the line.

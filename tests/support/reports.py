@@ -47,5 +47,3 @@ def plain(**options):
 def table_of(found, row):
     """Cells of the row of a table that begins with some words."""
     return next(cells for cells in found.rows if cells[0] == row)
-
-

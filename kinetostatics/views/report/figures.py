@@ -3,6 +3,8 @@
 In each, `line 0`, `line 1` ... are the machines; `cursor` is the chosen crank angle, `tip 0` ... their points there.
 """
 
+from typing import Any
+
 import numpy as np
 
 from ...errors import MissingLibraryError
@@ -51,12 +53,14 @@ def over_turn(solutions, name, height=300):
 
 def curves_over(names, curves, label, height=300):
     """Curves, angles in degrees from 0 and values by the row of their machine, over the longest of their periods."""
-    from bokeh.models import Span
+    from bokeh.models.annotations import Span
 
     plot = _plot(height, "crank angle [°]", label)
     period = max(_period(angle) for angle, _ in curves.values())
     for row in range(len(names)):
-        angle, value = _repeated(*curves[row], period) if row in curves else (np.empty(0), np.empty(0))
+        angle, value = curves.get(row, (np.empty(0), np.empty(0)))
+        if len(angle):
+            angle, value = _repeated(angle, value, period)
         _line(plot, row, names[row], {"angle": angle, "value": value})
     plot.x_range.update(start=0.0, end=period, bounds=(-0.02 * period, 1.02 * period))
     plot.below[0].ticker = np.linspace(0.0, period, 9).tolist()
@@ -73,7 +77,9 @@ def _repeated(angle, value, period):
     """A curve over as many of its periods as make a longer one, closed."""
     own = _period(angle)
     turns = np.arange(max(1, round(period / own)))
-    return np.append((own * turns[:, None] + angle).ravel(), own * len(turns)), np.append(np.tile(value, len(turns)), value[:1])
+    return np.append((own * turns[:, None] + angle).ravel(), own * len(turns)), np.append(
+        np.tile(value, len(turns)), value[:1]
+    )
 
 
 def hodograph(solutions, name, height=420):
@@ -88,7 +94,9 @@ def hodograph(solutions, name, height=420):
         angle = np.degrees(have[row].crank_angle)
         x, y = factor * vector
         _line(plot, row, names[row], {"angle": _again(angle), "x": _again(x), "y": _again(y)}, "x", "y")
-        plot.scatter([x[0]], [y[0]], size=9, fill_color=COLOURS[row % len(COLOURS)], line_color="white", name=f"tip {row}")
+        plot.scatter(
+            [x[0]], [y[0]], size=9, fill_color=COLOURS[row % len(COLOURS)], line_color="white", name=f"tip {row}"
+        )
     text = "@x{0.0000 a}, @y{0.0000 a}"
     _hover(plot, [("", "@variant"), ("angle", "@angle{0.0}°"), ("x, y", text)], "mouse")
     return plot
@@ -99,10 +107,11 @@ def _again(values):
 
 
 def _plot(height, x_label, y_label, **options):
-    from bokeh.models import PlainText, Span
+    from bokeh.models import PlainText
+    from bokeh.models.annotations import Span
     from bokeh.plotting import figure
 
-    plot = figure(
+    plot: Any = figure(
         height=height, sizing_mode="stretch_width", tools=TOOLS, active_drag="box_zoom", active_scroll=None, **options
     )
     plot.toolbar.update(logo=None, autohide=True)
@@ -132,4 +141,6 @@ def _hover(plot, tooltips, mode):
     from bokeh.models import HoverTool
 
     lines = [item for item in plot.renderers if (item.name or "").startswith("line")]
-    plot.add_tools(HoverTool(tooltips=tooltips, mode=mode, renderers=lines, line_policy="nearest", point_policy="snap_to_data"))
+    plot.add_tools(
+        HoverTool(tooltips=tooltips, mode=mode, renderers=lines, line_policy="nearest", point_policy="snap_to_data")
+    )

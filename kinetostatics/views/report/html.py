@@ -1,6 +1,6 @@
 """The page: data, tables and figures of a subject, put into the template; it holds all that it needs."""
 
-import datetime
+import datetime as dt
 import math
 import platform
 import warnings
@@ -72,7 +72,7 @@ def _found(subject, progress):
         "wide": box[2] - box[0] > WIDE * (box[3] - box[1]),
         "published": _published(subject),
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
-        "date": datetime.date.today().isoformat(),
+        "date": dt.date.today().isoformat(),
         "data": {**moving, **_turning(subject), "quantities": values, "colours": figures.COLOURS},
         "style": Markup(_text("style.css")),
         "scripts": [Markup(_text(f"{name}.js")) for name in ("drawing", "turning", "figures")],
@@ -189,6 +189,7 @@ def _template():
     made = Environment(
         loader=FunctionLoader(_text), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    made.policies["json.dumps_kwargs"] = {"separators": (",", ":")}  # in order: Bokeh's models stand before what refers to them
+    made.policies["json.dumps_kwargs"] = {
+        "separators": (",", ":")
+    }  # in order: Bokeh's models stand before what refers to them
     return made.get_template("page.html.j2")
-

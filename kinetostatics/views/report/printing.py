@@ -8,7 +8,15 @@ from pathlib import Path
 
 from ...errors import FileError, MissingLibraryError
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome", "chrome", "msedge", "microsoft-edge")
+BROWSERS = (
+    "chromium",
+    "chromium-browser",
+    "google-chrome-stable",
+    "google-chrome",
+    "chrome",
+    "msedge",
+    "microsoft-edge",
+)
 """Names of browsers that print without a window, the first found is taken."""
 PATIENCE = 120.0
 """Seconds after which a browser that does not end is given up."""
@@ -45,7 +53,14 @@ def print_page(path, pdf):
     with tempfile.TemporaryDirectory(prefix="kinetostatics") as folder:
         made = Path(folder) / "page.pdf"
         command = [
-            *(found, "--headless", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", "--window-size=1010,1400"),
+            *(
+                found,
+                "--headless",
+                "--disable-gpu",
+                "--disable-dev-shm-usage",
+                "--no-first-run",
+                "--window-size=1010,1400",
+            ),
             *(f"--user-data-dir={folder}/profile", f"--virtual-time-budget={DRAWING}", "--no-pdf-header-footer"),
             *(["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []),
             *(f"--print-to-pdf={made}", Path(path).resolve().as_uri()),

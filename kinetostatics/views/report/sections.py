@@ -1,5 +1,7 @@
 """Which tables a subject has: at a glance, comparisons, extremes, certainty, friction, drive, inputs."""
 
+from typing import Any
+
 import numpy as np
 
 from ...errors import DriveError, NotGivenError, ParameterError
@@ -16,7 +18,7 @@ ZERO = "Numbers that are not listed are zero."
 
 def glance(subject):
     """A row for each machine: torque, support reaction, what it gains on the reference, power balance."""
-    rows = []
+    rows: list[list[str]] = []
     base = None
     for machine in subject.machines.values():
         solution, frame = machine.solution, machine.extremes
@@ -32,9 +34,9 @@ def glance(subject):
     heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "largest |torque| [N·m]"]
     heads += ["largest reaction O [N]", "power lost [W]", "power balance"]
     note = (
-        f"Torque: what the drive must give on the crank, over one period. Ratio of means: that of {subject.reference.name} "
-        "over that of the machine; above 1 the machine takes less. Power balance: difference of the torques by equilibrium and by powers, over the "
-        "largest power that flows."
+        "Torque: what the drive must give on the crank, over one period. Ratio of means: that of "
+        f"{subject.reference.name} over that of the machine; above 1 the machine takes less. Power balance: difference "
+        "of the torques by equilibrium and by powers, over the largest power that flows."
     )
     return _without_empty(Table("", heads, rows, 2, note))
 
@@ -163,7 +165,9 @@ def driven(subject):
     from ...drive.summary import energy_table, summary
     from ...drive.transient import start
 
-    runs, starts, reasons = {}, {}, []
+    runs: dict[str, Any] = {}
+    starts: dict[str, Any] = {}
+    reasons = []
     for name, machine in subject.machines.items():
         if machine.motor is None:
             continue
@@ -197,7 +201,9 @@ def inputs(subject):
             common.append([path, shown, cells[0]])
         else:
             apart.append([path, shown, *cells])
-    tables = [Table("Common to all" if apart else "", ["", "unit", "value"], common, 2, ZERO, code=True)] if common else []
+    tables = (
+        [Table("Common to all" if apart else "", ["", "unit", "value"], common, 2, ZERO, code=True)] if common else []
+    )
     if apart:
         heads = ["", "unit", *(machine.name for machine in machines)]
         tables.append(Table("What tells them apart", heads, apart, 2, code=True))
@@ -223,4 +229,3 @@ def remarks(caught):
     """What was warned of while the report was made, each once."""
     told = (str(item.message) for item in caught if issubclass(item.category, UserWarning))
     return list(dict.fromkeys(told))
-

@@ -140,11 +140,11 @@ def _of_scenes(scenes, variant, title, command):
     )
     several = [name for name, scene in scenes.items() if scene.solve(1).shape != (1,)]
     if several:
-        raise ParameterError(f"report: {', '.join(map(str, several))} holds several designs; give a scene of one design")
+        raise ParameterError(
+            f"report: {', '.join(map(str, several))} holds several designs; give a scene of one design"
+        )
     step = _step(scenes.values())
-    machines = {
-        str(name): Machine(str(name), scene, step, _numbers(scene)) for name, scene in scenes.items()
-    }
+    machines = {str(name): Machine(str(name), scene, step, _numbers(scene)) for name, scene in scenes.items()}
     return Subject(title or " and ".join(dict.fromkeys(_kinds(machines))), "", machines, command)
 
 
@@ -176,4 +176,6 @@ def _meant(path, value, derived):
 def _step(scenes):
     """Degrees between the angles that can be chosen, of which a turn holds a whole number."""
     longest = max(period_of(scene.loads, scene.mechanism.turns) for scene in scenes)
-    return next(step for step in range(1, 361) if 360 % step == 0 and (step * MOST >= np.degrees(longest) or step == 360))
+    return next(
+        step for step in range(1, 361) if 360 % step == 0 and (step * MOST >= np.degrees(longest) or step == 360)
+    )

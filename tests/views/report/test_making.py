@@ -1,6 +1,5 @@
 """The public door of reports, and its command."""
 
-import os
 import sys
 
 import pytest
@@ -18,7 +17,7 @@ def test_a_report_of_scenes_is_written_and_its_path_given(tmp_path):
     path = ks.report({"press": plain()}, tmp_path / "new" / "press.html", title="Press")
     assert path == tmp_path / "new" / "press.html"
     assert "Press" in words(path.read_text(encoding="utf-8"))
-    assert os.listdir(path.parent) == ["press.html"]
+    assert [item.name for item in path.parent.iterdir()] == ["press.html"]
 
 
 @pytest.mark.slow_start
@@ -30,7 +29,8 @@ def test_the_command_writes_the_page_and_tells_of_it(tmp_path, capsys):
 
 
 @every("name, message", [
-    ("", "is a folder"), ("report.txt", "the ending"), ("no.html/report.html", "no.html is no folder"), ("bad\0.html", "is no name of a file"),
+    ("", "is a folder"), ("report.txt", "the ending"), ("no.html/report.html", "no.html is no folder"),
+    ("bad\0.html", "is no name of a file"),
 ])  # fmt: skip
 def test_a_place_that_cannot_be_written_is_refused_before_any_work(name, message, tmp_path, monkeypatch):
     (tmp_path / "no.html").write_text("x", encoding="utf-8")
@@ -40,7 +40,8 @@ def test_a_place_that_cannot_be_written_is_refused_before_any_work(name, message
 
 
 @every("options, message", [
-    ({"title": " "}, "title must be a text"), ({"title": 3}, "title must be a text"), ({"pdf": "x.html"}, "the ending"), ({"variant": "a"}, "variant chooses"),
+    ({"title": " "}, "title must be a text"), ({"title": 3}, "title must be a text"), ({"pdf": "x.html"}, "the ending"),
+    ({"variant": "a"}, "variant chooses"),
 ])  # fmt: skip
 def test_options_that_make_no_sense_are_refused(options, message, tmp_path):
     with pytest.raises(ks.KinetostaticsError, match=message):
@@ -55,7 +56,9 @@ def test_what_is_neither_case_nor_scene_is_refused(what, tmp_path):
 
 def test_the_case_file_is_not_replaced(tmp_path):
     case = tmp_path / "case.html"
-    case.write_text(ks.load_case("yoke_pump").path.read_text(encoding="utf-8").replace("yoke_pump_pressure.csv", "p.csv"))
+    case.write_text(
+        ks.load_case("yoke_pump").path.read_text(encoding="utf-8").replace("yoke_pump_pressure.csv", "p.csv")
+    )
     (tmp_path / "p.csv").write_bytes((ks.load_case("yoke_pump").path.parent / "yoke_pump_pressure.csv").read_bytes())
     with pytest.raises(ks.ParameterError, match="is read as input and would be replaced"):
         ks.report(case, case)
@@ -75,4 +78,4 @@ def test_what_fails_leaves_what_was_there(tmp_path, monkeypatch):
     with pytest.raises(SystemExit):
         ks.report(plain(), path)
     assert path.read_text(encoding="utf-8") == "before"
-    assert os.listdir(tmp_path) == ["x.html"]
+    assert [item.name for item in tmp_path.iterdir()] == ["x.html"]

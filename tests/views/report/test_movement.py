@@ -46,7 +46,9 @@ def test_every_stroke_comes_back_as_the_shape_declares_it_in_each_pose():
 
 def test_links_go_as_poses_springs_as_shapes_and_what_stands_still_as_it_is():
     strokes = drawn("sawframe_2r63")["drawings"][1]["strokes"]
-    kinds = {stroke["kind"]: "shapes" if "shapes" in stroke else "poses" if "poses" in stroke else "" for stroke in strokes}
+    kinds = {
+        stroke["kind"]: "shapes" if "shapes" in stroke else "poses" if "poses" in stroke else "" for stroke in strokes
+    }
     assert kinds["bar"] == "poses"
     assert kinds["curve"] == kinds["rail"] == kinds["ground"] == ""
     assert "shapes" in [next(iter(set(stroke) & {"shapes"}), "") for stroke in strokes if stroke["kind"] == "spring"]

@@ -22,13 +22,14 @@ def a_browser(folder, monkeypatch, script):
 
 def test_without_a_browser_it_is_said_which_were_looked_for(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(ks.KinetostaticsError, match="none of chromium, .* is found: install one, or open the report"):
+    with pytest.raises(ks.KinetostaticsError, match=r"none of chromium, .* is found: install one, or open the report"):
         printing.browser()
 
 
 @pytest.mark.slow_start
 def test_what_the_browser_prints_is_the_pdf(tmp_path, monkeypatch):
-    write = 'for word in "$@"; do case $word in --print-to-pdf=*) printf "%%PDF-1.4 x" > "${word#--print-to-pdf=}";; esac; done'
+    place = "--print-to-pdf="
+    write = f'for word in "$@"; do case $word in {place}*) printf "%%PDF-1.4 x" > "${{word#{place}}}";; esac; done'
     page = a_browser(tmp_path, monkeypatch, write)
     printing.print_page(page, tmp_path / "page.pdf")
     assert (tmp_path / "page.pdf").read_bytes() == b"%PDF-1.4 x"

@@ -51,6 +51,9 @@ def test_forces_stand_before_motion_and_what_never_turns_is_left_out():
     assert "slider_rate" not in names
 
 
-@every("largest, count", [(40.58, 4), (0.0, 0), (123456.0, 0), (1e9, 0), (0.00123, 8), (1e-30, 12), (9.9999, 5), (float("nan"), 0)])
+@every(
+    "largest, count",
+    [(40.58, 4), (0.0, 0), (123456.0, 0), (1e9, 0), (0.00123, 8), (1e-30, 12), (9.9999, 5), (float("nan"), 0)],
+)
 def test_decimals_give_the_largest_value_six_digits(largest, count):
     assert decimals(largest) == count

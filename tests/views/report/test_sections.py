@@ -1,5 +1,7 @@
 """Tables of a report hold the library's numbers, and published ones beside them."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,8 @@ import kinetostatics as ks
 from kinetostatics.views.report import sections
 from kinetostatics.views.report.subject import Subject, subject_of
 from support.reports import plain, subject, table_of
+
+RUBBING = partial(subject, "sawframe_2r63_friction", "cam-cosine")
 
 
 def test_glance_has_a_row_for_each_machine_with_torque_gain_and_power_balance():
@@ -20,8 +24,8 @@ def test_glance_has_a_row_for_each_machine_with_torque_gain_and_power_balance():
 
 
 def test_glance_tells_the_power_lost_where_something_rubs():
-    found = sections.glance(subject("sawframe_2r63_friction"))
-    lost = subject("sawframe_2r63_friction").machines["plain"].solution.losses.total
+    found = sections.glance(RUBBING())
+    lost = RUBBING().machines["plain"].solution.losses.total
     assert table_of(found, "plain")[found.columns.index("power lost [W]")] == f"{lost:.5g}"
 
 
@@ -65,15 +69,17 @@ def test_where_digits_are_lost_fewer_are_shown():
 
 
 def test_certainty_tells_power_balance_condition_and_how_friction_was_found():
-    found = sections.certainty(subject("sawframe_2r63_friction"))
-    assert table_of(found, "friction and reactions found together")[1:] == ["yes"] * 5
-    assert all(float(cell) < 1e-12 for cell in table_of(found, "power balance, relative to the largest power that flows")[1:])
+    found = sections.certainty(RUBBING())
+    assert table_of(found, "friction and reactions found together")[1:] == ["yes"] * 2
+    assert all(
+        float(cell) < 1e-12 for cell in table_of(found, "power balance, relative to the largest power that flows")[1:]
+    )
     assert " at " in table_of(found, "condition: lengths' relative errors are magnified up to")[1]
 
 
 def test_losses_stand_for_each_machine_that_rubs_with_their_sum():
-    tables = sections.losses(subject("sawframe_2r63_friction"))
-    assert [table.caption for table in tables] == list(subject("sawframe_2r63_friction").machines)
+    tables = sections.losses(RUBBING())
+    assert [table.caption for table in tables] == list(RUBBING().machines)
     assert table_of(tables[0], "all")[2] == "100"
     assert tables[0].note.startswith("Of 42948.7 W put in")
     assert sections.losses(subject("pumpjack")) == []
@@ -83,7 +89,9 @@ def test_drive_is_told_for_machines_with_a_motor_alone():
     one = subject("sawframe_2r63")
     made = Subject("", "", {"cam-cosine": one.machines["cam-cosine"]}, "", one.case)
     runs, (first, second), reasons = sections.driven(made)
-    assert float(table_of(first, "mean speed of the crank")[2]) == pytest.approx(runs["cam-cosine"].mean_speed, rel=1e-5)
+    assert float(table_of(first, "mean speed of the crank")[2]) == pytest.approx(
+        runs["cam-cosine"].mean_speed, rel=1e-5
+    )
     assert table_of(second, "flywheel and rotor, largest less smallest")[1] == "J"
     assert reasons == []
     assert sections.driven(subject("pumpjack")) == ({}, [], [])
@@ -91,7 +99,7 @@ def test_drive_is_told_for_machines_with_a_motor_alone():
 
 def test_a_motor_that_is_too_weak_is_told_in_place_of_its_table(tmp_path):
     text = ks.load_case("sawframe_2r63").path.read_text(encoding="utf-8")
-    weak = text.replace("slider = ", "slider = ").replace('[variants.plain]\n', '[variants.plain]\nfriction = { guide = { mu = 0.9 } }\n')
+    weak = text.replace("[variants.plain]\n", "[variants.plain]\nfriction = { guide = { mu = 0.9 } }\n")
     weak = weak.replace('"55 kW"', '"5 W"')
     path = tmp_path / "weak.toml"
     path.write_text(weak, encoding="utf-8")

@@ -30,7 +30,9 @@ def test_angles_are_whole_degrees_over_the_period_of_each_machine():
 
 def test_a_long_period_has_a_longer_step_common_to_all():
     angle = np.linspace(0.0, 20 * np.pi, 21)
-    slow = plain(loads=ks.ProcessForce(ks.Table(angle, np.cos(angle / 10), over="angle", period=20 * np.pi)))
+    slow = plain(
+        loads=ks.ProcessForce(ks.Table(angle, np.cos(angle / 10), over="angle", period=20 * np.pi), period=20 * np.pi)
+    )
     found = subject_of({"slow": slow, "plain": plain()})
     assert found.machines["slow"].step == found.machines["plain"].step == 3
     assert [machine.solution.crank_angle.size for machine in found.machines.values()] == [1200, 120]

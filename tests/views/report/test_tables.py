@@ -8,7 +8,12 @@ import kinetostatics as ks
 from kinetostatics.views.report.tables import of_frame, times, with_published
 
 FRAME = pd.DataFrame(
-    {"unit": ["N m", "1"], "plain": [286771.94, 3.16347e-16], "ratio": [6.080751, np.nan], "largest at [deg]": [1e-13, 39.2871]},
+    {
+        "unit": ["N m", "1"],
+        "plain": [286771.94, 3.16347e-16],
+        "ratio": [6.080751, np.nan],
+        "largest at [deg]": [1e-13, 39.2871],
+    },
     index=pd.Index(["torque", "power residual"], name="quantity"),
 )
 

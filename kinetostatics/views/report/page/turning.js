@@ -107,6 +107,6 @@ window.report = (() => {
   }));
   new ResizeObserver(() => drawings.forEach((drawing) => drawing.build())).observe(document.querySelector(".panels"));
   choose(data.start);
-  document.documentElement.dataset.ready = "yes";
-  return { data, values, followers, get index() { return index; } };
+  document.documentElement.dataset.ready = Math.round(performance.now());
+  return { data, values, followers, drawings, get index() { return index; } };
 })();
