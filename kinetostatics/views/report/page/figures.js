@@ -99,8 +99,9 @@
   other.addEventListener("change", chooseQuantity);
   report.followers.push(follow);
 
-  // On paper figures stand as drawings of lines, as wide as their place there.
+  // On paper figures stand as drawings of lines, as wide as their place there, and the case file stands open.
   window.addEventListener("beforeprint", () => {
+    document.querySelectorAll("details").forEach((part) => { part.open = true; });
     for (const figure of Object.values(figures).filter(Boolean)) {
       if (figure.cursor) figure.cursor.location = report.index * data.step;
       const drawn = figure.view.export("svg", false).canvas;
