@@ -10,10 +10,12 @@ from kinetostatics.views.report import html
 from kinetostatics.views.report.movement import unpacked
 from kinetostatics.views.report.subject import subject_of
 
+COMMAND = "kinetostatics report CASE --out report.html"
+
 
 @cache
 def subject(case, variant=None):
-    return subject_of(case, variant)
+    return subject_of(case, variant, command=COMMAND)
 
 
 @cache

@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.views.report import html
 from kinetostatics.views.report.subject import subject_of
-from support.reports import data_of, page, plain, subject, words
+from support.reports import COMMAND, data_of, page, plain, subject, words
 
 pytest.importorskip("bokeh")
 HOSTILE = "</script><script>alert(1)</script> \"quoted\" 'n' & <b>x</b> {{ 7*7 }} $$x$$ @y{0} Säge пила 鋸 שלום"
@@ -42,18 +42,19 @@ def test_the_page_has_a_section_for_each_thing_and_none_that_is_empty():
 
 
 def test_the_page_says_version_command_sources_and_files():
-    made = subject_of("pumpjack", command="kinetostatics report pumpjack --out x.html")
-    seen = words(html.page(made))
+    made, seen = subject("pumpjack"), words(page("pumpjack")[0])
     assert f"kinetostatics {ks.__version__}" in seen
-    assert "kinetostatics report pumpjack --out x.html" in seen
+    assert COMMAND in seen
     assert made.case.source in seen
     assert "# assumed: P" in seen
     assert made.files[1][1][:16] in seen
 
 
-def test_hostile_names_and_titles_stand_as_text(tmp_path):
+def test_hostile_names_and_titles_stand_as_text_and_progress_is_told():
     scenes = {HOSTILE: plain(), "plain": plain(crank_speed=20.0)}
-    text = html.page(subject_of(scenes, title=HOSTILE))
+    told = []
+    text = html.page(subject_of(scenes, title=HOSTILE), told.append)
+    assert (told[0], told[-1]) == ("movement", "page")
     assert "<script>alert" not in text
     assert "<b>x" not in text
     assert words(text).count(HOSTILE) >= 5
@@ -92,20 +93,13 @@ def test_the_first_angle_shown_is_that_of_the_largest_torque_of_the_reference():
 
 def test_machines_of_the_same_torque_are_named():
     scenes = {"one": plain(), "two": plain(), "three": plain(crank_speed=11.0)}
-    assert "same torque: one and two." in words(html.page(subject_of(scenes)))
+    assert html._together(subject_of(scenes)).endswith("same torque: one and two.")
 
 
 def test_a_crank_that_stands_still_is_reported_too():
     seen = words(html.page(subject_of(plain(crank_speed=0.0))))
     assert "turns a minute" not in seen
     assert "At a glance" in seen
-
-
-def test_progress_is_told_what_is_at_work():
-    told = []
-    html.page(subject_of(plain()), told.append)
-    assert told[0] == "movement"
-    assert told[-1] == "page"
 
 
 def test_published_figures_tell_where_they_are_printed():
