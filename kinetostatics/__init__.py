@@ -29,6 +29,7 @@ Then
     sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
     compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
     plots                                       figures
+    report("pumpjack", "pumpjack.html")         one page: the mechanism turns by hand, figures, tables, checks
     needs, precision, stability, papers         how much model, how exact, where it hurts; others' formulas
     check(group)                                test a group of one's own
 
@@ -46,7 +47,7 @@ Rooms, in the order in which they build on each other
     sweeps      designs, sweep, workers, datasets, tolerances
     studies     needs, precision, stability, the methods under study
     casefile    case files: schema, reading, building
-    views       plots, charts, drawings
+    views       plots, charts, drawings, reports
 """
 
 from importlib import import_module
