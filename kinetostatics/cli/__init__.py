@@ -6,6 +6,8 @@ commands
     What each command does.
 designing
     What the command ``design`` does.
+reporting
+    What the command ``report`` does.
 printed
     Tables on the screen and in files.
 """

@@ -1,7 +1,6 @@
 """What each command does with its options."""
 
 import os
-import shlex
 import sys
 from pathlib import Path
 from typing import Any
@@ -110,16 +109,9 @@ def plot(options):
 
 
 def report(options):
-    from ..views.report.making import report
+    from .reporting import report
 
-    pdf = ["--pdf", options.pdf] if options.pdf else []
-    variant = ["--variant", options.variant] if options.variant else []
-    words = ["kinetostatics", "report", options.case, "--out", options.out, *variant, *pdf]
-    bar = sys.stderr is not None and sys.stderr.isatty()
-    choices = {"variant": options.variant, "pdf": options.pdf, "command": shlex.join(words)}
-    print(f"wrote {report(options.case, options.out, progress=bar, **choices)}; open it in a browser")
-    if options.pdf:
-        print(f"wrote {options.pdf}")
+    report(options)
 
 
 def drive(options):

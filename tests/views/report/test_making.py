@@ -1,11 +1,10 @@
-"""The public door of reports, and its command."""
+"""The public door of reports."""
 
 import sys
 
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.cli import main
 from kinetostatics.views.report import html, printing
 from support.every import every
 from support.reports import plain, words
@@ -18,14 +17,6 @@ def test_a_report_of_scenes_is_written_and_its_path_given(tmp_path):
     assert path == tmp_path / "new" / "press.html"
     assert "Press" in words(path.read_text(encoding="utf-8"))
     assert [item.name for item in path.parent.iterdir()] == ["press.html"]
-
-
-@pytest.mark.slow_start
-def test_the_command_writes_the_page_and_tells_of_it(tmp_path, capsys):
-    path = tmp_path / "pump.html"
-    assert main(["report", "yoke_pump", "--variant", "idle", "--out", str(path)]) == 0
-    assert capsys.readouterr().out == f"wrote {path}; open it in a browser\n"
-    assert f"kinetostatics report yoke_pump --out {path} --variant idle" in words(path.read_text(encoding="utf-8"))
 
 
 @every("name, message", [
