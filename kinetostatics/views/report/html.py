@@ -21,6 +21,8 @@ GROUPS = {
     "Motion": ("slider", "motion", "rate"),
 }
 """Kinds of quantities by the heading under which their values stand."""
+PARTS = 8
+"""Of the work, of each of which `progress` is told."""
 WIDE = 1.7
 """Width over height of drawings from which on two of them fill a line."""
 

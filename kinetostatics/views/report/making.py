@@ -72,7 +72,14 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
     subject = subject_of(case, variant, title, command)
     from tqdm import tqdm
 
-    with tqdm(desc="report", unit=" parts", delay=SHOWN_AFTER, leave=False, disable=not progress) as bar:
+    with tqdm(
+        desc="report",
+        total=html.PARTS + (pdf is not None),
+        unit=" parts",
+        delay=SHOWN_AFTER,
+        leave=False,
+        disable=not progress,
+    ) as bar:
 
         def tell(text):
             bar.set_postfix_str(text, refresh=False)

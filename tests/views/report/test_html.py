@@ -54,7 +54,7 @@ def test_hostile_names_and_titles_stand_as_text_and_progress_is_told():
     scenes = {HOSTILE: plain(), "plain": plain(crank_speed=20.0)}
     told = []
     text = html.page(subject_of(scenes, title=HOSTILE), told.append)
-    assert (told[0], told[-1]) == ("movement", "page")
+    assert (told[0], told[-1], len(told)) == ("movement", "page", html.PARTS)
     assert "<script>alert" not in text
     assert "<b>x" not in text
     assert words(text).count(HOSTILE) >= 5
