@@ -13,6 +13,8 @@ from .words import DIGITS, angle, number, pretty
 
 FIGURES = 15.95
 """Digits of a double number."""
+OUTSTANDING = 1e4
+"""Times the usual bound of a rounding error from which on the largest is told beside it, with its place."""
 ZERO = "Numbers that are not listed are zero."
 
 
@@ -132,6 +134,9 @@ def certainty(subject):
 
 def _certainty(solution):
     found = {"power balance, relative to the largest power that flows": number(solution.power_residual, 2)}
+    for name, label, unit in (("balancing_torque", "torque", "N·m"), ("|O|", "reaction O", "N")):
+        if name.strip("|") in solution.reactions or name in solution.scalars:
+            found[f"rounding error of the {label}, proven bound [{unit}]"] = _bound(solution, name)
     try:
         condition = solution.condition
     except NotGivenError:
@@ -147,6 +152,26 @@ def _certainty(solution):
         found["friction: change by one more pass, at most"] = number(float(np.nanmax(solution.friction_residual)), 2)
         found["friction: margin to jamming, least"] = number(float(np.nanmin(solution.friction_margin)), 4)
     return found
+
+
+def _bound(solution, name):
+    """Largest bound of a rounding error over the turn; below it where one stands out, or where none can be proven."""
+    try:
+        bounds = solution.error_bound(name)
+    except NotGivenError:
+        return "not given"
+    proven = np.isfinite(bounds)
+    if not proven.any():
+        return "not proven"
+    worst = int(np.argmax(np.where(proven, bounds, -1.0)))
+    usual = float(np.median(bounds[proven]))
+    text, notes = number(bounds[worst], 2), []
+    if bounds[worst] > OUTSTANDING * usual:  # at a jump, a value may be that before or behind it
+        notes.append(f"but {text} at {number(np.degrees(solution.crank_angle[worst]))}°")
+        text = number(usual, 2)
+    if not proven.all():
+        notes.append(f"not proven at {np.count_nonzero(~proven)} of {proven.size} angles")
+    return (text, "; ".join(notes)) if notes else text
 
 
 def losses(subject):

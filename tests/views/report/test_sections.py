@@ -1,5 +1,6 @@
 """Tables of a report hold the library's numbers, and published ones beside them."""
 
+import re
 from functools import partial
 
 import numpy as np
@@ -76,6 +77,17 @@ def test_certainty_tells_power_balance_condition_and_how_friction_was_found():
         float(cell) < 1e-12 for cell in table_of(found, "power balance, relative to the largest power that flows")[1:]
     )
     assert " at " in table_of(found, "condition: lengths' relative errors are magnified up to")[1]
+
+
+def test_rounding_errors_have_their_proven_bounds_and_where_these_stand_out():
+    found = sections.certainty(subject("shaper"))
+    bound = subject("shaper").machines["idle"].solution.error_bound("balancing_torque").max()
+    cutting, idle = table_of(found, "rounding error of the torque, proven bound [N·m]")[1:]
+    assert float(idle) == pytest.approx(bound, rel=0.05)
+    assert float(cutting[0]) < 1e-10
+    assert re.fullmatch(r"but 830 at \d+°", cutting[1])
+    rubbing = table_of(sections.certainty(RUBBING()), "rounding error of the torque, proven bound [N·m]")
+    assert rubbing[1][1] == "not proven at 1 of 360 angles"
 
 
 def test_losses_stand_for_each_machine_that_rubs_with_their_sum():
