@@ -29,6 +29,7 @@ Then
     sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
     compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
     plots                                       figures
+    report("pumpjack", "pumpjack.html")         one page: the mechanism turns by hand, figures, tables, checks
     needs, precision, stability, papers         how much model, how exact, where it hurts; others' formulas
     check(group)                                test a group of one's own
 
@@ -46,7 +47,7 @@ Rooms, in the order in which they build on each other
     sweeps      designs, sweep, workers, datasets, tolerances
     studies     needs, precision, stability, the methods under study
     casefile    case files: schema, reading, building
-    views       plots, charts, drawings
+    views       plots, charts, drawings, reports
 """
 
 from importlib import import_module
@@ -125,6 +126,7 @@ if TYPE_CHECKING:
     from .sweeps.sweeps import sweep
     from .sweeps.tolerance import Tolerances, tolerances
     from .views import plots
+    from .views.report.making import report
 
 __version__ = "0.1.0"
 
@@ -208,6 +210,7 @@ __all__ = [
     "plots",
     "precision",
     "principal_points",
+    "report",
     "scotch_yoke",
     "shipped_cases",
     "slotted_lever",
@@ -275,6 +278,7 @@ _WHERE = {
     "casefile.reading": ["shipped_cases"],
     "casefile.variant": ["Variant"],
     "views": ["plots"],
+    "views.report.making": ["report"],
 }
 """Names by where they are: loaded, with the libraries they need, when first used."""
 

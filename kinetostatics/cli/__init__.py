@@ -1,4 +1,4 @@
-"""The command line: ``kinetostatics run | compare | drive | plot | precision | sweep | design CASE``, and others.
+"""The command line: ``kinetostatics run | compare | drive | plot | report | sweep | design CASE``, and others.
 
 options
     What may be written on the line.
@@ -6,6 +6,8 @@ commands
     What each command does.
 designing
     What the command ``design`` does.
+reporting
+    What the command ``report`` does.
 printed
     Tables on the screen and in files.
 """

@@ -125,6 +125,12 @@ def plot(options):
         print(path)
 
 
+def report(options):
+    from .reporting import report
+
+    report(options)
+
+
 def drive(options):
     from ..casefile.case import load_case
     from ..drive.periodic import steady

@@ -53,6 +53,11 @@ def parser():
     plot.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")
     plot.add_argument("--only", type=_text, metavar="FIGURE", help="draw this figure only")
 
+    report = _command(group, "report", commands.report, "one page with the moving mechanism, figures and tables")
+    report.add_argument("--out", required=True, type=_text, metavar="FILE", help="page to write, .html")
+    report.add_argument("--variant", type=_text, metavar="NAME", help="only this variant beside the reference")
+    report.add_argument("--pdf", type=_text, metavar="FILE", help="print it to a PDF too, by a browser that is there")
+
     precision = _command(
         group, "precision", commands.precision, "every method's time and error against a certified reference"
     )

@@ -169,7 +169,8 @@ class PublishedTable(Table):
 
     `ratio` holds those of reference / balanced, `value` those of the balanced mechanism; `balancing` those of the
     balancing table, for every variant and link, taken at a crank-angle step of `sampling`; `linkage` those of the
-    four-bar table, for every variant. `note` says how to read them beside ours.
+    four-bar table, for every variant. `where` names the table or figure that prints them, `note` says how to read them
+    beside ours.
     """
 
     ratio: dict[str, str] = Field(default_factory=dict)
@@ -177,6 +178,7 @@ class PublishedTable(Table):
     sampling: Sampling = None
     balancing: dict[str, dict[str, str]] = Field(default_factory=dict)
     linkage: dict[str, dict[str, str]] = Field(default_factory=dict)
+    where: str = ""
     note: str = ""
 
 

@@ -1,0 +1,146 @@
+"""Figures to zoom and read, made with Bokeh: curves over the crank angle, hodographs.
+
+In each, `line 0`, `line 1` ... are the machines; `cursor` is the chosen crank angle, `tip 0` ... their points there.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ...errors import MissingLibraryError
+from ...mechanics.quantities import of_scene, quantity, values
+from ..canvas import display
+from .words import pretty
+
+COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
+"""Quiet colours of the machines, in their order."""
+DASHES = ("solid", "dashed", "dotdash", "dotted", "dashdot", "solid", "dashed", "dotdash")
+"""Line styles of the machines, so that curves differ in print too."""
+STROKES = ("", "6", "2 4 6 4", "2 4", "6 4 2 4", "", "6", "2 4 6 4")
+"""The same as in SVG, in keys."""
+FONT = "system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif"
+TOOLS = "pan,box_zoom,wheel_zoom,reset,save"
+
+
+def require():
+    """Bokeh, or an error that says how to get it."""
+    try:
+        import bokeh
+    except ImportError:
+        raise MissingLibraryError(
+            'the report\'s figures need Bokeh, which is not installed: pip install "kinetostatics[report]"'
+        ) from None
+    return bokeh
+
+
+def script():
+    """Bokeh's own script, to stand in the page."""
+    from bokeh.resources import Resources
+
+    return "\n".join(Resources(mode="inline", components=["bokeh"]).js_raw[:1])
+
+
+def over_turn(solutions, name, height=300):
+    """A quantity of those machines that have it over the crank angle, of a vector its size."""
+    have = {row: s for row, s in enumerate(solutions.values()) if name in of_scene(s)}
+    known = quantity(next(iter(have.values())), name)
+    found = {row: values(s, name) for row, s in have.items()}
+    factor, unit = display(known.unit, found.values())
+    curves = {row: (np.degrees(s.crank_angle), factor * found[row]) for row, s in have.items()}
+    label = f"|{known.label}|" if known.vector else known.label
+    return curves_over(list(solutions), curves, f"{label} [{pretty(unit) or '1'}]", height)
+
+
+def curves_over(names, curves, label, height=300):
+    """Curves, angles in degrees from 0 and values by the row of their machine, over the longest of their periods."""
+    from bokeh.models.annotations import Span
+
+    plot = _plot(height, "crank angle [°]", label)
+    period = max(_period(angle) for angle, _ in curves.values())
+    for row in range(len(names)):
+        angle, value = curves.get(row, (np.empty(0), np.empty(0)))
+        if len(angle):
+            angle, value = _repeated(angle, value, period)
+        _line(plot, row, names[row], {"angle": angle, "value": value})
+    plot.x_range.update(start=0.0, end=period, bounds=(-0.02 * period, 1.02 * period))
+    plot.below[0].ticker = np.linspace(0.0, period, 9).tolist()
+    plot.add_layout(Span(location=0.0, dimension="height", line_color="#444444", line_width=1, name="cursor"))
+    _hover(plot, [("", "@variant"), ("angle", "@angle{0.0}°"), ("value", "@value{0.0000 a}")], "vline")
+    return plot
+
+
+def _period(angle):
+    return float(angle[-1] + angle[1] - angle[0]) if len(angle) > 1 else 360.0
+
+
+def _repeated(angle, value, period):
+    """A curve over as many of its periods as make a longer one, closed."""
+    own = _period(angle)
+    turns = np.arange(max(1, round(period / own)))
+    return np.append((own * turns[:, None] + angle).ravel(), own * len(turns)), np.append(
+        np.tile(value, len(turns)), value[:1]
+    )
+
+
+def hodograph(solutions, name, height=420):
+    """The curve that the tip of a vector draws over the turn, of those machines that have it."""
+    have = {row: s for row, s in enumerate(solutions.values()) if name in of_scene(s)}
+    vectors = {row: of_scene(s)[name].read(s) for row, s in have.items()}
+    known = of_scene(next(iter(have.values())))[name]
+    factor, unit = display(known.unit, vectors.values())
+    plot = _plot(height, f"{known.label}, x [{pretty(unit)}]", f"{known.label}, y [{pretty(unit)}]", match_aspect=True)
+    names = list(solutions)
+    for row, vector in vectors.items():
+        angle = np.degrees(have[row].crank_angle)
+        x, y = factor * vector
+        _line(plot, row, names[row], {"angle": _again(angle), "x": _again(x), "y": _again(y)}, "x", "y")
+        plot.scatter(
+            [x[0]], [y[0]], size=9, fill_color=COLOURS[row % len(COLOURS)], line_color="white", name=f"tip {row}"
+        )
+    text = "@x{0.0000 a}, @y{0.0000 a}"
+    _hover(plot, [("", "@variant"), ("angle", "@angle{0.0}°"), ("x, y", text)], "mouse")
+    return plot
+
+
+def _again(values):
+    return np.append(values, values[:1])
+
+
+def _plot(height, x_label, y_label, **options):
+    from bokeh.models import PlainText
+    from bokeh.models.annotations import Span
+    from bokeh.plotting import figure
+
+    plot: Any = figure(
+        height=height, sizing_mode="stretch_width", tools=TOOLS, active_drag="box_zoom", active_scroll=None, **options
+    )
+    plot.toolbar.update(logo=None, autohide=True)
+    for scale in (plot.x_range, plot.y_range):
+        scale.only_visible = True
+    plot.update(min_border_left=62, min_border_right=16, outline_line_color=None, background_fill_color=None)
+    plot.border_fill_color = None
+    for axis, label in ((plot.below[0], x_label), (plot.left[0], y_label)):
+        axis.axis_label = PlainText(label)
+        axis.update(axis_line_color="#b8bfc7", major_tick_line_color="#b8bfc7", minor_tick_line_color=None)
+        axis.update(axis_label_text_font=FONT, axis_label_text_font_style="normal", axis_label_text_font_size="12px")
+        axis.update(major_label_text_font=FONT, major_label_text_font_size="11px", major_label_text_color="#3d4852")
+    plot.grid.grid_line_color = "#e4e8ec"
+    plot.add_layout(Span(location=0.0, dimension="width", line_color="#9aa4ae", line_width=1))
+    return plot
+
+
+def _line(plot, row, name, columns, x="angle", y="value"):
+    from bokeh.models import ColumnDataSource
+
+    source = ColumnDataSource({**columns, "variant": [name] * len(columns["angle"])})
+    style = {"line_color": COLOURS[row % len(COLOURS)], "line_dash": DASHES[row % len(DASHES)], "line_width": 2}
+    plot.line(x, y, source=source, name=f"line {row}", **style)
+
+
+def _hover(plot, tooltips, mode):
+    from bokeh.models import HoverTool
+
+    lines = [item for item in plot.renderers if (item.name or "").startswith("line")]
+    plot.add_tools(
+        HoverTool(tooltips=tooltips, mode=mode, renderers=lines, line_policy="nearest", point_policy="snap_to_data")
+    )

@@ -1,0 +1,197 @@
+"""The page: data, tables and figures of a subject, put into the template; it holds all that it needs."""
+
+import datetime as dt
+import math
+import platform
+import warnings
+from importlib import resources
+
+import numpy as np
+
+from ... import __version__
+from ...results.losses import lose
+from ..canvas import display
+from . import figures, sections
+from .movement import movements
+from .readings import readings
+from .words import pretty
+
+GROUPS = {
+    "Forces and torques": ("force", "reaction", "friction", "whole"),
+    "Motion": ("slider", "motion", "rate"),
+}
+"""Kinds of quantities by the heading under which their values stand."""
+PARTS = 8
+"""Of the work, of each of which `progress` is told."""
+WIDE = 1.7
+"""Width over height of drawings from which on two of them fill a line."""
+
+
+def page(subject, progress=lambda text: None):
+    """Text of the page of a subject; `progress` is told what is at work.
+
+    What was warned of on the way stands in the page.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = _found(subject, progress)
+    progress("page")
+    return _template().render(found, remarks=sections.remarks(caught) + found["reasons"])
+
+
+def _found(subject, progress):
+    """What the template is filled with."""
+    from markupsafe import Markup
+
+    progress("movement")
+    moving = movements(subject.machines)
+    progress("values")
+    values = readings(subject.machines)
+    progress("extremes")
+    tables = {"glance": sections.glance(subject), "extremes": sections.extremes(subject)}
+    progress("comparisons")
+    tables["comparisons"] = sections.comparisons(subject)
+    progress("certainty")
+    tables |= {"certainty": sections.certainty(subject), "losses": sections.losses(subject)}
+    progress("drive")
+    runs, tables["drive"], reasons = sections.driven(subject)
+    tables["inputs"] = sections.inputs(subject)
+    progress("figures")
+    drawn = _figures(subject, values, runs)
+    box = moving["box"]
+    return {
+        "subject": subject,
+        "tables": tables,
+        "figures": drawn,
+        "reasons": reasons,
+        "groups": {head: [name for name in values if values[name]["kind"] in kinds] for head, kinds in GROUPS.items()},
+        "values": values,
+        "vectors": [name for name, item in values.items() if item["vector"]],
+        "reactions": list(dict.fromkeys(name for item in moving["drawings"] for name in item["arrows"])),
+        "colours": figures.COLOURS,
+        "dashes": figures.STROKES,
+        "together": _together(subject),
+        "wide": box[2] - box[0] > WIDE * (box[3] - box[1]),
+        "published": _published(subject),
+        "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
+        "date": dt.date.today().isoformat(),
+        "data": {**moving, **_turning(subject), "quantities": values, "colours": figures.COLOURS},
+        "style": Markup(_text("style.css")),
+        "scripts": [Markup(_text(f"{name}.js")) for name in ("drawing", "turning", "figures")],
+        "library": Markup(figures.script()),
+        "speeds": [_speed(machine) for machine in subject.machines.values()],
+    }
+
+
+def _published(subject):
+    """Where published figures are printed and how to read them, as paragraphs."""
+    if subject.case is None:
+        return []
+    printed = subject.case.published
+    where = f"Published figures: {printed.where} of {subject.source or 'the source'}." if printed.where else ""
+    return [text for text in (where, printed.note) if text]
+
+
+def _together(subject):
+    """Sentence about machines whose torque is the same, so that their curves lie on one another; "" without any."""
+    groups: list[list] = []
+    for machine in subject.machines.values():
+        group = next((group for group in groups if _same(group[0], machine)), None)
+        if group is None:
+            groups.append([machine])
+        else:
+            group.append(machine)
+    same = [" and ".join(machine.name for machine in group) for group in groups if len(group) > 1]
+    return f"Curves lie on one another where machines take the same torque: {'; '.join(same)}." if same else ""
+
+
+def _same(first, second):
+    torques = first.solution.balancing_torque, second.solution.balancing_torque
+    if torques[0].shape != torques[1].shape:
+        return False
+    return bool(np.nanmax(np.abs(torques[0] - torques[1])) < 1e-9 * np.nanmax(np.abs(torques[0]), initial=1e-300))
+
+
+def _turning(subject):
+    """Angles that can be chosen, the first that is shown, and which way the crank turns."""
+    machines = list(subject.machines.values())
+    first = subject.reference.solution
+    torque = np.abs(first.balancing_torque)
+    unit = display("N", [np.array([_force(subject)])])
+    return {
+        "step": subject.reference.step,
+        "counts": [machine.solution.crank_angle.size for machine in machines],
+        "start": int(np.nanargmax(torque)) if np.isfinite(torque).any() else 0,
+        "way": -1 if np.any(np.asarray(first.crank_speed) < 0) else 1,
+        "forceUnit": {"factor": unit[0], "unit": pretty(unit[1])},
+    }
+
+
+def _force(subject):
+    solutions = [machine.solution for machine in subject.machines.values()]
+    sizes = [np.hypot(*solution.reaction(joint)) for solution in solutions for joint in solution.reactions]
+    return max((float(np.max(size[np.isfinite(size)], initial=0.0)) for size in sizes), default=0.0)
+
+
+def _speed(machine):
+    speed = np.ravel(machine.scene.crank_speed)
+    mean = float(np.mean(np.abs(speed)))
+    return {"rpm": mean * 30.0 / math.pi, "turn": 2.0 * math.pi / mean if mean else math.inf}
+
+
+def _figures(subject, values, runs):
+    """Figures as Bokeh takes them in the page, by the place where they stand."""
+    from bokeh.embed import json_item
+
+    solutions = subject.solutions
+    joint = "O" if "O" in values else next((name for name, item in values.items() if item["kind"] == "reaction"), None)
+    first = next((name for name, item in values.items() if item["kind"] == "slider" and "accel" in name), None)
+    made = {"torque": figures.over_turn(solutions, "balancing_torque", 320)}
+    if joint:
+        made["hodograph"] = figures.hodograph(solutions, joint)
+    made["explore"] = figures.over_turn(solutions, first or "balancing_torque", 420)
+    for name, item in values.items():
+        if item["kind"] == "reaction":
+            made[f"reaction {name}"] = figures.over_turn(solutions, name, 230)
+    if any(lose(solution) for solution in solutions.values()) and "friction_loss" in values:
+        made["loss"] = figures.over_turn(solutions, "friction_loss", 260)
+    if runs:
+        made |= _of_runs(subject, runs)
+    return {
+        "items": {name: json_item(plot) for name, plot in made.items()},
+        "places": {name: place for place, name in enumerate(made)},
+        "explored": first or "balancing_torque",
+        "joint": joint,
+    }
+
+
+def _of_runs(subject, runs):
+    """Speed and torque of the motor, at the crank, in periodic running."""
+    names = list(subject.machines)
+
+    def curves(values):
+        return {names.index(name): (np.degrees(run.crank_angle), values(run)) for name, run in runs.items()}
+
+    torques = curves(lambda run: (run.motor.transmission if run.motor else 1.0) * run.motor_torque)
+    factor, unit = display("N m", [value for _, value in torques.values()])
+    torques = {row: (angle, factor * value) for row, (angle, value) in torques.items()}
+    return {
+        "speed": figures.curves_over(names, curves(lambda run: run.speed), "crank speed [rad/s]", 260),
+        "motor": figures.curves_over(names, torques, f"motor torque [{pretty(unit)}]", 260),
+    }
+
+
+def _text(name):
+    return resources.files(__package__).joinpath("page", name).read_text(encoding="utf-8")
+
+
+def _template():
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
+
+    made = Environment(
+        loader=FunctionLoader(_text), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    made.policies["json.dumps_kwargs"] = {
+        "separators": (",", ":")
+    }  # in order: Bokeh's models stand before what refers to them
+    return made.get_template("page.html.j2")

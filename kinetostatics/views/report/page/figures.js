@@ -1,0 +1,118 @@
+"use strict";
+// Bokeh's figures: put in their places, their cursors led by the crank angle, other quantities shown when chosen.
+(() => {
+  const items = JSON.parse(document.getElementById("plots").textContent);
+  const { data } = report;
+  const period = Math.max(...data.counts) * data.step;
+  const figures = {}, seen = new Set(), hidden = new Set();
+  const vector = document.getElementById("hodograph"), other = document.getElementById("explore");
+  const model = (name) => figures[name] && figures[name].model;
+  const renderer = (name, wanted) => model(name).renderers.find((item) => item.name === wanted);
+  const closed = (values) => [...values, values[0]];
+  const steps = (length) => Array.from({ length }, (_, place) => place * data.step);
+  const named = (row, length) => Array(length).fill(data.drawings[row].name);
+  const title = (item, text) => `${text} [${item.unit || "1"}]`;
+
+  async function draw(place) {
+    const name = place.dataset.figure;
+    if (name in figures) return;
+    figures[name] = null;
+    const manager = await Bokeh.embed.embed_item(items[name], place.id);
+    const [view] = manager.roots;
+    if (matchMedia("(pointer: coarse)").matches) view.model.toolbar.tools.forEach((tool) => { tool.active = false; }); // a finger scrolls
+    figures[name] = { view, place, model: view.model, cursor: view.model.center.find((item) => item.name === "cursor") };
+    hidden.forEach((row) => appear(figures[name], row, false));
+    if (name === "hodograph") chooseVector();
+    if (name === "explore") chooseQuantity();
+    follow(report.index);
+  }
+
+  // Figures in sight are drawn first and follow the crank as it turns; others when there is time.
+  const places = [...document.querySelectorAll("[data-figure]")];
+  const watch = new IntersectionObserver((entries) => entries.forEach(({ isIntersecting, target }) => {
+    seen[isIntersecting ? "add" : "delete"](target);
+    if (isIntersecting) draw(target).then(() => follow(report.index));
+  }), { rootMargin: "200px" });
+  places.forEach((place) => watch.observe(place));
+  const spare = window.requestIdleCallback || ((work) => setTimeout(work, 50));
+  async function rest() {
+    const next = places.find((place) => !(place.dataset.figure in figures));
+    if (!next) { document.documentElement.dataset.figures = Math.round(performance.now()); return; }
+    await draw(next);
+    spare(rest);
+  }
+  spare(rest);
+
+  function follow(index) {
+    for (const figure of Object.values(figures)) {
+      if (figure && figure.cursor && seen.has(figure.place)) figure.cursor.location = index * data.step;
+    }
+    if (model("hodograph") && seen.has(figures.hodograph.place)) tips(index);
+  }
+
+  function tips(index) {
+    data.counts.forEach((count, row) => {
+      const tip = renderer("hodograph", `tip ${row}`), parts = report.values(vector.value, row);
+      if (tip) tip.data_source.data = parts ? { x: [parts[0][index % count]], y: [parts[1][index % count]] } : { x: [], y: [] };
+    });
+  }
+
+  function chooseVector() {
+    if (!model("hodograph")) return; // it is drawn as chosen
+    const item = data.quantities[vector.value];
+    data.counts.forEach((count, row) => {
+      const line = renderer("hodograph", `line ${row}`), parts = report.values(vector.value, row);
+      line.data_source.data = parts
+        ? { angle: closed(steps(count)), x: closed(parts[0]), y: closed(parts[1]), variant: named(row, count + 1) }
+        : { angle: [], x: [], y: [], variant: [] };
+    });
+    [model("hodograph").below[0], model("hodograph").left[0]].forEach((axis, place) => {
+      axis.axis_label.text = title(item, `${item.label}, ${"xy"[place]}`);
+    });
+    tips(report.index);
+  }
+
+  function chooseQuantity() {
+    if (!model("explore")) return;
+    const item = data.quantities[other.value], angle = steps(Math.round(period / data.step) + 1);
+    data.counts.forEach((count, row) => {
+      const parts = report.values(other.value, row), source = renderer("explore", `line ${row}`).data_source;
+      const value = (place) => parts.length > 1 ? Math.hypot(parts[0][place], parts[1][place]) : parts[0][place];
+      source.data = parts
+        ? { angle, value: angle.map((_, place) => value(place % count)), variant: named(row, angle.length) }
+        : { angle: [], value: [], variant: [] };
+    });
+    model("explore").left[0].axis_label.text = title(item, item.vector ? `|${item.label}|` : item.label);
+  }
+
+  function appear(figure, row, wanted) {
+    for (const item of figure.model.renderers) if ([`line ${row}`, `tip ${row}`].includes(item.name)) item.visible = wanted;
+  }
+
+  document.querySelectorAll("[data-machine]").forEach((key) => key.addEventListener("click", () => {
+    const row = Number(key.dataset.machine), wanted = hidden.has(row);
+    hidden[wanted ? "delete" : "add"](row);
+    document.querySelectorAll(`[data-machine="${row}"]`).forEach((other) => other.setAttribute("aria-pressed", wanted));
+    Object.values(figures).forEach((figure) => figure && appear(figure, row, wanted));
+  }));
+  if (vector) vector.addEventListener("change", chooseVector);
+  other.addEventListener("change", chooseQuantity);
+  report.followers.push(follow);
+
+  // On paper figures stand as drawings of lines, as wide as their place there, and the case file stands open.
+  window.addEventListener("beforeprint", () => {
+    document.querySelectorAll("details").forEach((part) => { part.open = true; });
+    for (const figure of Object.values(figures).filter(Boolean)) {
+      if (figure.cursor) figure.cursor.location = report.index * data.step;
+      const drawn = figure.view.export("svg", false).canvas;
+      const [width, height] = ["width", "height"].map((name) => parseFloat(drawn.getAttribute(name)));
+      const parent = figure.place.parentElement;
+      const printed = parent.querySelector(".printed") || parent.appendChild(document.createElement("div"));
+      printed.className = "printed";
+      printed.replaceChildren(drawn);
+      drawn.setAttribute("viewBox", `0 0 ${width} ${height}`);
+      ["width", "height"].forEach((name) => drawn.removeAttribute(name));
+    }
+  });
+  Object.assign(report, { figures });
+})();

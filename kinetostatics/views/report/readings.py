@@ -1,0 +1,67 @@
+"""Every quantity at every angle that the reader can choose, with its unit and as many digits as are known."""
+
+import math
+
+import numpy as np
+
+from ...mechanics.quantities import components, of_scene, scale, still
+from ...results.extremes import FLOOR
+from ..canvas import display
+from .movement import packed
+from .words import pretty
+
+DIGITS = 6
+"""Digits of the largest value that are shown, at most."""
+KINDS = ("force", "reaction", "friction", "slider", "motion", "whole", "rate")
+"""Kinds of quantities in the order in which they are listed."""
+
+
+def readings(machines):
+    """What the page needs of each quantity that any of the machines has, in the order of their kinds."""
+    found: dict[str, dict] = {}
+    for machine in machines.values():
+        for name, quantity in of_scene(machine.solution).items():
+            if quantity.kind in KINDS and name not in found and not _is_still(machine.solution, quantity):
+                found[name] = {"quantity": quantity, "of": [_values(other, name) for other in machines.values()]}
+    ordered = sorted(found.items(), key=lambda item: KINDS.index(item[1]["quantity"].kind))
+    texts = {
+        name: output.text for machine in machines.values() for name, output in machine.scene.mechanism.outputs.items()
+    }
+    return {name: _sent(item["quantity"], item["of"], texts.get(name, "")) for name, item in ordered}
+
+
+def _is_still(solution, quantity):
+    return quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio)
+
+
+def _values(machine, name):
+    """Values over the angles, (1 or 2, N), or None of a machine that lacks the quantity."""
+    solution = machine.solution
+    if name not in of_scene(solution) or _is_still(solution, of_scene(solution)[name]):
+        return None
+    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(scale(solution, name)))
+    parts = np.stack([np.broadcast_to(part, shape) for part in components(solution, name)])
+    return np.where(np.abs(parts) < rounding, 0.0, parts)
+
+
+def _sent(quantity, of_each, text):
+    arrays = [values[np.isfinite(values)] for values in of_each if values is not None]
+    largest = max((float(np.max(np.abs(values), initial=0.0)) for values in arrays), default=0.0)
+    factor, unit = display(quantity.unit, [np.array([largest])])
+    return {
+        "label": quantity.label,
+        "kind": quantity.kind,
+        "text": text,
+        "unit": pretty(unit),
+        "factor": factor,
+        "vector": quantity.vector,
+        "decimals": decimals(factor * largest),
+        "values": [None if values is None else packed(factor * values, "<f8") for values in of_each],
+    }
+
+
+def decimals(largest):
+    """Decimals with which a value of this size has as many digits as are shown."""
+    if not largest > 0:
+        return 0
+    return min(12, max(0, DIGITS - 1 - math.floor(math.log10(largest))))

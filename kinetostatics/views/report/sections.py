@@ -1,0 +1,256 @@
+"""Which tables a subject has: at a glance, comparisons, extremes, certainty, friction, drive, inputs."""
+
+from typing import Any
+
+import numpy as np
+
+from ...errors import DriveError, NotGivenError, ParameterError
+from ...mechanics.quantities import label_of, of_scene, unit_of
+from ...results.losses import lose
+from ...results.means import mean_absolute_torque
+from .tables import Table, digits_of, of_frame, times, with_published
+from .words import DIGITS, angle, number, pretty
+
+FIGURES = 15.95
+"""Digits of a double number."""
+OUTSTANDING = 1e4
+"""Times the usual bound of a rounding error from which on the largest is told beside it, with its place."""
+ZERO = "Numbers that are not listed are zero."
+
+
+def glance(subject):
+    """A row for each machine: torque, support reaction, what it gains on the reference, power balance."""
+    rows: list[list[str]] = []
+    base = None
+    for machine in subject.machines.values():
+        solution, frame = machine.solution, machine.extremes
+        mean = float(mean_absolute_torque(solution))
+        base = mean if base is None else base
+        peak = _largest(frame, "balancing torque")
+        joint = "O" if "O" in solution.reactions else solution.reactions[-1]
+        reaction = _largest(frame, label_of(solution, joint))
+        gain = "" if not rows else times(base / mean) if mean > 1e-12 * base else "∞"
+        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, number(abs(peak), 5)]
+        lost = number(solution.losses.total, 5) if lose(solution) else ""
+        rows.append([*cells, number(reaction, 5), lost, number(solution.power_residual, 2)])
+    heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "largest |torque| [N·m]"]
+    heads += ["largest reaction O [N]", "power lost [W]", "power balance"]
+    note = (
+        "Torque: what the drive must give on the crank, over one period. Ratio of means: that of "
+        f"{subject.reference.name} over that of the machine; above 1 the machine takes less. Power balance: difference "
+        "of the torques by equilibrium and by powers, over the largest power that flows."
+    )
+    return _without_empty(Table("", heads, rows, 2, note))
+
+
+def _largest(frame, row):
+    return max(frame.loc[row, ["smallest", "largest"]], key=abs) if row in frame.index else np.nan
+
+
+def _without_empty(table):
+    """The table without columns in which nothing stands."""
+    kept = [place for place in range(len(table.columns)) if place < 1 or any(row[place] for row in table.rows)]
+    rows = [[row[place] for place in kept] for row in table.rows]
+    columns = [table.columns[place] for place in kept]
+    return Table(table.caption, columns, rows, sum(place < table.words for place in kept), table.note, table.code)
+
+
+def comparisons(subject):
+    """Dynamic coefficients of each machine against the reference, and what a case tells besides; published figures."""
+    tables = [_coefficients(subject)] if subject.others else []
+    case = subject.case
+    if case is not None and set(case.variants) == set(subject.machines):
+        for caption, frame, published in (
+            ("Counterweights and shaking force", case.balancing_table(), case.published.balancing),
+            ("Swing and transmission", case.linkage_table(), case.published.linkage),
+        ):
+            if frame is not None:
+                note = "Published figures in brackets." if published else ""
+                tables.append(_without_empty(with_published(frame, published, case.path, caption, note)))
+    return tables
+
+
+def _coefficients(subject):
+    """One table of all machines: values, with what the reference has over them below."""
+    name = subject.reference.name
+    frames = {machine.name: subject.comparison(machine) for machine in subject.others}
+    rows = []
+    for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index):
+        known = [frame.loc[quantity] for frame in frames.values() if quantity in frame.index]
+        cells = [
+            _beside(frame.loc[quantity, other], frame.loc[quantity, "ratio"]) if quantity in frame.index else ""
+            for other, frame in frames.items()
+        ]
+        digits = digits_of(quantity)
+        first = next((number(row[name], digits) for row in known), "")
+        published = next((row["published"] for row in known if row.get("published")), "")
+        rows.append([quantity, pretty(known[0]["unit"]), first, *cells, published])
+    note = f"Below each value how many times larger that of {name} is: above 1, the machine has less than {name}."
+    return _without_empty(Table("", ["", "unit", name, *frames, "published"], rows, 2, note))
+
+
+def _beside(value, ratio):
+    """A value and its ratio; what is nothing beside the reference is 0."""
+    if np.isinf(ratio):
+        return "0"
+    return number(value, 2) if np.isnan(ratio) and abs(value) < 1e-12 else (number(value), times(ratio))
+
+
+def extremes(subject):
+    """True extremes of every quantity of each machine, with the digits that are known."""
+    return [_of_extremes(machine) for machine in subject.machines.values()]
+
+
+def _of_extremes(machine):
+    known = {quantity.label: name for name, quantity in of_scene(machine.solution).items()}
+    rows = []
+    for label, unit, low, low_at, high, high_at in machine.extremes.itertuples():
+        digits = _digits(machine.solution, known[label], np.nan_to_num([low_at, high_at]))
+        smallest, largest = (number(value, DIGITS if digits is None else digits) for value in (low, high))
+        told = str(digits) if digits is not None and (low or high) else ""
+        rows.append([label, pretty(unit), smallest, angle(low_at), largest, angle(high_at), told])
+    heads = ["", "unit", "smallest", "at [°]", "largest", "at [°]", "digits"]
+    return Table(machine.name, heads, rows, 2)
+
+
+def _digits(solution, name, degrees):
+    """Significant digits of a quantity's extremes that are known; None of places, and where no condition is given."""
+    if unit_of(solution, name) == "m":
+        return None
+    try:
+        lost = np.max(solution.at(np.radians(degrees)).condition_of(name))
+    except (NotGivenError, ParameterError):  # a load that is a table over the angles asked for
+        return None
+    return 0 if np.isnan(lost) else int(np.clip(np.floor(FIGURES - np.log10(lost)), 0, 15))
+
+
+def certainty(subject):
+    """Power check, condition and convergence of friction, a column for each machine."""
+    columns = {machine.name: _certainty(machine.solution) for machine in subject.machines.values()}
+    names = list(dict.fromkeys(name for column in columns.values() for name in column))
+    rows = [[name, *(column.get(name, "") for column in columns.values())] for name in names]
+    return Table("", ["", *columns], rows)
+
+
+def _certainty(solution):
+    found = {"power balance, relative to the largest power that flows": number(solution.power_residual, 2)}
+    for name, label, unit in (("balancing_torque", "torque", "N·m"), ("|O|", "reaction O", "N")):
+        if name.strip("|") in solution.reactions or name in solution.scalars:
+            found[f"rounding error of the {label}, proven bound [{unit}]"] = _bound(solution, name)
+    try:
+        condition = solution.condition
+    except NotGivenError:
+        return found
+    worst = int(np.nanargmax(condition))
+    lost = condition[worst]
+    found["condition: lengths' relative errors are magnified up to"] = (
+        f"{number(lost, 3)} at {number(np.degrees(solution.crank_angle[worst]))}°"
+    )
+    found["condition at the middle of all crank angles"] = number(float(np.nanmedian(condition)), 3)
+    if solution.friction.acting:
+        found["friction and reactions found together"] = "yes" if np.all(solution.converged) else "not everywhere"
+        found["friction: change by one more pass, at most"] = number(float(np.nanmax(solution.friction_residual)), 2)
+        found["friction: margin to jamming, least"] = number(float(np.nanmin(solution.friction_margin)), 4)
+    return found
+
+
+def _bound(solution, name):
+    """Largest bound of a rounding error over the turn; below it where one stands out, or where none can be proven."""
+    try:
+        bounds = solution.error_bound(name)
+    except NotGivenError:
+        return "not given"
+    proven = np.isfinite(bounds)
+    if not proven.any():
+        return "not proven"
+    worst = int(np.argmax(np.where(proven, bounds, -1.0)))
+    usual = float(np.median(bounds[proven]))
+    text, notes = number(bounds[worst], 2), []
+    if bounds[worst] > OUTSTANDING * usual:  # at a jump, a value may be that before or behind it
+        notes.append(f"but {text} at {number(np.degrees(solution.crank_angle[worst]))}°")
+        text = number(usual, 2)
+    if not proven.all():
+        notes.append(f"not proven at {np.count_nonzero(~proven)} of {proven.size} angles")
+    return (text, "; ".join(notes)) if notes else text
+
+
+def losses(subject):
+    """Power lost by joint of each machine that rubs."""
+    tables = []
+    for machine in subject.machines.values():
+        if lose(machine.solution):
+            lost = machine.solution.losses
+            tables.append(of_frame(lost.frame(), machine.name, f"{str(lost)[0].upper()}{str(lost)[1:]}."))
+    return tables
+
+
+def driven(subject):
+    """Periodic running by machine under the motor of the case, its tables, and what is told of those that cannot."""
+    from ...drive.periodic import steady
+    from ...drive.summary import energy_table, summary
+    from ...drive.transient import start
+
+    runs: dict[str, Any] = {}
+    starts: dict[str, Any] = {}
+    reasons = []
+    for name, machine in subject.machines.items():
+        if machine.motor is None:
+            continue
+        parts = machine.scene, machine.motor, machine.variant.flywheel
+        try:
+            runs[name], starts[name] = steady(*parts), None
+            starts[name] = start(*parts)
+        except DriveError as error:
+            reasons.append(f"{name}: {error}")
+    tables = []
+    if runs:
+        tables.append(of_frame(summary(runs, starts), "Speed, power and start-up"))
+        tables.append(of_frame(energy_table(runs), "Where the energy of a turn goes"))
+    return runs, tables, reasons
+
+
+def inputs(subject):
+    """What the machines are made of: what they have in common, and what tells them apart."""
+    machines = list(subject.machines.values())
+    paths = list(dict.fromkeys(path for machine in machines for path in machine.given))
+    common, apart = [], []
+    for path in paths:
+        values = [machine.given.get(path, (None, ""))[0] for machine in machines]
+        unit = next(machine.given[path][1] for machine in machines if path in machine.given)
+        if not any(value is not None and np.any(value) for value in values if not isinstance(value, str)) and not any(
+            isinstance(value, str) for value in values
+        ):
+            continue
+        shown, cells = _in_unit(unit, values)
+        if len(set(cells)) == 1:
+            common.append([path, shown, cells[0]])
+        else:
+            apart.append([path, shown, *cells])
+    tables = (
+        [Table("Common to all" if apart else "", ["", "unit", "value"], common, 2, ZERO, code=True)] if common else []
+    )
+    if apart:
+        heads = ["", "unit", *(machine.name for machine in machines)]
+        tables.append(Table("What tells them apart", heads, apart, 2, code=True))
+    return tables
+
+
+def _in_unit(unit, values):
+    """Unit as shown, and values in it as text."""
+    factor = 180.0 / np.pi if unit == "rad" else 1.0
+    return ("°" if unit == "rad" else pretty(unit)), [_cell(value, factor) for value in values]
+
+
+def _cell(value, factor):
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return value
+    several = np.ndim(value) > 0
+    return ", ".join(number(factor * item, 10) for item in np.ravel(value)) if several else number(factor * value)
+
+
+def remarks(caught):
+    """What was warned of while the report was made, each once."""
+    told = (str(item.message) for item in caught if issubclass(item.category, UserWarning))
+    return list(dict.fromkeys(told))

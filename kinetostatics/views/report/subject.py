@@ -1,0 +1,181 @@
+"""What is reported: machines side by side, solved at the angles that a reader can choose, and where they come from."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...casefile.case import Case, load_case
+from ...errors import ParameterError
+from ...machine.loads import period_of
+from ...numbers import checks
+from ...numbers.lazy import cached_property
+from ...results.comparison import Comparison
+from ...results.tables import extremes_frame
+from ...solution.scene import Scene
+
+MOST = 1440
+"""Angles over the period that a reader can choose, at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """One of the machines of a report: a case's variant, or a scene.
+
+    Attributes
+    ----------
+    name : str
+    scene : Scene
+    step : int
+        Between the angles that a reader can choose, degrees.
+    given : mapping of path to (value, unit)
+        What it is made of: numbers in SI, or words for what is derived.
+    variant : Variant or None
+    """
+
+    name: str
+    scene: Scene
+    step: int
+    given: Mapping[str, tuple[Any, str]]
+    variant: Any = None
+
+    @cached_property
+    def solution(self):
+        return self.scene.solve(round(np.degrees(self.period)) // self.step)
+
+    @property
+    def period(self):
+        return period_of(self.scene.loads, self.scene.mechanism.turns)
+
+    @cached_property
+    def extremes(self):
+        return extremes_frame(self.solution)
+
+    @property
+    def motor(self):
+        return None if self.variant is None else self.variant.motor
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """What is reported.
+
+    Attributes
+    ----------
+    title, source : str
+    machines : mapping of name to Machine
+        That which the others are compared with first.
+    command : str
+        What made the report.
+    case : Case or None
+    """
+
+    title: str
+    source: str
+    machines: Mapping[str, Machine]
+    command: str
+    case: Case | None = field(default=None, repr=False)
+
+    @property
+    def reference(self):
+        """The machine that others are compared with."""
+        return next(iter(self.machines.values()))
+
+    @property
+    def others(self):
+        """Machines compared with the reference."""
+        return list(self.machines.values())[1:]
+
+    @property
+    def solutions(self):
+        return {name: machine.solution for name, machine in self.machines.items()}
+
+    def comparison(self, machine):
+        """Table of dynamic coefficients of a machine against the reference, with published figures if there are."""
+        if self.case is not None:
+            return self.case.comparison_table(machine.name, self.reference.name)
+        names = self.reference.name, machine.name
+        return Comparison(self.reference.solution, machine.solution, names).frame()
+
+    @cached_property
+    def files(self):
+        """Name and SHA-256 of each file that the case is made from."""
+        paths = [] if self.case is None else list(dict.fromkeys(map(Path, self.case.files)))
+        return [(path.name, hashlib.sha256(path.read_bytes()).hexdigest()) for path in paths]
+
+    @property
+    def text(self):
+        """The case file as it stands, its comments tell where numbers come from; "" without one."""
+        return "" if self.case is None else Path(self.case.path).read_text(encoding="utf-8-sig")
+
+
+def subject_of(what, variant=None, title=None, command="") -> Subject:
+    """What is to be reported, from a case, the name or path of one, a scene, or a mapping of label to scene."""
+    if isinstance(what, Scene):
+        what = {what.mechanism.name: what}
+    if isinstance(what, Mapping):
+        return _of_scenes(what, variant, title, command)
+    case = what if isinstance(what, Case) else load_case(what)
+    if variant is not None:
+        case.variant(variant)
+    names = dict.fromkeys([case.reference, *(case.variants if variant is None else [variant])])
+    scenes = {name: case.variants[name].scene for name in names}
+    step = _step(scenes.values())
+    machines = {name: _of_variant(name, case.variants[name], step) for name in names}
+    return Subject(title or case.title, case.source, machines, command, case)
+
+
+def _of_scenes(scenes, variant, title, command):
+    checks.require(
+        "report",
+        None if scenes else "there are no scenes to report",
+        None if variant is None else "variant chooses one of a case file; give the scenes that are wanted",
+        *(
+            None if isinstance(scene, Scene) else f"{name!r} must be a Scene, got a {type(scene).__name__}"
+            for name, scene in scenes.items()
+        ),
+    )
+    several = [name for name, scene in scenes.items() if scene.solve(1).shape != (1,)]
+    if several:
+        raise ParameterError(
+            f"report: {', '.join(map(str, several))} holds several designs; give a scene of one design"
+        )
+    step = _step(scenes.values())
+    machines = {str(name): Machine(str(name), scene, step, _numbers(scene)) for name, scene in scenes.items()}
+    return Subject(title or " and ".join(dict.fromkeys(_kinds(machines))), "", machines, command)
+
+
+def _numbers(scene):
+    units = scene.units
+    return {path: (value, units[path]) for path, value in scene.parameters.items()}
+
+
+def _kinds(machines):
+    return [machine.scene.mechanism.name for machine in machines.values()]
+
+
+def _of_variant(name, variant, step):
+    units = variant.units
+    derived = variant.scene.parameters
+    given = {
+        path: (_meant(path, value, derived), units[path])
+        for path, value in variant.parameters.items()
+        if value is not None or path in derived
+    }
+    return Machine(name, variant.scene, step, given, variant)
+
+
+def _meant(path, value, derived):
+    """A number; what the file has a word for, or leaves to be derived, as that number where it is one."""
+    return derived.get(path, value) if value is None or isinstance(value, str) else value
+
+
+def _step(scenes):
+    """Degrees between the angles that can be chosen, of which a turn holds a whole number."""
+    longest = max(period_of(scene.loads, scene.mechanism.turns) for scene in scenes)
+    return next(
+        step for step in range(1, 361) if 360 % step == 0 and (step * MOST >= np.degrees(longest) or step == 360)
+    )

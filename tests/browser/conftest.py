@@ -1,0 +1,37 @@
+"""A real browser without a window, in which pages that the library makes are opened."""
+
+import importlib.util
+import os
+import shutil
+
+import pytest
+
+TOOLS = ("chromium", "chromedriver")
+"""A browser and what drives it, as Debian's packages of these names install them."""
+
+
+def missing():
+    """What is lacking to run a browser, as a sentence, or ""."""
+    lacking = [name for name in TOOLS if shutil.which(name) is None]
+    lacking += [name for name in ("selenium", "bokeh") if importlib.util.find_spec(name) is None]
+    return f"a browser is needed for these tests; not installed: {', '.join(lacking)}" if lacking else ""
+
+
+@pytest.fixture(scope="session")
+def driver():
+    """Chromium, driven by Selenium, that keeps a log of its console and of all that it asks for."""
+    if missing():
+        pytest.skip(missing())
+    from selenium import webdriver
+
+    options = webdriver.ChromeOptions()
+    for word in ("--headless=new", "--disable-dev-shm-usage", "--hide-scrollbars", "--window-size=1240,1000"):
+        options.add_argument(word)
+    if hasattr(os, "geteuid") and os.geteuid() == 0:
+        options.add_argument("--no-sandbox")
+    options.binary_location = shutil.which(TOOLS[0])
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    found = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which(TOOLS[1])))
+    found.set_script_timeout(30)
+    yield found
+    found.quit()

@@ -1,0 +1,51 @@
+"""Reports made once for all tests of a process, and what stands in them."""
+
+import json
+import re
+from functools import cache
+from html import unescape
+
+import kinetostatics as ks
+from kinetostatics.views.report import html
+from kinetostatics.views.report.movement import unpacked
+from kinetostatics.views.report.subject import subject_of
+
+COMMAND = "kinetostatics report CASE --out report.html"
+
+
+@cache
+def subject(case, variant=None):
+    return subject_of(case, variant, command=COMMAND)
+
+
+@cache
+def page(case, variant=None):
+    """Text of the page of a shipped case, and the data in it."""
+    text = html.page(subject(case, variant))
+    return text, data_of(text)
+
+
+def data_of(text):
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)[1])
+
+
+def words(text):
+    """What a reader sees of a page: no scripts, styles and tags."""
+    text = re.sub(r"<(script|style)\b.*?</\1>", " ", text, flags=re.S)
+    return re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]+>", " ", text)))
+
+
+def series(data, name, row):
+    """Values of a quantity of a machine in the page's unit, (1 or 2, N)."""
+    return unpacked(data["quantities"][name]["values"][row], "<f8").reshape(-1, data["counts"][row])
+
+
+def plain(**options):
+    """A crank-slider without a case file."""
+    made = ks.crank_slider(0.1, 0.4, slider=ks.Link(mass=50.0), coupler=ks.Link(mass=5.0, centre=(0.2, 0.0)))
+    return ks.Scene(made, **{"crank_speed": 10.0, "loads": ks.Gravity()} | options)
+
+
+def table_of(found, row):
+    """Cells of the row of a table that begins with some words."""
+    return next(cells for cells in found.rows if cells[0] == row)

@@ -1,0 +1,72 @@
+"""The public door of reports."""
+
+import sys
+
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.views.report import html, printing
+from support.every import every
+from support.reports import plain, words
+
+pytest.importorskip("bokeh")
+
+
+def test_a_report_of_scenes_is_written_and_its_path_given(tmp_path):
+    path = ks.report({"press": plain()}, tmp_path / "new" / "press.html", title="Press")
+    assert path == tmp_path / "new" / "press.html"
+    assert "Press" in words(path.read_text(encoding="utf-8"))
+    assert [item.name for item in path.parent.iterdir()] == ["press.html"]
+
+
+@every("name, message", [
+    ("", "is a folder"), ("report.txt", "the ending"), ("no.html/report.html", "no.html is no folder"),
+    ("bad\0.html", "is no name of a file"),
+])  # fmt: skip
+def test_a_place_that_cannot_be_written_is_refused_before_any_work(name, message, tmp_path, monkeypatch):
+    (tmp_path / "no.html").write_text("x", encoding="utf-8")
+    monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
+    with pytest.raises(ks.KinetostaticsError, match=message):
+        ks.report(plain(), f"{tmp_path}/{name}")
+
+
+@every("options, message", [
+    ({"title": " "}, "title must be a text"), ({"title": 3}, "title must be a text"), ({"pdf": "x.html"}, "the ending"),
+    ({"variant": "a"}, "variant chooses"),
+])  # fmt: skip
+def test_options_that_make_no_sense_are_refused(options, message, tmp_path):
+    with pytest.raises(ks.KinetostaticsError, match=message):
+        ks.report(plain(), tmp_path / "x.html", **options)
+
+
+@every("what", [3, None, 1.5, [1, 2], object()])
+def test_what_is_neither_case_nor_scene_is_refused(what, tmp_path):
+    with pytest.raises(ks.ParameterError, match="report takes a case, the name or path of one, a Scene"):
+        ks.report(what, tmp_path / "x.html")
+
+
+def test_the_case_file_is_not_replaced(tmp_path):
+    case = tmp_path / "case.html"
+    case.write_text(
+        ks.load_case("yoke_pump").path.read_text(encoding="utf-8").replace("yoke_pump_pressure.csv", "p.csv")
+    )
+    (tmp_path / "p.csv").write_bytes((ks.load_case("yoke_pump").path.parent / "yoke_pump_pressure.csv").read_bytes())
+    with pytest.raises(ks.ParameterError, match="is read as input and would be replaced"):
+        ks.report(case, case)
+
+
+def test_a_pdf_without_a_browser_is_refused_before_any_work(tmp_path, monkeypatch):
+    monkeypatch.setattr(printing, "BROWSERS", ("no-such-browser",))
+    monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
+    with pytest.raises(ks.KinetostaticsError, match="none of no-such-browser is found"):
+        ks.report(plain(), tmp_path / "x.html", pdf=tmp_path / "x.pdf")
+
+
+def test_what_fails_leaves_what_was_there(tmp_path, monkeypatch):
+    path = tmp_path / "x.html"
+    path.write_text("before", encoding="utf-8")
+    monkeypatch.setattr(html, "page", lambda *_: sys.exit(3))
+    with pytest.raises(SystemExit):
+        ks.report(plain(), path)
+    assert path.read_text(encoding="utf-8") == "before"
+    assert [item.name for item in tmp_path.iterdir()] == ["x.html"]

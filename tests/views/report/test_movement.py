@@ -1,0 +1,100 @@
+"""Drawings as data: rigid strokes and others come back as they were, arrows have one scale."""
+
+import numpy as np
+
+from kinetostatics.views.report.movement import FILLED, LONGEST, REACH, movements, packed, unpacked
+from kinetostatics.views.shape import Shape
+from support.reports import subject
+
+
+def drawn(case):
+    return movements(subject(case).machines)
+
+
+def points_of(stroke, count):
+    """Points of a stroke in all poses, (2, K, N), as the page draws them."""
+    first = unpacked(stroke["points"]).reshape(-1, 2).T.astype(float)
+    if "shapes" in stroke:
+        return unpacked(stroke["shapes"]).reshape(count, -1, 2).transpose(2, 1, 0)
+    if "poses" not in stroke:
+        return np.repeat(first[..., None], count, axis=2)
+    x, y, angle = unpacked(stroke["poses"]).reshape(count, 3).T.astype(float)
+    turned = [
+        first[0][:, None] * np.cos(angle) - first[1][:, None] * np.sin(angle) + x,
+        first[0][:, None] * np.sin(angle) + first[1][:, None] * np.cos(angle) + y,
+    ]
+    return np.stack(turned)
+
+
+def test_numbers_come_back_as_they_were_packed():
+    values = np.array([0.1, -2.5e300, np.nan, np.inf])
+    np.testing.assert_array_equal(unpacked(packed(values, "<f8"), "<f8"), values)
+
+
+def test_every_stroke_comes_back_as_the_shape_declares_it_in_each_pose():
+    for case in ("sawframe_2r63", "mower_drive", "shaper"):
+        for machine, drawing in zip(subject(case).machines.values(), drawn(case)["drawings"], strict=True):
+            solution = machine.solution
+            shape = Shape(solution)
+            wanted = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
+            sent = drawing["strokes"][-len(wanted) :]
+            for stroke, item in zip(wanted, sent, strict=True):
+                assert item["kind"] == stroke.kind
+                found = points_of(item, solution.crank_angle.size)
+                np.testing.assert_allclose(found, stroke.points, atol=3e-5 * shape.size)
+
+
+def test_links_go_as_poses_springs_as_shapes_and_what_stands_still_as_it_is():
+    strokes = drawn("sawframe_2r63")["drawings"][1]["strokes"]
+    kinds = {
+        stroke["kind"]: "shapes" if "shapes" in stroke else "poses" if "poses" in stroke else "" for stroke in strokes
+    }
+    assert kinds["bar"] == "poses"
+    assert kinds["curve"] == kinds["rail"] == kinds["ground"] == ""
+    assert "shapes" in [next(iter(set(stroke) & {"shapes"}), "") for stroke in strokes if stroke["kind"] == "spring"]
+    assert all(stroke["filled"] == (stroke["kind"] in FILLED) for stroke in strokes)
+
+
+def test_the_longest_arrow_has_its_share_of_the_largest_machine_and_all_machines_one_scale():
+    found = drawn("sawframe_2r63")
+    shapes = [Shape(machine.solution) for machine in subject("sawframe_2r63").machines.values()]
+    size = max(shape.size for shape in shapes)
+    assert np.isclose(found["scale"] * found["force"], REACH * size)
+    assert np.isclose(found["longest"], LONGEST * size)
+    solution = subject("sawframe_2r63").machines["plain"].solution
+    assert np.isclose(found["force"], max(np.hypot(*solution.reaction(name)).max() for name in solution.reactions))
+
+
+def test_the_box_holds_every_joint_and_the_tip_of_every_arrow():
+    found = drawn("shaper")
+    left, low, right, high = found["box"]
+    for machine in subject("shaper").machines.values():
+        solution = machine.solution
+        for joint, drawing in zip(["A"], found["drawings"][:1], strict=True):
+            tip = solution.position(drawing["arrows"][joint]) + found["scale"] * solution.reaction(joint)
+            assert (tip[0] >= left - 1e-9).all()
+            assert (tip[0] <= right + 1e-9).all()
+        for joint in solution.mechanism.joints:
+            x, y = solution.position(joint)
+            assert (x >= left - 1e-9).all()
+            assert (x <= right + 1e-9).all()
+            assert (y >= low - 1e-9).all()
+            assert (y <= high + 1e-9).all()
+
+
+def test_arrows_stand_at_the_joints_that_outputs_declare():
+    assert drawn("sawframe_2r63")["drawings"][0]["arrows"] == {"A": "A", "B": "B", "guide": "B", "O": "O"}
+
+
+def test_a_reaction_that_grows_without_bound_does_not_make_all_others_vanish():
+    import warnings
+
+    import kinetostatics as ks
+    from kinetostatics.views.report.subject import subject_of
+
+    parallelogram = ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=(0.3, 0.0), assembly="open", rocker=ks.Link(mass=1.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ks.ConditionWarning)
+        found = movements(subject_of(ks.Scene(parallelogram, 10.0, loads=ks.Gravity())).machines)
+    assert np.isfinite(found["force"])
+    assert np.isfinite(found["box"]).all()

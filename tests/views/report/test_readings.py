@@ -1,0 +1,59 @@
+"""Values at the angles of the page are the library's, in units that read well."""
+
+import numpy as np
+
+from kinetostatics.mechanics.quantities import components, of_scene
+from kinetostatics.results.extremes import FLOOR
+from kinetostatics.views.report.readings import decimals, readings
+from support.every import every
+from support.reports import series, subject
+
+
+def of(case):
+    machines = subject(case).machines
+    return {"quantities": readings(machines), "counts": [m.solution.crank_angle.size for m in machines.values()]}
+
+
+def test_every_value_is_that_of_the_solution_and_rounding_is_0():
+    for case in ("sawframe_2r63", "v_twin"):
+        found = of(case)
+        for row, machine in enumerate(subject(case).machines.values()):
+            solution = machine.solution
+            largest = max(solution.largest_torque_term, solution.largest_force_term)
+            for name, item in found["quantities"].items():
+                if item["values"][row] is None:
+                    assert name not in of_scene(solution)
+                    continue
+                wanted = np.stack([np.broadcast_to(part, solution.shape) for part in components(solution, name)])
+                difference = series(found, name, row) / item["factor"] - wanted
+                assert (np.abs(difference) <= 2 * FLOOR * largest + 1e-15 * np.abs(wanted)).all(), name
+
+
+def test_a_quantity_that_a_machine_lacks_stands_empty():
+    values = of("sawframe_2r63")["quantities"]["cam_force"]["values"]
+    assert values[0] is None
+    assert values[1] is not None
+
+
+def test_units_read_well_and_are_the_same_for_all_machines():
+    found = of("sawframe_2r63")["quantities"]
+    assert (found["balancing_torque"]["unit"], found["O"]["unit"]) == ("kN·m", "kN")
+    assert found["pressure_angle"]["unit"] == "°"
+    assert (found["slider_acceleration"]["unit"], found["slider_acceleration"]["factor"]) == ("m/s²", 1.0)
+    assert found["O"]["vector"]
+    assert found["O"]["text"] == "ground on crank"
+
+
+def test_forces_stand_before_motion_and_what_never_turns_is_left_out():
+    names = list(of("sawframe_2r63")["quantities"])
+    assert names[0] == "balancing_torque"
+    assert names.index("O") < names.index("slider_position")
+    assert "slider_rate" not in names
+
+
+@every(
+    "largest, count",
+    [(40.58, 4), (0.0, 0), (123456.0, 0), (1e9, 0), (0.00123, 8), (1e-30, 12), (9.9999, 5), (float("nan"), 0)],
+)
+def test_decimals_give_the_largest_value_six_digits(largest, count):
+    assert decimals(largest) == count

@@ -1,0 +1,140 @@
+"""Tables of a report hold the library's numbers, and published ones beside them."""
+
+import re
+from functools import partial
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.views.report import sections
+from kinetostatics.views.report.subject import Subject, subject_of
+from support.reports import plain, subject, table_of
+
+RUBBING = partial(subject, "sawframe_2r63_friction", "cam-cosine")
+
+
+def test_glance_has_a_row_for_each_machine_with_torque_gain_and_power_balance():
+    found = sections.glance(subject("sawframe_2r63"))
+    saw = ks.load_case("sawframe_2r63").compare("plain", "cam-cosine")
+    cells = dict(zip(found.columns, table_of(found, "cam-cosine"), strict=True))
+    assert cells["ratio of means"] == f"{saw.mean_torque_ratio:.4g} ×"
+    assert float(cells["largest reaction O [N]"]) == pytest.approx(ks.extremes(saw.balanced, "O").largest, rel=1e-4)
+    assert float(cells["power balance"]) < 1e-14
+    assert "power lost [W]" not in found.columns
+
+
+def test_glance_tells_the_power_lost_where_something_rubs():
+    found = sections.glance(RUBBING())
+    lost = RUBBING().machines["plain"].solution.losses.total
+    assert table_of(found, "plain")[found.columns.index("power lost [W]")] == f"{lost:.5g}"
+
+
+def test_comparison_of_all_machines_stands_in_one_table_with_ratios_and_published_figures():
+    (found,) = sections.comparisons(subject("sawframe_2r63"))
+    assert found.columns == ["", "unit", "plain", "cam-circle", "cam-cosine", "published"]
+    row = table_of(found, "mean |balancing torque|")
+    assert row[2:] == ["23223.7", ("3819.22", "6.081 ×"), ("3426.19", "6.778 ×"), "6.77 (ratio)"]
+    assert table_of(found, "largest cam force")[-1] == "almost 5 tf = 49 kN (value)"
+
+
+def test_what_is_nothing_beside_the_reference_is_0():
+    (found,) = sections.comparisons(subject("mower_drive", "full"))
+    assert table_of(found, "largest shaking force")[3] == "0"
+
+
+def test_swing_stands_with_its_published_figures():
+    swing = {table.caption: table for table in sections.comparisons(subject("chain_unit"))}["Swing and transmission"]
+    assert "1.14556 (1.145)" in table_of(swing, "largest relative rocker speed")
+
+
+def test_one_machine_is_compared_with_nothing():
+    assert sections.comparisons(subject_of(plain())) == []
+
+
+def test_extremes_are_those_of_the_library_with_their_digits():
+    made = subject("pumpjack")
+    for machine, found in zip(made.machines.values(), sections.extremes(made), strict=True):
+        assert found.caption == machine.name
+        low, high = ks.extremes(machine.solution, "balancing_torque").range
+        row = table_of(found, "balancing torque")
+        assert [float(row[2]), float(row[4])] == pytest.approx([low, high], rel=1e-5)
+        assert 10 <= int(row[6]) <= 15
+
+
+def test_where_digits_are_lost_fewer_are_shown():
+    near = ks.crank_slider(0.1, 0.4, slider=ks.Link(mass=50.0))
+    spring = ks.Spring.balancing(50.0, 10.0, 0.4)
+    cancelled = ks.Scene(near, 10.0, loads=spring)
+    found = sections._digits(cancelled.solve(360), "B", np.array([0.0, 180.0]))
+    assert found < sections._digits(plain().solve(360), "B", np.array([0.0, 180.0]))
+
+
+def test_certainty_tells_power_balance_condition_and_how_friction_was_found():
+    found = sections.certainty(RUBBING())
+    assert table_of(found, "friction and reactions found together")[1:] == ["yes"] * 2
+    assert all(
+        float(cell) < 1e-12 for cell in table_of(found, "power balance, relative to the largest power that flows")[1:]
+    )
+    assert " at " in table_of(found, "condition: lengths' relative errors are magnified up to")[1]
+
+
+def test_rounding_errors_have_their_proven_bounds_and_where_these_stand_out():
+    found = sections.certainty(subject("shaper"))
+    bound = subject("shaper").machines["idle"].solution.error_bound("balancing_torque").max()
+    cutting, idle = table_of(found, "rounding error of the torque, proven bound [N·m]")[1:]
+    assert float(idle) == pytest.approx(bound, rel=0.05)
+    assert float(cutting[0]) < 1e-10
+    assert re.fullmatch(r"but 830 at \d+°", cutting[1])
+    rubbing = table_of(sections.certainty(RUBBING()), "rounding error of the torque, proven bound [N·m]")
+    assert rubbing[1][1] == "not proven at 1 of 360 angles"
+
+
+def test_losses_stand_for_each_machine_that_rubs_with_their_sum():
+    tables = sections.losses(RUBBING())
+    assert [table.caption for table in tables] == list(RUBBING().machines)
+    assert table_of(tables[0], "all")[2] == "100"
+    assert tables[0].note.startswith("Of 42948.7 W put in")
+    assert sections.losses(subject("pumpjack")) == []
+
+
+def test_drive_is_told_for_machines_with_a_motor_alone():
+    one = subject("sawframe_2r63")
+    made = Subject("", "", {"cam-cosine": one.machines["cam-cosine"]}, "", one.case)
+    runs, (first, second), reasons = sections.driven(made)
+    assert float(table_of(first, "mean speed of the crank")[2]) == pytest.approx(
+        runs["cam-cosine"].mean_speed, rel=1e-5
+    )
+    assert table_of(second, "flywheel and rotor, largest less smallest")[1] == "J"
+    assert reasons == []
+    assert sections.driven(subject("pumpjack")) == ({}, [], [])
+
+
+def test_a_motor_that_is_too_weak_is_told_in_place_of_its_table(tmp_path):
+    text = ks.load_case("sawframe_2r63").path.read_text(encoding="utf-8")
+    weak = text.replace("[variants.plain]\n", "[variants.plain]\nfriction = { guide = { mu = 0.9 } }\n")
+    weak = weak.replace('"55 kW"', '"5 W"')
+    path = tmp_path / "weak.toml"
+    path.write_text(weak, encoding="utf-8")
+    runs, _, reasons = sections.driven(subject_of(path, "plain"))
+    assert runs == {}
+    assert reasons[0].startswith("plain: ")
+
+
+def test_inputs_are_parted_into_what_is_common_and_what_is_not():
+    common, apart = sections.inputs(subject("sawframe_2r63"))
+    assert table_of(common, "slider.mass") == ["slider.mass", "kg", "600"]
+    assert table_of(common, "gravity.direction") == ["gravity.direction", "°", "-90"]
+    assert table_of(apart, "coupler_length") == ["coupler_length", "m", "2", "2.0219", "2.02191"]
+    assert "crank.mass" not in [row[0] for row in common.rows]
+
+
+def test_remarks_are_each_told_once():
+    import warnings
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        for _ in range(2):
+            warnings.warn("doubtful", ks.HintWarning, stacklevel=1)
+        warnings.warn("later", DeprecationWarning, stacklevel=1)
+    assert sections.remarks(caught) == ["doubtful"]
