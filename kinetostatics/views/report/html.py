@@ -21,7 +21,7 @@ GROUPS = {
     "Motion": ("slider", "motion", "rate"),
 }
 """Kinds of quantities by the heading under which their values stand."""
-PARTS = 8
+PARTS = 9
 """Of the work, of each of which `progress` is told."""
 WIDE = 1.7
 """Width over height of drawings from which on two of them fill a line."""
@@ -56,6 +56,9 @@ def _found(subject, progress):
     progress("drive")
     runs, tables["drive"], reasons = sections.driven(subject)
     tables["inputs"] = sections.inputs(subject)
+    progress("formulas")
+    turning = _turning(subject)
+    calculations = sections.calculations(subject, turning["start"])
     progress("figures")
     drawn = _figures(subject, values, runs)
     box = moving["box"]
@@ -64,6 +67,7 @@ def _found(subject, progress):
         "tables": tables,
         "figures": drawn,
         "reasons": reasons,
+        "calculations": {name: Markup(text) for name, text in calculations.items()},
         "groups": {head: [name for name in values if values[name]["kind"] in kinds] for head, kinds in GROUPS.items()},
         "values": values,
         "vectors": [name for name, item in values.items() if item["vector"]],
@@ -75,7 +79,7 @@ def _found(subject, progress):
         "published": _published(subject),
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
         "date": dt.date.today().isoformat(),
-        "data": {**moving, **_turning(subject), "quantities": values, "colours": figures.COLOURS},
+        "data": {**moving, **turning, "quantities": values, "colours": figures.COLOURS},
         "style": Markup(_text("style.css")),
         "scripts": [Markup(_text(f"{name}.js")) for name in ("drawing", "turning", "figures")],
         "library": Markup(figures.script()),

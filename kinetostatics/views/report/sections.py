@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import DriveError, NotGivenError, ParameterError
+from ...errors import DriveError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import label_of, of_scene, unit_of
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
@@ -172,6 +172,18 @@ def _bound(solution, name):
     if not proven.all():
         notes.append(f"not proven at {np.count_nonzero(~proven)} of {proven.size} angles")
     return (text, "; ".join(notes)) if notes else text
+
+
+def calculations(subject, row):
+    """Hand calculation of the torque of each machine at an angle, its place among those of the reference, as HTML."""
+    angle = subject.reference.solution.crank_angle[row]
+    found = {}
+    for name, machine in subject.machines.items():
+        try:
+            found[name] = machine.solution.explain("balancing_torque", angle)._repr_html_()
+        except KinetostaticsError:  # a load or group of the user's own, that no formula is known of
+            continue
+    return found
 
 
 def losses(subject):

@@ -2,6 +2,7 @@
 
 import re
 from functools import partial
+from html import unescape
 
 import numpy as np
 import pytest
@@ -88,6 +89,25 @@ def test_rounding_errors_have_their_proven_bounds_and_where_these_stand_out():
     assert re.fullmatch(r"but 830 at \d+°", cutting[1])
     rubbing = table_of(sections.certainty(RUBBING()), "rounding error of the torque, proven bound [N·m]")
     assert rubbing[1][1] == "not proven at 1 of 360 angles"
+
+
+def test_the_torque_is_calculated_by_hand_for_each_machine_at_the_angle_first_shown():
+    made = subject("pumpjack")
+    found = sections.calculations(made, 13)
+    assert list(found) == list(made.machines)
+    for name, machine in made.machines.items():
+        explained = machine.solution.explain("balancing_torque", machine.solution.crank_angle[13])
+        assert explained.conclusion in unescape(found[name])
+
+
+def test_a_machine_that_no_formula_is_known_of_has_no_calculation(monkeypatch):
+    made = subject_of({"own": plain(), "plain": plain()})
+
+    def unknown(*_):
+        raise ks.ParameterError("a group of one's own")
+
+    monkeypatch.setattr(type(made.reference.solution), "explain", unknown)
+    assert sections.calculations(made, 3) == {}
 
 
 def test_losses_stand_for_each_machine_that_rubs_with_their_sum():

@@ -101,7 +101,7 @@
 
   // On paper figures stand as drawings of lines, as wide as their place there, and the case file stands open.
   window.addEventListener("beforeprint", () => {
-    document.querySelectorAll("details").forEach((part) => { part.open = true; });
+    document.querySelectorAll("details[data-printed]").forEach((part) => { part.open = true; });
     for (const figure of Object.values(figures).filter(Boolean)) {
       if (figure.cursor) figure.cursor.location = report.index * data.step;
       const drawn = figure.view.export("svg", false).canvas;
