@@ -17,7 +17,7 @@ from ..results.losses import lose
 from . import drives, plots
 
 
-def draw_case(case, folder, file_format="png", only=None):
+def draw_case(case, folder, file_format="png", only=None, progress=iter):
     """Draw the figures of a case into a folder.
 
     Parameters
@@ -28,6 +28,8 @@ def draw_case(case, folder, file_format="png", only=None):
     file_format : "png" or "svg"
     only : str, optional
         Name of the one figure wanted.
+    progress : function, optional
+        Goes through the names of the figures while they are drawn.
 
     Returns
     -------
@@ -47,7 +49,7 @@ def draw_case(case, folder, file_format="png", only=None):
     checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
     names = [case.reference, *(name for name in case.variants if name != case.reference)]
     solutions = {name: case.solve(name) for name in names}
-    return [saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]
+    return [saved(figures[name], solutions, paths[name], case, file_format) for name in progress(paths)]
 
 
 def draw_drive(case, runs, folder):
