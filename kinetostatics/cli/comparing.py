@@ -65,13 +65,13 @@ def _print(case, tables, special):
         print_table(with_published(table, published, case.path))
     if len(tables) == 1:
         ((name, table),) = tables.items()
-        say(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, which has less, below 1 against\n")
+        say(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
         print_table(table.drop(index=RESIDUAL))
     else:
         values, ratios = _values(case, tables), _ratios(case, tables)
         say(f"\nvalues of {case.reference} and of what it is compared with\n")
         print_table(values)
-        say(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, which has less, below 1 against\n")
+        say(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
         print_table(ratios)
     residual = max(float(table.loc[RESIDUAL, list(table.columns[1:3])].max()) for table in tables.values())
     say(f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power")

@@ -51,7 +51,9 @@ def width():
 def say(text, indent=0):
     """Print words, a paragraph to a line, folded to the width; all lines but the first of each are set in so far."""
     for line in text.split("\n"):
-        print(textwrap.fill(line, width(), subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False))
+        print(
+            textwrap.fill(line, width(), subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
+        )
 
 
 def print_table(table):
@@ -97,10 +99,12 @@ def _parts(columns, room):
     """Columns, heading and cells each, in parts that fit into a line."""
     if _breadth(columns) <= room:
         return [columns]
-    columns = [(_folded(heading, _widest(cells), whole=True), cells) for heading, cells in columns]
-    folded = _with_folded_words(columns, room)
-    if _breadth(folded) <= room:
-        return [folded]
+    for hyphens in (False, True):
+        narrow = [(_folded(heading, _widest(cells), hyphens), cells) for heading, cells in columns]
+        folded = _with_folded_words(narrow, room)
+        if _breadth(folded) <= room:
+            return [folded]
+    columns = [(_folded(heading, _widest(cells)), cells) for heading, cells in columns]
     kept = 2 if len(columns) > 2 and columns[1][0] == "unit" else 1
     first, rest = _with_folded_words(columns[:kept], int(0.45 * room)), _with_folded_words(columns[kept:], room // 2)
     for count in range(2, len(rest)):
@@ -112,19 +116,16 @@ def _parts(columns, room):
 
 
 def _with_folded_words(columns, room):
-    """Columns of words, the first among them, the widest folded first until all fit or none can be folded."""
+    """Columns with those of words folded until all fit, the widest first."""
     columns = list(columns)
-    while (over := _breadth(columns) - room) > 0:
-        words = [at for at, column in enumerate(columns) if _of_words(column)]
-        if not words:
-            break
-        widest = max(words, key=lambda at: _widest([columns[at][0], *columns[at][1]]))
-        texts = [columns[widest][0], *columns[widest][1]]
-        before = _widest(texts)
-        heading, *cells = (_folded(text, max(before - over, SHORTEST), whole=True) for text in texts)
-        if _widest([heading, *cells]) >= before:
-            break
-        columns[widest] = heading, cells
+    words = [at for at, column in enumerate(columns) if _of_words(column)]
+    for at in sorted(words, key=lambda at: -_widest(columns[at][1])):
+        texts = [columns[at][0], *columns[at][1]]
+        over = _breadth(columns) - room
+        if over > 0:
+            least = SHORTEST if at == 0 else SHORTEST // 2
+            heading, *cells = (_folded(text, max(_widest(texts) - over, least)) for text in texts)
+            columns[at] = heading, cells
     return columns
 
 
@@ -136,10 +137,9 @@ def _widest(texts):
     return max((len(line) for text in texts for line in text.split("\n")), default=0)
 
 
-def _folded(text, room, whole=False):
-    """Text in lines so wide; words longer than that stay whole."""
-    lines = textwrap.wrap(" ".join(text.split()) if whole else text, max(room, 1), break_long_words=False, break_on_hyphens=False)
-    return "\n".join(lines)
+def _folded(text, room, hyphens=False):
+    """Text in lines so wide; words longer than that stay whole, but for those with hyphens if wanted."""
+    return "\n".join(textwrap.wrap(text, max(room, 1), break_long_words=False, break_on_hyphens=hyphens))
 
 
 def _of_words(column):
