@@ -136,6 +136,10 @@ class CamRoller(checks.Checked, Group):
         return {"A": "pitch curve of the cam"}
 
     @property
+    def rollers(self):
+        return ("A",)
+
+    @property
     def outputs(self):
         return OUTPUTS
 

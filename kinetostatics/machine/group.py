@@ -11,6 +11,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     guides      the guide of each link that slides along one, without turning
     slots       the links in which a joint slides, each a `Slot`
     curves      the joints that run on a curve, with what drawings call it
+    rollers     the joints that are centres of rollers
     outlines    curves fixed to links, as cams are, points (2, K) by link, in its axes
     outputs     the reactions and other forces it finds, each an `Output` with its unit
     motions     quantities of its motion besides those of joints and links, each an `Output`
@@ -245,6 +246,11 @@ class Group:
     def curves(self):
         """Joints that run on a curve, with what drawings call it."""
         return {}
+
+    @property
+    def rollers(self):
+        """Joints that are centres of rollers."""
+        return ()
 
     @property
     def outlines(self):

@@ -190,6 +190,11 @@ class Mechanism(Batched):
         """Links in which a joint slides, each as a `Slot`."""
         return sum((group.slots for group in self.groups), ())
 
+    @property
+    def rollers(self):
+        """Joints that are centres of rollers."""
+        return sum((group.rollers for group in self.groups), ())
+
     @cached_property
     def hints(self):
         """What looks like a slip of units, as sentences."""

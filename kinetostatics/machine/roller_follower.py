@@ -85,6 +85,10 @@ class RollerFollower(GuidedFollower):
     forces = staticmethod(forces)
 
     @property
+    def rollers(self):
+        return (self.pin,)
+
+    @property
     def motions(self):
         text = "of the contact force from the guide, positive with growing crank angle"
         return {"pressure_angle" + self.label: Output("rad", False, text)}

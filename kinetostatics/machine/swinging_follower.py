@@ -204,6 +204,10 @@ class SwingingFollower(checks.Checked, Group):
         return DiskCam(self)
 
     @property
+    def rollers(self):
+        return (self.pin,)
+
+    @property
     def outlines(self):
         return {"crank": self.disk.outline}
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.patches import Circle
 
 from ..numbers import checks
-from .canvas import ACCENT, INK, STEEL, axes, closed, styled
+from .canvas import ACCENT, FROM_X, INK, STEEL, axes, closed, styled
 
 POINTS = 1440
 """Crank angles a turn at which curves are drawn."""
@@ -181,7 +181,7 @@ def law_motion(laws, ax=None):
 
 
 def _over_turn(ax, text, legend):
-    ax.set(xlabel="crank angle [deg]", ylabel=text)
+    ax.set(xlabel=FROM_X.axis, ylabel=text)
     ax.set_xticks(np.arange(0, 361, 60))
     if legend:
         ax.legend(frameon=False, fontsize="small")

@@ -1,14 +1,43 @@
 """What every figure shares: colours, axes, labels, units that read well."""
 
+import textwrap
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 from ..errors import ParameterError
 from ..mechanics.quantities import label_of
-from ..numbers import checks
+from ..numbers import checks, headings
 
+
+@dataclass(frozen=True)
+class Counted:
+    """How crank angles are counted: the text of an axis, the angle from +x at 0, degrees, and the sense.
+
+    All figures of one folder count in one way; `FROM_X` is that of the library.
+    """
+
+    text: str
+    zero: float = 0.0
+    sense: int = 1
+
+    @property
+    def axis(self):
+        return f"crank angle {self.text} [deg]"
+
+    def __call__(self, degrees, period=360.0):
+        """Crank angles from +x, counter-clockwise, counted so."""
+        return degrees if self == FROM_X else np.mod(self.sense * (degrees - self.zero), period)
+
+    def from_x(self, degrees):
+        """Crank angles counted so, from +x, counter-clockwise."""
+        return self.zero + self.sense * np.asarray(degrees)
+
+
+FROM_X = Counted("from +x, counter-clockwise")
+FROM_Y_CLOCKWISE = Counted("from +y, clockwise", 90.0, -1)
 INK, STEEL, ACCENT, LOAD = "0.15", "slategray", "tab:red", "tab:green"
 STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 """Line styles, so that curves differ in print too."""
@@ -64,6 +93,46 @@ def styled(named):
     return [(name, solution, STYLES[row % len(STYLES)]) for row, (name, solution) in enumerate(named.items())]
 
 
+LONG = 20
+"""Letters of a label from which on a legend has one column."""
+ALIKE = 2e-3
+"""Distance of curves, beside the extent of all, up to which one covers the other."""
+NOTHING = 1e-9
+"""Size of a curve, beside the largest, below which it is rounding."""
+
+
+def distinct(curves):
+    """Labels of curves (N,) or (2, N) for a legend, each with the name of the curve: one for all that cover each other.
+
+    The label of a curve that is zero but for rounding says so.
+    """
+    arrays = {name: np.asarray(curve, dtype=float) for name, curve in curves.items()}
+    finite = {name: np.where(np.isfinite(array), array, 0.0) for name, array in arrays.items()}
+    largest = max((float(np.max(np.abs(array), initial=0.0)) for array in finite.values()), default=0.0)
+    extent = max((float(np.max(np.ptp(array, axis=-1), initial=0.0)) for array in finite.values()), default=0.0)
+    found: list[list[str]] = []
+    for name, array in arrays.items():
+        for names in found:
+            other = arrays[names[0]]
+            if other.shape == array.shape and np.allclose(array, other, rtol=0.0, atol=ALIKE * extent, equal_nan=True):
+                names.append(name)
+                break
+        else:
+            found.append([name])
+    several = len(arrays) > 1
+    zero = {name: several and np.max(np.abs(finite[name]), initial=0.0) <= NOTHING * largest for name in arrays}
+    return {f"{', '.join(names)}{' (0)' if zero[names[0]] else ''}": names[0] for names in found}
+
+
+def readable(column):
+    """Heading of a column of a table, "mean_absolute balancing_torque [N m]", as words for an axis."""
+    name, unit = headings.parted(column)
+    words = name.replace("_", " ").replace(".", " ")
+    if words.startswith("ratio "):
+        words = f"ratio of {words.removeprefix('ratio ')}, reference / design"
+    return f"{words} [{unit or 'SI'}]"
+
+
 def display(name, arrays):
     """Factor and unit in which numbers of this size read well."""
     if name == "rad":
@@ -77,9 +146,9 @@ def closed(curve):
     return np.concatenate([curve, curve[:, :1]], axis=1)
 
 
-def finished(ax, ylabel, legend, period=360):
+def finished(ax, ylabel, legend, period=360, counted=FROM_X):
     """The axes of curves over the crank angle, degrees, with labels, grid and legend."""
-    ax.set_xlabel("crank angle [deg]")
+    ax.set_xlabel(counted.axis)
     ax.set_ylabel(ylabel)
     low, high = ax.dataLim.intervalx
     if low >= 0 and high <= period:
@@ -88,6 +157,9 @@ def finished(ax, ylabel, legend, period=360):
     ax.axhline(0, color=INK, lw=0.5)
     ax.grid(alpha=0.3)
     if legend:
-        ax.margins(y=0.18)
-        ax.legend(frameon=False, loc="upper center", ncols=3, fontsize="small", columnspacing=1.0)
+        handles, texts = ax.get_legend_handles_labels()
+        columns = 3 if max(map(len, texts), default=0) < LONG else 1
+        texts = [textwrap.fill(text, 2 * LONG, break_on_hyphens=False) for text in texts]
+        ax.margins(y=0.18 if columns > 1 else 0.35)
+        ax.legend(handles, texts, frameon=False, loc="upper center", ncols=columns, fontsize="small", columnspacing=1.0)
     return ax

@@ -1,5 +1,6 @@
 """Charts of the studies: error over time, error over the distance from where it hurts, error over the model's cost."""
 
+import textwrap
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from matplotlib import rc_context
 
 from ..errors import ParameterError
 from ..numbers.files import written_whole
-from .canvas import ACCENT, axes, require_columns
+from .canvas import ACCENT, axes, readable, require_columns
 
 EXACT = 1e-17
 """Where an error of zero is drawn: below the rounding of the largest value."""
@@ -171,7 +172,7 @@ def sweep_map(table, parameters, output, ax=None):
         (x,) = parameters
         ordered = table.sort_values(x)
         ax.plot(ordered[x], ordered[output], marker="." if len(table) < 100 else None, color=ACCENT)
-        ax.set(xlabel=x, ylabel=output)
+        ax.set(xlabel=readable(x), ylabel=readable(output))
         ax.grid(visible=True, alpha=0.3)
         return ax
     x, y = parameters
@@ -180,8 +181,8 @@ def sweep_map(table, parameters, output, ax=None):
         drawn = ax.pcolormesh(grid.columns, grid.index, grid.to_numpy(), shading="nearest", cmap="viridis")
     else:
         drawn = ax.scatter(table[x], table[y], c=table[output], s=8, cmap="viridis")
-    ax.figure.colorbar(drawn, ax=ax, label=output)
-    ax.set(xlabel=x, ylabel=y)
+    ax.figure.colorbar(drawn, ax=ax, label=readable(output))
+    ax.set(xlabel=readable(x), ylabel=readable(y))
     return ax
 
 
@@ -205,9 +206,9 @@ def sweep_page(table, parameters, outputs, path):
 
 
 def _in_lines(column):
-    """Heading with its reduction, quantity and unit each on a line."""
-    name, bracket, unit = column.partition(" [")
-    return "\n".join([*name.split(" "), *([f"[{unit}"] if bracket else [])])
+    """Heading in short lines, its unit on one of its own."""
+    name, unit = readable(column).split(" [")
+    return "\n".join([*textwrap.wrap(name, 16), f"[{unit}"])
 
 
 def _scatter_matrix(table, columns):
@@ -242,10 +243,10 @@ def stability_page(table, path):
 
 
 def _page(draw, panels, path):
-    """Panels by title, three in a row, with one legend below."""
-    columns = min(3, len(panels))
+    """Panels by title, two in a row of a page's width, with one legend below."""
+    columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
-    size = (5.0 * max(columns, 2), 3.8 * rows + 1.6)
+    size = (8.4, 3.4 * rows + 1.6)
     figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
     entries: dict[str, Any] = {}
     for ax, (title, part) in zip(grid.flat, panels.items(), strict=False):
@@ -254,7 +255,7 @@ def _page(draw, panels, path):
         entries |= {text: handle for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)}
     for ax in grid.flat[len(panels) :]:
         ax.remove()
-    figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=3, fontsize=8)
+    figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=2, fontsize=8)
     return _saved(figure, path)
 
 

@@ -13,7 +13,7 @@ from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from . import symbols
-from .canvas import ACCENT, INK, LOAD, STEEL, axes, closed, display, labelled, single, styled
+from .canvas import ACCENT, FROM_X, INK, LOAD, NOTHING, STEEL, axes, closed, display, labelled, single, styled
 from .labels import label
 from .shape import Shape
 
@@ -32,6 +32,7 @@ PLATES: dict[str, dict[str, Any]] = {
     "counterweight": {"fc": "0.75", "ec": "0.5", "lw": 0.8, "zorder": 1.5},
     "plate": {"fc": "lightsteelblue", "ec": STEEL, "lw": 1.5, "zorder": 1.8},
     "block": {"fc": STEEL, "ec": "none", "zorder": 3},
+    "roller": {"fc": "none", "ec": INK, "lw": 1.0, "zorder": 3.2},
 }
 """How each kind of stroke is drawn as a filled shape."""
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
@@ -39,6 +40,8 @@ MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
     {"marker": symbols.MASS_CENTRE, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
 )
+FOOT = 3.0
+"""Room for the ground below a fixed pivot, half lengths of a block."""
 MOST = 0.9
 """Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
 
@@ -62,15 +65,20 @@ def mass_centres(solutions, angle=60, ax=None):
     checks.require("mass_centres", checks.finite("angle", angle))
     named = labelled(solutions, "common mass centre")
     ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
+    paths = {name: principal_points(solution.mechanism).mass_centre(solution) for name, solution in named.items()}
     for name, solution, style in styled(named):
         points = principal_points(solution.mechanism)
-        (line,) = ax.plot(*closed(points.mass_centre(solution)), linestyle=style, label=name, zorder=5)
+        reach = np.abs(solution.position(_leading(solution.mechanism))).max()
+        rests = np.ptp(paths[name], axis=1).max() < NOTHING * reach
+        shown = {"marker": "o", "ms": 4, "ls": ""} if rests else {"linestyle": style}
+        text = f"{name} (at rest)" if rests else name
+        (line,) = ax.plot(*closed(paths[name]), label=text, zorder=5, **shown)
         ax.plot(*points.mass_centre(_posed(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
     ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
     return ax
 
 
-def mechanism(solution, angles=(40, 160, 280), ax=None):
+def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     """The mechanism at given crank angles: links, fixed pivots, guides, cam (pitch curve), mass centres and loads.
 
     Loads, counterweights, joint names and mass centres are drawn in the first pose. Arrows point as the
@@ -78,10 +86,13 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
 
     Parameters
     ----------
-    solution : Solution
+    solutions : Solution or mapping of label to Solution
+        Of several, machines that move alike, the first is drawn, with the counterweights and loads of each.
     angles : sequence of float
         Crank angles, degrees; the first is drawn strongest.
     ax : Axes, optional
+    counted : Counted
+        How the labels of the crank angles count them; the angles given are from +x.
 
     Returns
     -------
@@ -95,11 +106,12 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     checks.require(
         "mechanism", None if angles.ndim == 1 and np.isfinite(angles).all() else f"angles must be finite, got {angles}"
     )
-    solution, ax = single(solution), axes(ax)
+    named, ax = labelled(solutions, ""), axes(ax)
+    solution = next(iter(named.values()))
     shape, poses = _frame(ax, solution), _posed(solution, angles)
     shades = np.linspace(1.0, 0.3, len(angles))
-    strokes, first = list(shape.strokes(poses)), _posed(solution, angles[:1])
-    once = [*shape.counterweights(first), *shape.signs(solution.loads, first)]
+    strokes = list(shape.strokes(poses))
+    once = [stroke for stroke, owners in _own(named, angles[:1]) if len(owners) == len(named)]
     moving = [name for name, point in shape.made.joints.items() if point.link != FRAME]
     for row, shade in enumerate(shades):
         for stroke in strokes + (once if row == 0 else []):
@@ -112,9 +124,61 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     for names, point in _together(poses, shape):
         label(ax, ", ".join(names), point, color=INK, fontsize="small")
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
-        label(ax, f"{angle:g}°", poses.position(_leading(poses.mechanism))[:, row], alpha=shade)
-    _equal(ax)
+        label(ax, f"{counted(angle):g}°", poses.position(_leading(poses.mechanism))[:, row], alpha=shade)
+    _draw_own(ax, [(stroke, owners) for stroke, owners in _own(named, angles[:1]) if len(owners) < len(named)])
+    _equal(ax, [point - [0.0, FOOT * shape.unit] for point in shape.grounds(solution.loads)])
     return ax
+
+
+def moves_alike(solution, other):
+    """Whether two machines look the same in every pose, but for counterweights and loads."""
+    made, twin = solution.mechanism, other.mechanism
+    if (list(made.joints), list(made.links)) != (list(twin.joints), list(twin.links)):
+        return False
+    both = [Shape(_posed(item, np.linspace(0.0, 360.0 * made.turns, 25))) for item in (solution, other)]
+    here, there = ([stroke.points for stroke in shape.strokes(shape.turn)] for shape in both)
+    reach = 1e-6 * both[0].size
+    return len(here) == len(there) and all(
+        one.shape == two.shape and np.allclose(one, two, rtol=0.0, atol=reach, equal_nan=True)
+        for one, two in zip(here, there, strict=True)
+    )
+
+
+def _own(named, angle):
+    """Counterweights and signs of loads in a pose, each stroke with the labels of those that have it, in order."""
+    found: list[tuple[Any, list[str]]] = []
+    for name, solution in named.items():
+        shape, pose = Shape(_whole_turn(solution)), _posed(solution, angle)
+        for stroke in (*shape.counterweights(pose), *shape.signs(solution.loads, pose)):
+            same = (owners for other, owners in found if _same(stroke, other))
+            owners = next(same, None)
+            if owners is None:
+                found.append((stroke, [name]))
+            elif name not in owners:
+                owners.append(name)
+    return found
+
+
+def _same(stroke, other):
+    """Whether two strokes are the same to the eye."""
+    if stroke.kind != other.kind or stroke.points.shape != other.points.shape:
+        return False
+    return np.allclose(stroke.points, other.points, rtol=1e-6, equal_nan=True)
+
+
+def _draw_own(ax, strokes):
+    """What only some machines have, each machine's in a colour of its own, and whose it is in the legend."""
+    colours: dict[str, Any] = {}
+    for stroke, owners in strokes:
+        text = ", ".join(owners)
+        known = text in colours
+        colour = colours.setdefault(text, f"C{len(colours)}")
+        artist = _artist(ax, stroke, 1.0)
+        artist.set(color=colour) if isinstance(artist, Line2D) else artist.set(fc=(colour, 0.12), ec=colour, alpha=None)
+        artist.set_label("_" if known else text)
+        _set(artist, stroke.points[..., 0])
+    if colours:
+        ax.legend(frameon=False, fontsize="small", loc="upper right")
 
 
 def animation(solution, joints=None, frames=72, interval=50, ax=None):
@@ -216,7 +280,7 @@ def _largest(values):
 def _frame(ax, solution):
     """What does not move: fixed pivots, guides over the stroke, the pitch curve of the cam or the crank circle."""
     made = solution.mechanism
-    turn = _posed(solution, np.linspace(0, 360 * made.turns, 720 * made.turns + 1))
+    turn = _whole_turn(solution)
     shape = Shape(turn)
     for joint, text in made.curves.items():
         ax.plot(*turn.position(joint), color=ACCENT, lw=1, ls="--", label=text)
@@ -232,6 +296,12 @@ def _frame(ax, solution):
         ax.plot(*point, marker=symbols.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8, zorder=1.6)
         ax.plot(*point, **PIN, zorder=4)
     return shape
+
+
+def _whole_turn(solution):
+    """The mechanism at many crank angles of the turns after which it repeats."""
+    turns = solution.mechanism.turns
+    return _posed(solution, np.linspace(0, 360 * turns, 720 * turns + 1))
 
 
 def _posed(solution, degrees):

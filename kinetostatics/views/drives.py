@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .canvas import INK, axes, display, styled
+from .canvas import FROM_X, INK, axes, display, styled
 
 
 def speed(runs, ax=None):
@@ -72,7 +72,7 @@ def _closed(run, values):
 
 
 def _finished(ax):
-    ax.set_xlabel("crank angle [deg]")
+    ax.set_xlabel(FROM_X.axis)
     ax.margins(x=0)
     ax.grid(alpha=0.3)
     ax.legend(frameon=False, fontsize="small")

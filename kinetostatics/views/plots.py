@@ -10,14 +10,26 @@ from collections.abc import Mapping
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..design.linkage import chain_unit_angle, four_bar_of
+from ..design.linkage import four_bar_of
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, of_mechanism, values
 from ..numbers.checks import choice, problem, require
 from ..results.extremes import extremes
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
-from .canvas import INK, axes, closed, display, finished, labelled, styled
+from .canvas import (
+    FROM_X,
+    FROM_Y_CLOCKWISE,
+    INK,
+    NOTHING,
+    axes,
+    closed,
+    display,
+    distinct,
+    finished,
+    labelled,
+    styled,
+)
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
 from .fronts import front
@@ -54,8 +66,8 @@ LEAST_MARKS = 0.01
 """Least step of the crank-angle marks, degrees."""
 
 
-def over_turn(solutions, quantity, ax=None):
-    """One quantity over the crank angle.
+def over_turn(solutions, quantity, ax=None, counted=FROM_X):
+    """One quantity over the crank angle; curves that cover each other are one, under all their labels.
 
     Parameters
     ----------
@@ -63,6 +75,8 @@ def over_turn(solutions, quantity, ax=None):
     quantity : str
         As for `extremes`; of a reaction or a vector the magnitude is drawn.
     ax : matplotlib Axes, optional
+    counted : Counted, optional
+        How crank angles are counted, from +x and counter-clockwise unless told.
 
     Returns
     -------
@@ -70,17 +84,30 @@ def over_turn(solutions, quantity, ax=None):
     """
     ax = axes(ax)
     named = labelled(solutions, quantity)
-    curves = {name: (_degrees(solution), values(solution, quantity)) for name, solution in named.items()}
+    read = {name: values(solution, quantity) for name, solution in named.items()}
     declared = _declared(named, quantity)
-    factor, shown = display(declared.unit, [value for _, value in curves.values()])
-    for name, (angle, value), style in styled(curves):
-        ax.plot(angle, factor * value, linestyle=style, label=name)
-    return finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named))
+    factor, shown = display(declared.unit, list(read.values()))
+    curves = {name: _in_order(named[name], factor * value, counted) for name, value in read.items()}
+    _draw(ax, curves)
+    return finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named), counted)
 
 
-def torque(solutions, ax=None):
+def _in_order(solution, value, counted):
+    """Crank angles and values (2, N) over one period, by growing angle as it is counted."""
+    angle = counted(_degrees(solution), np.degrees(solution.period))
+    order = slice(None) if counted == FROM_X else np.argsort(angle)
+    return np.stack([angle[order], np.broadcast_to(value, angle.shape)[order]])
+
+
+def _draw(ax, curves):
+    """Curves (2, N) by label, each in its own style."""
+    for text, name, style in styled(distinct({name: value for name, (_, value) in curves.items()})):
+        ax.plot(*curves[name], linestyle=style, label=text)
+
+
+def torque(solutions, ax=None, counted=FROM_X):
     """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a)."""
-    return over_turn(solutions, "balancing_torque", ax)
+    return over_turn(solutions, "balancing_torque", ax, counted)
 
 
 def cam_force(solutions, ax=None):
@@ -103,19 +130,21 @@ def acceleration_error(solutions, ax=None, slider=None):
     ax = axes(ax)
     named = labelled(solutions, "slider acceleration")
     _require_turning(named)
-    for name, solution, style in styled(named):
+    curves = {}
+    for name, solution in named.items():
         half_stroke = np.ptp(extremes(solution, lambda motion: motion.travel(slider)).value) / 2
         square, alpha = solution.crank_speed**2, solution.crank_acceleration
         psi = solution.crank_angle - solution.mechanism.guides[slider or solution.mechanism.slider].guide_angle
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
-        ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
+        curves[name] = _in_order(solution, 100 * error, FROM_X)
+    _draw(ax, curves)
     return finished(
         ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named)
     )
 
 
-def hodograph(solutions, joint="O", ax=None, marks=30):
+def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     """Hodograph of a joint reaction: the curve its tip draws over the turn (figure 7).
 
     Parameters
@@ -126,6 +155,8 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     ax : Axes, optional
     marks : float
         Step of the crank-angle marks, degrees; marks stand where the solution has that angle, to half a degree.
+    counted : Counted, optional
+        How the marks count crank angles, from +x and counter-clockwise unless told.
 
     Returns
     -------
@@ -144,12 +175,14 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
         rows = _marked(solution, marks)
         ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
         near = max(0.06 * extents[name], 0.025 * max(extents.values()))
-        texts = _shared(_degrees(solution)[rows] % np.degrees(solution.period), factor * curves[name][:, rows], near)
+        period = np.degrees(solution.period)
+        texts = _shared(counted(_degrees(solution)[rows], period) % period, factor * curves[name][:, rows], near)
         for text, point in texts:
             label(ax, text, point, color=line.get_color() if len(named) > 1 else INK)
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
     ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.1)
     ax.set_xlabel(f"{declared.label}, x [{shown}]")
     ax.set_ylabel(f"{declared.label}, y [{shown}]")
     if len(named) > 1 or isinstance(solutions, Mapping):
@@ -184,21 +217,19 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     ax = axes(ax)
     named = labelled(solutions, f"{link} rate")
     _require_turning(named)
-    for name, solution, style in styled(named):
+    curves = {}
+    for name, solution in named.items():
         turning = getattr(four_bar_of(solution.mechanism), link).link
-        angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
-        rows = np.argsort(angle)
         speed = solution.crank_speed
         relative = (
             solution.rate(turning) / speed
             if order == 1
             else solution.angular_acceleration(turning) / (speed * abs(speed))
         )
-        ax.plot(angle[rows], relative[rows], linestyle=style, label=name)
+        curves[name] = _in_order(solution, relative, FROM_Y_CLOCKWISE)
+    _draw(ax, curves)
     kind = "velocity" if order == 1 else "acceleration"
-    finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
-    ax.set_xlabel("crank angle from +y, clockwise [deg]")
-    return ax
+    return finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1, counted=FROM_Y_CLOCKWISE)
 
 
 def shaking_force(solutions, by="direction", ax=None):
@@ -222,11 +253,16 @@ def shaking_force(solutions, by="direction", ax=None):
     named = labelled(solutions, "shaking_force")
     sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
     factor, shown = display("N", sizes.values())
+    largest = max(float(np.max(size)) for size in sizes.values())
     for name, solution, style in styled(named):
         x, y = solution.shaking_force
         angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
-        ax.plot(*closed(np.array([angle, factor * sizes[name]])), linestyle=style, label=name)
-    ax.set_title(f"shaking force [{shown}] by {by}", fontsize="medium")
+        zero = len(named) > 1 and np.max(sizes[name]) <= NOTHING * largest
+        text = f"{name} (0)" if zero else name
+        ax.plot(*closed(np.array([angle, factor * sizes[name]])), linestyle=style, label=text)
+    way = "the angle of its direction, from +x" if by == "direction" else FROM_X.axis.replace(" [deg]", "")
+    ax.set_title(f"shaking force [{shown}] over {way}", fontsize="medium")
+    ax.set_rlabel_position(67.5)
     if len(named) > 1:
         ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
     return ax

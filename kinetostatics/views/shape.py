@@ -114,6 +114,8 @@ class Shape:
                 turn, place = self._axes(pose, link)
                 size = self.unit if link in self.made.guides else 0.8 * self.unit
                 yield Stroke("block", symbols.placed(symbols.RECTANGLE, place, turn, size))
+        for joint in self.made.rollers:
+            yield Stroke("roller", self._ring(pose.position(joint), 0.9 * self.unit))
 
     def _axes(self, pose, link):
         """Direction and reference joint of a link, (2, N)."""
@@ -135,13 +137,23 @@ class Shape:
         yield Stroke("plate", symbols.placed(barrel, origin, axis, self.unit))
         yield Stroke("bar", symbols.placed([(0.0, -0.5), (0.0, 0.5)], bottom, axis, self.unit))
 
+    def _ring(self, place, radius):
+        level = np.broadcast_to([[1.0], [0.0]], place.shape)
+        return symbols.placed(symbols.RING, place, level, radius)
+
     def counterweights(self, pose):
-        """Sectors about the joints of turning links whose mass centres lie behind them, with the same mass centres."""
+        """Weights of turning links whose mass centres lie beyond what they join, with the same mass centres.
+
+        A sector about the reference joint for one that lies behind it, else a disk on the link drawn out to it.
+        """
         for name, link in self.made.links.items():
             along, across = (float(np.ravel(part)[0]) for part in link.centre)
-            arm = np.hypot(along, across)
-            counterweight = arm > 0.3 * self.unit and along < min(self.corners[name][0].min(), -0.3 * arm)
-            if np.any(link.mass) and counterweight and name not in self.made.guides:
+            arm, reach = np.hypot(along, across), self.corners[name][0].max()
+            turns = np.any(link.mass) and name not in self.made.guides and arm > 0.3 * self.unit
+            if turns and reach > 0.0 and along > reach + 0.3 * self.unit:
+                yield Stroke("bar", _on(pose, name, np.array([[reach, along], [0.0, across]])))
+                yield Stroke("counterweight", self._ring(pose.position(name), 2.0 * self.unit))
+            if turns and along < min(self.corners[name][0].min(), -0.3 * arm):
                 radius = arm * 1.5 * SECTOR / np.sin(SECTOR)
                 angle = np.arctan2(across, along) + np.linspace(-SECTOR, SECTOR, 24)
                 edge = radius * np.array([np.cos(angle), np.sin(angle)])

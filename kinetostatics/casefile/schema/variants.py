@@ -168,7 +168,8 @@ class PublishedTable(Table):
 
     `ratio` holds those of reference / balanced, `value` those of the balanced mechanism; `balancing` those of the
     balancing table, for every variant and link, taken at a crank-angle step of `sampling`; `linkage` those of the
-    four-bar table, for every variant. `note` says how to read them beside ours.
+    four-bar table, for every variant. `note` says how to read them beside ours, `figures` which figure of the source
+    each of ours redraws.
     """
 
     ratio: dict[str, str] = Field(default_factory=dict)
@@ -177,6 +178,7 @@ class PublishedTable(Table):
     balancing: dict[str, dict[str, str]] = Field(default_factory=dict)
     linkage: dict[str, dict[str, str]] = Field(default_factory=dict)
     note: str = ""
+    figures: dict[str, str] = Field(default_factory=dict)
 
 
 class CaseTable(Table):
