@@ -146,7 +146,7 @@ def _over_turn(quantity):
     return draw
 
 
-def _hodographs(solutions, counted) -> Figure:
+def _hodographs(solutions, counted=FROM_X) -> Figure:
     """Hodographs of the support reaction, those that cover each other in one panel."""
     curves = {name: solution.reaction("O") for name, solution in solutions.items()}
     shown = {text: solutions[name] for text, name in distinct(curves).items()}
@@ -174,7 +174,7 @@ def _proportion(solution):
     return float(np.clip(size.width / size.height, 0.4, 4.0)) if size.height > 0 else 4.0
 
 
-def _mechanisms(solutions, counted) -> Figure:
+def _mechanisms(solutions, counted=FROM_X) -> Figure:
     """The mechanisms of all variants, those that move alike as one: wide ones stacked, others side by side."""
     alike: list[dict[str, Any]] = []
     for name, solution in solutions.items():
@@ -198,7 +198,7 @@ LETTERING = 0.8
 """Height of title and labels of axes, inches."""
 
 
-def _overview(solutions, counted) -> Figure:
+def _overview(solutions, counted=FROM_X) -> Figure:
     """The last variant, its torque against all others, and the support reaction of the first and the last.
 
     A wide mechanism is drawn across the page, others beside the torque, tall ones over the whole height.
