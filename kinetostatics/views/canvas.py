@@ -101,19 +101,20 @@ NOTHING = 1e-9
 """Size of a curve, beside the largest, below which it is rounding."""
 
 
-def distinct(curves):
+def distinct(curves, apart=False):
     """Labels of curves (N,) or (2, N) for a legend, each with the name of the curve: one for all that cover each other.
 
-    The label of a curve that is zero but for rounding says so.
+    The label of a curve that is zero but for rounding says so. Curves that are drawn apart, each to a scale of its own,
+    are compared by their own extents.
     """
     arrays = {name: np.asarray(curve, dtype=float) for name, curve in curves.items()}
     finite = {name: np.where(np.isfinite(array), array, 0.0) for name, array in arrays.items()}
     largest = max((float(np.max(np.abs(array), initial=0.0)) for array in finite.values()), default=0.0)
-    extent = max((float(np.max(np.ptp(array, axis=-1), initial=0.0)) for array in finite.values()), default=0.0)
+    extents = {name: float(np.max(np.ptp(array, axis=-1), initial=0.0)) for name, array in finite.items()}
     found: list[list[str]] = []
     for name, array in arrays.items():
         for names in found:
-            other = arrays[names[0]]
+            other, extent = arrays[names[0]], extents[name] if apart else max(extents.values())
             if other.shape == array.shape and np.allclose(array, other, rtol=0.0, atol=ALIKE * extent, equal_nan=True):
                 names.append(name)
                 break

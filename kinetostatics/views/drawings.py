@@ -40,6 +40,8 @@ MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
     {"marker": symbols.MASS_CENTRE, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
 )
+WEIGHTS = ("counterweight", "bar")
+"""Kinds of strokes that counterweights are drawn by."""
 FOOT = 3.0
 """Room for the ground below a fixed pivot, half lengths of a block."""
 MOST = 0.9
@@ -170,7 +172,7 @@ def _draw_own(ax, strokes):
     """What only some machines have, each machine's in a colour of its own, and whose it is in the legend."""
     colours: dict[str, Any] = {}
     for stroke, owners in strokes:
-        text = ", ".join(owners)
+        text = f"{'counterweight' if stroke.kind in WEIGHTS else 'load'}: {', '.join(owners)}"
         known = text in colours
         colour = colours.setdefault(text, f"C{len(colours)}")
         artist = _artist(ax, stroke, 1.0)

@@ -149,7 +149,7 @@ def _over_turn(quantity):
 def _hodographs(solutions, counted=FROM_X) -> Figure:
     """Hodographs of the support reaction, those that cover each other in one panel."""
     curves = {name: solution.reaction("O") for name, solution in solutions.items()}
-    shown = {text: solutions[name] for text, name in distinct(curves).items()}
+    shown = {text: solutions[name] for text, name in distinct(curves, apart=True).items()}
     return _one_each(partial(plots.hodograph, counted=counted), shown, 5.2, 4.6, 2)
 
 

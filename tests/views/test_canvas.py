@@ -92,3 +92,10 @@ def test_crank_angles_are_counted_there_and_back():
 )
 def test_headings_of_tables_read_as_words_with_units(column, text):
     assert canvas.readable(column) == text
+
+
+def test_curves_drawn_apart_are_compared_by_their_own_extent():
+    turn = np.linspace(0, 6, 50)
+    curves = {"large": 100.0 * np.sin(turn), "small": np.sin(turn), "smaller": 0.9 * np.sin(turn)}
+    assert list(canvas.distinct(curves)) == ["large", "small, smaller"]
+    assert list(canvas.distinct(curves, apart=True)) == ["large", "small", "smaller"]

@@ -63,9 +63,8 @@ def test_machines_that_differ_in_counterweights_only_are_one_panel_with_all_of_t
     made = drawn("mower_drive", "mechanism")
     (ax,) = made.axes
     assert ax.get_title() == "unbalanced, full, partial-1, partial-2, partial-3, optimal"
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
-        "full", "partial-1", "partial-2", "partial-3", "optimal",
-    ]  # fmt: skip
+    legend = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert legend == [f"counterweight: {name}" for name in ("full", "partial-1", "partial-2", "partial-3", "optimal")]
     weights = [patch for patch in ax.patches if len(patch.get_xy()) > 20]
     assert len(weights) == 6  # full balancing needs two
     plt.close(made)
@@ -80,7 +79,7 @@ def test_machines_of_different_geometry_have_panels_of_their_own():
 def test_what_only_one_variant_bears_is_named_in_the_legend():
     made = drawn("compressor", "mechanism")
     (ax,) = made.axes
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["loaded"]
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["load: loaded"]
     plt.close(made)
 
 
