@@ -11,8 +11,9 @@ def speed(runs, ax=None):
     for name, run, style in styled(runs):
         (line,) = ax.plot(*_closed(run, run.speed), linestyle=style, label=name)
         ax.axhline(run.mean_speed, color=line.get_color(), lw=0.8, ls=":")
+    ax.plot([], [], color=INK, lw=0.8, ls=":", label="mean over time")
     ax.set_ylabel("crank speed [rad/s]")
-    return _finished(ax)
+    return _finished(ax, runs.values())
 
 
 def torques(run, ax=None):
@@ -29,7 +30,7 @@ def torques(run, ax=None):
         ax.plot(*_closed(run, factor * values), linestyle=style, label=name)
     ax.set_ylabel(f"torque at the crank [{unit}]")
     ax.margins(y=0.2)  # room for the legend
-    _finished(ax).legend(loc="upper center", ncols=3, frameon=False, fontsize="small", columnspacing=1.0)
+    _finished(ax, [run]).legend(loc="upper center", ncols=3, frameon=False, fontsize="small", columnspacing=1.0)
     return ax
 
 
@@ -71,8 +72,10 @@ def _closed(run, values):
     return np.degrees(np.append(run.crank_angle, run.period)), np.append(values, values[0])
 
 
-def _finished(ax):
+def _finished(ax, runs):
+    period = round(np.degrees(max(run.period for run in runs)))
     ax.set_xlabel(FROM_X.axis)
+    ax.set_xticks(range(0, period + 1, period // 4))
     ax.margins(x=0)
     ax.grid(alpha=0.3)
     ax.legend(frameon=False, fontsize="small")
