@@ -4,6 +4,7 @@ from pathlib import Path
 
 from ..errors import ParameterError
 from ..numbers import checks, files
+from ..numbers.headings import parted
 from . import machine
 from .printed import print_table, require_writable, say, write_table
 
@@ -51,7 +52,7 @@ def sweep(options):
     if options.plot:
         from ..views.charts import sweep_page
 
-        written.append(sweep_page(found, list(table.columns), outputs, options.plot))
+        written.append(sweep_page(found, list(table.columns), outputs, options.plot, _labels(wanted, varied)))
         lines.append(str(written[-1]))
     if machine.wants_json(options):
         failed = int((found[sweeps.FAILED] != "").sum())
@@ -62,6 +63,12 @@ def sweep(options):
             print(line)
     if options.csv:
         machine.give_csv(options, found)
+
+
+def _labels(wanted, varied):
+    """What axes call outputs: with the names that quantities have in other figures."""
+    which = {True: ", reference / design", False: ""}
+    return {item.column: f"{item.label(varied)}{which[item.ratio]} [{parted(item.column)[1]}]" for item in wanted}
 
 
 def _print(case, found, wanted, varied):

@@ -8,6 +8,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ..errors import ParameterError
 from ..numbers.files import written_whole
@@ -102,6 +103,7 @@ def error_by_distance(table, ax=None):
         label="condition x rounding",
     )
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3 * USELESS), xlabel=table["axis"].iloc[0])
+    ax.xaxis.set_major_locator(LogLocator(numticks=7))
     ax.set_ylabel(f"error of {table['label'].iloc[0]} [1]")
     ax.grid(visible=True, alpha=0.3)
     return ax
@@ -146,7 +148,7 @@ def model_ladder(needs, ax=None):
     return ax
 
 
-def sweep_map(table, parameters, output, ax=None):
+def sweep_map(table, parameters, output, ax=None, labels=None):
     """One output of a sweep over the one or two parameters that it varies: a line, or a map in colours.
 
     Parameters
@@ -158,6 +160,8 @@ def sweep_map(table, parameters, output, ax=None):
     output : str
         Column of the output.
     ax : Axes, optional
+    labels : mapping of column to text, optional
+        What axes say, with units; the headings as words unless told.
 
     Returns
     -------
@@ -168,11 +172,12 @@ def sweep_map(table, parameters, output, ax=None):
     if len(parameters) not in (1, 2) or len(set(parameters)) < len(parameters):
         raise ParameterError(f"sweep_map: one or two different parameters can be drawn, got {parameters}")
     ax = axes(ax)
+    text = partial(_axis_text, labels or {})
     if len(parameters) == 1:
         (x,) = parameters
         ordered = table.sort_values(x)
         ax.plot(ordered[x], ordered[output], marker="." if len(table) < 100 else None, color=ACCENT)
-        ax.set(xlabel=readable(x), ylabel=readable(output))
+        ax.set(xlabel=text(x), ylabel=text(output))
         ax.grid(visible=True, alpha=0.3)
         return ax
     x, y = parameters
@@ -181,12 +186,17 @@ def sweep_map(table, parameters, output, ax=None):
         drawn = ax.pcolormesh(grid.columns, grid.index, grid.to_numpy(), shading="nearest", cmap="viridis")
     else:
         drawn = ax.scatter(table[x], table[y], c=table[output], s=8, cmap="viridis")
-    ax.figure.colorbar(drawn, ax=ax, label=readable(output))
-    ax.set(xlabel=readable(x), ylabel=readable(y))
+    ax.figure.colorbar(drawn, ax=ax, label=text(output))
+    ax.set(xlabel=text(x), ylabel=text(y))
     return ax
 
 
-def sweep_page(table, parameters, outputs, path):
+def _axis_text(labels, column, width=40):
+    """What an axis says, in lines that are no longer than it."""
+    return textwrap.fill(labels.get(column) or readable(column), width)
+
+
+def sweep_page(table, parameters, outputs, path, labels=None):
     """Chart of a sweep saved to a file: a panel for each output, or a scatter matrix with three parameters and more."""
     if len(parameters) < 3:
         columns = min(3, len(outputs))
@@ -194,30 +204,30 @@ def sweep_page(table, parameters, outputs, path):
         size = (5.4 * columns, 4.2 * rows)
         figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
         for ax, output in zip(grid.flat, outputs, strict=False):
-            sweep_map(table, parameters, output, ax=ax)
+            sweep_map(table, parameters, output, ax=ax, labels=labels)
         for ax in grid.flat[len(outputs) :]:
             ax.remove()
     else:
-        figure = _scatter_matrix(table, [*parameters, *outputs])
+        figure = _scatter_matrix(table, [*parameters, *outputs], labels or {})
     with written_whole(path) as temporary:
         figure.savefig(temporary, format=Path(path).suffix[1:] or "png", dpi=150, bbox_inches="tight")
     plt.close(figure)
     return Path(path)
 
 
-def _in_lines(column):
-    """Heading in short lines, its unit on one of its own."""
-    name, unit = readable(column).split(" [")
-    return "\n".join([*textwrap.wrap(name, 16), f"[{unit}"])
-
-
-def _scatter_matrix(table, columns):
+def _scatter_matrix(table, columns, labels):
     from pandas.plotting import scatter_matrix
 
     shown = table[columns].dropna()
-    shown = shown.sample(min(len(shown), 2000), random_state=0).rename(columns=_in_lines)
+    shown = shown.sample(min(len(shown), 2000), random_state=0)
+    shown = shown.rename(columns=lambda column: _axis_text(labels, column, 18))
     side = 1.9 * len(columns)
-    grid = scatter_matrix(shown, figsize=(side, side), s=6, alpha=0.5, color=ACCENT, hist_kwds={"color": "0.6"})
+    marks = {"s": 30 if len(shown) < 200 else 12, "alpha": 0.6, "color": ACCENT}
+    grid = scatter_matrix(shown, figsize=(side, side), hist_kwds={"color": "0.6"}, **marks)
+    for ax in grid.flat:
+        ax.xaxis.set_major_locator(MaxNLocator(3, prune="both"))
+    for ax in grid[1:, 0]:
+        ax.yaxis.set_major_locator(MaxNLocator(3, prune="both"))
     return grid[0, 0].figure
 
 
