@@ -125,6 +125,20 @@ def distinct(curves, apart=False):
     return {f"{', '.join(names)}{' (0)' if zero[names[0]] else ''}": names[0] for names in found}
 
 
+def in_order(solution, value, counted=FROM_X):
+    """Crank angles and values (2, N) over one period, by growing angle as it is counted."""
+    degrees = np.degrees(solution.crank_angle)
+    angle = counted(degrees, np.degrees(solution.period))
+    order = slice(None) if counted == FROM_X else np.argsort(angle)
+    return np.stack([angle[order], np.broadcast_to(value, angle.shape)[order]])
+
+
+def drawn_over_turn(ax, curves):
+    """Draw curves (2, N) by label, each in its own style, those that cover each other as one."""
+    for text, name, style in styled(distinct({name: value for name, (_, value) in curves.items()})):
+        ax.plot(*curves[name], linestyle=style, label=text)
+
+
 def readable(column):
     """Heading of a column of a table, "mean_absolute balancing_torque [N m]", as words for an axis."""
     name, unit = headings.parted(column)

@@ -4,37 +4,19 @@ from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
-from matplotlib.patches import Polygon
 
 from ..errors import ParameterError
 from ..machine.group import FRAME
-from ..mechanics.motion import Motion
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from . import symbols
-from .canvas import ACCENT, FROM_X, INK, LOAD, NOTHING, STEEL, axes, closed, display, labelled, single, styled
+from .alike import own_strokes
+from .canvas import ACCENT, FROM_X, INK, NOTHING, axes, closed, display, labelled, single, styled
 from .labels import label
-from .shape import Shape
+from .shape import Shape, posed, whole_turn
+from .strokes import artist, put
 
-LINES: dict[str, dict[str, Any]] = {
-    "bar": {"color": STEEL, "lw": 2.5, "solid_capstyle": "round", "zorder": 2},
-    "slotted": {"color": STEEL, "lw": 7, "solid_capstyle": "round", "zorder": 2},
-    "slot": {"color": "white", "lw": 3.5, "solid_capstyle": "round", "zorder": 2.1},
-    "spring": {"color": INK, "lw": 1, "zorder": 2.5},
-    "damper": {"color": INK, "lw": 1, "zorder": 2.5},
-    "outline": {"color": ACCENT, "lw": 0.9, "ls": "-.", "zorder": 1.6},
-    "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
-    "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
-}
-"""How each kind of stroke is drawn as a line."""
-PLATES: dict[str, dict[str, Any]] = {
-    "counterweight": {"fc": "0.75", "ec": "0.5", "lw": 0.8, "zorder": 1.5},
-    "plate": {"fc": "lightsteelblue", "ec": STEEL, "lw": 1.5, "zorder": 1.8},
-    "block": {"fc": STEEL, "ec": "none", "zorder": 3},
-    "roller": {"fc": "none", "ec": INK, "lw": 1.0, "zorder": 3.2},
-}
-"""How each kind of stroke is drawn as a filled shape."""
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
 MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
@@ -63,6 +45,15 @@ def mass_centres(solutions, angle=60, ax=None):
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bare = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> balanced = ks.balancing.partial(bare, crank=ks.Counterweight(arm=-0.05)).mechanism
+    >>> solutions = {name: ks.Scene(item, 62.8).solve(90) for name, item in (("bare", bare), ("half", balanced))}
+    >>> ks.plots.mass_centres(solutions).get_aspect()
+    1.0
     """
     checks.require("mass_centres", checks.finite("angle", angle))
     named = labelled(solutions, "common mass centre")
@@ -75,7 +66,7 @@ def mass_centres(solutions, angle=60, ax=None):
         shown = {"marker": "o", "ms": 4, "ls": ""} if rests else {"linestyle": style}
         text = f"{name} (at rest)" if rests else name
         (line,) = ax.plot(*closed(paths[name]), label=text, zorder=5, **shown)
-        ax.plot(*points.mass_centre(_posed(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
+        ax.plot(*points.mass_centre(posed(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
     ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
     return ax
 
@@ -100,6 +91,13 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> shaper = ks.slotted_lever(0.1, pivot=(0.0, -0.2), lever=ks.Link(8.0, 0.3, 0.4))
+    >>> ks.plots.mechanism(ks.Scene(shaper, 6.0, loads=[ks.Gravity()]).solve(8), angles=(60,)).get_aspect()
+    1.0
     """
     try:
         angles = np.atleast_1d(np.asarray(angles, dtype=float))
@@ -110,14 +108,14 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     )
     named, ax = labelled(solutions, ""), axes(ax)
     solution = next(iter(named.values()))
-    shape, poses = _frame(ax, solution), _posed(solution, angles)
+    shape, poses = _frame(ax, solution), posed(solution, angles)
     shades = np.linspace(1.0, 0.3, len(angles))
     strokes = list(shape.strokes(poses))
-    once = [stroke for stroke, owners in _own(named, angles[:1]) if len(owners) == len(named)]
+    once = [stroke for stroke, owners in own_strokes(named, angles[:1]) if len(owners) == len(named)]
     moving = [name for name, point in shape.made.joints.items() if point.link != FRAME]
     for row, shade in enumerate(shades):
         for stroke in strokes + (once if row == 0 else []):
-            _set(_artist(ax, stroke, shade), stroke.points[..., row])
+            put(artist(ax, stroke, shade), stroke.points[..., row])
         for joint in moving:
             ax.plot(*poses.position(joint)[:, row], **PIN, alpha=shade, zorder=4)
     for name in shape.heavy:
@@ -127,45 +125,9 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
         label(ax, ", ".join(names), point, color=INK, fontsize="small")
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
         label(ax, f"{counted(angle):g}°", poses.position(_leading(poses.mechanism))[:, row], alpha=shade)
-    _draw_own(ax, [(stroke, owners) for stroke, owners in _own(named, angles[:1]) if len(owners) < len(named)])
+    _draw_own(ax, [(stroke, owners) for stroke, owners in own_strokes(named, angles[:1]) if len(owners) < len(named)])
     _equal(ax, [point - [0.0, FOOT * shape.unit] for point in shape.grounds(solution.loads)])
     return ax
-
-
-def moves_alike(solution, other):
-    """Whether two machines look the same in every pose, but for counterweights and loads."""
-    made, twin = solution.mechanism, other.mechanism
-    if (list(made.joints), list(made.links)) != (list(twin.joints), list(twin.links)):
-        return False
-    both = [Shape(_posed(item, np.linspace(0.0, 360.0 * made.turns, 25))) for item in (solution, other)]
-    here, there = ([stroke.points for stroke in shape.strokes(shape.turn)] for shape in both)
-    reach = 1e-6 * both[0].size
-    return len(here) == len(there) and all(
-        one.shape == two.shape and np.allclose(one, two, rtol=0.0, atol=reach, equal_nan=True)
-        for one, two in zip(here, there, strict=True)
-    )
-
-
-def _own(named, angle):
-    """Counterweights and signs of loads in a pose, each stroke with the labels of those that have it, in order."""
-    found: list[tuple[Any, list[str]]] = []
-    for name, solution in named.items():
-        shape, pose = Shape(_whole_turn(solution)), _posed(solution, angle)
-        for stroke in (*shape.counterweights(pose), *shape.signs(solution.loads, pose)):
-            same = (owners for other, owners in found if _same(stroke, other))
-            owners = next(same, None)
-            if owners is None:
-                found.append((stroke, [name]))
-            elif name not in owners:
-                owners.append(name)
-    return found
-
-
-def _same(stroke, other):
-    """Whether two strokes are the same to the eye."""
-    if stroke.kind != other.kind or stroke.points.shape != other.points.shape:
-        return False
-    return np.allclose(stroke.points, other.points, rtol=1e-6, equal_nan=True)
 
 
 def _draw_own(ax, strokes):
@@ -175,10 +137,10 @@ def _draw_own(ax, strokes):
         text = f"{'counterweight' if stroke.kind in WEIGHTS else 'load'}: {', '.join(owners)}"
         known = text in colours
         colour = colours.setdefault(text, f"C{len(colours)}")
-        artist = _artist(ax, stroke, 1.0)
-        artist.set(color=colour) if isinstance(artist, Line2D) else artist.set(fc=(colour, 0.12), ec=colour, alpha=None)
-        artist.set_label("_" if known else text)
-        _set(artist, stroke.points[..., 0])
+        drawn = artist(ax, stroke, 1.0)
+        drawn.set(color=colour) if isinstance(drawn, Line2D) else drawn.set(fc=(colour, 0.12), ec=colour, alpha=None)
+        drawn.set_label("_" if known else text)
+        put(drawn, stroke.points[..., 0])
     if colours:
         ax.legend(frameon=False, fontsize="small", loc="upper right")
 
@@ -205,6 +167,16 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     Returns
     -------
     matplotlib.animation.FuncAnimation
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5).solve(8)
+    >>> film = ks.plots.animation(s, joints=["O"], frames=2)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     film.save(Path(folder, "saw.gif"), writer="pillow", dpi=40)
     """
     from matplotlib.animation import FuncAnimation
 
@@ -223,7 +195,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     steps = np.linspace(0, count, min(frames, count), endpoint=False).astype(int)
     shape, made = _frame(ax, solution), solution.mechanism
     strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
-    parts = [_artist(ax, stroke, 1.0) for stroke in strokes]
+    parts = [artist(ax, stroke, 1.0) for stroke in strokes]
     moving = [name for name, point in made.joints.items() if point.link != FRAME]
     spots = [(name, {**PIN, "zorder": 4}) for name in moving]
     spots += [(name, style) for name in shape.heavy for style in MASS_CENTRE]
@@ -251,7 +223,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
 
     def draw(step):
         for part, stroke in zip(parts, strokes, strict=True):
-            _set(part, stroke.points[..., step])
+            put(part, stroke.points[..., step])
         for mark, position in zip(marks, positions, strict=True):
             mark.set_data(position[:, [step]])
         arrows.set_offsets(np.array([start[:, step] for start in starts]))
@@ -282,7 +254,7 @@ def _largest(values):
 def _frame(ax, solution):
     """What does not move: fixed pivots, guides over the stroke, the pitch curve of the cam or the crank circle."""
     made = solution.mechanism
-    turn = _whole_turn(solution)
+    turn = whole_turn(solution)
     shape = Shape(turn)
     for joint, text in made.curves.items():
         ax.plot(*turn.position(joint), color=ACCENT, lw=1, ls="--", label=text)
@@ -298,18 +270,6 @@ def _frame(ax, solution):
         ax.plot(*point, marker=symbols.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8, zorder=1.6)
         ax.plot(*point, **PIN, zorder=4)
     return shape
-
-
-def _whole_turn(solution):
-    """The mechanism at many crank angles of the turns after which it repeats."""
-    turns = solution.mechanism.turns
-    return _posed(solution, np.linspace(0, 360 * turns, 720 * turns + 1))
-
-
-def _posed(solution, degrees):
-    """The mechanism at other crank angles, whatever its loads; of its speed only which way the crank turns."""
-    ways = np.unique(np.sign(solution.crank_speed))
-    return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
 
 
 def _cut(solution, joint):
@@ -340,21 +300,6 @@ def _together(poses, shape):
         else:
             names.append(name)
     return found
-
-
-def _artist(ax, stroke, shade):
-    """What a stroke is drawn by, still empty."""
-    if stroke.kind in PLATES:
-        return ax.add_patch(Polygon(np.full((3, 2), np.nan), alpha=shade, **PLATES[stroke.kind]))
-    return ax.add_line(Line2D([], [], alpha=shade, **LINES[stroke.kind]))
-
-
-def _set(artist, points):
-    """Give what a stroke is drawn by its points (2, K)."""
-    if isinstance(artist, Line2D):
-        artist.set_data(points)
-    else:
-        artist.set_xy(points.T)
 
 
 def _equal(ax, moving=()):

@@ -15,8 +15,8 @@ from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
 from ..results.losses import lose
 from . import drives, plots
+from .alike import moves_alike
 from .canvas import FROM_X, FROM_Y_CLOCKWISE, distinct
-from .drawings import moves_alike
 
 
 def draw_case(case, folder, file_format="png", only=None, progress=iter):
@@ -73,8 +73,8 @@ def draw_drive(case, runs, folder):
     """Draw speed, torques and energy flow of a case's variants in periodic running into a folder; returns the paths."""
     bars = len(drives.parts_that_move_energy(runs)) * (1 + len(runs))
     figures = {
-        "speed": lambda runs: _single(drives.speed)(runs),
-        "torque": lambda runs: _one_each(drives.torques, runs, width=6.4, height=3.2, columns=1),
+        "speed": lambda runs: _single(drives.crank_speed)(runs),
+        "torque": lambda runs: _one_each(drives.drive_torques, runs, width=6.4, height=3.2, columns=1),
         "energy": lambda runs: _single(drives.energy_flow, 7.2, 1.2 + 0.19 * bars)(runs),
     }
     paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..machine.group import FRAME
+from ..mechanics.motion import Motion
 from ..numbers.lazy import cached_property
 from ..numbers.planar import unturned
 from . import symbols
@@ -244,3 +245,15 @@ def _around(points):
     """Order of points around their middle."""
     x, y = points - points.mean(axis=1, keepdims=True)
     return np.argsort(np.arctan2(y, x))
+
+
+def whole_turn(solution):
+    """The mechanism at many crank angles of the turns after which it repeats."""
+    turns = solution.mechanism.turns
+    return posed(solution, np.linspace(0, 360 * turns, 720 * turns + 1))
+
+
+def posed(solution, degrees):
+    """The mechanism at other crank angles, whatever its loads; of its speed only which way the crank turns."""
+    ways = np.unique(np.sign(solution.crank_speed))
+    return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
