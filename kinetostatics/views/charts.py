@@ -200,7 +200,7 @@ def sweep_map(table, parameters, output, ax=None, labels=None):
     >>> designs = ks.designs.grid({"slider.mass": "500..700 kg:3", "crank_length": "0.2..0.4 m:3"})
     >>> table = ks.sweep(saw, designs, ["largest O"], angles=90, progress=False)
     >>> ks.plots.sweep_map(table, list(designs), "largest O [N]").get_xlabel()
-    'slider.mass [kg]'
+    'slider mass [kg]'
     """
     parameters = [parameters] if isinstance(parameters, str) else list(parameters or ())
     require_columns("sweep_map", table, (*parameters, output))

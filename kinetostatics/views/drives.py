@@ -25,7 +25,7 @@ def crank_speed(runs, ax=None):
     >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
     >>> runs = {f"{inertia} kg m2": ks.drive.steady(pump, motor, flywheel=inertia) for inertia in (0.05, 0.2)}
     >>> ks.plots.crank_speed(runs).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     ax = axes(ax)
     for name, run, style in styled(runs):
@@ -55,7 +55,7 @@ def drive_torques(run, ax=None):
     >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=ks.ProcessForce(-200.0))
     >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
     >>> ks.plots.drive_torques(ks.drive.steady(pump, motor, flywheel=0.05)).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     ax = axes(ax)
     ratio = 1.0 if run.motor is None else run.motor.transmission

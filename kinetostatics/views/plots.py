@@ -82,7 +82,7 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     >>> solutions = {name: saw.solve(name, 90) for name in ("plain", "cam-cosine")}
     >>> ax = ks.plots.over_turn(solutions, "slider_velocity")
     >>> ax.get_xlabel(), len(ax.get_legend().get_texts())
-    ('crank angle [deg]', 2)
+    ('crank angle from +x, counter-clockwise [deg]', 2)
     """
     ax = axes(ax)
     named = labelled(solutions, quantity)
@@ -138,7 +138,7 @@ def cam_force(solutions, ax=None):
     >>> import kinetostatics as ks
     >>> saw = ks.load_case("sawframe_2r63")
     >>> ks.plots.cam_force(saw.solve("cam-circle", 90)).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     return over_turn(solutions, "cam_force", ax)
 
@@ -161,7 +161,7 @@ def pressure_angle(solutions, ax=None):
     >>> import kinetostatics as ks
     >>> saw = ks.load_case("sawframe_2r63")
     >>> ks.plots.pressure_angle(saw.solve("cam-circle", 90)).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     return over_turn(solutions, "pressure_angle", ax)
 
@@ -189,7 +189,7 @@ def acceleration_error(solutions, ax=None, slider=None):
     >>> import kinetostatics as ks
     >>> saw = ks.load_case("sawframe_2r63")
     >>> ks.plots.acceleration_error(saw.solve("cam-circle", 90)).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     ax = axes(ax)
     named = labelled(solutions, "slider acceleration")
