@@ -28,7 +28,7 @@ def test_design_prints_what_was_and_is_and_writes_a_case_ready_to_run(saw, tmp_p
     assert float(row.split()[5]) > 20
     assert "spring.stiffness [N/m]" in printed
     assert "evaluations of all derivatives" in printed
-    assert "trade: front of largest_absolute cam_force and ratio mean_absolute balancing_torque" in printed
+    assert "trade: front of largest_absolute cam_force and ratio mean_absolute balancing_torque" in words
     assert f"wrote {out}: stiffer, trade" in printed
     assert told.splitlines() == ["searching for stiffer", "searching for trade"]
     assert len(list((tmp_path / "figures").iterdir())) == 2
