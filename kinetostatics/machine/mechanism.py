@@ -209,8 +209,8 @@ class Mechanism(Batched):
 
     @property
     def rollers(self):
-        """Joints that are centres of rollers."""
-        return sum((group.rollers for group in self.groups), ())
+        """Radii of rollers by the joints that are their centres, m; None where it is not known."""
+        return {joint: radius for group in self.groups for joint, radius in group.rollers.items()}
 
     @cached_property
     def hints(self):
@@ -351,5 +351,5 @@ def _name_problems(parts):
             add(forces, what, kind, [name for name in outputs if part.outputs[name].vector == vector])
         endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
         add(forces, "quantity", kind, [f"{link}{ending}" for link in part.links for ending in endings])
-        add(forces, "quantity", kind, part.motions)
+        add(forces, "quantity", kind, [*part.motions, *part.contacts])
     return problems

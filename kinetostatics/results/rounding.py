@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..mechanics.quantities import scale
+from ..mechanics.quantities import of_scene, scale
 from .extremes import FLOOR
 
 PLACED = 1e-7
@@ -12,7 +12,9 @@ PLACED = 1e-7
 def without_rounding(solution, name, values):
     """Values of a quantity, 0 where they are rounding of what it is a sum of."""
     terms = [scale(solution, name), *np.abs(values)]
-    return zeroed(values, FLOOR * max((float(term) for term in terms if np.isfinite(term)), default=0.0))
+    # a pressure is a root of a force
+    floor = np.sqrt(FLOOR) if of_scene(solution)[name].kind == "contact" else FLOOR
+    return zeroed(values, floor * max((float(term) for term in terms if np.isfinite(term)), default=0.0))
 
 
 def zeroed(values, floor):

@@ -115,8 +115,9 @@ class Shape:
                 turn, place = self._axes(pose, link)
                 size = self.unit if link in self.made.guides else 0.8 * self.unit
                 yield Stroke("block", symbols.placed(symbols.RECTANGLE, place, turn, size))
-        for joint in self.made.rollers:
-            yield Stroke("roller", self._ring(pose.position(joint), 0.9 * self.unit))
+        for joint, radius in self.made.rollers.items():
+            size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
+            yield Stroke("roller", self._ring(pose.position(joint), size))
 
     def _axes(self, pose, link):
         """Direction and reference joint of a link, (2, N)."""
