@@ -155,7 +155,7 @@ class CamRoller(checks.Checked, Group):
 
     @property
     def rollers(self):
-        return {"A": self.roller and self.roller.radius}
+        return {"A": None if self.roller is None else self.roller.radius}
 
     @property
     def outputs(self):

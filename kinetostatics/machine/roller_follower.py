@@ -92,7 +92,7 @@ class RollerFollower(GuidedFollower):
 
     @property
     def rollers(self):
-        return {self.pin: self.roller and self.roller.radius}
+        return {self.pin: None if self.roller is None else self.roller.radius}
 
     @property
     def pressed(self):

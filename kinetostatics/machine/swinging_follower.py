@@ -201,7 +201,7 @@ class SwingingFollower(follower.Follower):
 
     @property
     def rollers(self):
-        return {self.pin: self.roller and self.roller.radius}
+        return {self.pin: None if self.roller is None else self.roller.radius}
 
     def pitch(self, law):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""
