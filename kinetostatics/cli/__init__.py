@@ -2,14 +2,17 @@
 
 options
     What may be written on the line.
-commands
+commands, comparing, driving, sweeping, designing, reporting
     What each command does.
-designing
-    What the command ``design`` does.
-reporting
-    What the command ``report`` does.
 printed
-    Tables on the screen and in files.
+    Tables and words for people, as wide as the terminal.
+machine
+    JSON and CSV for other programs.
+
+``--json`` prints one object: the command, the version, the case, and what the command found, by the names and with the
+units of the Python tables: ``variants.plain.extremes.balancing_torque.largest`` of ``run``, in the ``unit`` beside it.
+``--csv`` prints one table, ``--csv FILE`` writes it beside what is printed. Nothing else is on standard output then;
+progress and warnings go to standard error, progress only on a terminal and never with ``--json``.
 """
 
 import os
@@ -19,6 +22,7 @@ import threading
 from contextlib import contextmanager
 
 from ..errors import KinetostaticsError, ParameterError
+from . import machine
 from .options import parser
 from .printed import tell
 
@@ -37,6 +41,7 @@ def main(arguments=None):
         with _ending_in_order():
             _require_output()
             options = parser().parse_args(arguments)
+            machine.require(options)
             options.command(options)
             sys.stdout.flush()
     except BrokenPipeError:

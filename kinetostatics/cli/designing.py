@@ -14,7 +14,8 @@ from ..design.fronts import Front
 from ..design.robust import over_spread
 from ..errors import CaseError, DesignError
 from ..numbers import checks, files
-from .printed import print_table, tell
+from . import machine
+from .printed import print_table, require_writable, say, tell
 
 SAMPLES = 2048
 """Machines of a spread that are looked at in the end."""
@@ -33,22 +34,65 @@ def design(options):
     if any(wrong):
         raise CaseError(case.path, [problem for problem in wrong if problem])
     _require_places(case, names, options)
-    print(case.title)
+    if not machine.quiet(options):
+        say(case.title)
     found = {}
     for name in names:
         found[name] = _found(case.designs[name], options)
-        _print(case.designs[name], found[name])
-        sys.stdout.flush()
+        if not machine.quiet(options):
+            _print(case.designs[name], found[name])
+            sys.stdout.flush()
+    written = []
     if options.plot:
         from ..views.designs import draw_designs
 
-        print("", *draw_designs(case, found, options.plot, options.format), sep="\n")
+        written += draw_designs(case, found, options.plot, options.format)
+        machine.announce(options, "", *written)
     if options.out:
-        print(f"\nwrote {write_found(options.out, case, found)}: {', '.join(found)}")
+        written.append(write_found(options.out, case, found))
+        machine.announce(options, "", f"wrote {written[-1]}: {', '.join(found)}")
+    if machine.wants_json(options):
+        results = {name: _as_json(case.designs[name], item) for name, item in found.items()}
+        machine.print_json("design", case=machine.of_case(case), found=results, files=written)
+    if options.csv:
+        machine.give_csv(options, _as_rows(found))
+
+
+def _as_json(item, found):
+    """What was found, as ``--json`` gives it."""
+    if isinstance(found, Front):
+        return {"outputs": found.outputs, "source": item.source, "before": found.before, "front": found.table}
+    return {
+        "goal": str(found.goal),
+        "source": item.source,
+        "reference": item.reference,
+        "outputs": machine.rows(found.report()),
+        "numbers": machine.rows(found.numbers()),
+        "evaluations": found.evaluations,
+        "ends_of_searches": found.starts,
+        "bound": found.bound,
+        "power_residual": found.scene.solve(720).power_residual,
+    }
+
+
+def _as_rows(found):
+    """All that was found as one table, a row for each number."""
+    import pandas as pd
+
+    rows = []
+    for name, item in found.items():
+        front = isinstance(item, Front)
+        tables = {"front": item.table} if front else {"output": item.report(), "number": item.numbers()}
+        for kind, table in tables.items():
+            table = table.rename_axis("name").reset_index()
+            rows.append(table.assign(design=name, kind=kind))
+    whole = pd.concat(rows)
+    return whole[["design", "kind", *(column for column in whole if column not in ("design", "kind"))]]
 
 
 def _require_places(case, names, options):
     """What is found can be written, and where: nobody searches for what is lost then."""
+    require_writable(case, "--csv", options.csv, (".csv",))
     if options.plot:
         checks.require("--plot", files.unwritable_folder(options.plot))
     if options.out:
@@ -62,27 +106,28 @@ def _require_places(case, names, options):
 def _found(item, options):
     tell(f"searching for {item.name}")
     try:
-        return item.find(starts=options.starts, progress=sys.stderr is not None and sys.stderr.isatty())
+        return item.find(starts=options.starts, progress=machine.watched(options))
     except DesignError as error:
         raise DesignError(f"{item.name}: {error}", error.values) from None
 
 
 def _print(item, found):
     if isinstance(found, Front):
-        print(f"\n{item.name}: front of {' and '.join(found.outputs)}, from {item.source}\n")
+        say(f"\n{item.name}: front of {' and '.join(found.outputs)}, from {item.source}\n")
         table: Any = found.table
         print_table(table.set_axis(range(1, len(table) + 1)).rename_axis("design"))
         return
-    print(f"\n{item.name}: {found.goal}, from {item.source}; ratios to {item.reference}\n")
+    ratios = f"ratios: {item.reference} / design, above 1 in favour of the design"
+    say(f"\n{item.name}: {found.goal}, from {item.source}; {ratios}\n")
     report = found.report()
     gain = "gain per unit"
     binds = report["binds"].map({True: "yes", False: ""})
     print_table(report.assign(binds=binds).rename(columns={"price": gain}))
     print()
     print_table(found.numbers().rename(columns={"price": gain}))
-    print(f"\n{_told(found)}")
+    say(f"\n{_told(found)}")
     if item.spread is not None:
-        print(_of_the_spread(item, found))
+        say(_of_the_spread(item, found))
 
 
 def _of_the_spread(item, found):

@@ -6,20 +6,30 @@ from .. import __version__
 from ..numbers import checks
 from ..numbers.units import to_si
 from . import commands
+from .printed import STDOUT
 
 DESIGN = 100
 """Bytes that a design takes with its outputs."""
+
+EPILOG = (
+    "Tables are as wide as the terminal, and 80 letters in a pipe or a file; COLUMNS=160 in the environment makes them "
+    "wider. For other programs: --json, and --csv where there is a table, write numbers in full and nothing else."
+)
+"""Said under the help of all commands."""
 
 
 def parser():
     """The parser; each command's options name the function that carries it out."""
     main = argparse.ArgumentParser(
-        prog="kinetostatics", description="Forces and drive torque of planar slider mechanisms, from a case file."
+        prog="kinetostatics",
+        description="Forces and drive torque of planar slider mechanisms, from a case file.",
+        epilog=EPILOG,
     )
     main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")
     group = main.add_subparsers(required=True, metavar="COMMAND")
 
-    _command(group, "list", commands.list_cases, "the shipped cases, with title and variants", False)
+    listing = _command(group, "list", commands.list_cases, "the shipped cases, with title and variants", False)
+    _for_machines(listing, "one row for each case", file=False)
 
     new = _command(group, "new", commands.new, "write a commented case file to start from", False)
     new.add_argument("name", type=_text, metavar="NAME", help="of the case: NAME.toml is written, never over another")
@@ -28,10 +38,11 @@ def parser():
     run = _command(group, "run", commands.run, "extremes of every force, with the power check")
     run.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
     run.add_argument("--angles", type=_angles, default=720, metavar="N", help="crank angles over the turn (720)")
-    run.add_argument("--csv", type=_text, metavar="FILE", help="write all results, a row for each crank angle")
+    _for_machines(run, "all results, a row for each crank angle")
 
     compare = _command(group, "compare", commands.compare, "dynamic coefficients against the reference variant")
     compare.add_argument("--variant", type=_text, metavar="NAME", help="only this variant against the reference")
+    _for_machines(compare, "the coefficients, a row for each")
 
     explain = _command(group, "explain", commands.explain, "the hand calculation of a quantity at one crank angle")
     explain.add_argument("--angle", type=_angle, required=True, metavar="ANGLE", help='crank angle, "39.3 deg"')
@@ -46,12 +57,14 @@ def parser():
     drive.add_argument(
         "--start", type=_angle, default=0.0, metavar="ANGLE", help='crank angle to start from, "90 deg" (0 deg)'
     )
-    drive.add_argument("--out", type=_text, metavar="DIR", help="folder for the CSV and the figures")
+    drive.add_argument("--out", type=_text, metavar="DIR", help="folder for a CSV over the turn and the figures")
+    _for_machines(drive, "the tables, a row for each quantity")
 
     plot = _command(group, "plot", commands.plot, "draw the figures of the case")
     plot.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the figures")
     plot.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")
     plot.add_argument("--only", type=_text, metavar="FIGURE", help="draw this figure only")
+    _for_machines(plot)
 
     report = _command(group, "report", commands.report, "one page with the moving mechanism, figures and tables")
     report.add_argument("--out", required=True, type=_text, metavar="FILE", help="page to write, .html")
@@ -69,6 +82,7 @@ def parser():
         "--quantity", action="append", type=_text, metavar="NAME", help="of these (balancing_torque)"
     )
     precision.add_argument("--angles", type=_angles, default=360, metavar="N", help="crank angles over the turn (360)")
+    _for_machines(precision)
 
     sweep = _command(group, "sweep", commands.sweep, "outputs of many designs, a row for each")
     sweep.add_argument(
@@ -93,6 +107,7 @@ def parser():
         "--out", type=_text, metavar="PATH", help="table to write, .csv or .parquet; or a folder to resume from"
     )
     sweep.add_argument("--plot", type=_text, metavar="FILE", help="figure to write, .png or .svg")
+    _for_machines(sweep, "the designs, a row for each")
 
     design = _command(group, "design", commands.design, "find the machines that the case asks for: its [design] tables")
     design.add_argument("--design", action="append", type=_text, metavar="NAME", help="only these (all)")
@@ -100,22 +115,35 @@ def parser():
     design.add_argument("--out", type=_text, metavar="FILE", help="case file to write with what is found, .toml")
     design.add_argument("--plot", type=_text, metavar="DIR", help="folder for the figures")
     design.add_argument("--format", choices=("png", "svg"), default="png", help="of the figures (png)")
+    _for_machines(design, "what was found, a row for each number")
 
     stability = _command(
         group, "stability", commands.stability, "every method's error near the places where it hurts", False
     )
     stability.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the CSVs and the chart")
+    _for_machines(stability)
     return main
 
 
 def _command(group, name, function, text, of_case=True):
-    command = group.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+    command = group.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=EPILOG)
     if of_case:
         command.add_argument(
             "case", type=_text, metavar="CASE", help="a TOML file, or the name of a shipped case: sawframe_2r63"
         )
     command.set_defaults(command=function)
     return command
+
+
+def _for_machines(command, table=None, file=True):
+    """Options that write for other programs; ``--csv`` only where there is a table."""
+    command.add_argument("--json", action="store_true", help="results as JSON in place of tables, numbers in full")
+    if table is not None:
+        text = f"{table}, as CSV to FILE{', or in place of tables without one' if file else ''}"
+        if file:
+            command.add_argument("--csv", nargs="?", const=STDOUT, type=_text, metavar="FILE", help=text)
+        else:
+            command.add_argument("--csv", action="store_const", const=STDOUT, help=f"{table}, as CSV")
 
 
 def _text(text):

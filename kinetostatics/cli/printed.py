@@ -1,18 +1,41 @@
-"""Tables as the command line prints and writes them."""
+"""Tables and words as the command line prints them: plain text, as wide as the terminal."""
 
+import shutil
 import sys
+import textwrap
 
 from ..errors import CaseError
 from ..numbers import checks, files
+from ..numbers.headings import parted
+
+STDOUT = "-"
+"""Name of a file that stands for standard output."""
+NARROWEST = 40
+"""Columns that lines have on narrower terminals."""
+GAP = 2
+"""Blanks between columns."""
+WORDS = ("unit", "published", "limit")
+"""Headings of columns of words that may look like numbers."""
+SHORTEST = 24
+"""Letters to which a column of words is folded at most."""
+PLAIN = 1e9
+"""Numbers from which on they are written with a power of ten."""
+
+
+def require_writable(case, option, path, endings):
+    """The file that an option names, if any, can be written, is of these kinds, and no input of the case."""
+    if path not in (None, STDOUT):
+        checks.require(option, files.unwritable(path, inputs=case.files, endings=endings))
 
 
 def write_table(table, path):
+    """Write a pandas DataFrame to a file; returns what to say of it."""
     with files.written_whole(path) as temporary:
         if path.lower().endswith(".parquet"):
             table.to_parquet(temporary)
         else:
             table.to_csv(temporary, index=False)
-    print(f"\nwrote {path}: {len(table)} rows")
+    return f"wrote {path}: {len(table)} rows"
 
 
 def tell(text):
@@ -20,11 +43,28 @@ def tell(text):
         print(text, file=sys.stderr)
 
 
-def print_table(table):
-    from tabulate import tabulate
+def width():
+    """Letters of a line: of the terminal, or as many as COLUMNS says; 80 in a pipe or a file."""
+    return max(shutil.get_terminal_size((80, 24)).columns, NARROWEST)
 
-    cells = table.reset_index().map(_cell)
-    print(tabulate(cells, headers="keys", showindex=False, disable_numparse=True, colalign=_alignment(table)))
+
+def say(text, indent=0):
+    """Print words, a paragraph to a line, folded to the width; all lines but the first of each are set in so far."""
+    for line in text.split("\n"):
+        print(
+            textwrap.fill(line, width(), subsequent_indent=" " * indent, break_long_words=False, break_on_hyphens=False)
+        )
+
+
+def print_table(table):
+    """Print a pandas DataFrame: as it is if it fits, else with headings and words folded, else in parts.
+
+    Parts stand below each other, each with the first columns again.
+    """
+    table = table.reset_index()
+    columns = [(str(name), [_cell(value, str(name)) for value in table.iloc[:, at]]) for at, name in enumerate(table)]
+    for number, part in enumerate(_parts(columns, width())):
+        print(("\n" if number else "") + _drawn(part))
 
 
 def with_published(table, published, path):
@@ -43,11 +83,75 @@ def with_published(table, published, path):
     return cells
 
 
-def _alignment(table):
-    return ["left", *("left" if name in ("unit", "published") else "right" for name in table.columns)]
-
-
-def _cell(value):
+def _cell(value, heading=""):
+    """A number with six digits, an angle with those that six digits of a turn have; NaN as nothing."""
     if isinstance(value, str):
         return value
-    return "" if value != value else f"{value + 0.0:.6g}"  # a zero has no sign
+    if value != value:
+        return ""
+    value = value + 0.0  # a zero has no sign
+    if parted(heading)[1] == "deg":
+        return f"{round(value, 3) + 0.0:.6g}"
+    return f"{value:.0f}" if 1e6 <= abs(value) < PLAIN else f"{value:.6g}"
+
+
+def _parts(columns, room):
+    """Columns, heading and cells each, in parts that fit into a line."""
+    if _breadth(columns) <= room:
+        return [columns]
+    for hyphens in (False, True):
+        narrow = [(_folded(heading, _widest(cells), hyphens), cells) for heading, cells in columns]
+        folded = _with_folded_words(narrow, room)
+        if _breadth(folded) <= room:
+            return [folded]
+    columns = [(_folded(heading, _widest(cells)), cells) for heading, cells in columns]
+    kept = 2 if len(columns) > 2 and columns[1][0] == "unit" else 1
+    first, rest = _with_folded_words(columns[:kept], int(0.45 * room)), _with_folded_words(columns[kept:], room // 2)
+    for count in range(2, len(rest)):
+        size = -(-len(rest) // count)
+        parts = [[*first, *rest[start : start + size]] for start in range(0, len(rest), size)]
+        if max(map(_breadth, parts)) <= room:
+            return parts
+    return [[*first, column] for column in rest]
+
+
+def _with_folded_words(columns, room):
+    """Columns with those of words folded until all fit, the widest first."""
+    columns = list(columns)
+    words = [at for at, column in enumerate(columns) if _of_words(column)]
+    for at in sorted(words, key=lambda at: -_widest(columns[at][1])):
+        texts = [columns[at][0], *columns[at][1]]
+        over = _breadth(columns) - room
+        if over > 0:
+            least = SHORTEST if at == 0 else SHORTEST // 2
+            heading, *cells = (_folded(text, max(_widest(texts) - over, least)) for text in texts)
+            columns[at] = heading, cells
+    return columns
+
+
+def _breadth(columns):
+    return sum(_widest([heading, *cells]) for heading, cells in columns) + GAP * (len(columns) - 1)
+
+
+def _widest(texts):
+    return max((len(line) for text in texts for line in text.split("\n")), default=0)
+
+
+def _folded(text, room, hyphens=False):
+    """Text in lines so wide; words longer than that stay whole, but for those with hyphens if wanted."""
+    return "\n".join(textwrap.wrap(text, max(room, 1), break_long_words=False, break_on_hyphens=hyphens))
+
+
+def _of_words(column):
+    """Whether cells are words: by the heading, or because none is a number."""
+    heading, cells = column
+    return heading in WORDS or not any(cell.lstrip("-")[:1].isdecimal() for cell in cells)
+
+
+def _drawn(columns):
+    from tabulate import tabulate
+
+    rules = ["-" * _widest([heading, *cells]) for heading, cells in columns]
+    rows = [[heading for heading, _ in columns], rules, *zip(*(cells for _, cells in columns), strict=True)]
+    alignment = ["left" if at == 0 or _of_words(column) else "right" for at, column in enumerate(columns)]
+    return tabulate(rows, tablefmt="plain", disable_numparse=True, colalign=alignment)

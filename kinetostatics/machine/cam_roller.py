@@ -163,6 +163,10 @@ class CamRoller(checks.Checked, Group):
         return {"A": "pitch curve of the cam"}
 
     @property
+    def rollers(self):
+        return {"A": None if self.roller is None else self.roller.radius}
+
+    @property
     def outputs(self):
         return OUTPUTS
 

@@ -11,6 +11,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     guides      the guide of each link that slides along one, without turning
     slots       the links in which a joint slides, each a `Slot`
     curves      the joints that run on a curve, with what drawings call it
+    rollers     radii of rollers, by the joints that are their centres
     outlines    curves fixed to links, as cams are, points (2, K) by link, in its axes
     outputs     the reactions and other forces it finds, each an `Output` with its unit
     motions     quantities of its motion besides those of joints and links, each an `Output`
@@ -250,6 +251,11 @@ class Group:
     @property
     def curves(self):
         """Joints that run on a curve, with what drawings call it."""
+        return {}
+
+    @property
+    def rollers(self):
+        """Radii of rollers by the joints that are their centres, m; None where it is not known."""
         return {}
 
     @property

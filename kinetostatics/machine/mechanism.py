@@ -207,6 +207,11 @@ class Mechanism(Batched):
         """Links in which a joint slides, each as a `Slot`."""
         return sum((group.slots for group in self.groups), ())
 
+    @property
+    def rollers(self):
+        """Radii of rollers by the joints that are their centres, m; None where it is not known."""
+        return {joint: radius for group in self.groups for joint, radius in group.rollers.items()}
+
     @cached_property
     def hints(self):
         """What looks like a slip of units, as sentences."""

@@ -97,6 +97,10 @@ class RollerFollower(GuidedFollower):
     forces = staticmethod(forces)
 
     @property
+    def rollers(self):
+        return {self.pin: None if self.roller is None else self.roller.radius}
+
+    @property
     def pressed(self):
         """What the cam presses on: its `Roller`, or None."""
         return self.roller

@@ -207,6 +207,10 @@ class SwingingFollower(follower.Follower):
     def pairs(self):
         return {self.pivot_name: Turning(self.moved, self.pivot_name)}
 
+    @property
+    def rollers(self):
+        return {self.pin: None if self.roller is None else self.roller.radius}
+
     def pitch(self, law):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""
         placed = place(law[:3], self.pivot, self.arm_length, self.assembly).roller

@@ -12,6 +12,7 @@ from ..numbers.lazy import cached_property
 from .extremes import extremes
 from .losses import lose
 from .means import mean_absolute_torque, mean_absolute_torque_errors
+from .rounding import without_rounding
 from .turn import SAME
 
 
@@ -100,20 +101,26 @@ class Comparison:
         return tuple(_range(solution, force) for solution in (self.reference, self.balanced))
 
     def frame(self):
-        """All coefficients as a pandas DataFrame: quantity, unit, its value in each mechanism, and the ratio."""
+        """All coefficients as a pandas DataFrame: quantity, unit, its value in each mechanism, and the ratio.
+
+        What is rounding, beside the largest force or torque of its mechanism, stands as 0.
+        """
         import pandas as pd
 
-        rows = [("mean |balancing torque|", "N m", *self.mean_torques, self.mean_torque_ratio)]
+        torques = self._without_rounding("balancing_torque", self.mean_torques)
+        rows = [("mean |balancing torque|", "N m", *torques, _ratio(*torques))]
         reference, matched = self.torque_extremes
         for number, row in enumerate(zip(reference.value, matched, self.torque_extremum_ratios, strict=True), 1):
             rows.append((f"torque extremum {number}", "N m", *row))
         rows += self._lost()
         for joint in self.reference.reactions:
             if joint in self.balanced.reactions:
-                peaks = self.peak_reactions(joint)
+                peaks = self._without_rounding(joint, self.peak_reactions(joint))
                 rows.append((f"largest {label_of(self.reference, joint)}", "N", *peaks, _ratio(*peaks)))
         for name in ("shaking_force", "shaking_moment"):
-            peaks = [abs(extremes(solution, name).largest) for solution in (self.reference, self.balanced)]
+            peaks = self._without_rounding(
+                name, [abs(extremes(solution, name).largest) for solution in (self.reference, self.balanced)]
+            )
             label, unit = label_of(self.reference, name), unit_of(self.reference, name)
             rows.append((f"largest {label}", unit, *peaks, _ratio(*peaks)))
         couplers = (bar.link for bar in self.reference.mechanism.couplers)
@@ -126,6 +133,11 @@ class Comparison:
         rows.append(("power residual", "1", self.reference.power_residual, self.balanced.power_residual, np.nan))
         table = pd.DataFrame(rows, columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
         return table.dropna(how="all", subset=list(self.names))
+
+    def _without_rounding(self, name, pair):
+        """A quantity of both mechanisms, 0 where it is rounding."""
+        both = zip((self.reference, self.balanced), pair, strict=True)
+        return [float(without_rounding(solution, name, [value])[0]) for solution, value in both]
 
     def _lost(self):
         """Rows of the power lost by joint, all together, and of the efficiency; none where no power is lost."""

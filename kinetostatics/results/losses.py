@@ -27,6 +27,7 @@ from ..numbers.lazy import cached_property
 from ..numbers.planar import number
 from .extremes import extrema
 from .means import FLOOR, PRECISE, closed_turn, means
+from .rounding import PLACED, zeroed
 
 NOTHING = 1e-12
 """Mean power, relative to the largest power that flows, that is rounding of what goes to and fro."""
@@ -117,9 +118,10 @@ class Losses:
         mean = np.array([*self.lost.values(), self.total])
         names = [*self.lost, "all"]
         largest, angle = np.transpose([self.peaks[name] for name in names])
+        degrees = np.degrees(zeroed(angle, PLACED))
         with np.errstate(invalid="ignore"):
             share = 100.0 * mean / self.total
-        columns = {"mean [W]": mean, "share [%]": share, "largest [W]": largest, "largest at [deg]": np.degrees(angle)}
+        columns = {"mean [W]": mean, "share [%]": share, "largest [W]": largest, "largest at [deg]": degrees}
         return pd.DataFrame(columns | {"per turn [J]": mean * self.turn_time}, pd.Index(names, name="lost at"))
 
     def _power(self, at):

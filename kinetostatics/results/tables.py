@@ -5,11 +5,11 @@ import warnings
 import numpy as np
 
 from ..errors import ConditionWarning
-from ..mechanics.quantities import of_scene, scale, still
-from .extremes import FLOOR, extrema, warning
+from ..mechanics.quantities import of_scene, still
+from .extremes import extrema, warning
+from .rounding import PLACED, without_rounding, zeroed
 
-PLACED = 1e-7
-"""Crank angle, rad, below which the place of an extremum is 0: values about it agree to all digits."""
+SHOWN = ("smallest", "smallest at [deg]", "largest", "largest at [deg]")
 
 
 def extremes_frame(solution):
@@ -24,7 +24,14 @@ def extremes_frame(solution):
     """
     import pandas as pd
 
-    rows, several = [], []
+    found = extremes_by_name(solution)
+    rows = [(quantity.label, quantity.unit, *ends) for quantity, ends in found.values()]
+    return pd.DataFrame(rows, columns=["quantity", "unit", *SHOWN]).set_index("quantity")
+
+
+def extremes_by_name(solution):
+    """By the name of every quantity: what it is, and its extremes as `SHOWN` names them; as for `extremes_frame`."""
+    rows, several = {}, []
     for name, quantity in of_scene(solution).items():
         if quantity.kind in ("check", "energy"):
             continue
@@ -33,23 +40,9 @@ def extremes_frame(solution):
         found = extrema(solution, name)
         several.append(found)
         places = [found.angle[find(found.value)] if len(found) else np.nan for find in (np.argmin, np.argmax)]
-        ends = zip(_rounded(solution, name, found.range), np.degrees(_zeroed(places, PLACED)), strict=True)
-        rows.append((quantity.label, quantity.unit, *(item for end in ends for item in end)))
+        ends = zip(without_rounding(solution, name, found.range), np.degrees(zeroed(places, PLACED)), strict=True)
+        rows[name] = quantity, tuple(float(item) for end in ends for item in end)
     text = warning(solution, several)
     if text:
-        warnings.warn(text, ConditionWarning, stacklevel=2)
-    columns = ["quantity", "unit", "smallest", "smallest at [deg]", "largest", "largest at [deg]"]
-    return pd.DataFrame(rows, columns=columns).set_index("quantity")
-
-
-def _rounded(solution, name, ends):
-    """Smallest and largest value of a quantity, 0 where they are rounding of what it is a sum of."""
-    terms = [scale(solution, name), *np.abs(ends)]
-    rounding = (
-        np.sqrt(FLOOR) if of_scene(solution)[name].kind == "contact" else FLOOR
-    )  # a pressure is a root of a force
-    return _zeroed(ends, rounding * max((float(term) for term in terms if np.isfinite(term)), default=0.0))
-
-
-def _zeroed(values, floor):
-    return np.where(np.abs(values) < floor, 0.0, values)
+        warnings.warn(text, ConditionWarning, stacklevel=3)
+    return rows

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.patches import Circle
 
 from ..numbers import checks
-from .canvas import ACCENT, INK, STEEL, axes, closed, styled
+from .canvas import ACCENT, FROM_X, INK, STEEL, axes, closed, styled
 
 POINTS = 1440
 """Crank angles a turn at which curves are drawn."""
@@ -88,7 +88,7 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     >>> import kinetostatics as ks
     >>> cam = ks.cams.Circle(0.3, (-0.02, 0.0))
     >>> ks.plots.cam_curvature(cam, roller_radius=0.05).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     named = _named(cams, "cam_curvature", _cam_problem)
     checks.require(
@@ -126,7 +126,7 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     >>> import kinetostatics as ks
     >>> cam = ks.cams.Circle(0.3, (-0.02, 0.0))
     >>> ks.plots.cam_pressure_angle(cam, largest=0.5).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     named = _named(cams, "cam_pressure_angle", _cam_problem)
     checks.require("cam_pressure_angle", None if largest is None else checks.positive("largest", largest))
@@ -160,7 +160,7 @@ def contact_pressure(contacts, ax=None):
     >>> saw = ks.cam_crank_slider(cam, 2.02, slider=ks.Link(600.0))
     >>> found = ks.design.contact(ks.Scene(saw, 10.0).solve(90), 0.05, 0.04, 210e9, 0.3)
     >>> ks.plots.contact_pressure(found).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     named = _named(contacts, "contact_pressure", _contact_problem)
     ax = axes(ax)
@@ -219,7 +219,7 @@ def law_motion(laws, ax=None):
 
 
 def _over_turn(ax, text, legend):
-    ax.set(xlabel="crank angle [deg]", ylabel=text)
+    ax.set(xlabel=FROM_X.axis, ylabel=text)
     ax.set_xticks(np.arange(0, 361, 60))
     if legend:
         ax.legend(frameon=False, fontsize="small")

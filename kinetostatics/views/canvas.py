@@ -1,14 +1,43 @@
 """What every figure shares: colours, axes, labels, units that read well."""
 
+import textwrap
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 from ..errors import ParameterError
 from ..mechanics.quantities import label_of
-from ..numbers import checks
+from ..numbers import checks, headings
 
+
+@dataclass(frozen=True)
+class Counted:
+    """How crank angles are counted: the text of an axis, the angle from +x at 0, degrees, and the sense.
+
+    All figures of one folder count in one way; `FROM_X` is that of the library.
+    """
+
+    text: str
+    zero: float = 0.0
+    sense: int = 1
+
+    @property
+    def axis(self):
+        return f"crank angle {self.text} [deg]"
+
+    def __call__(self, degrees, period=360.0):
+        """Crank angles from +x, counter-clockwise, counted so."""
+        return degrees if self == FROM_X else np.mod(self.sense * (degrees - self.zero), period)
+
+    def from_x(self, degrees):
+        """Crank angles counted so, from +x, counter-clockwise."""
+        return self.zero + self.sense * np.asarray(degrees)
+
+
+FROM_X = Counted("from +x, counter-clockwise")
+FROM_Y_CLOCKWISE = Counted("from +y, clockwise", 90.0, -1)
 INK, STEEL, ACCENT, LOAD = "0.15", "slategray", "tab:red", "tab:green"
 STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 """Line styles, so that curves differ in print too."""
@@ -64,6 +93,61 @@ def styled(named):
     return [(name, solution, STYLES[row % len(STYLES)]) for row, (name, solution) in enumerate(named.items())]
 
 
+LONG = 20
+"""Letters of a label from which on a legend has one column."""
+ALIKE = 2e-3
+"""Distance of curves, beside the extent of all, up to which one covers the other."""
+NOTHING = 1e-9
+"""Size of a curve, beside the largest, below which it is rounding."""
+
+
+def distinct(curves, apart=False):
+    """Labels of curves (N,) or (2, N) for a legend, each with the name of the curve: one for all that cover each other.
+
+    The label of a curve that is zero but for rounding says so. Curves that are drawn apart, each to a scale of its own,
+    are compared by their own extents.
+    """
+    arrays = {name: np.asarray(curve, dtype=float) for name, curve in curves.items()}
+    finite = {name: np.where(np.isfinite(array), array, 0.0) for name, array in arrays.items()}
+    largest = max((float(np.max(np.abs(array), initial=0.0)) for array in finite.values()), default=0.0)
+    extents = {name: float(np.max(np.ptp(array, axis=-1), initial=0.0)) for name, array in finite.items()}
+    found: list[list[str]] = []
+    for name, array in arrays.items():
+        for names in found:
+            other, extent = arrays[names[0]], extents[name] if apart else max(extents.values())
+            if other.shape == array.shape and np.allclose(array, other, rtol=0.0, atol=ALIKE * extent, equal_nan=True):
+                names.append(name)
+                break
+        else:
+            found.append([name])
+    several = len(arrays) > 1
+    zero = {name: several and np.max(np.abs(finite[name]), initial=0.0) <= NOTHING * largest for name in arrays}
+    return {f"{', '.join(names)}{' (0)' if zero[names[0]] else ''}": names[0] for names in found}
+
+
+def in_order(solution, value, counted=FROM_X):
+    """Crank angles and values (2, N) over one period, by growing angle as it is counted."""
+    degrees = np.degrees(solution.crank_angle)
+    angle = counted(degrees, np.degrees(solution.period))
+    order = slice(None) if counted == FROM_X else np.argsort(angle)
+    return np.stack([angle[order], np.broadcast_to(value, angle.shape)[order]])
+
+
+def drawn_over_turn(ax, curves):
+    """Draw curves (2, N) by label, each in its own style, those that cover each other as one."""
+    for text, name, style in styled(distinct({name: value for name, (_, value) in curves.items()})):
+        ax.plot(*curves[name], linestyle=style, label=text)
+
+
+def readable(column):
+    """Heading of a column of a table, "mean_absolute balancing_torque [N m]", as words for an axis."""
+    name, unit = headings.parted(column)
+    words = name.replace("_", " ").replace(".", " ")
+    if words.startswith("ratio "):
+        words = f"ratio of {words.removeprefix('ratio ')}, reference / design"
+    return f"{words} [{unit or 'SI'}]"
+
+
 def display(name, arrays):
     """Factor and unit in which numbers of this size read well."""
     if name == "rad":
@@ -79,9 +163,9 @@ def closed(curve):
     return np.concatenate([curve, curve[:, :1]], axis=1)
 
 
-def finished(ax, ylabel, legend, period=360):
+def finished(ax, ylabel, legend, period=360, counted=FROM_X):
     """The axes of curves over the crank angle, degrees, with labels, grid and legend."""
-    ax.set_xlabel("crank angle [deg]")
+    ax.set_xlabel(counted.axis)
     ax.set_ylabel(ylabel)
     low, high = ax.dataLim.intervalx
     if low >= 0 and high <= period:
@@ -90,6 +174,9 @@ def finished(ax, ylabel, legend, period=360):
     ax.axhline(0, color=INK, lw=0.5)
     ax.grid(alpha=0.3)
     if legend:
-        ax.margins(y=0.18)
-        ax.legend(frameon=False, loc="upper center", ncols=3, fontsize="small", columnspacing=1.0)
+        handles, texts = ax.get_legend_handles_labels()
+        columns = 3 if max(map(len, texts), default=0) < LONG else 1
+        texts = [textwrap.fill(text, 2 * LONG, break_on_hyphens=False) for text in texts]
+        ax.margins(y=0.18 if columns > 1 else 0.35)
+        ax.legend(handles, texts, frameon=False, loc="upper center", ncols=columns, fontsize="small", columnspacing=1.0)
     return ax

@@ -1,5 +1,6 @@
 """Charts of the studies: error over time, error over the distance from where it hurts, error over the model's cost."""
 
+import textwrap
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -7,10 +8,11 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ..errors import ParameterError
 from ..numbers.files import written_whole
-from .canvas import ACCENT, axes, require_columns
+from .canvas import ACCENT, axes, readable, require_columns
 
 EXACT = 1e-17
 """Where an error of zero is drawn: below the rounding of the largest value."""
@@ -128,6 +130,7 @@ def error_by_distance(table, ax=None):
     if "bound" in problem:
         ax.plot(problem["number"], problem["bound"].clip(EXACT, USELESS), "k:", label="proven bound of ours")
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3 * USELESS), xlabel=table["axis"].iloc[0])
+    ax.xaxis.set_major_locator(LogLocator(numticks=7))
     ax.set_ylabel(f"error of {table['label'].iloc[0]} [1]")
     ax.grid(visible=True, alpha=0.3)
     return ax
@@ -180,7 +183,7 @@ def model_ladder(needs, ax=None):
     return ax
 
 
-def sweep_map(table, parameters, output, ax=None):
+def sweep_map(table, parameters, output, ax=None, labels=None):
     """One output of a sweep over the one or two parameters that it varies: a line, or a map in colours.
 
     Parameters
@@ -192,6 +195,8 @@ def sweep_map(table, parameters, output, ax=None):
     output : str
         Column of the output.
     ax : Axes, optional
+    labels : mapping of column to text, optional
+        What axes say, with units; the headings as words unless told.
 
     Returns
     -------
@@ -204,18 +209,19 @@ def sweep_map(table, parameters, output, ax=None):
     >>> designs = ks.designs.grid({"slider.mass": "500..700 kg:3", "crank_length": "0.2..0.4 m:3"})
     >>> table = ks.sweep(saw, designs, ["largest O"], angles=90, progress=False)
     >>> ks.plots.sweep_map(table, list(designs), "largest O [N]").get_xlabel()
-    'slider.mass [kg]'
+    'slider mass [kg]'
     """
     parameters = [parameters] if isinstance(parameters, str) else list(parameters or ())
     require_columns("sweep_map", table, (*parameters, output))
     if len(parameters) not in (1, 2) or len(set(parameters)) < len(parameters):
         raise ParameterError(f"sweep_map: one or two different parameters can be drawn, got {parameters}")
     ax = axes(ax)
+    text = partial(_axis_text, labels or {})
     if len(parameters) == 1:
         (x,) = parameters
         ordered = table.sort_values(x)
         ax.plot(ordered[x], ordered[output], marker="." if len(table) < 100 else None, color=ACCENT)
-        ax.set(xlabel=x, ylabel=output)
+        ax.set(xlabel=text(x), ylabel=text(output))
         ax.grid(visible=True, alpha=0.3)
         return ax
     x, y = parameters
@@ -224,12 +230,17 @@ def sweep_map(table, parameters, output, ax=None):
         drawn = ax.pcolormesh(grid.columns, grid.index, grid.to_numpy(), shading="nearest", cmap="viridis")
     else:
         drawn = ax.scatter(table[x], table[y], c=table[output], s=8, cmap="viridis")
-    ax.figure.colorbar(drawn, ax=ax, label=output)
-    ax.set(xlabel=x, ylabel=y)
+    ax.figure.colorbar(drawn, ax=ax, label=text(output))
+    ax.set(xlabel=text(x), ylabel=text(y))
     return ax
 
 
-def sweep_page(table, parameters, outputs, path):
+def _axis_text(labels, column, width=40):
+    """What an axis says, in lines that are no longer than it."""
+    return textwrap.fill(labels.get(column) or readable(column), width)
+
+
+def sweep_page(table, parameters, outputs, path, labels=None):
     """Chart of a sweep saved to a file: a panel for each output, or a scatter matrix with three parameters and more."""
     if len(parameters) < 3:
         columns = min(3, len(outputs))
@@ -237,30 +248,30 @@ def sweep_page(table, parameters, outputs, path):
         size = (5.4 * columns, 4.2 * rows)
         figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
         for ax, output in zip(grid.flat, outputs, strict=False):
-            sweep_map(table, parameters, output, ax=ax)
+            sweep_map(table, parameters, output, ax=ax, labels=labels)
         for ax in grid.flat[len(outputs) :]:
             ax.remove()
     else:
-        figure = _scatter_matrix(table, [*parameters, *outputs])
+        figure = _scatter_matrix(table, [*parameters, *outputs], labels or {})
     with written_whole(path) as temporary:
         figure.savefig(temporary, format=Path(path).suffix[1:] or "png", dpi=150, bbox_inches="tight")
     plt.close(figure)
     return Path(path)
 
 
-def _in_lines(column):
-    """Heading with its reduction, quantity and unit each on a line."""
-    name, bracket, unit = column.partition(" [")
-    return "\n".join([*name.split(" "), *([f"[{unit}"] if bracket else [])])
-
-
-def _scatter_matrix(table, columns):
+def _scatter_matrix(table, columns, labels):
     from pandas.plotting import scatter_matrix
 
     shown = table[columns].dropna()
-    shown = shown.sample(min(len(shown), 2000), random_state=0).rename(columns=_in_lines)
+    shown = shown.sample(min(len(shown), 2000), random_state=0)
+    shown = shown.rename(columns=lambda column: _axis_text(labels, column, 18))
     side = 1.9 * len(columns)
-    grid = scatter_matrix(shown, figsize=(side, side), s=6, alpha=0.5, color=ACCENT, hist_kwds={"color": "0.6"})
+    marks: Any = {"s": 30 if len(shown) < 200 else 12, "alpha": 0.6, "color": ACCENT}
+    grid: Any = scatter_matrix(shown, figsize=(side, side), hist_kwds={"color": "0.6"}, **marks)
+    for ax in grid.flat:
+        ax.xaxis.set_major_locator(MaxNLocator(3, prune="both"))
+    for ax in grid[1:, 0]:
+        ax.yaxis.set_major_locator(MaxNLocator(3, prune="both"))
     return grid[0, 0].figure
 
 
@@ -286,10 +297,10 @@ def stability_page(table, path):
 
 
 def _page(draw, panels, path):
-    """Panels by title, three in a row, with one legend below."""
-    columns = min(3, len(panels))
+    """Panels by title, two in a row of a page's width, with one legend below."""
+    columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
-    size = (5.0 * max(columns, 2), 3.8 * rows + 1.6)
+    size = (8.4, 3.4 * rows + 1.6)
     figure, grid = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
     entries: dict[str, Any] = {}
     for ax, (title, part) in zip(grid.flat, panels.items(), strict=False):
@@ -298,7 +309,7 @@ def _page(draw, panels, path):
         entries |= {text: handle for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)}
     for ax in grid.flat[len(panels) :]:
         ax.remove()
-    figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=3, fontsize=8)
+    figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=2, fontsize=8)
     return _saved(figure, path)
 
 

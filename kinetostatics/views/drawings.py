@@ -4,41 +4,28 @@ from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
-from matplotlib.patches import Polygon
 
 from ..errors import ParameterError
 from ..machine.group import FRAME
-from ..mechanics.motion import Motion
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from . import symbols
-from .canvas import ACCENT, INK, LOAD, STEEL, axes, closed, display, labelled, single, styled
+from .alike import own_strokes
+from .canvas import ACCENT, FROM_X, INK, NOTHING, axes, closed, display, labelled, single, styled
 from .labels import label
-from .shape import Shape
+from .shape import Shape, posed, whole_turn
+from .strokes import artist, put
 
-LINES: dict[str, dict[str, Any]] = {
-    "bar": {"color": STEEL, "lw": 2.5, "solid_capstyle": "round", "zorder": 2},
-    "slotted": {"color": STEEL, "lw": 7, "solid_capstyle": "round", "zorder": 2},
-    "slot": {"color": "white", "lw": 3.5, "solid_capstyle": "round", "zorder": 2.1},
-    "spring": {"color": INK, "lw": 1, "zorder": 2.5},
-    "damper": {"color": INK, "lw": 1, "zorder": 2.5},
-    "outline": {"color": ACCENT, "lw": 0.9, "ls": "-.", "zorder": 1.6},
-    "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
-    "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
-}
-"""How each kind of stroke is drawn as a line."""
-PLATES: dict[str, dict[str, Any]] = {
-    "counterweight": {"fc": "0.75", "ec": "0.5", "lw": 0.8, "zorder": 1.5},
-    "plate": {"fc": "lightsteelblue", "ec": STEEL, "lw": 1.5, "zorder": 1.8},
-    "block": {"fc": STEEL, "ec": "none", "zorder": 3},
-}
-"""How each kind of stroke is drawn as a filled shape."""
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
 MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
     {"marker": symbols.MASS_CENTRE, "ms": 8, "mfc": INK, "mec": "none", "zorder": 3.6},
 )
+WEIGHTS = ("counterweight", "bar")
+"""Kinds of strokes that counterweights are drawn by."""
+FOOT = 3.0
+"""Room for the ground below a fixed pivot, half lengths of a block."""
 MOST = 0.9
 """Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
 
@@ -71,15 +58,20 @@ def mass_centres(solutions, angle=60, ax=None):
     checks.require("mass_centres", checks.finite("angle", angle))
     named = labelled(solutions, "common mass centre")
     ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
+    paths = {name: principal_points(solution.mechanism).mass_centre(solution) for name, solution in named.items()}
     for name, solution, style in styled(named):
         points = principal_points(solution.mechanism)
-        (line,) = ax.plot(*closed(points.mass_centre(solution)), linestyle=style, label=name, zorder=5)
-        ax.plot(*points.mass_centre(_posed(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
+        reach = np.abs(solution.position(_leading(solution.mechanism))).max()
+        rests = np.ptp(paths[name], axis=1).max() < NOTHING * reach
+        shown = {"marker": "o", "ms": 4, "ls": ""} if rests else {"linestyle": style}
+        text = f"{name} (at rest)" if rests else name
+        (line,) = ax.plot(*closed(paths[name]), label=text, zorder=5, **shown)
+        ax.plot(*points.mass_centre(posed(solution, [angle])), "o", ms=4, color=line.get_color(), zorder=6)
     ax.legend(frameon=False, fontsize="small", title="path of the common mass centre", title_fontsize="small")
     return ax
 
 
-def mechanism(solution, angles=(40, 160, 280), ax=None):
+def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     """The mechanism at given crank angles: links, fixed pivots, guides, cam (pitch curve), mass centres and loads.
 
     Loads, counterweights, joint names and mass centres are drawn in the first pose. Arrows point as the
@@ -87,10 +79,13 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
 
     Parameters
     ----------
-    solution : Solution
+    solutions : Solution or mapping of label to Solution
+        Of several, machines that move alike, the first is drawn, with the counterweights and loads of each.
     angles : sequence of float
         Crank angles, degrees; the first is drawn strongest.
     ax : Axes, optional
+    counted : Counted
+        How the labels of the crank angles count them; the angles given are from +x.
 
     Returns
     -------
@@ -111,15 +106,16 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     checks.require(
         "mechanism", None if angles.ndim == 1 and np.isfinite(angles).all() else f"angles must be finite, got {angles}"
     )
-    solution, ax = single(solution), axes(ax)
-    shape, poses = _frame(ax, solution), _posed(solution, angles)
+    named, ax = labelled(solutions, ""), axes(ax)
+    solution = next(iter(named.values()))
+    shape, poses = _frame(ax, solution), posed(solution, angles)
     shades = np.linspace(1.0, 0.3, len(angles))
-    strokes, first = list(shape.strokes(poses)), _posed(solution, angles[:1])
-    once = [*shape.counterweights(first), *shape.signs(solution.loads, first)]
+    strokes = list(shape.strokes(poses))
+    once = [stroke for stroke, owners in own_strokes(named, angles[:1]) if len(owners) == len(named)]
     moving = [name for name, point in shape.made.joints.items() if point.link != FRAME]
     for row, shade in enumerate(shades):
         for stroke in strokes + (once if row == 0 else []):
-            _set(_artist(ax, stroke, shade), stroke.points[..., row])
+            put(artist(ax, stroke, shade), stroke.points[..., row])
         for joint in moving:
             ax.plot(*poses.position(joint)[:, row], **PIN, alpha=shade, zorder=4)
     for name in shape.heavy:
@@ -128,9 +124,25 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     for names, point in _together(poses, shape):
         label(ax, ", ".join(names), point, color=INK, fontsize="small")
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
-        label(ax, f"{angle:g}°", poses.position(_leading(poses.mechanism))[:, row], alpha=shade)
-    _equal(ax)
+        label(ax, f"{counted(angle):g}°", poses.position(_leading(poses.mechanism))[:, row], alpha=shade)
+    _draw_own(ax, [(stroke, owners) for stroke, owners in own_strokes(named, angles[:1]) if len(owners) < len(named)])
+    _equal(ax, [point - [0.0, FOOT * shape.unit] for point in shape.grounds(solution.loads)])
     return ax
+
+
+def _draw_own(ax, strokes):
+    """What only some machines have, each machine's in a colour of its own, and whose it is in the legend."""
+    colours: dict[str, Any] = {}
+    for stroke, owners in strokes:
+        text = f"{'counterweight' if stroke.kind in WEIGHTS else 'load'}: {', '.join(owners)}"
+        known = text in colours
+        colour = colours.setdefault(text, f"C{len(colours)}")
+        drawn = artist(ax, stroke, 1.0)
+        drawn.set(color=colour) if isinstance(drawn, Line2D) else drawn.set(fc=(colour, 0.12), ec=colour, alpha=None)
+        drawn.set_label("_" if known else text)
+        put(drawn, stroke.points[..., 0])
+    if colours:
+        ax.legend(frameon=False, fontsize="small", loc="upper right")
 
 
 def animation(solution, joints=None, frames=72, interval=50, ax=None):
@@ -183,7 +195,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     steps = np.linspace(0, count, min(frames, count), endpoint=False).astype(int)
     shape, made = _frame(ax, solution), solution.mechanism
     strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
-    parts = [_artist(ax, stroke, 1.0) for stroke in strokes]
+    parts = [artist(ax, stroke, 1.0) for stroke in strokes]
     moving = [name for name, point in made.joints.items() if point.link != FRAME]
     spots = [(name, {**PIN, "zorder": 4}) for name in moving]
     spots += [(name, style) for name in shape.heavy for style in MASS_CENTRE]
@@ -211,7 +223,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
 
     def draw(step):
         for part, stroke in zip(parts, strokes, strict=True):
-            _set(part, stroke.points[..., step])
+            put(part, stroke.points[..., step])
         for mark, position in zip(marks, positions, strict=True):
             mark.set_data(position[:, [step]])
         arrows.set_offsets(np.array([start[:, step] for start in starts]))
@@ -242,7 +254,7 @@ def _largest(values):
 def _frame(ax, solution):
     """What does not move: fixed pivots, guides over the stroke, the pitch curve of the cam or the crank circle."""
     made = solution.mechanism
-    turn = _posed(solution, np.linspace(0, 360 * made.turns, 720 * made.turns + 1))
+    turn = whole_turn(solution)
     shape = Shape(turn)
     for joint, text in made.curves.items():
         ax.plot(*turn.position(joint), color=ACCENT, lw=1, ls="--", label=text)
@@ -258,12 +270,6 @@ def _frame(ax, solution):
         ax.plot(*point, marker=symbols.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8, zorder=1.6)
         ax.plot(*point, **PIN, zorder=4)
     return shape
-
-
-def _posed(solution, degrees):
-    """The mechanism at other crank angles, whatever its loads; of its speed only which way the crank turns."""
-    ways = np.unique(np.sign(solution.crank_speed))
-    return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
 
 
 def _cut(solution, joint):
@@ -294,21 +300,6 @@ def _together(poses, shape):
         else:
             names.append(name)
     return found
-
-
-def _artist(ax, stroke, shade):
-    """What a stroke is drawn by, still empty."""
-    if stroke.kind in PLATES:
-        return ax.add_patch(Polygon(np.full((3, 2), np.nan), alpha=shade, **PLATES[stroke.kind]))
-    return ax.add_line(Line2D([], [], alpha=shade, **LINES[stroke.kind]))
-
-
-def _set(artist, points):
-    """Give what a stroke is drawn by its points (2, K)."""
-    if isinstance(artist, Line2D):
-        artist.set_data(points)
-    else:
-        artist.set_xy(points.T)
 
 
 def _equal(ax, moving=()):

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..drive.running import Running
 from ..numbers import checks
-from .canvas import INK, axes, display, styled
+from .canvas import FROM_X, INK, axes, display, styled
 
 
 def crank_speed(runs, ax=None):
@@ -29,15 +29,16 @@ def crank_speed(runs, ax=None):
     >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
     >>> runs = {f"{inertia} kg m2": ks.drive.steady(pump, motor, flywheel=inertia) for inertia in (0.05, 0.2)}
     >>> ks.plots.crank_speed(runs).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     _require_running(runs)
     ax = axes(ax)
     for name, run, style in styled(runs):
         (line,) = ax.plot(*_closed(run, run.speed), linestyle=style, label=name)
         ax.axhline(run.mean_speed, color=line.get_color(), lw=0.8, ls=":")
+    ax.plot([], [], color=INK, lw=0.8, ls=":", label="mean over time")
     ax.set_ylabel("crank speed [rad/s]")
-    return _finished(ax)
+    return _finished(ax, runs.values())
 
 
 def drive_torques(run, ax=None):
@@ -59,7 +60,7 @@ def drive_torques(run, ax=None):
     >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=ks.ProcessForce(-200.0))
     >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
     >>> ks.plots.drive_torques(ks.drive.steady(pump, motor, flywheel=0.05)).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     _require_running({"run": run})
     ax = axes(ax)
@@ -74,7 +75,7 @@ def drive_torques(run, ax=None):
         ax.plot(*_closed(run, factor * values), linestyle=style, label=name)
     ax.set_ylabel(f"torque at the crank [{unit}]")
     ax.margins(y=0.2)  # room for the legend
-    _finished(ax).legend(loc="upper center", ncols=3, frameon=False, fontsize="small", columnspacing=1.0)
+    _finished(ax, [run]).legend(loc="upper center", ncols=3, frameon=False, fontsize="small", columnspacing=1.0)
     return ax
 
 
@@ -146,8 +147,10 @@ def _closed(run, values):
     return np.degrees(np.append(run.crank_angle, run.period)), np.append(values, values[0])
 
 
-def _finished(ax):
-    ax.set_xlabel("crank angle [deg]")
+def _finished(ax, runs):
+    period = round(np.degrees(max(run.period for run in runs)))
+    ax.set_xlabel(FROM_X.axis)
+    ax.set_xticks(range(0, period + 1, period // 4))
     ax.margins(x=0)
     ax.grid(alpha=0.3)
     ax.legend(frameon=False, fontsize="small")

@@ -9,15 +9,17 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from ..errors import ParameterError
+from ..errors import CaseError, ParameterError
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
 from ..results.losses import lose
 from . import drives, plots
+from .alike import moves_alike
+from .canvas import FROM_X, FROM_Y_CLOCKWISE, distinct
 
 
-def draw_case(case, folder, file_format="png", only=None):
+def draw_case(case, folder, file_format="png", only=None, progress=iter):
     """Draw the figures of a case into a folder.
 
     Parameters
@@ -28,6 +30,8 @@ def draw_case(case, folder, file_format="png", only=None):
     file_format : "png" or "svg"
     only : str, optional
         Name of the one figure wanted.
+    progress : function, optional
+        Goes through the names of the figures while they are drawn.
 
     Returns
     -------
@@ -40,6 +44,9 @@ def draw_case(case, folder, file_format="png", only=None):
     """
     checks.require("figures", checks.case("case", case))
     figures = {name: draw for name, (draw, applies) in FIGURES.items() if applies(case)}
+    unknown = [checks.choice("published.figures", name, tuple(FIGURES)) for name in case.published.figures]
+    if any(unknown):
+        raise CaseError(case.path, [problem for problem in unknown if problem])
     problem = checks.choice("figure", only, figures) if only else None
     if problem:
         raise ParameterError(problem)
@@ -47,16 +54,28 @@ def draw_case(case, folder, file_format="png", only=None):
     checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
     names = [case.reference, *(name for name in case.variants if name != case.reference)]
     solutions = {name: case.solve(name) for name in names}
-    return [saved(figures[name], solutions, path, case, file_format) for name, path in paths.items()]
+    counted = FROM_Y_CLOCKWISE if _is_chain_unit(case) else FROM_X
+    pages = {name: partial(_numbered, figures[name], case.published.figures.get(name), counted) for name in paths}
+    return [saved(pages[name], solutions, paths[name], case, file_format) for name in progress(paths)]
+
+
+def _numbered(draw, number, counted, solutions) -> Figure:
+    """A figure, with the number that it has in the study it is from, if it is from one."""
+    figure = draw(solutions, counted)
+    if number:
+        text = f"figure{'s' * (',' in number)} {number} of the study"
+        figure.text(0.995, 0.995, text, ha="right", va="top", fontsize="small")
+        figure.get_layout_engine().set(rect=(0, 0, 1, 0.96))
+    return figure
 
 
 def draw_drive(case, runs, folder):
     """Draw speed, torques and energy flow of a case's variants in periodic running into a folder; returns the paths."""
     bars = len(drives.parts_that_move_energy(runs)) * (1 + len(runs))
     figures = {
-        "speed": _single(drives.crank_speed),
-        "torque": partial(_one_each, drives.drive_torques, width=6.4, height=3.2, columns=1),
-        "energy": _single(drives.energy_flow, 7.2, 1.2 + 0.19 * bars),
+        "speed": lambda runs: _single(drives.crank_speed)(runs),
+        "torque": lambda runs: _one_each(drives.drive_torques, runs, width=6.4, height=3.2, columns=1),
+        "energy": lambda runs: _single(drives.energy_flow, 7.2, 1.2 + 0.19 * bars)(runs),
     }
     paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}
     checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
@@ -85,8 +104,10 @@ def _has(quantity):
     return lambda case: bool(_that_have(quantity, case.variants))
 
 
-def _all_have_one_slider(case):
-    return all(item.mechanism.slider is not None for item in case.variants.values())
+def _law_is_meant(case):
+    """Whether the slider of a variant is to follow a cosine law, and each variant has one slider to compare with it."""
+    kinds = {getattr(getattr(item.table, "cam", None), "kind", None) for item in case.variants.values()}
+    return "cosine-law" in kinds and all(item.mechanism.slider is not None for item in case.variants.values())
 
 
 def _is_chain_unit(case):
@@ -106,7 +127,9 @@ def _is_balanced(case):
 
 
 def _single(plot, width=6.4, height=4.0, **axes):
-    def draw(solutions) -> Figure:
+    """How a plot fills a page; crank angles are counted as the plot does."""
+
+    def draw(solutions, _=FROM_X) -> Figure:
         figure, ax = plt.subplots(figsize=(width, height), layout="constrained", subplot_kw=axes)
         plot(solutions, ax=ax)
         return figure
@@ -114,9 +137,20 @@ def _single(plot, width=6.4, height=4.0, **axes):
     return draw
 
 
-def _of_those_that_have(quantity):
-    single = _single(partial(plots.over_turn, quantity=quantity))
-    return lambda solutions: single(_that_have(quantity, solutions))
+def _over_turn(quantity):
+    def draw(solutions, counted) -> Figure:
+        figure, ax = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
+        plots.over_turn(_that_have(quantity, solutions), quantity, ax=ax, counted=counted)
+        return figure
+
+    return draw
+
+
+def _hodographs(solutions, counted=FROM_X) -> Figure:
+    """Hodographs of the support reaction, those that cover each other in one panel."""
+    curves = {name: solution.reaction("O") for name, solution in solutions.items()}
+    shown = {text: solutions[name] for text, name in distinct(curves, apart=True).items()}
+    return _one_each(partial(plots.hodograph, counted=counted), shown, 5.2, 4.6, 2)
 
 
 def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
@@ -140,20 +174,31 @@ def _proportion(solution):
     return float(np.clip(size.width / size.height, 0.4, 4.0)) if size.height > 0 else 4.0
 
 
-def _mechanisms(solutions) -> Figure:
-    """The mechanisms of all variants: wide ones stacked, others side by side."""
+def _mechanisms(solutions, counted=FROM_X) -> Figure:
+    """The mechanisms of all variants, those that move alike as one: wide ones stacked, others side by side."""
+    alike: list[dict[str, Any]] = []
+    for name, solution in solutions.items():
+        same = next((group for group in alike if moves_alike(next(iter(group.values())), solution)), None)
+        if same is None:
+            alike.append({name: solution})
+        else:
+            same[name] = solution
+    shown = {", ".join(group): group for group in alike}
     wide = max(map(_proportion, solutions.values()))
-    width = 8.0 if wide > WIDE else max(3.2, min(4.4, 5.5 * wide))
-    return _one_each(plots.mechanism, solutions, width, width / wide + LETTERING, 1 if wide > WIDE else 3)
+    width = 8.0 if wide > WIDE else max(3.2, min(5.2, 5.5 * wide))
+    plot = partial(plots.mechanism, angles=counted.from_x(POSES), counted=counted)
+    return _one_each(plot, shown, width, width / wide + LETTERING, 1 if wide > WIDE else 2)
 
 
+POSES = (40.0, 160.0, 280.0)
+"""Crank angles at which mechanisms are drawn, degrees."""
 WIDE = 1.7
 """Width over height of a mechanism from which on it is drawn across a page."""
 LETTERING = 0.8
 """Height of title and labels of axes, inches."""
 
 
-def _overview(solutions) -> Figure:
+def _overview(solutions, counted=FROM_X) -> Figure:
     """The last variant, its torque against all others, and the support reaction of the first and the last.
 
     A wide mechanism is drawn across the page, others beside the torque, tall ones over the whole height.
@@ -173,12 +218,12 @@ def _overview(solutions) -> Figure:
     figure, axes = plt.subplot_mosaic(
         rows, figsize=(11, 6.4), layout="constrained", width_ratios=widths, height_ratios=heights
     )
-    plots.mechanism(last, ax=axes["mechanism"])
+    plots.mechanism(last, angles=counted.from_x(POSES), ax=axes["mechanism"], counted=counted)
     axes["mechanism"].set_title(f"{shown[-1]}: {last.mechanism.name}")
-    plots.torque(solutions, ax=axes["torque"])
+    plots.torque(solutions, ax=axes["torque"], counted=counted)
     axes["torque"].set_title("torque the drive must give")
     for name in shown:
-        plots.hodograph(solutions[name], ax=axes[name], marks=45)
+        plots.hodograph(solutions[name], ax=axes[name], marks=45, counted=counted)
         axes[name].set_title(f"support reaction, {name}")
     return figure
 
@@ -186,13 +231,13 @@ def _overview(solutions) -> Figure:
 FIGURES = {
     "overview": (_overview, _always),
     "mechanism": (_mechanisms, _always),
-    "torque": (_single(plots.torque), _always),
-    "acceleration_error": (_single(plots.acceleration_error), _all_have_one_slider),
-    "hodograph": (partial(_one_each, plots.hodograph), _always),
-    "pressure_angle": (_of_those_that_have("pressure_angle"), _has("pressure_angle")),
-    "cam_force": (_of_those_that_have("cam_force"), _has("cam_force")),
-    "losses": (lambda solutions: _single(plots.losses)(_that_rub(solutions)), _rubs),
-    "lost_power": (lambda solutions: _one_each(plots.lost_power, _that_rub(solutions), 6.4, 3.2, 1), _rubs),
+    "torque": (_over_turn("balancing_torque"), _always),
+    "acceleration_error": (_single(plots.acceleration_error), _law_is_meant),
+    "hodograph": (_hodographs, _always),
+    "pressure_angle": (_over_turn("pressure_angle"), _has("pressure_angle")),
+    "cam_force": (_over_turn("cam_force"), _has("cam_force")),
+    "losses": (lambda solutions, _: _single(plots.losses)(_that_rub(solutions)), _rubs),
+    "lost_power": (lambda solutions, _: _one_each(plots.lost_power, _that_rub(solutions), 6.4, 3.2, 1), _rubs),
     "mass_centres": (_single(plots.mass_centres, 9.0, 3.6), _is_balanced),
     "shaking_by_direction": (_single(plots.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
     "shaking_by_crank_angle": (

@@ -1,7 +1,7 @@
 """Figures of designs: fronts of two outputs."""
 
 from ..numbers.headings import parted
-from .canvas import ACCENT, INK, axes, display
+from .canvas import ACCENT, INK, axes, display, readable
 
 
 def front(found, ax=None):
@@ -32,7 +32,7 @@ def front(found, ax=None):
         name, unit = parted(column)
         factor, shown = display(unit, [found.table[column].to_numpy()])
         scales.append(factor)
-        headings.append(f"{name.replace('_', ' ')} [{shown}]" if unit not in ("", "1") else name.replace("_", " "))
+        headings.append(readable(f"{name} [{shown or '1'}]"))
     first, second = (found.table.iloc[:, place].to_numpy() * scales[place] for place in (0, 1))
     ax.plot(second, first, "o-", color=INK, label="best designs")
     before = [value * scale for value, scale in zip(found.before, scales, strict=True)]

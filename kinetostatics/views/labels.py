@@ -4,19 +4,22 @@ from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.lines import Line2D
 from matplotlib.path import Path
-from matplotlib.transforms import Bbox
+from matplotlib.transforms import Bbox, IdentityTransform
 
 DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
 """Ways from a point to its label, the first of them preferred."""
-DISTANCES = (6.0, 11.0, 17.0)
+DISTANCES = (6.0, 11.0, 17.0, 26.0, 38.0)
 """Between a point and the nearest side of its label, points of print."""
+LED = 14.0
+"""Distance from which on a line leads from the label to its point."""
 ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE = 20.0, 4.0, 1.5, 10.0
 """What it costs a label to lie there; a farther place costs up to 1."""
 
 
 class Labels(Artist):
-    """Places annotations clear of each other: it is drawn before them, and draws nothing itself."""
+    """Places annotations clear of each other: it is drawn before them, and draws the lines that lead to far ones."""
 
     def __init__(self):
         super().__init__()
@@ -40,8 +43,11 @@ class Labels(Artist):
                 step + self._cost(box, taken, points, marks, paths)
                 for step, (_, box) in zip(STEPS, places, strict=True)
             ]
-            offset, box = places[int(np.argmin(costs))]
+            best = int(np.argmin(costs))
+            offset, box = places[best]
             text.set_position(offset / scale)
+            if DISTANCES[best // len(DIRECTIONS)] > LED:
+                _leader(point, box).draw(renderer)
             taken.append(box)
 
     def _cost(self, box, taken, points, marks, paths):
@@ -54,6 +60,12 @@ class Labels(Artist):
             + ON_CURVE * sum(path.intersects_bbox(box, filled=filled) for path, filled in paths)
             + OUTSIDE * outside
         )
+
+
+def _leader(point, box):
+    """A thin line from a point to the nearest place of its label, in pixels."""
+    end = np.clip(point, (box.x0, box.y0), (box.x1, box.y1))
+    return Line2D(*np.transpose([point, end]), color="0.5", lw=0.5, transform=IdentityTransform())
 
 
 def _in_pixels(item):

@@ -27,7 +27,7 @@ def lost_power(solution, ax=None):
     >>> friction = {"O": ks.PinFriction(0.02, 0.05), "guide": ks.GuideFriction(0.1)}
     >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5, friction=friction).solve(90)
     >>> ks.plots.lost_power(s).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     solution = single(solution)
     _require_friction({"solution": solution})

@@ -16,7 +16,7 @@ from ..mechanics.quantities import of_mechanism, values
 from ..numbers.checks import choice, problem, require
 from ..results.extremes import extremes
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
-from .canvas import INK, axes, closed, display, finished, labelled, styled
+from .canvas import FROM_X, INK, axes, closed, display, drawn_over_turn, finished, in_order, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
 from .drives import crank_speed, drive_torques, energy_flow
@@ -59,8 +59,8 @@ LEAST_MARKS = 0.01
 """Least step of the crank-angle marks, degrees."""
 
 
-def over_turn(solutions, quantity, ax=None):
-    """One quantity over the crank angle.
+def over_turn(solutions, quantity, ax=None, counted=FROM_X):
+    """One quantity over the crank angle; curves that cover each other are one, under all their labels.
 
     Parameters
     ----------
@@ -68,6 +68,8 @@ def over_turn(solutions, quantity, ax=None):
     quantity : str
         As for `extremes`; of a reaction or a vector the magnitude is drawn.
     ax : matplotlib Axes, optional
+    counted : Counted, optional
+        How crank angles are counted, from +x and counter-clockwise unless told.
 
     Returns
     -------
@@ -80,25 +82,27 @@ def over_turn(solutions, quantity, ax=None):
     >>> solutions = {name: saw.solve(name, 90) for name in ("plain", "cam-cosine")}
     >>> ax = ks.plots.over_turn(solutions, "slider_velocity")
     >>> ax.get_xlabel(), len(ax.get_legend().get_texts())
-    ('crank angle [deg]', 2)
+    ('crank angle from +x, counter-clockwise [deg]', 2)
     """
     ax = axes(ax)
     named = labelled(solutions, quantity)
-    curves = {name: (_degrees(solution), values(solution, quantity)) for name, solution in named.items()}
+    read = {name: values(solution, quantity) for name, solution in named.items()}
     declared = _declared(named, quantity)
-    factor, shown = display(declared.unit, [value for _, value in curves.values()])
-    for name, (angle, value), style in styled(curves):
-        ax.plot(angle, factor * value, linestyle=style, label=name)
-    return finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named))
+    factor, shown = display(declared.unit, list(read.values()))
+    curves = {name: in_order(named[name], factor * value, counted) for name, value in read.items()}
+    drawn_over_turn(ax, curves)
+    return finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named), counted)
 
 
-def torque(solutions, ax=None):
+def torque(solutions, ax=None, counted=FROM_X):
     """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a).
 
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
     ax : Axes, optional
+    counted : Counted, optional
+        As for `over_turn`.
 
     Returns
     -------
@@ -111,9 +115,9 @@ def torque(solutions, ax=None):
     >>> solutions = {name: saw.solve(name, 90) for name in ("plain", "cam-cosine")}
     >>> ax = ks.plots.torque(solutions)
     >>> ax.get_xlabel()  # ax.figure.savefig("torque.svg") keeps it
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
-    return over_turn(solutions, "balancing_torque", ax)
+    return over_turn(solutions, "balancing_torque", ax, counted)
 
 
 def cam_force(solutions, ax=None):
@@ -134,7 +138,7 @@ def cam_force(solutions, ax=None):
     >>> import kinetostatics as ks
     >>> saw = ks.load_case("sawframe_2r63")
     >>> ks.plots.cam_force(saw.solve("cam-circle", 90)).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     return over_turn(solutions, "cam_force", ax)
 
@@ -157,7 +161,7 @@ def pressure_angle(solutions, ax=None):
     >>> import kinetostatics as ks
     >>> saw = ks.load_case("sawframe_2r63")
     >>> ks.plots.pressure_angle(saw.solve("cam-circle", 90)).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     return over_turn(solutions, "pressure_angle", ax)
 
@@ -185,24 +189,26 @@ def acceleration_error(solutions, ax=None, slider=None):
     >>> import kinetostatics as ks
     >>> saw = ks.load_case("sawframe_2r63")
     >>> ks.plots.acceleration_error(saw.solve("cam-circle", 90)).get_xlabel()
-    'crank angle [deg]'
+    'crank angle from +x, counter-clockwise [deg]'
     """
     ax = axes(ax)
     named = labelled(solutions, "slider acceleration")
     require_turning(named)
-    for name, solution, style in styled(named):
+    curves = {}
+    for name, solution in named.items():
         half_stroke = np.ptp(extremes(solution, lambda motion: motion.travel(slider)).value) / 2
         square, alpha = solution.crank_speed**2, solution.crank_acceleration
         psi = solution.crank_angle - solution.mechanism.guides[slider or solution.mechanism.slider].guide_angle
         law = -half_stroke * (square * np.cos(psi) + alpha * np.sin(psi))
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
-        ax.plot(_degrees(solution), 100 * error, linestyle=style, label=name)
+        curves[name] = in_order(solution, 100 * error, FROM_X)
+    drawn_over_turn(ax, curves)
     return finished(
         ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named)
     )
 
 
-def hodograph(solutions, joint="O", ax=None, marks=30):
+def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     """Hodograph of a joint reaction: the curve its tip draws over the turn (figure 7).
 
     Parameters
@@ -213,6 +219,8 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     ax : Axes, optional
     marks : float
         Step of the crank-angle marks, degrees; marks stand where the solution has that angle, to half a degree.
+    counted : Counted, optional
+        How the marks count crank angles, from +x and counter-clockwise unless told.
 
     Returns
     -------
@@ -239,12 +247,14 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
         rows = _marked(solution, marks)
         ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
         near = max(0.06 * extents[name], 0.025 * max(extents.values()))
-        texts = _shared(_degrees(solution)[rows] % np.degrees(solution.period), factor * curves[name][:, rows], near)
+        period = np.degrees(solution.period)
+        texts = _shared(counted(_degrees(solution)[rows], period) % period, factor * curves[name][:, rows], near)
         for text, point in texts:
             label(ax, text, point, color=line.get_color() if len(named) > 1 else INK)
     ax.axhline(0, color=INK, lw=0.5)
     ax.axvline(0, color=INK, lw=0.5)
     ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.1)
     ax.set_xlabel(f"{declared.label}, x [{shown}]")
     ax.set_ylabel(f"{declared.label}, y [{shown}]")
     if len(named) > 1 or isinstance(solutions, Mapping):

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..machine.group import FRAME
+from ..mechanics.motion import Motion
 from ..numbers.lazy import cached_property
 from ..numbers.planar import unturned
 from . import symbols
@@ -114,6 +115,9 @@ class Shape:
                 turn, place = self._axes(pose, link)
                 size = self.unit if link in self.made.guides else 0.8 * self.unit
                 yield Stroke("block", symbols.placed(symbols.RECTANGLE, place, turn, size))
+        for joint, radius in self.made.rollers.items():
+            size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
+            yield Stroke("roller", self._ring(pose.position(joint), size))
 
     def _axes(self, pose, link):
         """Direction and reference joint of a link, (2, N)."""
@@ -135,13 +139,23 @@ class Shape:
         yield Stroke("plate", symbols.placed(barrel, origin, axis, self.unit))
         yield Stroke("bar", symbols.placed([(0.0, -0.5), (0.0, 0.5)], bottom, axis, self.unit))
 
+    def _ring(self, place, radius):
+        level = np.broadcast_to([[1.0], [0.0]], place.shape)
+        return symbols.placed(symbols.RING, place, level, radius)
+
     def counterweights(self, pose):
-        """Sectors about the joints of turning links whose mass centres lie behind them, with the same mass centres."""
+        """Weights of turning links whose mass centres lie beyond what they join, with the same mass centres.
+
+        A sector about the reference joint for one that lies behind it, else a disk on the link drawn out to it.
+        """
         for name, link in self.made.links.items():
             along, across = (float(np.ravel(part)[0]) for part in link.centre)
-            arm = np.hypot(along, across)
-            counterweight = arm > 0.3 * self.unit and along < min(self.corners[name][0].min(), -0.3 * arm)
-            if np.any(link.mass) and counterweight and name not in self.made.guides:
+            arm, reach = np.hypot(along, across), self.corners[name][0].max()
+            turns = np.any(link.mass) and name not in self.made.guides and arm > 0.3 * self.unit
+            if turns and reach > 0.0 and along > reach + 0.3 * self.unit:
+                yield Stroke("bar", _on(pose, name, np.array([[reach, along], [0.0, across]])))
+                yield Stroke("counterweight", self._ring(pose.position(name), 2.0 * self.unit))
+            if turns and along < min(self.corners[name][0].min(), -0.3 * arm):
                 radius = arm * 1.5 * SECTOR / np.sin(SECTOR)
                 angle = np.arctan2(across, along) + np.linspace(-SECTOR, SECTOR, 24)
                 edge = radius * np.array([np.cos(angle), np.sin(angle)])
@@ -232,3 +246,15 @@ def _around(points):
     """Order of points around their middle."""
     x, y = points - points.mean(axis=1, keepdims=True)
     return np.argsort(np.arctan2(y, x))
+
+
+def whole_turn(solution):
+    """The mechanism at many crank angles of the turns after which it repeats."""
+    turns = solution.mechanism.turns
+    return posed(solution, np.linspace(0, 360 * turns, 720 * turns + 1))
+
+
+def posed(solution, degrees):
+    """The mechanism at other crank angles, whatever its loads; of its speed only which way the crank turns."""
+    ways = np.unique(np.sign(solution.crank_speed))
+    return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)

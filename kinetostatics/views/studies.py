@@ -3,10 +3,22 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..design.linkage import chain_unit_angle, four_bar_of
+from ..design.linkage import four_bar_of
 from ..mechanics.quantities import magnitude
 from ..numbers.checks import choice, require
-from .canvas import axes, closed, display, finished, labelled, styled
+from .canvas import (
+    FROM_X,
+    FROM_Y_CLOCKWISE,
+    NOTHING,
+    axes,
+    closed,
+    display,
+    drawn_over_turn,
+    finished,
+    in_order,
+    labelled,
+    styled,
+)
 
 
 def chain_unit_motion(solutions, link, order=1, ax=None):
@@ -43,21 +55,19 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     ax = axes(ax)
     named = labelled(solutions, f"{link} rate")
     require_turning(named)
-    for name, solution, style in styled(named):
+    curves = {}
+    for name, solution in named.items():
         turning = getattr(four_bar_of(solution.mechanism), link).link
-        angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
-        rows = np.argsort(angle)
         speed = solution.crank_speed
         relative = (
             solution.rate(turning) / speed
             if order == 1
             else solution.angular_acceleration(turning) / (speed * abs(speed))
         )
-        ax.plot(angle[rows], relative[rows], linestyle=style, label=name)
+        curves[name] = in_order(solution, relative, FROM_Y_CLOCKWISE)
+    drawn_over_turn(ax, curves)
     kind = "velocity" if order == 1 else "acceleration"
-    finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
-    ax.set_xlabel("crank angle from +y, clockwise [deg]")
-    return ax
+    return finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1, counted=FROM_Y_CLOCKWISE)
 
 
 def shaking_force(solutions, by="direction", ax=None):
@@ -90,11 +100,16 @@ def shaking_force(solutions, by="direction", ax=None):
     named = labelled(solutions, "shaking_force")
     sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
     factor, shown = display("N", sizes.values())
+    largest = max(float(np.max(size)) for size in sizes.values())
     for name, solution, style in styled(named):
         x, y = solution.shaking_force
         angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
-        ax.plot(*closed(np.array([angle, factor * sizes[name]])), linestyle=style, label=name)
-    ax.set_title(f"shaking force [{shown}] by {by}", fontsize="medium")
+        zero = len(named) > 1 and np.max(sizes[name]) <= NOTHING * largest
+        text = f"{name} (0)" if zero else name
+        ax.plot(*closed(np.array([angle, factor * sizes[name]])), linestyle=style, label=text)
+    way = "the angle of its direction, from +x" if by == "direction" else FROM_X.axis.replace(" [deg]", "")
+    ax.set_title(f"shaking force [{shown}] over {way}", fontsize="medium")
+    ax.set_rlabel_position(67.5)
     if len(named) > 1:
         ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
     return ax

@@ -21,13 +21,14 @@ def test_design_prints_what_was_and_is_and_writes_a_case_ready_to_run(saw, tmp_p
     out = tmp_path / "found.toml"
     assert main(["design", str(saw), "--out", str(out), "--plot", str(tmp_path / "figures")]) == 0
     printed, told = capsys.readouterr()
-    assert "stiffer: greatest ratio mean_absolute balancing_torque, from cam-circle; ratios to plain" in printed
+    words = " ".join(printed.split())
+    assert "stiffer: greatest ratio mean_absolute balancing_torque, from cam-circle; ratios: plain / design" in words
     row = next(line for line in printed.splitlines() if line.startswith("ratio mean_absolute balancing_torque [1]"))
     assert row.split()[4:5] == ["6.08075"]
     assert float(row.split()[5]) > 20
     assert "spring.stiffness [N/m]" in printed
     assert "evaluations of all derivatives" in printed
-    assert "trade: front of largest_absolute cam_force and ratio mean_absolute balancing_torque" in printed
+    assert "trade: front of largest_absolute cam_force and ratio mean_absolute balancing_torque" in words
     assert f"wrote {out}: stiffer, trade" in printed
     assert told.splitlines() == ["searching for stiffer", "searching for trade"]
     assert len(list((tmp_path / "figures").iterdir())) == 2

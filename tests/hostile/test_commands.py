@@ -101,6 +101,7 @@ SPELLINGS = [f"{kind} of the {file}" for kind in ("name", "dots", "relative", "s
              for file in ("case", "table")]  # fmt: skip
 WRITERS = {
     "run": ["run", "{case}", "--csv", "{out}"],
+    "compare": ["compare", "{case}", "--csv", "{out}"],
     "sweep": ["sweep", "{case}", *VARY, "--out", "{out}"],
     "plot of a sweep": ["sweep", "{case}", *VARY, "--plot", "{out}"],
 }

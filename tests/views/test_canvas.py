@@ -49,3 +49,53 @@ def test_missing_columns_and_rows_are_named():
         canvas.require_columns("plots", pd.DataFrame({"a": [1]}), ["a", "b"])
     with pytest.raises(ks.ParameterError, match="no rows"):
         canvas.require_columns("plots", pd.DataFrame({"a": []}), ["a"])
+
+
+def test_curves_that_cover_each_other_share_a_label_and_zero_says_so():
+    turn = np.linspace(0, 6, 50)
+    curves = {
+        "a": np.sin(turn),
+        "b": np.sin(turn) + 1e-4,
+        "c": np.sin(turn) + 1e-2,
+        "rounding": 1e-15 * np.cos(turn),
+        "short": np.sin(turn[:9]),
+    }
+    assert canvas.distinct(curves) == {"a, b": "a", "c": "c", "rounding (0)": "rounding", "short": "short"}
+
+
+def test_small_curves_are_no_zero_beside_others_as_small():
+    assert canvas.distinct({"a": np.array([0.0, 1e-12]), "b": np.array([1e-12, 0.0])}) == {"a": "a", "b": "b"}
+    assert canvas.distinct({"alone": np.zeros(3)}) == {"alone": "alone"}
+
+
+def test_gaps_of_curves_are_gaps_of_those_that_cover_them():
+    assert list(canvas.distinct({"a": np.array([1.0, np.nan]), "b": np.array([1.0, np.nan])})) == ["a, b"]
+    assert list(canvas.distinct({"a": np.array([1.0, np.nan]), "b": np.array([1.0, 2.0])})) == ["a", "b"]
+
+
+def test_crank_angles_are_counted_there_and_back():
+    angles = np.array([0.0, 90.0, 123.0, 359.0])
+    assert np.array_equal(canvas.FROM_X(angles), angles)
+    assert canvas.FROM_Y_CLOCKWISE(angles).tolist() == [90.0, 0.0, 327.0, 91.0]
+    back = canvas.FROM_Y_CLOCKWISE.from_x(canvas.FROM_Y_CLOCKWISE(angles))
+    assert np.allclose(np.mod(back, 360.0), angles)
+
+
+@pytest.mark.parametrize(
+    ("column", "text"),
+    [
+        ("spring.stiffness [kN/m]", "spring stiffness [kN/m]"),
+        ("coupler_length", "coupler length [SI]"),
+        ("mean_absolute balancing_torque [N m]", "mean absolute balancing torque [N m]"),
+        ("ratio largest O [1]", "ratio of largest O, reference / design [1]"),
+    ],
+)
+def test_headings_of_tables_read_as_words_with_units(column, text):
+    assert canvas.readable(column) == text
+
+
+def test_curves_drawn_apart_are_compared_by_their_own_extent():
+    turn = np.linspace(0, 6, 50)
+    curves = {"large": 100.0 * np.sin(turn), "small": np.sin(turn), "smaller": 0.9 * np.sin(turn)}
+    assert list(canvas.distinct(curves)) == ["large", "small, smaller"]
+    assert list(canvas.distinct(curves, apart=True)) == ["large", "small", "smaller"]

@@ -219,3 +219,30 @@ def test_an_animation_covers_both_turns_of_a_branch_that_closes_after_two(axes):
         shown.append(axes.texts[-1].get_text())
     film._draw_was_started = True
     assert shown == [f"crank angle {angle}°" for angle in range(6, 726, 90)]
+
+
+def test_the_roller_of_a_cam_is_drawn_about_its_centre(axes):
+    machine = ks.cam_crank_slider(ks.cams.Circle(0.1, (-0.01, 0.0)), 0.6, slider=ks.Link(1.0))
+    pose = drawn(machine, axes)
+    centre = pose.position("A")[:, 0]
+    rings = [patch.get_xy() for patch in axes.patches if len(patch.get_xy()) == 34]
+    assert len(rings) == 1
+    distances = np.hypot(*(rings[0].T - centre[:, None]))
+    assert np.allclose(distances, distances[0])
+    assert distances[0] > 0
+
+
+def test_a_weight_beyond_the_crank_pin_is_drawn_at_its_mass_centre(axes):
+    pose = drawn(ks.crank_slider(0.1, 0.4, crank=ks.Link(1.0, 0.16, 0.1), slider=ks.Link(1.0)), axes)
+    ring = next(patch.get_xy() for patch in axes.patches if len(patch.get_xy()) == 34)
+    assert np.allclose(np.mean(ring[:-2], axis=0), pose.position("crank")[:, 0])
+
+
+def test_fixed_pivots_stand_within_the_axes_with_their_ground(axes):
+    drawn(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, -0.2), **BARS), axes)
+    axes.figure.canvas.draw()
+    for line in axes.lines:
+        if line.get_marker() is symbols.PIVOT:
+            (x, y) = axes.transData.transform(line.get_xydata()[0])
+            assert axes.bbox.y0 + 0.5 * line.get_markersize() < y
+            assert axes.bbox.x0 < x < axes.bbox.x1

@@ -1,12 +1,31 @@
-"""The figures of a case: which there are, and that nothing is drawn where one cannot be."""
+"""The figures of a case: which there are, that each can be read, and that nothing is drawn where one cannot be."""
 
+import itertools
+
+import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.views import figures
+from kinetostatics.views.canvas import FROM_X, FROM_Y_CLOCKWISE
 from kinetostatics.views.figures import draw_case
+from support.every import every
 from support.shipped import shipped
 
 CASE = shipped("sawframe_2r63")
+
+
+def drawn(name, figure, counted=FROM_X, angles=360):
+    """A figure of a shipped case."""
+    case = shipped(name)
+    names = [case.reference, *(other for other in case.variants if other != case.reference)]
+    return figures.FIGURES[figure][0]({other: case.solve(other, angles) for other in names}, counted)
+
+
+def overlapping(texts):
+    boxes = [text.get_window_extent() for text in texts if text.get_text()]
+    return [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
 
 
 def test_one_figure_is_drawn_to_its_file(tmp_path):
@@ -21,3 +40,120 @@ def test_a_figure_that_the_case_has_not_is_answered_with_those_it_has(tmp_path):
     with pytest.raises(ks.ParameterError, match="figure is 'cam_force'"):
         draw_case(ks.load_case("chain_unit"), tmp_path, only="cam_force")
     assert list(tmp_path.iterdir()) == []
+
+
+@every("name", ["sawframe_2r63", "mower_drive", "chain_unit"])
+def test_every_axis_has_its_unit_and_crank_angles_are_counted_in_one_way(name):
+    case = shipped(name)
+    counted = FROM_Y_CLOCKWISE if name == "chain_unit" else FROM_X
+    for figure, (_, applies) in figures.FIGURES.items():
+        if applies(case):
+            made = drawn(name, figure, counted, 72)
+            for ax in made.axes:
+                if ax.name != "polar":
+                    assert all(text.endswith("]") for text in (ax.get_xlabel(), ax.get_ylabel())), figure
+                if "crank angle" in ax.get_xlabel():
+                    assert ax.get_xlabel() == counted.axis
+            plt.close(made)
+
+
+def test_machines_that_differ_in_counterweights_only_are_one_panel_with_all_of_them():
+    made = drawn("mower_drive", "mechanism")
+    (ax,) = made.axes
+    assert ax.get_title() == "unbalanced, full, partial-1, partial-2, partial-3, optimal"
+    legend = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert legend == [f"counterweight: {name}" for name in ("full", "partial-1", "partial-2", "partial-3", "optimal")]
+    weights = [patch for patch in ax.patches if len(patch.get_xy()) > 20]
+    assert len(weights) == 6  # full balancing needs two
+    plt.close(made)
+
+
+def test_machines_of_different_geometry_have_panels_of_their_own():
+    made = drawn("sawframe_2r63", "mechanism")
+    assert [ax.get_title() for ax in made.axes] == list(CASE.variants)
+    plt.close(made)
+
+
+def test_what_only_one_variant_bears_is_named_in_the_legend():
+    made = drawn("compressor", "mechanism")
+    (ax,) = made.axes
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["load: loaded"]
+    plt.close(made)
+
+
+def test_torques_that_cover_each_other_are_one_curve_under_all_their_names():
+    made = drawn("mower_drive", "torque")
+    curves = [line for line in made.axes[0].lines if len(line.get_xdata()) > 2]
+    assert [line.get_label() for line in curves] == ["unbalanced, partial-1, partial-2, partial-3, optimal", "full"]
+    plt.close(made)
+
+
+@every("name", ["sawframe_2r63", "mower_drive", "v_twin"])
+def test_labels_of_hodographs_do_not_overlap(name):
+    made = drawn(name, "hodograph")
+    made.canvas.draw()
+    assert not [ax.get_title() for ax in made.axes if overlapping(ax.texts)]
+    plt.close(made)
+
+
+MEANT = {
+    "sawframe_2r63": True,
+    "sawframe_2r63_optimal": True,
+    "mower_drive": False,
+    "yoke_pump": False,
+    "shaper": False,
+}
+
+
+@every("name", MEANT)
+def test_a_cosine_law_is_compared_with_where_one_is_meant_only(name):
+    assert figures.FIGURES["acceleration_error"][1](shipped(name)) == MEANT[name]
+
+
+@pytest.mark.parametrize(
+    ("name", "number"),
+    [("torque", "figure 6a of the study"), ("hodograph", "figure 7 of the study"), ("mechanism", None)],
+)
+def test_a_figure_of_the_study_carries_its_number(name, number, tmp_path, monkeypatch):
+    seen = []
+    monkeypatch.setattr(figures, "saved", lambda draw, solutions, path, *_: seen.append(draw(solutions)) or path)
+    draw_case(CASE, tmp_path, only=name)
+    assert [text.get_text() for text in seen[0].texts] == ([] if number is None else [number])
+    plt.close(seen[0])
+
+
+def test_a_number_for_a_figure_that_there_is_not_is_an_error_of_the_case(tmp_path):
+    text = CASE.path.read_text(encoding="utf-8").replace('torque = "6a"', 'torqe = "6a"')
+    path = tmp_path / "saw.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ks.CaseError, match=r"published.figures is 'torqe'.*did you mean 'torque'"):
+        draw_case(ks.load_case(path), tmp_path)
+
+
+def test_the_chain_unit_counts_crank_angles_as_its_study_in_all_its_figures():
+    solution = shipped("chain_unit").solve("rho-0.5", 360)
+    ax = ks.plots.torque(solution, counted=FROM_Y_CLOCKWISE)
+    curve = next(line for line in ax.lines if len(line.get_xdata()) > 2)
+    degrees, torque = curve.get_data()
+    assert np.all(np.diff(degrees) > 0)
+    row = int(np.argmin(np.abs(degrees - 30.0)))
+    assert torque[row] == pytest.approx(solution.balancing_torque[60])  # 60 degrees from +x
+    plt.close(ax.figure)
+
+
+def test_progress_goes_through_the_names_of_the_figures(tmp_path):
+    seen = []
+
+    def progress(names):
+        for name in names:
+            seen.append(name)
+            yield name
+
+    draw_case(shipped("yoke_pump"), tmp_path, only="torque", progress=progress)
+    assert seen == ["torque"]
+
+
+def test_drawing_leaves_the_settings_of_others_alone(tmp_path):
+    before = dict(plt.rcParams), plt.get_fignums()
+    draw_case(shipped("yoke_pump"), tmp_path, only="hodograph")
+    assert (dict(plt.rcParams), plt.get_fignums()) == before

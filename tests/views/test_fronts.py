@@ -17,6 +17,6 @@ def test_a_front_is_drawn_with_the_source_beside_it():
     assert mark.get_xdata()[0] == pytest.approx(6.08, abs=0.01)
     assert (ax.get_ylabel(), ax.get_xlabel()) == (
         "largest absolute cam force [kN]",
-        "ratio mean absolute balancing torque",
+        "ratio of mean absolute balancing torque, reference / design [1]",
     )
     plt.close(ax.figure)

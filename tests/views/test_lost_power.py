@@ -27,7 +27,7 @@ def test_the_stack_over_the_turn_reaches_to_the_whole_loss(saw, axes):
     top = np.max([path.vertices[:, 1].max() for item in axes.collections for path in item.get_paths()])
     assert top == pytest.approx(1e-3 * solution.friction_loss.max(), rel=1e-12)
     assert axes.get_ylabel() == "power lost [kW]"
-    assert axes.get_xlabel() == "crank angle [deg]"
+    assert axes.get_xlabel() == "crank angle from +x, counter-clockwise [deg]"
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mean", "guide", "B", "A", "O"]
     (mean,) = (line for line in axes.get_lines() if line.get_label() == "mean")
     assert mean.get_ydata()[0] == pytest.approx(1e-3 * solution.losses.total, rel=1e-12)

@@ -170,7 +170,7 @@ class PublishedTable(Table):
     `ratio` holds those of reference / balanced, `value` those of the balanced mechanism; `balancing` those of the
     balancing table, for every variant and link, taken at a crank-angle step of `sampling`; `linkage` those of the
     four-bar table, for every variant. `where` names the table or figure that prints them, `note` says how to read them
-    beside ours.
+    beside ours, `figures` which figure of the source each of ours redraws.
     """
 
     ratio: dict[str, str] = Field(default_factory=dict)
@@ -180,6 +180,7 @@ class PublishedTable(Table):
     linkage: dict[str, dict[str, str]] = Field(default_factory=dict)
     where: str = ""
     note: str = ""
+    figures: dict[str, str] = Field(default_factory=dict)
 
 
 class CaseTable(Table):

@@ -1,0 +1,98 @@
+"""Results for other programs, ``--json`` and ``--csv``: numbers in full, and nothing else on standard output.
+
+NaN, which stands for "has none", is null in JSON and nothing in CSV; infinity is the text "Infinity" in JSON.
+"""
+
+import json
+import math
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from .. import __version__
+from ..numbers import checks
+from .printed import STDOUT, write_table
+
+
+def require(options):
+    """At most one of both is written to standard output."""
+    both = wants_json(options) and wants_csv(options)
+    checks.require("--json and --csv", "both would be written to standard output; give --csv a FILE" if both else None)
+
+
+def wants_json(options):
+    return getattr(options, "json", False)
+
+
+def wants_csv(options):
+    return getattr(options, "csv", None) == STDOUT
+
+
+def quiet(options):
+    """Whether standard output belongs to another program."""
+    return wants_json(options) or wants_csv(options)
+
+
+def announce(options, *lines):
+    """Print lines for a person."""
+    if not quiet(options):
+        print(*lines, sep="\n")
+
+
+def print_json(command, **parts):
+    print(json.dumps(_plain({"command": command, "version": __version__, **parts}), indent=1, allow_nan=False))
+
+
+def print_csv(table):
+    sys.stdout.write(table.to_csv(index=False))
+
+
+def give_csv(options, table):
+    """A table on standard output, or in the file that ``--csv`` names, or nowhere."""
+    if wants_csv(options):
+        print_csv(table)
+    elif options.csv:
+        announce(options, "", write_table(table, options.csv))
+
+
+def of_case(case):
+    """What tells a case."""
+    return {"title": case.title, "path": case.path, "reference": case.reference}
+
+
+def rows(table):
+    """Rows of a pandas DataFrame by its index."""
+    return {str(name): row for name, row in zip(table.index, table.to_dict("records"), strict=True)}
+
+
+def watched(options):
+    """Whether somebody looks at standard error, and wants to."""
+    return not quiet(options) and sys.stderr is not None and sys.stderr.isatty()
+
+
+def progress(options, names, label):
+    """Names one after the other, with a bar on standard error if somebody looks there."""
+    if not watched(options):
+        yield from names
+        return
+    from tqdm import tqdm
+
+    bar = tqdm(list(names), desc=label, leave=False)
+    for name in bar:
+        bar.set_postfix_str(str(name))
+        yield name
+
+
+def _plain(item):
+    """What JSON can hold."""
+    if isinstance(item, Mapping):
+        return {str(key): _plain(value) for key, value in item.items()}
+    if hasattr(item, "columns"):  # a pandas DataFrame
+        return [_plain(row) for row in item.to_dict("records")]
+    if isinstance(item, list | tuple | set):
+        return [_plain(value) for value in item]
+    if hasattr(item, "tolist"):
+        return _plain(item.tolist())
+    if isinstance(item, float):
+        return item if math.isfinite(item) else None if math.isnan(item) else f"{'-' if item < 0 else ''}Infinity"
+    return str(item) if isinstance(item, Path) else item

@@ -1,0 +1,102 @@
+"""The command ``sweep``: outputs of many designs of a case."""
+
+from pathlib import Path
+
+from ..errors import ParameterError
+from ..numbers import checks, files
+from ..numbers.headings import parted
+from . import machine
+from .printed import print_table, require_writable, say, write_table
+
+OUTPUTS = ("mean_absolute balancing_torque", "largest O")
+"""What a sweep tells unless asked for something else."""
+LOST = "mean friction_loss"
+"""What it tells besides of a variant with friction."""
+TABLE_ENDINGS = (".csv", ".parquet")
+FIGURE_ENDINGS = (".png", ".svg", ".pdf")
+
+
+def sweep(options):
+    from ..casefile.case import load_case
+    from ..results.reductions import parsed
+    from ..sweeps import designs, sweeps
+
+    case = load_case(options.case)
+    folder = options.out if options.out and not Path(options.out).suffix else None
+    require_writable(case, "--out", None if folder else options.out, TABLE_ENDINGS)
+    require_writable(case, "--csv", options.csv, (".csv",))
+    require_writable(case, "--plot", options.plot, FIGURE_ENDINGS)
+    checks.require("--out", files.unwritable_folder(folder) if folder else None)
+    spreads = _spreads(options.vary)
+    table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
+    varied, _ = sweeps.chosen(case, options.variant, options.reference)
+    usual = (*OUTPUTS, LOST) if varied.friction else OUTPUTS
+    wanted = [parsed(text).of(varied) for text in options.output or usual]
+    outputs = [item.column for item in wanted]
+    found = sweeps.sweep(
+        case,
+        table,
+        wanted,
+        variant=options.variant,
+        reference=options.reference,
+        angles=options.angles,
+        workers=options.workers,
+        folder=folder,
+        progress=machine.watched(options),
+    )
+    written: list[str | Path] = []
+    lines: list[str] = []
+    if options.out and folder is None:
+        written.append(options.out)
+        lines.append(f"\n{write_table(found, options.out)}")
+    if options.plot:
+        from ..views.charts import sweep_page
+
+        written.append(sweep_page(found, list(table.columns), outputs, options.plot, _labels(wanted, varied)))
+        lines.append(str(written[-1]))
+    if machine.wants_json(options):
+        failed = int((found[sweeps.FAILED] != "").sum())
+        machine.print_json("sweep", case=machine.of_case(case), failed=failed, designs=found, files=written)
+    elif not machine.quiet(options):
+        _print(case, found, wanted, varied)
+        for line in lines:
+            print(line)
+    if options.csv:
+        machine.give_csv(options, found)
+
+
+def _labels(wanted, varied):
+    """What axes call outputs: with the names that quantities have in other figures."""
+    which = {True: ", reference / design", False: ""}
+    return {item.column: f"{item.label(varied)}{which[item.ratio]} [{parted(item.column)[1]}]" for item in wanted}
+
+
+def _print(case, found, wanted, varied):
+    """Spread of the outputs, the best designs by the first, and why others failed."""
+    from ..sweeps.sweeps import FAILED
+
+    failed, outputs, first = found[found[FAILED] != ""], [item.column for item in wanted], wanted[0]
+    say(f"{case.title}: {len(found)} designs, {len(failed)} failed\n")
+    print_table(found[outputs].describe().drop("count").rename_axis("over the designs"))
+    words = "largest first: above 1 is in favour of the design" if first.ratio else "smallest first"
+    say(f"\nbest five by {first.label(varied)}, {words}\n")
+    best = found.dropna(subset=[first.column]).sort_values(first.column, ascending=not first.ratio).head(5)
+    print_table(best.drop(columns=FAILED).rename_axis("design"))
+    for reason, count in failed[FAILED].value_counts().head(3).items():
+        say(f"\n{count} failed: {reason}")
+
+
+def _spreads(texts):
+    pairs = [_spread(text) for text in texts]
+    paths = [path for path, _ in pairs]
+    twice = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
+    if twice:
+        raise ParameterError(f"--vary: {', '.join(twice)} is given more than once; give each parameter one spread")
+    return dict(pairs)
+
+
+def _spread(text):
+    path, equals, spread = text.partition("=")
+    if not equals:
+        raise ParameterError(f'cannot read {text!r}; write path=spread, "spring.stiffness=600..900 kN/m:40"')
+    return path.strip(), spread.strip()
