@@ -25,7 +25,11 @@ LIMITS = {
 """Largest values that limits are set to: where each is found, unit, what it is."""
 LEAST = {"life": ("h", "life of the roller's bearing"), "lift_off_speed": ("rad/s", "speed of lift-off")}
 """Smallest values that limits are set to: unit, what it is."""
-OF_CURVE = ("pressure_angle", "curvature_radius")
+OF_CURVE = {"pressure_angle": "rad", "curvature_radius": "m"}
+UNITS = (
+    {name: unit for name, (_, unit, _) in LIMITS.items()} | {name: unit for name, (unit, _) in LEAST.items()} | OF_CURVE
+)
+"""Unit of each limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,12 +316,15 @@ def contact(
         value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
         for value in (youngs_modulus, poissons_ratio)
     ]
-    given = {"roller_radius": (roller_radius, POSITIVE), "width": (width, POSITIVE)}
+    given = {"roller_radius": (roller_radius, "m", POSITIVE), "width": (width, "m", POSITIVE)}
     for part, E, nu in zip(("roller", "cam"), *pairs, strict=True):
-        given |= {f"youngs_modulus of the {part}": (E, POSITIVE)}
-        given |= {f"poissons_ratio of the {part}": (nu, {"low": 0.0, "high": 0.5 + 1e-12})}
-    given |= {"roller_mass": (roller_mass, {"low": 0.0}), "life_exponent": (life_exponent, POSITIVE)}
-    optional = {"roller_inertia": (roller_inertia, {"low": 0.0}), "load_rating": (load_rating, POSITIVE)}
+        given |= {f"youngs_modulus of the {part}": (E, "Pa", POSITIVE)}
+        given |= {f"poissons_ratio of the {part}": (nu, "1", {"low": 0.0, "high": 0.5 + 1e-12})}
+    given |= {"roller_mass": (roller_mass, "kg", {"low": 0.0}), "life_exponent": (life_exponent, "1", POSITIVE)}
+    optional = {
+        "roller_inertia": (roller_inertia, "kg*m**2", {"low": 0.0}),
+        "load_rating": (load_rating, "N", POSITIVE),
+    }
     given |= {name: pair for name, pair in optional.items() if pair[0] is not None}
     values = checks.singles(
         "contact",
@@ -331,7 +338,7 @@ def contact(
     radius, mass = values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
     roller = Roller(cams[0], radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
-    limits = {name: float(value) for name, value in (limits or {}).items()}
+    limits = {name: checks.single(name, value, UNITS[name])[0] for name, value in (limits or {}).items()}
     found = Contact(solution, cams[0], radius, values["width"], hertz.modulus(materials), roller, limits)
     for side in found.sides:
         working_curve(found.cam, radius, 8, side)
@@ -340,11 +347,13 @@ def contact(
 
 def _limit_problems(limits, load_rating):
     """What is wrong with limits, as sentences."""
-    known = (*LIMITS, *LEAST, *OF_CURVE)
     if limits is not None and not isinstance(limits, dict):
         yield f"limits must be a dict of name to number, got {checks.shown(limits)}"
         return
     for name, value in (limits or {}).items():
-        yield checks.choice("limit", name, known) or checks.single(f"limit {name!r}", value, **POSITIVE)[1]
+        yield (
+            checks.choice("limit", name, tuple(UNITS))
+            or checks.single(f"limit {name!r}", value, UNITS[name], **POSITIVE)[1]
+        )
     if "life" in (limits or {}) and load_rating is None:
         yield "a limit of the life takes the load_rating of the roller's bearing"

@@ -17,6 +17,12 @@ from ..numbers.planar import cross, dot
 from ..results.extremes import extremes
 from . import shapes
 
+LENGTH = checks.Number("m", low=0.0, strict=True)
+CHAIN_UNIT = {
+    **dict.fromkeys(("crank length", "coupler length", "rocker length"), LENGTH),
+    "pivot_x": checks.Optional(checks.Number("m")),
+}
+ANGLE, START = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
 QUARTER, WHOLE = pi / 2, ((0.0, 2 * pi),)
 CHANGE_POINT = 1e-12
 """Difference of the sums of lengths, relative to them, below which a four-bar can reach a change point."""
@@ -44,13 +50,9 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     ParameterError
         The coupler is shorter than the crank, so the parallel start is not possible.
     """
-    checks.require(
-        "chain unit",
-        checks.positive("crank length", crank_length),
-        checks.positive("coupler length", coupler_length),
-        checks.positive("rocker length", rocker_length),
-        None if pivot_x is None else checks.finite("pivot_x", pivot_x),
-    )
+    given = {"crank length": crank_length, "coupler length": coupler_length, "rocker length": rocker_length}
+    found = checks.examined("chain unit", CHAIN_UNIT, given | {"pivot_x": pivot_x})
+    crank_length, coupler_length, rocker_length, pivot_x = found.values()
     if pivot_x is None:
         square = (coupler_length - crank_length) * (coupler_length + crank_length)
         if np.any(square <= 0):
@@ -64,14 +66,13 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
 
 def chain_unit_angle(angle):
     """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad."""
-    checks.require("chain unit", checks.table("angle", angle))
-    return QUARTER - np.asarray(angle)
+    return QUARTER - np.asarray(checks.examined("chain unit", ANGLE, {"angle": angle})["angle"])
 
 
 def rocker_angle(solution, start=QUARTER):
     """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad."""
     link = _bars_of(solution).rocker.link
-    checks.require("rocker_angle", checks.finite("start", start))
+    start = checks.examined("rocker_angle", START, {"start": start})["start"]
     here, before = (at.placement.links[link].direction for at in (solution, solution.at(start)))
     return np.arctan2(cross(here, before), dot(here, before))
 

@@ -56,18 +56,17 @@ class Spread:
     seed: int = field(default=0)
 
     def __post_init__(self):
-        checks.require(
+        found = checks.singles(
             "spread",
-            None
-            if isinstance(self.quantile, float) and 0 < self.quantile < 1
-            else (f"quantile must lie between 0 and 1, got {self.quantile!r}"),
             None
             if isinstance(self.spreads, Mapping) and self.spreads
             else ('spreads must be a dict of path to text, such as {"slider.mass": "normal 0 % +- 1 %"}'),
             _samples_problem(self.samples),
-            checks.single("trim", self.trim, low=0.0, high=1.0)[1],
             checks.seed("seed", self.seed),
+            quantile=(self.quantile, "1", {"low": 0.0, "strict": True, "high": 1.0}),
+            trim=(self.trim, "1", {"low": 0.0, "high": 1.0}),
         )
+        vars(self).update(found)
         spreads.distributions(self.spreads)
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..numbers import checks
 from ..numbers.elementary import namespace, sqrt
 from .crank import ray as ray_at
 
@@ -139,4 +140,5 @@ class Cam:
 
 
 def _array(phi):
+    phi = checks.converted("cam", "crank angle", phi, "rad")
     return np.asarray(phi, dtype=float) if isinstance(phi, int | float | list | tuple) else phi

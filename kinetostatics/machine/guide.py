@@ -66,7 +66,7 @@ class Guide(checks.Checked):
     def at(cls, guide_angle=0.0, guide_offset=0.0):
         """Guide at an angle (rad, counter-clockwise from +x) and offset (m)."""
         if guide_angle is None:
-            checks.require("guide", checks.finite("guide_angle", guide_angle))
+            checks.require("guide", cls.RULES.rules["angle"].rule.taken(guide_angle)[1])
         return cls(guide_angle, guide_offset)
 
     @classmethod

@@ -35,7 +35,7 @@ class Law:
 
     def shifted(self, phase):
         """The same law, later by a phase, rad."""
-        return Shifted(self, **checks.singles("law", phase=(phase, {"unit": "rad"})))
+        return Shifted(self, **checks.singles("law", phase=(phase, "rad", {})))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,7 @@ def knots_of(law):
 def angles(phi):
     """Crank angles as an array, one for a single number."""
     try:
-        return np.asarray(phi, dtype=float)
+        return np.asarray(checks.converted("law", "crank angle", phi, "rad"), dtype=float)
     except (TypeError, ValueError):
         raise ParameterError(f"law: crank angles must be numbers, rad, got {checks.shown(phi)}") from None
 
@@ -76,6 +76,9 @@ def law_problem(law):
         return f"law must be one of ks.laws, or a function of the crank angle, got {checks.shown(law)}"
     angle = np.array([-1.0, 0.5, 0.5 + TURN])
     try:
+        given = law(angle)
+        if any(map(checks.is_quantity, given)):
+            return "law must give plain numbers, m and derivatives by rad, got quantities with units"
         parts = _parts(law, angle)
     except Exception as error:  # of the user's own function
         return f"law must give position and three derivatives of arrays of crank angles; it fails with: {error}"

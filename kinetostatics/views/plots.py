@@ -14,7 +14,7 @@ from ..design.linkage import chain_unit_angle, four_bar_of
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, of_mechanism, values
-from ..numbers.checks import choice, problem, require
+from ..numbers.checks import choice, require, singles
 from ..results.extremes import extremes
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .canvas import INK, axes, closed, display, finished, labelled, styled
@@ -132,7 +132,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     Axes
         With equal scales on both axes.
     """
-    require("hodograph", problem("marks", marks, low=LEAST_MARKS))
+    marks = singles("hodograph", marks=(marks, "deg", {"low": LEAST_MARKS}))["marks"]
     ax = axes(ax)
     named = labelled(solutions, joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
