@@ -134,7 +134,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         along and across guides that are not parallel.
     """
     _refuse_massless(mechanism)
-    paired = isinstance(weights, list | tuple) and len(weights) == 2
+    paired = isinstance(weights, list | tuple | np.ndarray) and getattr(weights, "ndim", 1) == 1 and len(weights) == 2
     found = checks.examined(
         "optimal balancing",
         WEIGHTS,

@@ -64,8 +64,9 @@ def knots_of(law):
 
 def angles(phi):
     """Crank angles as an array, one for a single number."""
+    phi = checks.converted("law", "crank angle", phi, "rad")
     try:
-        return np.asarray(checks.converted("law", "crank angle", phi, "rad"), dtype=float)
+        return np.asarray(phi, dtype=float)
     except (TypeError, ValueError):
         raise ParameterError(f"law: crank angles must be numbers, rad, got {checks.shown(phi)}") from None
 

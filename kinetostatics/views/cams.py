@@ -51,7 +51,7 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
         )
     posed = cam.profile(roller_radius, np.radians(angles), side)
     for degrees, centre, touch in zip(angles, posed.pitch.T, posed.surface.T, strict=True):
-        ax.add_patch(Circle(tuple(centre), roller_radius, fc="none", ec=STEEL, lw=1.2))
+        ax.add_patch(Circle(tuple(centre), posed.roller_radius, fc="none", ec=STEEL, lw=1.2))
         ax.plot(*np.stack([np.zeros(2), centre], axis=1), color=STEEL, lw=0.5, ls=":")
         ax.plot(*touch, ".", color=INK, ms=4)
         ax.annotate(f"{degrees:g}°", centre, ha="center", va="center", fontsize="x-small")

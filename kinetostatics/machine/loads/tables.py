@@ -83,7 +83,7 @@ class Table:
 
     def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None):
         given = {"x": x, "y": y} if back is None else {"x": x, "y": y, "back": back}
-        unit = _unit_of(y)
+        unit = _unit_of(y) or _unit_of(back)
         value = checks.Number(unit or "N", table=True)
         found = checks.examined(
             "table",

@@ -34,8 +34,10 @@ def plain(value, unit):
         held = any(issubclass(kind, pint.Quantity | pint.Unit | list | tuple) for kind in set(map(type, value)))
         parts = [plain(part, unit) for part in value] if held else value
         return tuple(parts) if isinstance(value, tuple) else parts
-    if getattr(getattr(value, "dtype", None), "kind", "") == "O" and np.ndim(value):
-        return plain(value.tolist(), unit)
+    if isinstance(value, np.ndarray) and value.dtype == object:
+        parts = value.ravel().tolist()
+        held = any(isinstance(part, pint.Quantity | pint.Unit) for part in parts)
+        return np.array([plain(part, unit) for part in parts], dtype=object).reshape(value.shape) if held else value
     inner = getattr(value, "data", None) if hasattr(value, "to_numpy") else None  # of xarray, whose to_numpy drops it
     return _converted(inner, unit) if isinstance(inner, pint.Quantity) else value
 
