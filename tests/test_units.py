@@ -520,6 +520,15 @@ def test_tables_know_whether_they_are_forces_or_torques():
         ks.solve(PUMP, TURN, crank_speed=1.0, loads=ks.ProcessForce(torque))
 
 
+def test_a_table_read_from_a_file_is_for_loads_of_its_unit(tmp_path):
+    path = tmp_path / "torque.csv"
+    path.write_text("crank_angle [deg], torque [N m]\n0, 1\n120, 2\n240, 3\n")
+    torque = ks.Table.from_csv(path, "N m")
+    assert torque.unit == "N*m"
+    with pytest.raises(ks.ParameterError, match=r"its value is in N, but that of its table in N\*m"):
+        ks.solve(PUMP, TURN, crank_speed=1.0, loads=ks.Force(torque, at="B"))
+
+
 @pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
 def test_what_functions_of_the_motion_return_is_converted(engine):
     if engine == "compiled":

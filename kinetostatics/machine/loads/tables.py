@@ -175,7 +175,7 @@ class Table:
         x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
         y, back, *_ = *(part if area is None else area * part for part in values), None
         try:
-            return cls(x, y, over, back, period, slider)
+            return with_fields(cls(x, y, over, back, period, slider), unit=unit.replace(" ", "*"))
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
 
