@@ -16,6 +16,7 @@ from .cam_rollers import Roller
 from .followers import lift_off_speed, starting_torque
 from .hardness import hardness_from_pressure
 
+SIZE = {"low": 0.0}
 LIMITS = {
     "pressure": ("largest_pressure", "Pa", "Hertz pressure"),
     "pin_load": ("largest_pin_load", "N", "load of the roller's pin"),
@@ -26,9 +27,7 @@ LIMITS = {
 LEAST = {"life": ("h", "life of the roller's bearing"), "lift_off_speed": ("rad/s", "speed of lift-off")}
 """Smallest values that limits are set to: unit, what it is."""
 OF_CURVE = {"pressure_angle": "rad", "curvature_radius": "m"}
-UNITS = (
-    {name: unit for name, (_, unit, _) in LIMITS.items()} | {name: unit for name, (unit, _) in LEAST.items()} | OF_CURVE
-)
+UNITS = {name: of[-2] for name, of in (*LIMITS.items(), *LEAST.items())} | OF_CURVE
 """Unit of each limit."""
 
 
@@ -312,24 +311,20 @@ def contact(
     checks.require("contact", checks.solution("solution", solution))
     require_single(solution, "contact", "cam_force")
     cams = [group.cam for group in solution.mechanism.groups if isinstance(group, CamRoller)]
-    pairs = [
-        value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
-        for value in (youngs_modulus, poissons_ratio)
-    ]
+    pairs = [x if isinstance(x, list | tuple) and len(x) == 2 else (x, x) for x in (youngs_modulus, poissons_ratio)]
     given = {"roller_radius": (roller_radius, "m", POSITIVE), "width": (width, "m", POSITIVE)}
     for part, E, nu in zip(("roller", "cam"), *pairs, strict=True):
         given |= {f"youngs_modulus of the {part}": (E, "Pa", POSITIVE)}
         given |= {f"poissons_ratio of the {part}": (nu, "1", {"low": 0.0, "high": 0.5 + 1e-12})}
-    given |= {"roller_mass": (roller_mass, "kg", {"low": 0.0}), "life_exponent": (life_exponent, "1", POSITIVE)}
-    optional = {
-        "roller_inertia": (roller_inertia, "kg*m**2", {"low": 0.0}),
-        "load_rating": (load_rating, "N", POSITIVE),
-    }
-    given |= {name: pair for name, pair in optional.items() if pair[0] is not None}
+    given |= {"roller_mass": (roller_mass, "kg", SIZE), "life_exponent": (life_exponent, "1", POSITIVE)}
+    optional = (("roller_inertia", roller_inertia, "kg*m**2", SIZE), ("load_rating", load_rating, "N", POSITIVE))
+    given |= {name: (value, *rule) for name, value, *rule in optional if value is not None}
+    known = {name: limits[name] for name in UNITS if isinstance(limits, dict) and name in limits}
+    given |= {f"limit {name!r}": (value, UNITS[name], POSITIVE) for name, value in known.items()}
     values = checks.singles(
         "contact",
         None if cams else f"solution must be of a mechanism with a CamRoller, a {solution.mechanism.name} has none",
-        *_limit_problems(limits, load_rating),
+        *_limit_problems({} if limits is None else limits, load_rating),
         **given,
     )
     materials = [
@@ -338,22 +333,17 @@ def contact(
     radius, mass = values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
     roller = Roller(cams[0], radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
-    limits = {name: checks.single(name, value, UNITS[name])[0] for name, value in (limits or {}).items()}
-    found = Contact(solution, cams[0], radius, values["width"], hertz.modulus(materials), roller, limits)
+    known = {name: values[f"limit {name!r}"] for name in known}
+    found = Contact(solution, cams[0], radius, values["width"], hertz.modulus(materials), roller, known)
     for side in found.sides:
         working_curve(found.cam, radius, 8, side)
     return found
 
 
 def _limit_problems(limits, load_rating):
-    """What is wrong with limits, as sentences."""
-    if limits is not None and not isinstance(limits, dict):
-        yield f"limits must be a dict of name to number, got {checks.shown(limits)}"
-        return
-    for name, value in (limits or {}).items():
-        yield (
-            checks.choice("limit", name, tuple(UNITS))
-            or checks.single(f"limit {name!r}", value, UNITS[name], **POSITIVE)[1]
-        )
-    if "life" in (limits or {}) and load_rating is None:
-        yield "a limit of the life takes the load_rating of the roller's bearing"
+    """What is wrong with the names of limits, as sentences."""
+    if not isinstance(limits, dict):
+        return [f"limits must be a dict of name to number, got {checks.shown(limits)}"]
+    rating = "a limit of the life takes the load_rating of the roller's bearing"
+    unrated = "life" in limits and load_rating is None
+    return [*(checks.choice("limit", name, tuple(UNITS)) for name in limits), rating if unrated else None]
