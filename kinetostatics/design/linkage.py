@@ -83,10 +83,6 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
 
 
 def chain_unit_angle(angle):
-<<<<<<< HEAD
-    """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad."""
-    return QUARTER - np.asarray(checks.examined("chain unit", ANGLE, {"angle": angle})["angle"])
-=======
     """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad.
 
     Parameters
@@ -111,9 +107,7 @@ def chain_unit_angle(angle):
     >>> np.degrees(ks.linkage.chain_unit_angle(np.radians([0.0, 90.0, 120.0]))).round(9)
     array([ 90.,   0., -30.])
     """
-    checks.require("chain unit", checks.table("angle", angle))
-    return QUARTER - np.asarray(angle)
->>>>>>> main
+    return QUARTER - np.asarray(checks.examined("chain unit", ANGLE, {"angle": angle})["angle"])
 
 
 def rocker_angle(solution, start=QUARTER):

@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..mechanics.quantities import of_mechanism, values
-from ..numbers.checks import choice, require, singles
+from ..numbers.checks import choice, singles
 from ..results.extremes import extremes
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .canvas import INK, axes, closed, display, finished, labelled, styled
