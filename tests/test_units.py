@@ -395,7 +395,7 @@ NO_NUMBERS = {
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
-    *("executor", "folder", "options", "counterweights", "uniform", "gravity", "designs"),
+    *("executor", "folder", "options", "counterweights", "uniform", "gravity", "designs", "run", "runs", "only"),
     # whole numbers
     *("angles", "samples", "seed", "starts", "count", "chunk", "workers", "points", "frames", "cosine", "sine"),
     # texts, or a mapping of names to numbers with units of their own: see the tests below
@@ -414,7 +414,21 @@ RESULTS = {
     "Flywheel",
     "Swing",
 }
-RESULTS |= {"Balanced", "Grashof", "LawCam", "Segment", "Motion", "Solution", "Motor"}
+RESULTS |= {
+    "Balanced",
+    "Grashof",
+    "LawCam",
+    "Segment",
+    "Motion",
+    "Solution",
+    "Motor",
+    "Profile",
+    "Peak",
+    "Case",
+    "Variant",
+}
+RESULTS |= {"Comparison", "DrivenComparison", "EnergyFlow", "Extremes", "Losses", "Needs", "PrincipalPoints", "Program"}
+RESULTS |= {"Tolerances"}
 """Classes that the library makes itself."""
 
 
