@@ -567,3 +567,14 @@ def test_a_law_that_returns_quantities_is_refused():
     law = ks.laws.cosine(300.0, 2000.0)
     with pytest.raises(ks.ParameterError, match="law must give plain numbers"):
         ks.cams.from_law(lambda phi: tuple(UNITS.Quantity(part, "mm") for part in law(phi)))
+
+
+def test_every_number_of_a_case_takes_a_quantity_also_where_others_follow_from_it():
+    variant = ks.load_case("sawframe_2r63").variants["cam-circle"]
+    numbers = {path: value for path, value in variant.parameters.items() if isinstance(value, float)}
+    assert len(numbers) > 20
+    for path, value in numbers.items():
+        told = variant.varied({path: measured(value, variant.units[path])})
+        assert told.scene.parameters == variant.varied({path: value}).scene.parameters, path
+        with pytest.raises(ks.ParameterError, match=r"which measures \[luminosity\]"):
+            variant.varied({path: measured(value, "cd")})
