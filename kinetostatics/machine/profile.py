@@ -117,6 +117,13 @@ class Profile:
         ------
         ParameterError
             The cutter does not fit into a hollow of the working curve, or cuts into another part of it.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> made = ks.cams.Circle(0.3).profile(0.05, 4)
+        >>> abs(made.cutter_path(0.02)[:, 0]).round(6)  # m: the disk's 0.25 m and the cutter's radius
+        array([0.27, 0.  ])
         """
         radius = checks.singles("cutter_path", cutter_radius=(cutter_radius, "m", POSITIVE))["cutter_radius"]
         hollow = self.smallest_hollow
