@@ -24,6 +24,7 @@ c.InlineBackend.rc = {"figure.figsize": (6.4, 3.6), "font.size": 9, "svg.hashsal
     encoding="utf-8",
 )
 os.environ["IPYTHONDIR"] = str(kernel.parents[1])
+os.environ.pop("MPLBACKEND", None)  # another one would show no figures
 
 project = "kinetostatics"
 author = "the kinetostatics developers"

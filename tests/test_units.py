@@ -40,6 +40,18 @@ DOORS = {
     "Guide.exact": (ks.Guide, {"exact": ((0.6, 0.8), "1")}, {"angle": None}),
     "Guide.at": (ks.Guide.at, SHAPE, {}),
     "Guide.through": (ks.Guide.through, {"W1": ((0.0, 0.25), "m"), "W2": ((1.0, 0.5), "m")}, {}),
+    "Roller": (
+        ks.Roller,
+        {"radius": (0.25, "m"), "width": (0.125, "m"), "youngs_modulus": (2e11, "Pa"), "poissons_ratio": (0.25, "1")}
+        | {"cam_youngs_modulus": (1e11, "Pa"), "cam_poissons_ratio": (0.25, "1")},
+        {},
+    ),
+    "Face": (
+        ks.Face,
+        {"width": (0.125, "m"), "youngs_modulus": (2e11, "Pa"), "poissons_ratio": (0.25, "1")}
+        | {"cam_youngs_modulus": (1e11, "Pa"), "cam_poissons_ratio": (0.25, "1")},
+        {},
+    ),
     "SliderGroup": (ks.SliderGroup, {"coupler_length": (0.5, "m")}, {"guide": GUIDE}),
     "RockerGroup": (
         ks.RockerGroup,
@@ -395,7 +407,20 @@ NO_NUMBERS = {
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
-    *("executor", "folder", "options", "counterweights", "uniform", "gravity", "designs", "run", "runs", "only"),
+    *(
+        "executor",
+        "folder",
+        "options",
+        "counterweights",
+        "uniform",
+        "gravity",
+        "designs",
+        "run",
+        "runs",
+        "only",
+        "roller",
+        "face",
+    ),
     # whole numbers
     *("angles", "samples", "seed", "starts", "count", "chunk", "workers", "points", "frames", "cosine", "sine"),
     # texts, or a mapping of names to numbers with units of their own: see the tests below
@@ -428,7 +453,7 @@ RESULTS |= {
     "Variant",
 }
 RESULTS |= {"Comparison", "DrivenComparison", "EnergyFlow", "Extremes", "Losses", "Needs", "PrincipalPoints", "Program"}
-RESULTS |= {"Tolerances"}
+RESULTS |= {"Tolerances", "Uncertainty"}
 """Classes that the library makes itself."""
 
 
@@ -517,6 +542,13 @@ def test_weights_of_force_and_moment_have_units_of_their_own():
     bounded = {"crank": ks.balancing.Counterweight(arm=0.03)}
     with pytest.raises(ks.ParameterError, match=r"weights moment must measure"):
         ks.balancing.optimal(PUMP, "weighted", weights=(1.0, UNITS.Quantity(1.0, "1/N")), **bounded)
+
+
+def test_uncertainties_of_inputs_have_their_units():
+    told = SOLVED.uncertainty("O", {"crank_length": UNITS.Quantity(0.25, "mm")})
+    assert np.array_equal(told.total, SOLVED.uncertainty("O", {"crank_length": 0.25e-3}).total)
+    with pytest.raises(ks.ParameterError, match=r"crank_length must measure \[length\], in m, got 1 second"):
+        SOLVED.uncertainty("O", {"crank_length": UNITS.Quantity(1, "s")})
 
 
 def test_bounds_and_begins_of_a_search_are_converted():

@@ -21,6 +21,8 @@ from ..numbers.lazy import cached_property
 from ..results.turn import Turn
 from . import contents
 from .angles import crank_angles
+from .certainty import Certainty
+from .contacts import Contacts
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
 
@@ -30,7 +32,7 @@ SCENE = tuple(field.name for field in fields(Motion))
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Energies, Motion):
+class Solution(Certainty, Energies, Contacts, Motion):
     """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
 
     The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
@@ -220,9 +222,9 @@ class Solution(Energies, Motion):
     def condition(self):
         """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
 
-        A bound of the true magnification: the sum over all lengths and the crank angle p of |p dq/dp|, over the largest
-        term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
-        at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
+        A bound of the true magnification: the sum over all lengths and the crank angle p of ``|p dq/dp|``, over the
+        largest term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost,
+        infinite at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
         16 - log10(condition) correct digits of its largest term, or more.
 
         Where change points are passed ("open", "crossed") it is of motion and torque alone, which are ordinary there;

@@ -7,6 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Fiel
 
 from ...design.balancing import RATIOS
 from ...machine.cams import Harmonic
+from ...machine.roller import LARGEST_RATIO
 from ...numbers.checks import choice, nearest
 from ...numbers.units import shown
 from .texts import (
@@ -17,6 +18,7 @@ from .texts import (
     Inertia,
     Length,
     Mass,
+    Modulus,
     Period,
     Point,
     Weight,
@@ -134,6 +136,24 @@ class HarmonicTable(Table):
 
 CAMS = {"circle": CircleTable, "cosine-law": CosineLawTable, "harmonic": HarmonicTable, "sampled": SampledTable}
 Cam = one_of("cam", CAMS)
+
+
+# Rollers
+
+PoissonsRatio = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST_RATIO, allow_inf_nan=False), "1"]
+
+
+class RollerTable(Table):
+    """A cam's roller with its materials: with it "contact_pressure" is an output."""
+
+    radius: Length = Field(description="radius of the roller")
+    width: Length = Field(description="width of the contact")
+    youngs_modulus: Modulus = Field(description="Young's modulus of the roller, and of the cam unless that is told")
+    poissons_ratio: PoissonsRatio = Field(
+        description="Poisson's ratio of the roller, from 0 to 0.5, and of the cam unless that is told"
+    )
+    cam_youngs_modulus: Modulus | None = Field(None, description="Young's modulus of the cam")
+    cam_poissons_ratio: PoissonsRatio | None = Field(None, description="Poisson's ratio of the cam")
 
 
 # Counterweights

@@ -13,7 +13,7 @@ from ...numbers import checks
 from ...numbers.units import shown
 from .drives import DriveTable
 from .parts import Groups, Loads, by
-from .tables import BalancingTable, Cam, GravityTable, LinkTable, Table, value_in
+from .tables import BalancingTable, Cam, GravityTable, LinkTable, RollerTable, Table, value_in
 from .texts import (
     Angle,
     AngularAcceleration,
@@ -123,6 +123,7 @@ class CamVariant(SliderVariant):
     cam: Cam
     coupler_length: Length | None = None
     block: LinkTable = LinkTable()
+    roller: RollerTable | None = Field(None, description="size and material of the roller, for its contact pressure")
 
 
 class RockerVariant(MechanismVariant):
