@@ -133,7 +133,7 @@ def faults(folder):
             if digits < FEWEST and float(text) != 0.0:
                 yield f"{name}: {text} has {digits} digits of {FEWEST}"
     for across, guide in _guides(described):
-        x, y = guide["direction (length does not count) [1]"]
+        x, y = next(pair for key, pair in guide.items() if key.startswith("direction"))
         for row in range(len(table[ANGLE])):
             force = [float(table[name][row]) for name in named[across]]
             if abs(force[0] * x + force[1] * y) > 1e-14 * max(1e-300, math.hypot(*force)):

@@ -212,11 +212,9 @@ def owned(mechanism, name):
 def describe(item):
     """A part as a mapping of its fields, numbers with their units."""
     if isinstance(item, Guide):
-        found = {} if item.angle is None else {"guide_angle [rad]": item.angle}
-        return found | {
-            "direction (length does not count) [1]": list(item.direction),
-            "guide_offset [m]": item.guide_offset,
-        }
+        exact = {"guide_angle [rad]": item.angle, "direction, rounded [1]": list(item.direction)}
+        through = {"direction (length does not count) [1]": list(item.direction)}
+        return (through if item.angle is None else exact) | {"guide_offset [m]": item.guide_offset}
     if isinstance(item, Table):
         x = "m" if item.over == "travel" else "rad"
         back = {} if item.back is None else {"back": item.back.tolist()}
