@@ -10,7 +10,8 @@ Call first
     >>> print(f"{ks.extremes(s, 'O').largest:.0f} N")  # the peak, between samples
     286596 N
 
-SI units and radians throughout; angles count counter-clockwise from +x; vectors have (x, y) as their first axis.
+SI units and radians throughout, and quantities of pint are converted to them; angles count counter-clockwise from +x;
+vectors have (x, y) as their first axis.
 ``help(ks.Solution)`` lists all that `s` gives: symbols, shapes, units, bodies and signs.
 
 Then
@@ -128,7 +129,7 @@ if TYPE_CHECKING:
     from .views import plots
     from .views.report.making import report
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "AssemblyError",

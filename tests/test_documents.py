@@ -86,3 +86,19 @@ def test_notebook_is_saved_without_output(path):
     notebook = json.loads(path.read_text(encoding="utf-8"))
     cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
     assert all(not cell["outputs"] and cell["execution_count"] is None for cell in cells)
+
+
+def test_version_of_the_package_is_that_of_changelog_and_citation():
+    section = re.search(r"^## (\S+) - (\S+)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert section is not None
+    assert section[1] == ks.__version__
+    assert f"\nversion: {section[1]}\n" in citation
+    assert f'\ndate-released: "{section[2]}"\n' in citation
+
+
+def test_changelog_tells_of_each_version_what_is_added_changed_and_fixed():
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    for section in re.split(r"^## ", text, flags=re.MULTILINE)[1:]:
+        assert set(re.findall(r"^### (.*)$", section, flags=re.MULTILINE)) <= {"Added", "Changed", "Fixed", "Removed"}
+    assert max(map(len, text.splitlines())) <= 130

@@ -118,6 +118,7 @@ def _crank(mechanism):
     return name
 
 
+WEIGHTS = {"weights force": checks.Number("N**-1"), "weights moment": checks.Number("N**-1*m**-1")}
 NORMS = ("largest", "mean", "along", "across", "weighted")
 
 
@@ -161,12 +162,16 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     0.56
     """
     _refuse_massless(mechanism)
-    checks.require(
+    paired = isinstance(weights, list | tuple | np.ndarray) and getattr(weights, "ndim", 1) == 1 and len(weights) == 2
+    found = checks.examined(
         "optimal balancing",
+        WEIGHTS,
+        dict(zip(WEIGHTS, weights if paired else (1.0, 0.0), strict=True)),
         checks.choice("norm", norm, NORMS),
-        checks.pair("weights", weights),
+        None if paired else f"weights must be a pair (force, moment), got {checks.shown(weights)}",
         *_search_problems(mechanism, counterweights),
     )
+    weights = tuple(found.values())
     if norm in ("along", "across"):
         guide_direction(mechanism)
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
@@ -307,8 +312,7 @@ def _ratio(ratio):
     if isinstance(ratio, str):
         checks.require("partial balancing", checks.choice("ratio", ratio, tuple(RATIOS)))
         return RATIOS[ratio]
-    checks.require("partial balancing", checks.finite("ratio", ratio))
-    return float(ratio)
+    return checks.singles("partial balancing", ratio=(ratio, "1", {}))["ratio"]
 
 
 def _refuse(mechanism):

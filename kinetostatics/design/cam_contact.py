@@ -22,7 +22,9 @@ LIMITS = {
 """Largest values that limits are set to: where each is found, unit, what it is."""
 LEAST = {"life": ("h", "life of the roller's bearing"), "lift_off_speed": ("rad/s", "speed of lift-off")}
 """Smallest values that limits are set to: unit, what it is."""
-OF_CURVE = ("pressure_angle", "curvature_radius")
+OF_CURVE = {"pressure_angle": "rad", "curvature_radius": "m"}
+UNITS = {name: of[-2] for name, of in (*LIMITS.items(), *LEAST.items())} | OF_CURVE
+"""Unit of each limit."""
 
 
 @dataclass(frozen=True, eq=False)

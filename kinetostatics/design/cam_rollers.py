@@ -28,9 +28,13 @@ class Reversal(NamedTuple):
 
     def sliding_angle(self, roller, crank_speed, friction_coefficient):
         """Crank angle through which the roller slides until it rolls again, rad, as the force grows in proportion."""
-        checks.singles("sliding_angle", friction_coefficient=(friction_coefficient, {"low": 0.0, "strict": True}))
-        grip = friction_coefficient * roller.radius * abs(self.rise)
-        return float(np.sqrt(2.0 * abs(crank_speed) * roller.inertia * abs(self.spin) / grip))
+        given = checks.singles(
+            "sliding_angle",
+            crank_speed=(crank_speed, "rad/s", {}),
+            friction_coefficient=(friction_coefficient, "1", {"low": 0.0, "strict": True}),
+        )
+        grip = given["friction_coefficient"] * roller.radius * abs(self.rise)
+        return float(np.sqrt(2.0 * abs(given["crank_speed"]) * roller.inertia * abs(self.spin) / grip))
 
 
 @dataclass(frozen=True, eq=False)

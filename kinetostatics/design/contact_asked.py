@@ -8,8 +8,10 @@ from ..machine.profile import POSITIVE
 from ..machine.profile import profile as working_curve
 from ..numbers import checks
 from ..results.turn import require_single
-from .cam_contact import LEAST, LIMITS, OF_CURVE, Contact
+from .cam_contact import UNITS, Contact
 from .cam_rollers import Roller
+
+SIZE = {"low": 0.0}
 
 
 def contact(
@@ -81,17 +83,19 @@ def contact(
         value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
         for value in (told["youngs_modulus"], told["poissons_ratio"])
     ]
-    given = {"roller_radius": (roller_radius, POSITIVE), "width": (width, POSITIVE)}
+    given = {"roller_radius": (roller_radius, "m", POSITIVE), "width": (width, "m", POSITIVE)}
     for part, E, nu in zip(("roller", "cam"), *pairs, strict=True):
-        given |= {f"youngs_modulus of the {part}": (E, POSITIVE)}
-        given |= {f"poissons_ratio of the {part}": (nu, {"low": 0.0, "high": 0.5 + 1e-12})}
-    given |= {"roller_mass": (roller_mass, {"low": 0.0}), "life_exponent": (life_exponent, POSITIVE)}
-    optional = {"roller_inertia": (roller_inertia, {"low": 0.0}), "load_rating": (load_rating, POSITIVE)}
-    given |= {name: pair for name, pair in optional.items() if pair[0] is not None}
+        given |= {f"youngs_modulus of the {part}": (E, "Pa", POSITIVE)}
+        given |= {f"poissons_ratio of the {part}": (nu, "1", {"low": 0.0, "high": 0.5 + 1e-12})}
+    given |= {"roller_mass": (roller_mass, "kg", SIZE), "life_exponent": (life_exponent, "1", POSITIVE)}
+    optional = (("roller_inertia", roller_inertia, "kg*m**2", SIZE), ("load_rating", load_rating, "N", POSITIVE))
+    given |= {name: (value, *rule) for name, value, *rule in optional if value is not None}
+    known = {name: limits[name] for name in UNITS if isinstance(limits, dict) and name in limits}
+    given |= {f"limit {name!r}": (value, UNITS[name], POSITIVE) for name, value in known.items()}
     values = checks.singles(
         "contact",
         None if groups else _no_roller(solution.mechanism),
-        *_limit_problems(limits, load_rating),
+        *_limit_problems({} if limits is None else limits, load_rating),
         **given,
     )
     materials = [
@@ -100,8 +104,8 @@ def contact(
     radius, mass = values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
     roller = Roller(groups[0].cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
-    limits = {name: float(value) for name, value in (limits or {}).items()}
-    found = Contact(solution, groups[0].cam, radius, values["width"], hertz.modulus(*materials), roller, limits)
+    known = {name: values[f"limit {name!r}"] for name in known}
+    found = Contact(solution, groups[0].cam, radius, values["width"], hertz.modulus(*materials), roller, known)
     for side in found.sides:
         working_curve(found.cam, radius, 8, side)
     return found
@@ -128,12 +132,9 @@ def _no_roller(mechanism):
 
 
 def _limit_problems(limits, load_rating):
-    """What is wrong with limits, as sentences."""
-    known = (*LIMITS, *LEAST, *OF_CURVE)
-    if limits is not None and not isinstance(limits, dict):
-        yield f"limits must be a dict of name to number, got {checks.shown(limits)}"
-        return
-    for name, value in (limits or {}).items():
-        yield checks.choice("limit", name, known) or checks.single(f"limit {name!r}", value, **POSITIVE)[1]
-    if "life" in (limits or {}) and load_rating is None:
-        yield "a limit of the life takes the load_rating of the roller's bearing"
+    """What is wrong with the names of limits, as sentences."""
+    if not isinstance(limits, dict):
+        return [f"limits must be a dict of name to number, got {checks.shown(limits)}"]
+    rating = "a limit of the life takes the load_rating of the roller's bearing"
+    unrated = "life" in limits and load_rating is None
+    return [*(checks.choice("limit", name, tuple(UNITS)) for name in limits), rating if unrated else None]

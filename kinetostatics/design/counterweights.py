@@ -18,6 +18,17 @@ PARALLEL = 1e-9
 """Sine of the angle between guides up to which they are parallel."""
 
 
+MASS, LENGTH = (checks.Optional(checks.Number(unit, low=0.0, strict=True)) for unit in ("kg", "m"))
+LIMITS = {
+    "mass": MASS,
+    "arm": checks.Optional(checks.Number("m")),
+    "largest_mass": MASS,
+    "largest_arm": LENGTH,
+    "keep_out": LENGTH,
+}
+UNBALANCE = {"unbalance": checks.Pair("kg*m", parts=("along", "across"), lone=True)}
+
+
 @dataclass(frozen=True)
 class Counterweight:
     """What is fixed of a counterweight before its unbalance is known: its mass or its arm, and its limits.
@@ -60,16 +71,11 @@ class Counterweight:
 
     def __post_init__(self):
         given = [name for name in ("mass", "arm") if getattr(self, name) is not None]
-        checks.require(
-            "counterweight",
-            None if len(given) == 1 else f"give either mass or arm, not {'both' if given else 'neither'}",
-            *(
-                checks.positive(name, getattr(self, name))
-                for name in ("mass", "largest_mass", "largest_arm", "keep_out")
-                if getattr(self, name) is not None
-            ),
-            None if self.arm is None else checks.finite("arm", self.arm) or (self.arm == 0 and "arm must not be 0"),
+        either = None if len(given) == 1 else f"give either mass or arm, not {'both' if given else 'neither'}"
+        vars(self).update(
+            checks.examined("counterweight", LIMITS, {name: getattr(self, name) for name in LIMITS}, either)
         )
+        checks.require("counterweight", "arm must not be 0" if self.arm == 0 else None)
 
     def placed(self, unbalance):
         """Mass and position (along, across) that give an unbalance (along, across), kg m."""
@@ -233,13 +239,10 @@ def counterweight(mechanism, link, unbalance, weight):
     >>> mass, round(float(along), 6)
     (4.0, -0.05)
     """
-    checks.require(
-        "counterweight",
-        checks.choice("link", link, tuple(mechanism.links)),
-        checks.pair("unbalance", unbalance) if np.ndim(unbalance) else checks.finite("unbalance", unbalance),
-    )
+    problem = checks.choice("link", link, tuple(mechanism.links))
+    found = checks.examined("counterweight", UNBALANCE, {"unbalance": unbalance}, problem)["unbalance"]
     bare = mechanism.links[link]
-    wanted = np.array(unbalance if np.ndim(unbalance) else (unbalance, 0.0), dtype=float)
+    wanted = np.array(found, dtype=float)
     own = bare.mass * np.array(bare.centre)
     if weight.whole_link:
         whole, _ = weight.placed(wanted)

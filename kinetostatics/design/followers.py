@@ -245,7 +245,7 @@ def spring_surge(solution, spring_mass):
     """
     checks.require("spring_surge", checks.solution("solution", solution))
     require_single(solution, "spring_surge", "slider_position")
-    mass = checks.singles("spring_surge", spring_mass=(spring_mass, POSITIVE))["spring_mass"]
+    mass = checks.singles("spring_surge", spring_mass=(spring_mass, "kg", POSITIVE))["spring_mass"]
     springs = [load for load in solution.loads if isinstance(load, Spring)]
     if len(springs) != 1:
         raise ParameterError(f"spring_surge: takes a solution with one Spring among its loads, got {len(springs)}")

@@ -30,7 +30,7 @@ def pressure_from_hardness(brinell):
     >>> round(ks.design.pressure_from_hardness(300.0) / 1e6, 3)
     866.0
     """
-    value = checks.singles("pressure_from_hardness", brinell=(brinell, POSITIVE))["brinell"]
+    value = checks.singles("pressure_from_hardness", brinell=(brinell, "1", POSITIVE))["brinell"]
     if not 180.0 <= value <= 400.0:
         raise ParameterError(
             f"pressure_from_hardness: the standard tells of 180 to 400 HB, got {value:.6g}; give the pressure itself, "
@@ -64,5 +64,5 @@ def hardness_from_pressure(pressure):
     >>> round(ks.design.hardness_from_pressure(866e6), 6)
     300.0
     """
-    value = checks.singles("hardness_from_pressure", pressure=(pressure, {"low": 0.0}))["pressure"]
+    value = checks.singles("hardness_from_pressure", pressure=(pressure, "Pa", {"low": 0.0}))["pressure"]
     return max(180.0, (value / 1e6 - 200.0) / 2.22)

@@ -30,6 +30,12 @@ __all__ = [
     "transmission_angle",
 ]
 
+LENGTH = checks.Number("m", low=0.0, strict=True)
+CHAIN_UNIT = {
+    **dict.fromkeys(("crank length", "coupler length", "rocker length"), LENGTH),
+    "pivot_x": checks.Optional(checks.Number("m")),
+}
+ANGLE, START = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
 QUARTER, WHOLE = pi / 2, ((0.0, 2 * pi),)
 
 
@@ -62,13 +68,9 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     >>> [round(float(part), 6) for part in unit.groups[0].pivot]
     [0.994987, -0.5]
     """
-    checks.require(
-        "chain unit",
-        checks.positive("crank length", crank_length),
-        checks.positive("coupler length", coupler_length),
-        checks.positive("rocker length", rocker_length),
-        None if pivot_x is None else checks.finite("pivot_x", pivot_x),
-    )
+    given = {"crank length": crank_length, "coupler length": coupler_length, "rocker length": rocker_length}
+    found = checks.examined("chain unit", CHAIN_UNIT, given | {"pivot_x": pivot_x})
+    crank_length, coupler_length, rocker_length, pivot_x = found.values()
     if pivot_x is None:
         square = (coupler_length - crank_length) * (coupler_length + crank_length)
         if checks.known(square) and np.any(square <= 0):
@@ -105,8 +107,7 @@ def chain_unit_angle(angle):
     >>> np.degrees(ks.linkage.chain_unit_angle(np.radians([0.0, 90.0, 120.0]))).round(9)
     array([ 90.,   0., -30.])
     """
-    checks.require("chain unit", checks.table("angle", angle))
-    return QUARTER - np.asarray(angle)
+    return QUARTER - np.asarray(checks.examined("chain unit", ANGLE, {"angle": angle})["angle"])
 
 
 def rocker_angle(solution, start=QUARTER):
@@ -137,7 +138,7 @@ def rocker_angle(solution, start=QUARTER):
     0.2115
     """
     link = _bars_of(solution).rocker.link
-    checks.require("rocker_angle", checks.finite("start", start))
+    start = checks.examined("rocker_angle", START, {"start": start})["start"]
     here, before = (at.placement.links[link].direction for at in (solution, solution.at(start)))
     return np.arctan2(cross(here, before), dot(here, before))
 

@@ -204,7 +204,9 @@ def starting(problem, count, seed, begin=None):
         if not isinstance(begin, Mapping):
             raise ParameterError(f"design: begin must be a dict of path to number, got {checks.shown(begin)}")
         wrong = [checks.choice("begin", path, problem.names) for path in begin]
-        own = checks.singles("design", *wrong, **{f"begin {path}": (value, {}) for path, value in begin.items()})
+        units = problem.source.units
+        given: dict = {f"begin {path}": (value, units.get(path, ""), {}) for path, value in begin.items()}
+        own = checks.singles("design", *wrong, **given)
         first = np.array([own.get(f"begin {name}", value) for name, value in zip(problem.names, first, strict=True)])
     return [first, *(problem.low + spread[: count - 1] * (problem.high - problem.low))]
 

@@ -205,10 +205,13 @@ def bounds(source, vary):
         elif problem is None:
             try:
                 low, high = given
-                pair = [to_si(end, known[path]) if isinstance(end, str) else float(end) for end in (low, high)]
+                pair = [
+                    to_si(end, known[path]) if isinstance(end, str) else float(checks.plain(end, known[path]))
+                    for end in (low, high)
+                ]
                 problem = None if np.all(np.isfinite(pair)) and pair[0] < pair[1] else "they must be finite and rise"
                 found.append(pair)
-            except (TypeError, ValueError) as error:
+            except (TypeError, ValueError, checks.DimensionError) as error:
                 problem = str(error)
             problem = problem and f"bounds of {path} must be (low, high), got {checks.shown(given)}: {problem}"
         problems.append(problem)

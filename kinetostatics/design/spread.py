@@ -58,18 +58,20 @@ class Spread:
     seed: int = field(default=0)
 
     def __post_init__(self):
-        checks.require(
+        quantile, wrong = checks.single("quantile", self.quantile, "1")
+        if not wrong and not 0.0 < quantile < 1.0:
+            wrong = f"quantile must lie between 0 and 1, got {quantile!r}"
+        found = checks.singles(
             "spread",
-            None
-            if isinstance(self.quantile, float) and 0 < self.quantile < 1
-            else (f"quantile must lie between 0 and 1, got {self.quantile!r}"),
+            wrong,
             None
             if isinstance(self.spreads, Mapping) and self.spreads
             else ('spreads must be a dict of path to text, such as {"slider.mass": "normal 0 % +- 1 %"}'),
             samples_problem(self.samples),
-            checks.single("trim", self.trim, low=0.0, high=1.0)[1],
             checks.seed("seed", self.seed),
+            trim=(self.trim, "1", {"low": 0.0, "high": 1.0}),
         )
+        vars(self).update(found, quantile=quantile)
         spreads.distributions(self.spreads)
 
 

@@ -31,6 +31,7 @@ EVEN = 1e-10
 CORNER = 1e-6
 """Jump of the torque across its mean, relative to the largest, that counts as one."""
 BESIDE = 1e-9
+SWITCHES = {"switches": checks.Number("rad", table=True)}
 STEEP, STEEPEST = np.radians(30.0), np.radians(85.0)
 
 
@@ -94,17 +95,23 @@ def torque_balancing_cam(
     >>> found.remaining < 1e-9, found.lifts_off
     (True, ())
     """
-    given = {"stiffness": stiffness, "base_radius": base_radius, "roller_radius": roller_radius}
+    given = {
+        "stiffness": (stiffness, "N/m", POSITIVE),
+        "base_radius": (base_radius, "m", POSITIVE),
+        "roller_radius": (roller_radius, "m", POSITIVE),
+    }
     values = checks.singles(
         OWNER,
         _scene_problem(scene),
-        **{name: (value, POSITIVE) for name, value in given.items() if value is not None},
-        mass=(mass, POSITIVE),
-        travel=(travel, POSITIVE),
-        pressure_angle=(pressure_angle, POSITIVE | {"high": STEEPEST}),
-        guide_angle=(guide_angle, {}),
-        guide_offset=(guide_offset, {}),
+        **{name: item for name, item in given.items() if item[0] is not None},
+        mass=(mass, "kg", POSITIVE),
+        travel=(travel, "m", POSITIVE),
+        pressure_angle=(pressure_angle, "rad", POSITIVE | {"high": STEEPEST}),
+        guide_angle=(guide_angle, "rad", {}),
+        guide_offset=(guide_offset, "m", {}),
     )
+    if np.size(switches):
+        switches = np.atleast_1d(checks.examined(OWNER, SWITCHES, {"switches": switches})["switches"])
     torque, energy = _energy(scene, switches)
     guide = Guide.at(values["guide_angle"], values["guide_offset"])
     moving = values["mass"] * float(scene.crank_speed) ** 2

@@ -48,6 +48,7 @@ torques, and what the bends of the cam do. From far away the first finds the way
 STEPS = 100
 NEARLY = 1.05
 """How far beyond the bound of symmetric cams a limit is refused at once: the bound moves a little with the cam."""
+ENDS = {"ends": checks.Optional(checks.Pair("m", parts=("low", "high")))}
 TORQUE, POSITION = "balancing_torque", "slider_position"
 SHOWN = (
     "ratio mean_absolute balancing_torque",
@@ -139,18 +140,22 @@ def torque_free_cam(
     5.25e+04
     """
     source, reference = chosen(source, variant, reference)
-    checks.require(
+    optional = {
+        "guide_offset": (guide_offset, "m", {}),
+        "counterweight": (counterweight, "kg", {"low": 0.0, "strict": True}),
+        "coupler_spring": (coupler_spring, "rad", {}),
+    }
+    given = checks.singles(
         "torque-free cam",
         _harmonics_problem("cosine", cosine),
         _harmonics_problem("sine", sine) if sine or sine is False else None,
         *searches(starts, seed),
         None if isinstance(gravity, bool) else f"gravity must be True or False, got {checks.shown(gravity)}",
-        None if guide_offset is None else checks.single("guide_offset", guide_offset)[1],
         None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}",
-        None if ends is None else checks.pair("ends", ends),
-        None if counterweight is None else checks.positive("counterweight", counterweight),
-        None if coupler_spring is None else checks.finite("coupler_spring", coupler_spring),
+        **{name: item for name, item in optional.items() if item[0] is not None},
     )
+    ends = checks.examined("torque-free cam", ENDS, {"ends": ends})["ends"]
+    guide_offset, counterweight, coupler_spring = map(given.get, optional)
     given = _weighted(scene_of(source), gravity)
     compared = None if reference is None else _weighted(scene_of(reference), gravity)
     start = begun(given, cosine, sine, ends, gravity, guide_offset, coupler_spring, counterweight, cubic)

@@ -51,7 +51,11 @@ def weight_options(source, cosine=8, *, variant=None, reference=None, counterwei
     import pandas as pd
 
     taken = [name for name in ("sine", "coupler_spring") if name in options]
-    checks.require("weight_options", *(f"{name} is one of the ways compared, so it cannot be given" for name in taken))
+    mass = checks.Optional(checks.Number("kg", low=0.0, strict=True))
+    wrong = (f"{name} is one of the ways compared, so it cannot be given" for name in taken)
+    counterweight = checks.examined(
+        "weight_options", {"counterweight": mass}, {"counterweight": counterweight}, *wrong
+    )["counterweight"]
     given, compared = chosen(source, variant, reference)
     scene = scene_of(given)
     group = scene.mechanism.groups[-1]

@@ -43,7 +43,7 @@ class Driven:
     """
 
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
-        flywheel, wrong = single(flywheel, name="flywheel", low=0.0)
+        flywheel, wrong = single(flywheel, "kg*m**2", name="flywheel", low=0.0)
         checks.require(
             owner,
             None if isinstance(scene, Scene) else f"scene must be a Scene, as ks.Scene(...), got {checks.shown(scene)}",

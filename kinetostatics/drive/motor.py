@@ -74,13 +74,13 @@ class Motor:
         """
         found = _numbers(
             "Motor.kloss",
-            _below(speed, synchronous_speed),
-            power=(power, POSITIVE),
-            speed=(speed, POSITIVE),
-            synchronous_speed=(synchronous_speed, POSITIVE),
-            overload=(overload, {"low": 1.0, "strict": True}),
+            power=(power, "W", POSITIVE),
+            speed=(speed, "rad/s", POSITIVE),
+            synchronous_speed=(synchronous_speed, "rad/s", POSITIVE),
+            overload=(overload, "1", {"low": 1.0, "strict": True}),
             **_shared(transmission, inertia),
         )
+        checks.require("Motor.kloss", _below(found["speed"], found["synchronous_speed"]))
         return Kloss(**found)
 
     @staticmethod
@@ -104,8 +104,8 @@ class Motor:
         """
         found = _numbers(
             "Motor.linear",
-            standstill_torque=(torque, {**POSITIVE, "name": "torque"}),
-            idle_speed=(speed, {**POSITIVE, "name": "speed"}),
+            standstill_torque=(torque, "N*m", {**POSITIVE, "name": "torque"}),
+            idle_speed=(speed, "rad/s", {**POSITIVE, "name": "speed"}),
             **_shared(transmission, inertia),
         )
         return Linear(**found)
@@ -121,7 +121,9 @@ class Motor:
         10.0
         """
         found = _numbers(
-            "Motor.constant", own_torque=(torque, {"name": "torque", "unequal": 0.0}), **_shared(transmission, inertia)
+            "Motor.constant",
+            own_torque=(torque, "N*m", {"name": "torque", "unequal": 0.0}),
+            **_shared(transmission, inertia),
         )
         return Constant(**found)
 
@@ -146,9 +148,10 @@ class Motor:
         >>> float(motor.torque(150.0))
         200.0
         """
-        rows = [np.array(given, dtype=float) if _is_row(given) else given for given in (speed, torque)]
-        found = _numbers("Motor.table", *_row_problems(*rows), **_shared(transmission, inertia))
-        return Tabled(read_only(rows[0]), read_only(rows[1]), **found)
+        found = _numbers("Motor.table", **_shared(transmission, inertia))
+        rows = checks.examined("Motor.table", ROWS, {"speed": speed, "torque": torque})
+        checks.require("Motor.table", *_row_problems(*rows.values()))
+        return Tabled(*(read_only(np.array(row)) for row in rows.values()), **found)
 
     def torque(self, speed) -> Any:
         """Torque at speeds of the motor's shaft, N m."""
@@ -296,25 +299,26 @@ class Tabled(Motor):
 # What a motor must be given
 
 POSITIVE = {"low": 0.0, "strict": True}
+ROWS = {"speed": checks.Number("rad/s", table=True), "torque": checks.Number("N*m", table=True)}
 
 
 def _shared(transmission, inertia):
-    return {"transmission": (transmission, {"unequal": 0.0}), "inertia": (inertia, {"low": 0.0})}
+    return {"transmission": (transmission, "1", {"unequal": 0.0}), "inertia": (inertia, "kg*m**2", {"low": 0.0})}
 
 
-def _numbers(owner, *problems, **given):
-    """Single numbers by name, each given with what it must be; one `ParameterError` for all that is wrong."""
+def _numbers(owner, **given):
+    """Single numbers by name, each given with unit and rule; one `ParameterError` for all that is wrong."""
     found, wrong = {}, []
-    for field_name, (value, rule) in given.items():
-        found[field_name], problem = single(value, **{"name": field_name, **rule})
+    for field_name, (value, unit, rule) in given.items():
+        found[field_name], problem = single(value, unit, **{"name": field_name, **rule})
         wrong.append(problem)
-    checks.require(owner, *wrong, *([] if any(wrong) else problems))
+    checks.require(owner, *wrong)
     return found
 
 
-def single(value, name, unequal=None, **rule):
-    """One number as a float, and what is wrong with it, as a sentence, or None."""
-    found, problem = checks.Number(name=name, **rule).taken(value)
+def single(value, unit, name, unequal=None, **rule):
+    """One number in a unit as a float, and what is wrong with it, as a sentence, or None."""
+    found, problem = checks.Number(unit, name, **rule).taken(value)
     if problem is None and type(found) is not float:
         problem = f"{name} must be one number, got {checks.shown(value)}"
     if problem is None and found == unequal:
@@ -324,25 +328,19 @@ def single(value, name, unequal=None, **rule):
 
 def _below(speed, synchronous_speed):
     """What is wrong with a rated speed, or None."""
-    if all(isinstance(value, int | float) for value in (speed, synchronous_speed)) and not speed < synchronous_speed:
-        return (
-            f"synchronous_speed must be greater than the rated speed of {speed:.9g} rad/s, got {synchronous_speed:.9g}"
-        )
-    return None
-
-
-def _is_row(given):
-    return checks.table("row", given) is None and np.ndim(given) == 1
+    if speed < synchronous_speed:
+        return None
+    return f"synchronous_speed must be greater than the rated speed of {speed:.9g} rad/s, got {synchronous_speed:.9g}"
 
 
 def _row_problems(speed, torque):
     """What is wrong with the rows of a table of torque over speed, as sentences."""
-    wrong = [
-        checks.table(name, given) or (None if np.ndim(given) == 1 else f"{name} must be a row of numbers")
-        for name, given in (("speed", speed), ("torque", torque))
-    ]
-    if any(wrong):
-        return wrong
+    if np.ndim(speed) != 1 or np.ndim(torque) != 1:
+        return [
+            f"{name} must be a row of numbers"
+            for name, row in (("speed", speed), ("torque", torque))
+            if np.ndim(row) != 1
+        ]
     if speed.size != torque.size or speed.size < 2:
         return [f"speed and torque must be of one length, 2 at least, got {speed.size} and {torque.size}"]
     if np.any(np.diff(speed) <= 0):

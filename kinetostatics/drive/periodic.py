@@ -171,7 +171,7 @@ def _at_mean_speed(driven, pieces, inertia, gained, speed):
 def _direction(scene):
     """Sign of the crank speed of a scene that is to be run without motor."""
     checks.require("steady", None if isinstance(scene, Scene) else f"scene must be a Scene, got {checks.shown(scene)}")
-    speed, wrong = single(scene.crank_speed, name="crank_speed of the scene", unequal=0.0)
+    speed, wrong = single(scene.crank_speed, "rad/s", name="crank_speed of the scene", unequal=0.0)
     checks.require("steady", wrong)
     return math.copysign(1.0, speed)
 

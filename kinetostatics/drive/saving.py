@@ -103,7 +103,8 @@ class DrivenComparison(Comparison):
         fluctuation : float, optional
             As for `flywheels`.
         """
-        checks.require("flywheel_mass_saved", checks.Number(name="radius", low=0.0, strict=True).taken(radius)[1])
+        rule = checks.Number("m", low=0.0, strict=True)
+        radius = checks.examined("flywheel_mass_saved", {"radius": rule}, {"radius": radius})["radius"]
         reference, balanced = self.flywheels(fluctuation)
         return (reference - balanced) / radius**2
 

@@ -16,7 +16,7 @@ LIGHTEST = 1e-3
 
 def fluctuation_wanted(owner, fluctuation):
     """A coefficient of fluctuation as a float, between 0 and 2."""
-    wanted, wrong = single(fluctuation, name="fluctuation", low=0.0, strict=True)
+    wanted, wrong = single(fluctuation, "1", name="fluctuation", low=0.0, strict=True)
     if not wrong and not wanted < 2.0:
         wrong = f"fluctuation must be less than 2, got {wanted:g}"
     checks.require(owner, wrong)

@@ -88,7 +88,7 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
 
 
 def _textbook(scene, wanted, engine):
-    speed, wrong = single(getattr(scene, "crank_speed", 1.0), name="crank_speed of the scene", unequal=0.0)
+    speed, wrong = single(getattr(scene, "crank_speed", 1.0), "rad/s", name="crank_speed of the scene", unequal=0.0)
     checks.require("flywheel", wrong)
     driven = driven_by("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
     pieces = resolved(driven, speed)

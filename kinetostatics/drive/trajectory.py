@@ -15,6 +15,7 @@ from ..solution.scene import Scene
 from .driven import Driven
 from .motor import Motor
 
+TIME = checks.Number("s", table=True)
 STANDING = 1e-150
 """Crank speed that stands for none, with the sign of the motion, rad/s."""
 
@@ -102,7 +103,7 @@ class Trajectory:
         if isinstance(time, int | np.integer) and not isinstance(time, bool):
             checks.require("at", checks.count("time", time, size=checks.ANGLE))
             time = np.linspace(self.time[0], self.time[-1], time)
-        checks.require("at", checks.table("time", time))
+        time = checks.examined("at", {"time": TIME}, {"time": time})["time"]
         time = np.atleast_1d(np.array(time, dtype=float))
         low, high = self.time[0], self.time[-1]
         if time.min() < low or time.max() > high:

@@ -74,8 +74,8 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     """
     driven, flywheel, angle, speed = _begun("coast", scene, motor, flywheel, from_angle, from_speed, engine)
     if not (isinstance(until, str) and until == "standstill"):
-        until, wrong = single(until, name="until", low=0.0, strict=True)
-        checks.require("coast", 'until must be a time in s, or "standstill"' + f", got {until!r}" if wrong else None)
+        until, wrong = single(until, "s", name="until", low=0.0, strict=True)
+        checks.require("coast", wrong and f'until must be a time in s, or "standstill": {wrong}')
     elif speed == 0.0:
         checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
     else:
@@ -128,7 +128,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     if until is None:
         target = READY * steady(scene, motor, flywheel, engine=engine).mean_speed
     else:
-        until, wrong = single(until, name="until", low=0.0, strict=True)
+        until, wrong = single(until, "s", name="until", low=0.0, strict=True)
         checks.require("start", wrong)
     pushing, _ = driven.at_rest(angle, driven.direction)
     if not pushing * driven.direction > SMALL * _most_torque(driven):
@@ -141,11 +141,11 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
 
 def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     """The machine and where it begins, looked at."""
-    angle, wrong_angle = single(from_angle, name="from_angle")
+    angle, wrong_angle = single(from_angle, "rad", name="from_angle")
     if not wrong_angle and abs(angle) > FARTHEST:
         wrong_angle = f"from_angle must be at most {FARTHEST:g} rad in size, got {angle:g}; take whole turns off"
-    speed, wrong_speed = single(from_speed, name="from_speed")
-    inertia, wrong_inertia = single(flywheel, name="flywheel", low=0.0)
+    speed, wrong_speed = single(from_speed, "rad/s", name="from_speed")
+    inertia, wrong_inertia = single(flywheel, "kg*m**2", name="flywheel", low=0.0)
     checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
     driven = driven_by(owner, scene, motor, inertia, engine)
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)

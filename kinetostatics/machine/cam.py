@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..numbers import checks
 from ..numbers.elementary import atan
 from ..numbers.planar import curvature
 from .crank import ray as ray_at
@@ -157,4 +158,5 @@ def bend(radius, slope, second):
 
 
 def _array(phi):
+    phi = checks.converted("cam", "crank angle", phi, "rad")
     return np.asarray(phi, dtype=float) if isinstance(phi, int | float | list | tuple) else phi

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
+from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .cam import Cam
 from .law import TURN
@@ -35,7 +36,7 @@ class DiskCam(Cam):
 
     def curve(self, phi):
         """Roller centre on the cam at crank angles, and two derivatives by it, complex, m."""
-        phi = np.asarray(phi, dtype=float)
+        phi = np.asarray(checks.converted("cam", "crank angle", phi, "rad"), dtype=float)
         place, first, second = self.follower.pitch(self.follower.cam.law(phi))
         back = np.exp(-1j * phi)
         return back * place, back * (first - 1j * place), back * (second - 2j * first - place)
@@ -67,7 +68,7 @@ class DiskCam(Cam):
 
     def crank_angle(self, polar_angle):
         """Crank angle in (-pi, pi] at which the roller is on a ray of the cam, rad."""
-        wanted = np.asarray(polar_angle, dtype=float)
+        wanted = np.asarray(checks.converted("cam", "polar angle", polar_angle, "rad"), dtype=float)
         around = self._around
         wanted = around[-1] + np.mod(wanted - around[-1], TURN)
         phi = np.interp(wanted, around[::-1], GRID[::-1])

@@ -53,7 +53,7 @@ class Law:
         >>> round(float(law.shifted(0.5)(0.5).position), 9), round(float(law(0.0).position), 9)
         (2.3, 2.3)
         """
-        return Shifted(self, **checks.singles("law", phase=(phase, {"unit": "rad"})))
+        return Shifted(self, **checks.singles("law", phase=(phase, "rad", {})))
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +82,7 @@ def knots_of(law):
 
 def angles(phi):
     """Crank angles as an array, one for a single number."""
+    phi = checks.converted("law", "crank angle", phi, "rad")
     try:
         return np.asarray(phi, dtype=float)
     except (TypeError, ValueError):
@@ -94,6 +95,9 @@ def law_problem(law):
         return f"law must be one of ks.laws, or a function of the crank angle, got {checks.shown(law)}"
     angle = np.array([-1.0, 0.5, 0.5 + TURN])
     try:
+        given = law(angle)
+        if any(map(checks.is_quantity, given)):
+            return "law must give plain numbers, m and derivatives by rad, got quantities with units"
         parts = _parts(law, angle)
     except Exception as error:  # of the user's own function
         return f"law must give position and three derivatives of arrays of crank angles; it fails with: {error}"

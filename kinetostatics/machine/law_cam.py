@@ -240,9 +240,9 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     values = checks.singles(
         "from_law",
         law_problem(law),
-        guide_angle=(guide_angle, {}),
-        guide_offset=(guide_offset, {}),
-        coupler_length=(1.0 if coupler_length is None else coupler_length, {"low": 0.0, "strict": True}),
+        guide_angle=(guide_angle, "rad", {}),
+        guide_offset=(guide_offset, "m", {}),
+        coupler_length=(1.0 if coupler_length is None else coupler_length, "m", {"low": 0.0, "strict": True}),
     )
     offset = values["guide_offset"]
     far, near = turnings(law, offset)

@@ -90,7 +90,11 @@ def cosine(amplitude, mean, phase=0.0):
     >>> [round(float(part), 9) for part in ks.laws.cosine(0.3, 2.0)(0.0)]
     [2.3, -0.0, -0.3, 0.0]
     """
-    rules = {"amplitude": (amplitude, {"low": 0.0, "strict": True}), "mean": (mean, {}), "phase": (phase, {})}
+    rules = {
+        "amplitude": (amplitude, "m", {"low": 0.0, "strict": True}),
+        "mean": (mean, "m", {}),
+        "phase": (phase, "rad", {}),
+    }
     return Cosine(**checks.singles("cosine law", **rules))
 
 

@@ -126,7 +126,7 @@ class Profile:
         >>> abs(made.cutter_path(0.02)[:, 0]).round(6)  # m: the disk's 0.25 m and the cutter's radius
         array([0.27, 0.  ])
         """
-        radius = checks.singles("cutter_path", cutter_radius=(cutter_radius, POSITIVE))["cutter_radius"]
+        radius = checks.singles("cutter_path", cutter_radius=(cutter_radius, "m", POSITIVE))["cutter_radius"]
         hollow = self.smallest_hollow
         if hollow is not None and radius >= -hollow.value:
             raise ParameterError(
@@ -169,8 +169,12 @@ class Profile:
 
     def exceeded(self, *, pressure_angle=None, curvature_radius=None):
         """What exceeds limits, as sentences: of the pressure angle, rad, and of the smallest convex radius, m."""
-        given = {"pressure_angle": pressure_angle, "curvature_radius": curvature_radius}
-        checks.singles("exceeded", **{name: (x, POSITIVE) for name, x in given.items() if x is not None})
+        limits = {
+            "pressure_angle": (pressure_angle, "rad", POSITIVE),
+            "curvature_radius": (curvature_radius, "m", POSITIVE),
+        }
+        given = checks.singles("exceeded", **{name: limit for name, limit in limits.items() if limit[0] is not None})
+        pressure_angle, curvature_radius = map(given.get, limits)
         found, peak, sharpest = [], self.largest_pressure_angle, self.smallest_curvature_radius
         if pressure_angle is not None and peak.value > pressure_angle:
             found.append(
@@ -206,7 +210,7 @@ def _toward(cam, angle, side):
 def profile(cam, roller_radius, angle, side="disk"):
     """Working curve of a cam; what ``cam.profile`` returns, where it is told."""
     radius = checks.singles(
-        "cam profile", checks.choice("side", side, tuple(SIDES)), roller_radius=(roller_radius, POSITIVE)
+        "cam profile", checks.choice("side", side, tuple(SIDES)), roller_radius=(roller_radius, "m", POSITIVE)
     )["roller_radius"]
     angle = _angles(angle)
     checks.require("cam profile", *_cut_away(cam, radius, side))
@@ -231,8 +235,8 @@ def _angles(angle):
     if isinstance(angle, int | np.integer) and not isinstance(angle, bool):
         checks.require("cam profile", checks.count("angle", angle, size=checks.ANGLE))
         return np.linspace(0.0, TURN, int(angle), endpoint=False)
-    checks.require("cam profile", checks.table("angle", angle))
-    return np.atleast_1d(np.asarray(angle, dtype=float))
+    found = checks.examined("cam profile", {"angle": checks.Number("rad", table=True)}, {"angle": angle})
+    return np.atleast_1d(np.asarray(found["angle"], dtype=float))
 
 
 def _cut_away(cam, radius, side):
@@ -292,7 +296,7 @@ def _intervals(grid, marked):
 def base_radius(cam, pressure_angle):
     """Smallest base circle of a cam of the same rise; what ``cam.base_radius`` returns, where it is told."""
     rule = {**POSITIVE, "high": np.pi / 2}
-    largest = checks.singles("base_radius", pressure_angle=(pressure_angle, rule))["pressure_angle"]
+    largest = checks.singles("base_radius", pressure_angle=(pressure_angle, "rad", rule))["pressure_angle"]
 
     def lacking(angle):
         r, slope, _ = cam.radius(angle)

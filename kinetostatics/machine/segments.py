@@ -67,9 +67,9 @@ class Segment:
 
 def _segment(owner, start, end, angle, rise):
     given = {
-        "start": (start, {}),
-        "end": (end, {}),
-        "angle": (angle, {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
+        "start": (start, "m", {}),
+        "end": (end, "m", {}),
+        "angle": (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
     }
     return Segment(**checks.singles(owner, **given), rise=rise)
 
@@ -250,6 +250,9 @@ def dwell(position, angle):
     >>> print(*ks.laws.dwell(0.1, 1.0)(0.5))
     0.1 0.0 0.0 0.0
     """
-    given = {"position": (position, {}), "angle": (angle, {"low": 0.0, "strict": True, "high": TURN + 1e-9})}
+    given = {
+        "position": (position, "m", {}),
+        "angle": (angle, "rad", {"low": 0.0, "strict": True, "high": TURN + 1e-9}),
+    }
     found = checks.singles("dwell", **given)
     return Segment(found["position"], found["position"], found["angle"], rises.Rest())

@@ -41,8 +41,9 @@ class TurnTable:
         ParameterError
             Fewer than 8 points, angles not rising or more than one turn, a gap, a value that is not finite.
         """
-        checks.require(owner, checks.table("angle", angle), checks.table(name, values))
-        angle, values = (np.array(part, dtype=float) for part in (angle, values))
+        rules = {"angle": checks.Number("rad", table=True), name: checks.Number("m", table=True)}
+        found = checks.examined(owner, rules, {"angle": angle, name: values})
+        angle, values = (np.array(part, dtype=float) for part in found.values())
         low = values.min(initial=np.inf) if positive else np.inf
         checks.require(
             owner,
@@ -70,7 +71,7 @@ class TurnTable:
         for part in (angle, values):
             part.setflags(write=False)
         if smoothing is not None:
-            smoothing = checks.singles(owner, noise=(smoothing, {"low": 0.0, "strict": True}))["noise"]
+            smoothing = checks.singles(owner, noise=(smoothing, "m", {"low": 0.0, "strict": True}))["noise"]
         made = cls(angle, values, smoothing)
         made._check_noise(owner, name)
         return made

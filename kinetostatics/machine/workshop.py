@@ -79,21 +79,21 @@ class Sheet:
 
 def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwise):
     """Write a cam; what ``cam.export`` does, where it is told."""
-    cutter = (1.0 if cutter_radius is None else cutter_radius, POSITIVE)
-    checks.require(
+    radii = {"roller_radius": roller_radius} | ({} if cutter_radius is None else {"cutter_radius": cutter_radius})
+    found = checks.singles(
         "cam export",
-        checks.single("roller_radius", roller_radius, **POSITIVE)[1],
-        checks.single("cutter_radius", cutter[0], **cutter[1])[1],
         _points_problem(points),
         checks.choice("units", units, tuple(UNITS)),
         checks.choice("side", side, tuple(SIDES)),
         None if isinstance(clockwise, bool) else f"clockwise must be True or False, got {checks.shown(clockwise)}",
         None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
+        **{name: (radius, "m", POSITIVE) for name, radius in radii.items()},
     )
     problem = unwritable(path, endings=tuple(WRITERS))
     if problem or Path(path).suffix.lower() not in WRITERS:
         raise FileError(problem or checks.choice(f"{path}: the ending", Path(path).suffix, tuple(WRITERS)))
-    sheet = Sheet(profile(cam, roller_radius, int(points), side), cutter_radius, units, clockwise)
+    made = profile(cam, found["roller_radius"], int(points), side)
+    sheet = Sheet(made, found.get("cutter_radius"), units, clockwise)
     with written_whole(path) as temporary:
         WRITERS[Path(path).suffix.lower()](sheet, temporary)
 

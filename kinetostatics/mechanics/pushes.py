@@ -83,6 +83,7 @@ def _checked(item, found, motion):
     if isinstance(found, np.ndarray) and found.dtype == object:
         return found
     unit, title = getattr(item, "UNIT", "N"), title_of(item)
+    found = checks.converted(title, "what its function returns", found, unit.replace(" ", "*"))
     owner, what = f"{title}: its function", "torque" if unit == "N m" else "force"
     wanted = f"must return its {what} in {unit}, a number or an array of shape {motion.shape}, one for each crank angle"
     words = None if hasattr(found, "to_numpy") else checks.unfit(found)

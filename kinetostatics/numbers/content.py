@@ -10,7 +10,7 @@ from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 import numpy as np
 
 LIBRARY = __name__.partition(".")[0]
-SETTLED = (LIBRARY, "numpy", "math", "builtins", "typing", "abc")
+SETTLED = (LIBRARY, "numpy", "math", "pint", "builtins", "typing", "abc")
 """Packages whose functions and classes are taken as they are."""
 MISSING = "missing"
 MADE = {f"__{name}__" for name in ["init", "post_init", "repr", "eq", "hash", "replace", "setattr", "delattr"]}

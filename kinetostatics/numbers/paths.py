@@ -43,7 +43,7 @@ def _rules(item):
         return rules.rules
     if not is_dataclass(item):
         return {}
-    return {field.name: checks.Number() for field in fields(item) if not is_structural(field)}
+    return {field.name: checks.Number("") for field in fields(item) if not is_structural(field)}
 
 
 def _of_value(value, rule, path, label):

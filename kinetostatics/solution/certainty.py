@@ -151,12 +151,14 @@ class Certainty:
         from .compile import compile as compiled
         from .scene import Scene
 
-        inputs = checks.singles("uncertainty", **{path: (value, {"low": 0.0}) for path, value in dict(inputs).items()})
+        scene = Scene(self.mechanism, self.crank_speed, self.crank_acceleration, self.loads, self.friction)
+        units = scene.units
+        given = {path: (value, units.get(path, ""), {"low": 0.0}) for path, value in dict(inputs).items()}
+        inputs = checks.singles("uncertainty", **given)
         name = self._inner(quantity)
         rounding = self.error_bound(quantity)
         if not inputs:
             return Uncertainty({}, rounding)
-        scene = Scene(self.mechanism, self.crank_speed, self.crank_acceleration, self.loads, self.friction)
         program = compiled(scene, name, tuple(inputs), engine="compiled" if self.engine.compiled else "numpy")
         slopes = program.derivatives(self.crank_angle, tuple(inputs))[name]
         if name != quantity:

@@ -161,13 +161,13 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     'no gravity, two-mass coupler'
     """
     known = isinstance(scene, Solution) or hasattr(scene, "variants")
-    checks.require(
+    within = checks.singles(
         "needs",
-        checks.positive("within", within),
         None if known else f"scene must be a Solution or a Case, got {scene!r}",
         checks.quantity(quantity),
         "variant is for a case, a solution is of one" if variant and isinstance(scene, Solution) else None,
-    )
+        within=(within, "1", {"low": 0.0, "strict": True}),
+    )["within"]
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
     if len(solution.shape) != 1:
         raise ParameterError(f"needs looks at one design over its crank angles, but this has shape {solution.shape}")

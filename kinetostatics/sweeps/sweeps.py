@@ -272,7 +272,9 @@ def _name_problems(columns, wanted):
 
 def _type_problems(designs):
     for column, kind in designs.dtypes.items():
-        if not pd.api.types.is_any_real_numeric_dtype(kind):
+        if hasattr(kind, "units"):  # of pint-pandas
+            yield f"column {column!r} must hold plain numbers, with the unit {kind.units} in its heading"
+        elif not pd.api.types.is_any_real_numeric_dtype(kind):
             yield f"column {column!r} must hold numbers, but is of type {kind}"
 
 

@@ -59,7 +59,10 @@ class Tolerances:
         named = {parted(column)[0]: column for column in self.outputs}
         name = str(parsed(output))
         checks.require("tolerances", checks.choice("output", name, tuple(named)))
-        values = self.table[named[name]]
+        values, unit = self.table[named[name]], parted(named[name])[1]
+        above, below = (
+            checks.converted("tolerances", word, bound, unit) for word, bound in (("above", above), ("below", below))
+        )
         return float(((values > above) & (values < below)).mean())
 
 

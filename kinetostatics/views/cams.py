@@ -10,6 +10,9 @@ from ..numbers import checks
 from .canvas import ACCENT, FROM_X, INK, STEEL, axes, closed, styled
 
 POINTS = 1440
+DEGREES = {"angles": checks.Number("deg", table=True)}
+RADIUS = {"roller_radius": checks.Optional(checks.Number("m", low=0.0, strict=True))}
+LARGEST = {"largest": checks.Optional(checks.Number("rad", low=0.0, strict=True))}
 """Crank angles a turn at which curves are drawn."""
 
 
@@ -41,7 +44,7 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
     >>> ks.plots.cam_profile(cam, roller_radius=0.05).get_aspect()
     1.0
     """
-    checks.require("cam_profile", _cam_problem(cam), checks.table("angles", list(angles)))
+    angles = checks.examined("cam_profile", DEGREES, {"angles": angles}, _cam_problem(cam))["angles"]
     ax = axes(ax)
     made = cam.profile(roller_radius, POINTS, side)
     surface = closed(made.surface)
@@ -53,9 +56,9 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
         ax.plot(
             *closed(made.cutter_path(cutter_radius)), color="tab:green", lw=0.8, ls="--", label="path of the cutter"
         )
-    posed = cam.profile(roller_radius, np.radians(np.asarray(angles, dtype=float)), side)
+    posed = cam.profile(roller_radius, np.radians(angles), side)
     for degrees, centre, touch in zip(angles, posed.pitch.T, posed.surface.T, strict=True):
-        ax.add_patch(Circle(tuple(centre), roller_radius, fc="none", ec=STEEL, lw=1.2))
+        ax.add_patch(Circle(tuple(centre), posed.roller_radius, fc="none", ec=STEEL, lw=1.2))
         ax.plot(*np.stack([np.zeros(2), centre], axis=1), color=STEEL, lw=0.5, ls=":")
         ax.plot(*touch, ".", color=INK, ms=4)
         ax.annotate(f"{degrees:g}°", centre, ha="center", va="center", fontsize="x-small")
@@ -91,20 +94,17 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     'crank angle from +x, counter-clockwise [deg]'
     """
     named = _named(cams, "cam_curvature", _cam_problem)
-    checks.require(
-        "cam_curvature",
-        checks.choice("side", side, ("disk", "ring")),
-        None if roller_radius is None else checks.positive("roller_radius", roller_radius),
-    )
+    side_problem = checks.choice("side", side, ("disk", "ring"))
+    radius = checks.examined("cam_curvature", RADIUS, {"roller_radius": roller_radius}, side_problem)["roller_radius"]
     ax = axes(ax)
     angle = np.linspace(0.0, 2 * np.pi, POINTS + 1)
     for name, cam, style in styled(named):
         ax.plot(np.degrees(angle), 1.0 / cam.curvature_radius(angle), linestyle=style, label=name)
-    if roller_radius is not None:
-        limit = (1.0 if side == "disk" else -1.0) / roller_radius
+    if radius is not None:
+        limit = (1.0 if side == "disk" else -1.0) / radius
         ax.axhline(limit, color=ACCENT, lw=1.0, ls="--", label=f"undercut by the roller, {side}")
     ax.axhline(0.0, color=INK, lw=0.5)
-    return _over_turn(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or roller_radius is not None)
+    return _over_turn(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
 
 
 def cam_pressure_angle(cams, largest=None, ax=None):
@@ -129,7 +129,7 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     'crank angle from +x, counter-clockwise [deg]'
     """
     named = _named(cams, "cam_pressure_angle", _cam_problem)
-    checks.require("cam_pressure_angle", None if largest is None else checks.positive("largest", largest))
+    largest = checks.examined("cam_pressure_angle", LARGEST, {"largest": largest})["largest"]
     ax = axes(ax)
     angle = np.linspace(0.0, 2 * np.pi, POINTS + 1)
     for name, cam, style in styled(named):

@@ -17,6 +17,7 @@ from .labels import label
 from .shape import Shape, posed, whole_turn
 from .strokes import artist, put
 
+DEGREES = {"angles": checks.Number("deg", table=True)}
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
 MASS_CENTRE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "ms": 8, "mfc": "white", "mec": INK, "mew": 0.8, "zorder": 3.5},
@@ -55,7 +56,7 @@ def mass_centres(solutions, angle=60, ax=None):
     >>> ks.plots.mass_centres(solutions).get_aspect()
     1.0
     """
-    checks.require("mass_centres", checks.finite("angle", angle))
+    angle = checks.singles("mass_centres", angle=(angle, "deg", {}))["angle"]
     named = labelled(solutions, "common mass centre")
     ax = mechanism(next(iter(named.values())), angles=(angle,), ax=ax)
     paths = {name: principal_points(solution.mechanism).mass_centre(solution) for name, solution in named.items()}
@@ -99,13 +100,8 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     >>> ks.plots.mechanism(ks.Scene(shaper, 6.0, loads=[ks.Gravity()]).solve(8), angles=(60,)).get_aspect()
     1.0
     """
-    try:
-        angles = np.atleast_1d(np.asarray(angles, dtype=float))
-    except (TypeError, ValueError):
-        raise ParameterError(f"mechanism: angles must be numbers, in degrees, got {angles!r}") from None
-    checks.require(
-        "mechanism", None if angles.ndim == 1 and np.isfinite(angles).all() else f"angles must be finite, got {angles}"
-    )
+    angles = np.atleast_1d(checks.examined("mechanism", DEGREES, {"angles": angles})["angles"])
+    checks.require("mechanism", None if angles.ndim == 1 else f"angles must be a row of numbers, got {angles}")
     named, ax = labelled(solutions, ""), axes(ax)
     solution = next(iter(named.values()))
     shape, poses = _frame(ax, solution), posed(solution, angles)
@@ -184,12 +180,12 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     if joints is None:
         joints = [name for name in ("O", "A", "B") if name in solution.mechanism.outputs]
     joints = (joints,) if isinstance(joints, str) else tuple(joints)
-    checks.require(
+    interval = checks.singles(
         "animation",
         checks.count("frames", frames),
-        checks.positive("interval", interval),
         None if joints else "joints must name at least one reaction",
-    )
+        interval=(interval, "ms", {"low": 0.0, "strict": True}),
+    )["interval"]
     solution = _whole(solution, frames)
     count = solution.crank_angle.size
     steps = np.linspace(0, count, min(frames, count), endpoint=False).astype(int)

@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..mechanics.quantities import of_mechanism, values
-from ..numbers.checks import choice, problem, require
+from ..numbers.checks import choice, singles
 from ..results.extremes import extremes
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .canvas import FROM_X, INK, axes, closed, display, drawn_over_turn, finished, in_order, labelled, styled
@@ -235,7 +235,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     >>> ax.get_aspect()
     1.0
     """
-    require("hodograph", problem("marks", marks, low=LEAST_MARKS))
+    marks = singles("hodograph", marks=(marks, "deg", {"low": LEAST_MARKS}))["marks"]
     ax = axes(ax)
     named = labelled(solutions, joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}

@@ -32,8 +32,6 @@ def loaded(force, **period):
 @pytest.mark.parametrize(
     ("force", "words"),
     [
-        (lambda motion: 5 * UNITS.kN, "quantity with its unit; give the plain number in SI units, as by .to('N')"),
-        (lambda motion: np.cos(motion.crank_angle) * UNITS.kN, "quantity with its unit"),
         (lambda motion: np.ma.array(np.cos(motion.crank_angle), mask=motion.crank_angle > 3), "masked array"),
         (lambda motion: np.timedelta64(5, "s"), "a time"),
         (lambda motion: dt.timedelta(5), "a time"),

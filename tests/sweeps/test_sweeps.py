@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tracemalloc
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -16,7 +17,7 @@ from kinetostatics.engines import compiled
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.results.reductions import REDUCTIONS
 from kinetostatics.sweeps import sweeps, together
-from kinetostatics.sweeps.sweeps import FAILED
+from kinetostatics.sweeps.sweeps import FAILED, _type_problems
 from support import factories
 from support.case_files import written
 from support.factories import DESIGNS, OUTPUTS
@@ -297,3 +298,8 @@ def test_machine_code_just_made_and_taken_from_disk_gives_the_same_bits(tmp_path
     ]
     assert found[0].stdout == found[1].stdout
     assert len(found[0].stdout.strip()) == 64
+
+
+def test_columns_of_quantities_are_refused_with_their_unit():
+    (problem,) = _type_problems(SimpleNamespace(dtypes={"slider.mass": SimpleNamespace(units="kilogram")}))
+    assert "with the unit kilogram in its heading" in problem

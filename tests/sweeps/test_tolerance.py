@@ -4,6 +4,7 @@ from functools import partial
 
 import numpy as np
 import pandas as pd
+import pint
 import pytest
 from scipy import stats
 
@@ -43,6 +44,10 @@ def test_quantiles_of_a_linear_output_are_those_of_the_distribution():
     assert found.share(OUTPUT, below=ACCELERATION * 1.1) == pytest.approx(stats.norm.cdf(1.0), abs=0.003)
     assert found.share(OUTPUT, above=ACCELERATION * 0.9, below=ACCELERATION * 1.1) == pytest.approx(0.683, abs=0.005)
     assert found.sensitivity.to_numpy().tolist() == [[1.0, 1.0]] * 2
+    unit = pint.UnitRegistry()
+    assert found.share(OUTPUT, above=unit.Quantity(ACCELERATION * 1.1e-3, "kN")) == found.share(
+        OUTPUT, above=ACCELERATION * 1.1
+    )
 
 
 def test_sobol_indices_of_a_sum_are_the_shares_of_variance():

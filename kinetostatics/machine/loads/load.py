@@ -84,7 +84,11 @@ class Load(checks.Checked, Batched):
     def problems(self, mechanism):
         """What is wrong with it, and with its table, on a mechanism, as sentences."""
         table = self.value_now
-        return [*self.misplaced(mechanism), *(table.problems(mechanism) if isinstance(table, Table) else ())]
+        if not isinstance(table, Table):
+            return [*self.misplaced(mechanism)]
+        own = self.UNIT.replace(" ", "*")
+        wrong = f"{self.title}: its value is in {own}, but that of its table in {table.unit}"
+        return [*self.misplaced(mechanism), *table.problems(mechanism), wrong if table.unit not in ("", own) else None]
 
     def misplaced(self, mechanism) -> Any:
         """What is wrong with the joints and links that it names."""

@@ -16,6 +16,10 @@ class WholeTurns:
         return value if value is TURN else checks.UNSURE
 
     def taken(self, value, field=""):
+        try:
+            value = checks.plain(value, "rad")
+        except checks.DimensionError as fault:
+            return value, f"{field} {fault}"
         number = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
         turns = value / TURN if number else 0.0
         if round(turns) >= 1 and abs(turns - round(turns)) < 1e-9 * turns:

@@ -17,6 +17,7 @@ OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 """By what a table may be over: the heading of such a column, and its unit."""
 SAMPLES = 720
 """Crank angles a turn between which the kinks of a table over travel are found."""
+AREA = {"area": checks.Optional(checks.Number("m**2"))}
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
 BACKWARDS = re.compile("back|return", re.IGNORECASE)
@@ -47,7 +48,7 @@ class Table:
         Crank angles, rad, over one period, whose end may be given too, with the value of the start; or coordinates of
         the slider's pin along its guide (B . guide direction), m. Rising or falling.
     y : array (N,)
-        Values in the unit of the load, N or N m.
+        Values in the unit of the load, N or N m; quantities of pint are for loads of their dimension only.
     over : "angle" or "travel"
     back : array (N,), optional
         Over travel, the values of the stroke with negative velocity of the slider along its guide: an indicator
@@ -77,21 +78,26 @@ class Table:
     over: str = "angle"
     slider: Any = None
     period: float = field(default=TURN, metadata={"structural": True})
+    unit: str = field(default="", metadata={"structural": True})
 
     RULES = checks.Rules("table")
 
     def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None):
         given = {"x": x, "y": y} if back is None else {"x": x, "y": y, "back": back}
-        checks.require(
+        unit = _unit_of(y) or _unit_of(back)
+        value = checks.Number(unit or "N", table=True)
+        found = checks.examined(
             "table",
-            *(checks.table(name, values) for name, values in given.items()),
+            {"x": checks.Number(OVER[over][1] if over in OVER else "rad", table=True)}
+            | dict.fromkeys(tuple(given)[1:], value),
+            given,
             checks.choice("over", over, tuple(OVER)),
             WholeTurns().taken(period, "period")[1],
             None if slider is None else checks.Name().taken(slider, "slider")[1],
             None if back is None or over == "travel" else 'back is for a table over="travel"',
             None if slider is None or over == "travel" else 'slider is for a table over="travel"',
         )
-        arrays = {name: np.array(values, dtype=float) for name, values in given.items()}
+        arrays = {name: np.array(values, dtype=float) for name, values in found.items()}
         shapes = {values.shape for values in arrays.values()}
         fits = len(shapes) == 1 and arrays["x"].ndim == 1
         checks.require("table", None if fits else f"{' and '.join(arrays)} must be 1-D, of one length")
@@ -108,7 +114,13 @@ class Table:
             checks.require("table", rows.travel_problem(arrays["x"]), short)
         for values in arrays.values():
             values.setflags(write=False)
-        for name, part in {"rows": Rows(**arrays), "over": over, "slider": slider, "period": period}.items():
+        for name, part in {
+            "rows": Rows(**arrays),
+            "over": over,
+            "slider": slider,
+            "period": period,
+            "unit": unit,
+        }.items():
             object.__setattr__(self, name, part)
 
     @classmethod
@@ -151,13 +163,14 @@ class Table:
         """
         from ...numbers.files import headings, read_columns
 
-        checks.require(
+        area = checks.examined(
             "table",
+            AREA,
+            {"area": area},
             checks.choice("unit", unit, ("N", "N*m", "N m")),
-            None if area is None else _area(area),
             None if over is None else checks.choice("over", over, tuple(OVER)),
             "area makes forces of pressures, but this load is a torque" if area is not None and unit != "N" else None,
-        )
+        )["area"]
         names = [name for name, _ in headings(path)]
         if area is None and "pressure" in names and VALUES[unit] not in names:
             raise CaseError(path, ["no column 'force', but pressures; give the area that they act on, as area"])
@@ -177,7 +190,7 @@ class Table:
         x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
         y, back, *_ = *(part if area is None else area * part for part in values), None
         try:
-            return cls(x, y, over, back, period, slider)
+            return with_fields(cls(x, y, over, back, period, slider), unit=unit.replace(" ", "*"))
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
 
@@ -315,7 +328,7 @@ class Table:
 
     @property
     def _structure(self):
-        return self.over, self.slider, self.period
+        return self.over, self.slider, self.period, self.unit
 
     def __eq__(self, other):
         return self._content == other._content if isinstance(other, Table) else NotImplemented
@@ -345,5 +358,11 @@ def _passed(function, levels, turns):
     return np.mod(np.concatenate([grid[exact], found]), TURN * turns)
 
 
-def _area(value):
-    return checks.Number("m**2").taken(value, "area")[1]
+def _unit_of(values):
+    """Unit of values that are quantities, "" of plain numbers."""
+    for unit in ("N", "N*m"):
+        try:
+            return "" if checks.plain(values, unit) is values else unit
+        except checks.DimensionError:
+            continue
+    return ""

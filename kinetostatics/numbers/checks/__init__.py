@@ -1,5 +1,7 @@
 """Checks of the values a user hands in. Kernels trust what has passed here.
 
+measured
+    Quantities of pint, converted to the unit wanted.
 values
     What a value is: a number, an array, a truth value, a text ...; copies that nobody writes to.
 problems
@@ -18,6 +20,7 @@ object keeps floats and locked copies of arrays, so nothing it holds changes beh
 """
 
 from .checked import Checked, Rules, examined
+from .measured import DimensionError, converted, is_quantity, plain
 from .problems import (
     ANGLE,
     Problem,
@@ -45,11 +48,6 @@ from .rules import (
     Pair,
     Series,
     Sign,
-    finite,
-    pair,
-    positive,
-    problem,
-    table,
 )
 from .single import single, singles
 from .values import kept, known, unfit
@@ -58,6 +56,7 @@ __all__ = [
     "ANGLE",
     "UNSURE",
     "Checked",
+    "DimensionError",
     "Made",
     "Name",
     "Number",
@@ -71,18 +70,17 @@ __all__ = [
     "Sign",
     "case",
     "choice",
+    "converted",
     "count",
     "examined",
-    "finite",
     "fitting",
     "hint",
+    "is_quantity",
     "kept",
     "known",
     "mechanism",
     "nearest",
-    "pair",
-    "positive",
-    "problem",
+    "plain",
     "quantity",
     "require",
     "seed",
@@ -90,6 +88,5 @@ __all__ = [
     "single",
     "singles",
     "solution",
-    "table",
     "unfit",
 ]

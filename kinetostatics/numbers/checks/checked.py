@@ -60,9 +60,9 @@ class Checked:
             rules.admit(self)
 
 
-def examined(owner, rules, values):
-    """What to keep of values by name, each by its rule; one `ParameterError` for all that is wrong."""
-    found, problems = {}, []
+def examined(owner, rules, values, *others):
+    """What to keep of values by name, each by its rule; one `ParameterError` for all that is wrong, `others` too."""
+    found, problems = {}, list(others)
     for field, rule in rules.items():
         found[field], problem = rule.taken(values[field], field)
         problems.append(problem)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..content import LIBRARY
+from .measured import DimensionError, is_quantity, plain
 from .problems import Problem, shown
 from .values import UnfitError, kept, known, number, unfit
 
@@ -19,14 +20,16 @@ UNSURE: Any = object()
 
 @dataclass(frozen=True)
 class Number:
-    """A number, or an array (designs, 1) of them; as a `table`, one for each crank angle.
+    """A number in a unit, or an array (designs, 1) of them; as a `table`, one for each crank angle.
+
+    The unit is "1" of a ratio and "" where nobody knows it; quantities of pint are converted to it.
 
     A rule has ``quick(value)``, which answers what to keep or `UNSURE`, and ``taken(value, field)``, which gives what
     to keep and what is wrong with it, if anything, as a sentence; ``plainly(value)`` may add the source of a condition
     under which what is called so there is kept as it is, with the objects that it names.
     """
 
-    unit: str = ""
+    unit: str
     name: str = ""
     low: float | None = None
     strict: bool = False
@@ -51,7 +54,9 @@ class Number:
     def taken(self, value, field=""):
         name = self.name or field
         try:
-            found = number(value, self.table)
+            found = number(value, self.table, self.unit)
+        except DimensionError as fault:
+            return value, f"{name} {fault}"
         except UnfitError as fault:
             words = f", {fault}".format(unit=self.unit or "1") if str(fault) else ""
             kind = "an array of numbers" if self.table else "an array of shape (designs, 1)"
@@ -81,7 +86,7 @@ class Number:
 class Pair:
     """A vector by its two components; `lone` numbers mean (number, 0)."""
 
-    unit: str = ""
+    unit: str
     name: str = ""
     parts: tuple[str, str] = ("x", "y")
     lone: bool = False
@@ -106,6 +111,10 @@ class Pair:
 
     def taken(self, value, field=""):
         name = self.name or field
+        try:
+            value = plain(value, self.unit) if is_quantity(value) else value
+        except DimensionError as fault:
+            return value, f"{name} {fault}"
         words = unfit(value)
         if words and not self.lone:
             words = words.format(unit=self.unit or "1")
@@ -138,7 +147,7 @@ class Pair:
 class Series:
     """Coefficients of a series, a tuple of numbers called by their order, from `start`; the `first` by its own rule."""
 
-    unit: str = ""
+    unit: str
     letter: str = "a"
     start: int = 0
     first: Number | None = None
@@ -154,6 +163,10 @@ class Series:
         return UNSURE if any(part is UNSURE for part in found) else found
 
     def taken(self, value, field=""):
+        try:
+            value = plain(value, self.unit) if is_quantity(value) else value
+        except DimensionError as fault:
+            return value, f"{field} {fault}"
         several = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim == 1)
         if not several or (self.first is not None and not len(value)):
             terms = f"({self.letter}{self.start}, {self.letter}{self.start + 1}, ...)"
@@ -276,25 +289,3 @@ class Sign:
             return str(value), None
         words = f", nor one of {', '.join(map(repr, self.words))}" if isinstance(value, str) and self.words else ""
         return value, f"{field} must be +1 or -1, got {shown(value)}{words}"
-
-
-def problem(name, value, **rule):
-    """What is wrong with one number, as a sentence, or None."""
-    return Number(name=name, **rule).taken(value)[1]
-
-
-def finite(name, value):
-    return problem(name, value)
-
-
-def positive(name, value):
-    return problem(name, value, low=0.0, strict=True)
-
-
-def table(name, value):
-    return problem(name, value, table=True)
-
-
-def pair(name, value):
-    """What is wrong with a vector (x, y), or None."""
-    return Pair(name=name).taken(value)[1]

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from .measured import plain
+
 PLAIN = (int, float, np.integer, np.floating, Fraction, Decimal)
 
 
@@ -55,10 +57,14 @@ def unfit(value):
     return _unfit(kind)
 
 
-def number(value, table):
-    """The value as a float or a locked array of floats; as it came if its values cannot be looked at now."""
+def number(value, table, unit=""):
+    """The value as a float or a locked array of floats; as it came if its values cannot be looked at now.
+
+    A quantity with its unit is converted to the one wanted.
+    """
+    value = plain(value, unit)
     if table and hasattr(value, "to_numpy") and np.ndim(value) == 1:
-        value = value.to_numpy()
+        value = plain(value.to_numpy(), unit)
     if words := unfit(value):
         raise UnfitError(words)
     if isinstance(value, PLAIN):
