@@ -31,6 +31,7 @@ copyright = author  # noqa: A001 - Sphinx's name
 version = release = version_of("kinetostatics")
 
 extensions = [
+    "casefile_keys",
     "mathml",
     "myst_nb",
     "numpydoc",
