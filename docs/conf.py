@@ -34,6 +34,7 @@ extensions = [
     "casefile_keys",
     "mathml",
     "myst_nb",
+    "offline",
     "numpydoc",
     "public_names",
     "sphinx.ext.autodoc",

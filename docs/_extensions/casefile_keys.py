@@ -508,8 +508,9 @@ def page():
         lines += ["| key | takes | default | meaning | example |", "|---|---|---|---|---|"]
         for key in part.keys:
             shown = f"`{key.example}`" if key.example else ""
-            row = (f"`{key.name}`", key.takes, key.default, key.meaning, shown)
-            lines.append("| " + " | ".join(cell.replace("|", "\\|").replace("[[", "\\[\\[") for cell in row) + " |")
+            said = key.meaning.replace("[[", "\\[\\[")
+            row = (f"`{key.name}`", key.takes, key.default, said, shown)
+            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |")
         lines.append("")
     return "\n".join(lines)
 
