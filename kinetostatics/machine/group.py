@@ -60,7 +60,7 @@ belongs to its structure, and gives `turns` and `change_points`; `kink(crank)` s
 
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
-forces and power; tests/machine/test_a_group_of_ones_own.py has a whole example.
+forces and power; tests/machine/test_group.py has a whole example.
 
 Nothing else in the library knows what a group looks like, nor the names of its links.
 """
