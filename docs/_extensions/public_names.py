@@ -12,6 +12,7 @@ from functools import reduce
 
 from docutils import nodes
 from docutils.parsers.rst import directives
+from numpydoc.docscrape import ClassDoc
 from sphinx import addnodes
 from sphinx.pycode import ModuleAnalyzer
 from sphinx.util.docutils import SphinxDirective
@@ -120,8 +121,15 @@ def page_of(name, members):
     if kind == "data":
         text = docstring(name).replace("\n", "\n   ")
         return f"{title}\n{'=' * len(title)}\n\n.. py:data:: {full(name)}\n\n   {text}\n"
-    shown = "   :members:\n   :inherited-members: object\n" if members else ""
+    shown = f"   :members: {told(name)}\n   :inherited-members: object\n" if members else ""
     return f"{title}\n{'=' * len(title)}\n\n.. auto{kind}:: {full(name)}\n{shown}"
+
+
+def told(name):
+    """Members that the docstring of a class lists; none where it does not, which stands for all."""
+    listed = ClassDoc(found(name), config={"show_class_members": False})
+    items = [*listed["Attributes"], *listed["Methods"]] if listed["Methods"] else []
+    return ", ".join(re.findall(r"\w+(?=\(|,|$)", ", ".join(re.sub(r"\(.*?\)", "", item.name) for item in items)))
 
 
 def link_names(app, doctree, docname):
