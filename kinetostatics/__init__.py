@@ -1,19 +1,38 @@
-"""Kinetostatics of planar slider mechanisms: motion, joint forces, drive torque, and what balancing buys.
+"""Forces, torques and losses of planar mechanisms: what runs through each joint, what the drive must give.
 
 Call first
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))  # m, kg, m, kg m2
+    >>> scene = ks.Scene(saw, crank_speed=33.5, loads=[ks.Gravity()])  # rad/s
+    >>> s = scene.solve(360)  # at 360 crank angles of a turn
+    >>> s.balancing_torque.shape, s.reaction("O").shape  # N m; N, x and y
+    ((360,), (2, 360))
+    >>> print(f"{ks.extremes(s, 'O').largest:.0f} N")  # the peak, between samples
+    286596 N
+
+SI units and radians throughout; angles count counter-clockwise from +x; vectors have (x, y) as their first axis.
+``help(ks.Solution)`` lists all that `s` gives: symbols, shapes, units, bodies and signs.
+
+Then
     crank_slider, cam_crank_slider, four_bar    a mechanism; Link its masses, Gravity, Spring, ProcessForce its loads
     slotted_lever, scotch_yoke                  more of them; Pin, Dyad, LeverGroup ... for chains of one's own
     Force, Torque, PointForce, PointSpring ...  loads on any link; Table of their values by angle or travel
-    solve(mechanism, angles, crank_speed=...)   its Solution: motion, every reaction, the torque of the drive
+    PinFriction, GuideFriction ...              what rubs, by joint
     Scene(mechanism, crank_speed, ...)          all that together; .solve(angles), .varied({"slider.mass": 620.0})
-    load_case("sawframe_2r63")                  the same from a file; shipped cases by name
+    load_case("sawframe_2r63")                  the same from a file; shipped_cases() lists those that are here
     extremes, compare                           true peaks; how many times better than a reference
-    compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
-    sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
-    balancing, linkage, needs                   counterweights; classes of four-bars; how much model a quantity needs
+    drive.steady, drive.flywheel ...            running under a motor; flywheels, starting, coasting
+    balancing, Counterweight                    counterweights: full, partial, optimal
     design.optimise, design.torque_free_cam     the best machine within bounds and limits; a cam that needs no torque
-    laws, cams, design                          laws of motion; cams that make them; contact of the roller, lift-off ...
-    plots, precision, stability, check          figures; every method's time and error; a test of a group of one's own
+    cams, laws, design.contact                  cams, the laws of motion that they make; pressure of the roller
+    linkage, principal_points                   classes of four-bars; the common mass centre
+    sweep, tolerances, designs                  a row for each of many designs; what spreads of parameters do
+    compile(scene, quantities)                  a program to call with other numbers; its exact derivatives
+    plots                                       figures
+    needs, precision, stability, papers         how much model, how exact, where it hurts; others' formulas
+    check(group)                                test a group of one's own
+
+Each name shows an example: ``help(ks.solve)``. From the shell: ``kinetostatics --help``.
 
 Rooms, in the order in which they build on each other
     numbers     elementary functions, planar vectors, leaves of parameter trees, checks, units, files
@@ -35,21 +54,28 @@ from typing import TYPE_CHECKING
 
 from .errors import (
     AssemblyError,
+    CacheWarning,
     CaseError,
     ConditionWarning,
     DesignError,
     DriveError,
+    FileError,
     HintWarning,
     JammingError,
     KinetostaticsError,
+    MissingLibraryError,
+    NotGivenError,
     ParameterError,
     QuantityError,
 )
 
 if TYPE_CHECKING:
     from . import design, drive
-    from .casefile.case import load_case
+    from .casefile.case import Case, load_case
+    from .casefile.reading import shipped_cases
+    from .casefile.variant import Variant
     from .design import balancing, linkage
+    from .design.counterweights import Counterweight
     from .machine import cams, laws
     from .machine.builders import cam_crank_slider, crank_slider, four_bar, scotch_yoke, slotted_lever
     from .machine.cam_roller import CamRoller
@@ -81,32 +107,41 @@ if TYPE_CHECKING:
     from .machine.slider_group import SliderGroup
     from .machine.swinging_follower import SwingingFollower
     from .machine.yoke_group import YokeGroup
-    from .mechanics.principal_points import principal_points
-    from .results.comparison import compare
-    from .results.extremes import extremes
-    from .solution.compile import compile  # noqa: A004 - the contract's name
+    from .mechanics.principal_points import PrincipalPoints, principal_points
+    from .results.comparison import Comparison, compare
+    from .results.extremes import Extremes, extremes
+    from .results.losses import Losses
+    from .solution.compile import Program, compile  # noqa: A004 - the contract's name
     from .solution.group_check import check
     from .solution.scene import Scene, solve
     from .solution.solution import Solution
     from .studies import precision, stability
-    from .studies.needs import needs
+    from .studies.methods import papers
+    from .studies.needs import Needs, needs
+    from .studies.simplifications import two_mass_coupler
     from .sweeps import designs
     from .sweeps.sweeps import sweep
-    from .sweeps.tolerance import tolerances
+    from .sweeps.tolerance import Tolerances, tolerances
     from .views import plots
 
 __version__ = "0.1.0"
 
 __all__ = [
     "AssemblyError",
+    "CacheWarning",
     "CamRoller",
+    "Case",
     "CaseError",
+    "Comparison",
     "ConditionWarning",
+    "Counterweight",
     "Crank",
     "CylinderGroup",
     "DesignError",
     "DriveError",
     "Dyad",
+    "Extremes",
+    "FileError",
     "FlatFollower",
     "Force",
     "Gravity",
@@ -117,14 +152,20 @@ __all__ = [
     "KinetostaticsError",
     "LeverGroup",
     "Link",
+    "Losses",
     "Mechanism",
+    "MissingLibraryError",
+    "Needs",
+    "NotGivenError",
     "ParameterError",
     "Pin",
     "PinFriction",
     "PointDamper",
     "PointForce",
     "PointSpring",
+    "PrincipalPoints",
     "ProcessForce",
+    "Program",
     "QuantityError",
     "RockerGroup",
     "RollerFollower",
@@ -136,9 +177,11 @@ __all__ = [
     "Spring",
     "SwingingFollower",
     "Table",
+    "Tolerances",
     "Torque",
     "TorsionDamper",
     "TorsionSpring",
+    "Variant",
     "YokeGroup",
     "balancing",
     "cam_crank_slider",
@@ -156,15 +199,18 @@ __all__ = [
     "linkage",
     "load_case",
     "needs",
+    "papers",
     "plots",
     "precision",
     "principal_points",
     "scotch_yoke",
+    "shipped_cases",
     "slotted_lever",
     "solve",
     "stability",
     "sweep",
     "tolerances",
+    "two_mass_coupler",
 ]
 
 
@@ -200,21 +246,27 @@ _WHERE = {
     "machine.slider_group": ["SliderGroup"],
     "machine.swinging_follower": ["SwingingFollower"],
     "machine.yoke_group": ["YokeGroup"],
-    "mechanics.principal_points": ["principal_points"],
-    "results.comparison": ["compare"],
-    "results.extremes": ["extremes"],
-    "solution.compile": ["compile"],
+    "mechanics.principal_points": ["PrincipalPoints", "principal_points"],
+    "results.comparison": ["Comparison", "compare"],
+    "results.extremes": ["Extremes", "extremes"],
+    "results.losses": ["Losses"],
+    "solution.compile": ["Program", "compile"],
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],
     "solution.solution": ["Solution"],
     "": ["design", "drive"],
     "design": ["balancing", "linkage"],
+    "design.counterweights": ["Counterweight"],
     "sweeps": ["designs"],
     "sweeps.sweeps": ["sweep"],
-    "sweeps.tolerance": ["tolerances"],
+    "sweeps.tolerance": ["Tolerances", "tolerances"],
     "studies": ["precision", "stability"],
-    "studies.needs": ["needs"],
-    "casefile.case": ["load_case"],
+    "studies.methods": ["papers"],
+    "studies.needs": ["Needs", "needs"],
+    "studies.simplifications": ["two_mass_coupler"],
+    "casefile.case": ["Case", "load_case"],
+    "casefile.reading": ["shipped_cases"],
+    "casefile.variant": ["Variant"],
     "views": ["plots"],
 }
 """Names by where they are: loaded, with the libraries they need, when first used."""
@@ -231,4 +283,4 @@ def __getattr__(name):
 
 
 def __dir__():
-    return sorted({*globals(), *__all__})
+    return [*__all__, "__version__"]

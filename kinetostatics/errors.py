@@ -2,7 +2,17 @@
 
 
 class KinetostaticsError(Exception):
-    """Any fault the library reports on purpose; it can be copied, and sent from one process to another."""
+    """Any fault the library reports on purpose; it can be copied, and sent from one process to another.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> try:
+    ...     ks.crank_slider(0.3, -2.0)
+    ... except ks.KinetostaticsError as error:
+    ...     print(type(error).__name__, "-", error)
+    ParameterError - slider group: coupler length must be greater than 0, got -2.0
+    """
 
     def __reduce__(self):
         return _restored, (type(self), self.args, vars(self))
@@ -22,6 +32,15 @@ class ParameterError(KinetostaticsError, ValueError):
     ----------
     designs : array of bool or None
         Which designs of a batch it is about, None if all.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> try:
+    ...     ks.Link(mass=-1.0, inertia=-2.0)
+    ... except ks.ParameterError as error:
+    ...     print(error)
+    Link: mass must be at least 0, got -1.0; inertia must be at least 0, got -2.0
     """
 
     def __init__(self, message, designs=None):
@@ -39,6 +58,19 @@ class AssemblyError(KinetostaticsError, ValueError):
         an interval that runs through 0 ends beyond 2 pi.
     condition : str
         What does not hold, without the advice.
+
+    Examples
+    --------
+    A coupler as long as the crank's pin is away from the guide does not reach it all the way round.
+
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> short = ks.crank_slider(0.3, 0.35, guide=ks.Guide.at(0.0, 0.1))
+    >>> try:
+    ...     ks.solve(short, np.radians([0.0, 270.0]), crank_speed=10.0)
+    ... except ks.AssemblyError as error:
+    ...     print([tuple(round(float(np.degrees(angle)), 3) for angle in interval) for interval in error.intervals])
+    [(236.443, 303.557)]
     """
 
     def __init__(self, condition, intervals=()):
@@ -57,6 +89,16 @@ class JammingError(KinetostaticsError, ValueError):
     ----------
     angles : tuple of float
         Crank angles among those asked for, rad.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 0.6, slider=ks.Link(600))
+    >>> try:
+    ...     ks.solve(saw, 1.5, crank_speed=30.0, friction={"guide": ks.GuideFriction(2.0)}).balancing_torque
+    ... except ks.JammingError as error:
+    ...     print(error.angles)
+    (1.5,)
     """
 
     def __init__(self, message, angles=()):
@@ -73,6 +115,16 @@ class DriveError(KinetostaticsError, ValueError):
         Torque on the crank that is missing, N m; NaN where that is not what is wrong.
     crank_angle : float
         Where, rad; NaN where it has no place.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 1.0, loads=[ks.Gravity(), ks.ProcessForce(9e3)])
+    >>> try:
+    ...     ks.drive.start(saw, ks.drive.Motor.linear(500.0, 50.0), 1000.0, from_angle=1.57)
+    ... except ks.DriveError as error:
+    ...     print(round(error.missing))
+    2200
     """
 
     def __init__(self, message, missing=float("nan"), crank_angle=float("nan")):
@@ -88,6 +140,21 @@ class DesignError(KinetostaticsError, ValueError):
     ----------
     values : dict of path to float, or None
         Numbers of the nearest one, where a search was made.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5, loads=[ks.Gravity()])
+    >>> try:
+    ...     ks.design.optimise(
+    ...         saw,
+    ...         vary={"crank_length": (0.2, 0.4)},
+    ...         minimise="mean_absolute balancing_torque",
+    ...         limits=["largest O <= 1 kN"],
+    ...     )
+    ... except ks.DesignError as error:
+    ...     print(str(error).partition(",")[0])
+    no design that keeps all limits was found by the search; the nearest misses largest O <= 1000 N
     """
 
     def __init__(self, message, values=None):
@@ -96,19 +163,58 @@ class DesignError(KinetostaticsError, ValueError):
 
 
 class QuantityError(KinetostaticsError, AttributeError):
-    """The mechanism has no such joint, link or quantity; the message lists those it has."""
+    """The mechanism has no such joint, link or quantity; the message lists those it has.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0)
+    >>> try:
+    ...     s.reaction("C")
+    ... except ks.QuantityError as error:
+    ...     print(error)
+    crank-slider: reaction is 'C', allowed: 'A', 'B', 'guide', 'O'
+    """
 
 
 class NotGivenError(KinetostaticsError):
-    """A method cannot give this quantity of this mechanism; the message says why."""
+    """A method cannot give this quantity of this mechanism; the message says why.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.scotch_yoke(0.1), 10.0).solve(8)
+    >>> try:
+    ...     ks.papers.by_the_papers(s)
+    ... except ks.NotGivenError as error:
+    ...     print(error)
+    no study has formulas for the groups, or this cam, of Scotch yoke
+    """
 
 
 class MissingLibraryError(KinetostaticsError, ImportError):
-    """A library of an extra is not installed; the message says how to install it."""
+    """A library of an extra is not installed; the message says how to install it.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> isinstance(ks.MissingLibraryError('numba is not installed: pip install "kinetostatics[fast]"'), ImportError)
+    True
+    """
 
 
 class FileError(KinetostaticsError, OSError):
-    """A result cannot be written to this file; the message says why."""
+    """A result cannot be written to this file; the message says why.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> try:
+    ...     ks.cams.Circle(0.3).export("cam.pdf", roller_radius=0.05)
+    ... except ks.FileError as error:
+    ...     print(error)
+    cam.pdf: the ending is '.pdf', allowed: '.csv', '.dxf', '.svg'; did you mean '.dxf'?
+    """
 
 
 class CaseError(KinetostaticsError, ValueError):
@@ -118,6 +224,15 @@ class CaseError(KinetostaticsError, ValueError):
     ----------
     problems : tuple of str
         One line for each problem.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> try:
+    ...     ks.load_case("sawframe")
+    ... except ks.CaseError as error:
+    ...     print(len(error.problems))
+    1
     """
 
     def __init__(self, path, problems):
@@ -128,12 +243,45 @@ class CaseError(KinetostaticsError, ValueError):
 
 
 class HintWarning(UserWarning):
-    """Something looks like a slip, of units for instance; what was asked for is computed all the same."""
+    """Something looks like a slip, of units for instance; what was asked for is computed all the same.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import kinetostatics as ks
+    >>> with warnings.catch_warnings(record=True) as found:
+    ...     warnings.simplefilter("always")
+    ...     s = ks.solve(ks.crank_slider(0.3, 2.0), [0.0, 90.0, 180.0, 270.0], crank_speed=1.0)
+    >>> print(found[0].message)
+    crank-slider: crank angles from 0 to 270 by 90 look like degrees; they are taken as radians
+    """
 
 
 class ConditionWarning(UserWarning):
-    """The result is right for the numbers given, but small changes of them change it much."""
+    """The result is right for the numbers given, but small changes of them change it much.
+
+    Examples
+    --------
+    Crank and coupler of one length fold at 90 degrees, where the slider may as well stay at O.
+
+    >>> import warnings
+    >>> import kinetostatics as ks
+    >>> with warnings.catch_warnings(record=True) as found:
+    ...     warnings.simplefilter("always")
+    ...     s = ks.solve(ks.crank_slider(0.3, 0.3), 1.5707963, crank_speed=1.0)
+    >>> print(str(found[0].message).partition(": errors")[0])
+    crank-slider: at crank angle 89.9999985 deg it is near a limit position or change point
+    """
 
 
 class CacheWarning(UserWarning):
-    """Results are right, but machine code or finished parts on disk could not be used, and are made anew."""
+    """Results are right, but machine code or finished parts on disk could not be used, and are made anew.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import kinetostatics as ks
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", ks.CacheWarning)  # rather stop than compile anew each time
+    ...     s = ks.Scene(ks.crank_slider(0.3, 2.0), 33.5).solve(360)
+    """

@@ -3,145 +3,29 @@
 import re
 import typing
 import warnings
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-import numpy as np
-
-from ..design import balancing, linkage
+from ..design import linkage
 from ..design.balancing_table import balancing_table
-from ..drive.motor import Motor
 from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
 from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
-from ..numbers.lazy import cached_property
 from ..results.comparison import Comparison
-from ..solution.scene import Scene
 from ..solution.solution import Solution
-from . import build, parameters, reading, schema
+from . import build, reading, schema
 from .designs import Design, designs_of
 from .pieces import PartsError
 from .reading import shipped_cases
 from .spreads import far_off, spread_problems
+from .variant import Variant, made
 
 __all__ = ["Case", "Variant", "load_case", "shipped_cases"]
 
 CAM_FORCE = ("smallest cam force", "largest cam force")
 """Rows of the comparison that variants without a cam lack."""
-
-
-@dataclass(frozen=True, eq=False)
-class Variant:
-    """A scene of a case file, what the file says of it, and how it was balanced if it was."""
-
-    scene: Scene
-    table: schema.MechanismVariant = field(repr=False)
-    balanced: balancing.Balanced | None = None
-    folder: Path = field(default=Path(), repr=False)
-    tabulated: typing.Mapping[tuple[str | int, ...], typing.Any] = field(default_factory=dict, repr=False)
-    """By the keys that lead there what was read from a file in the folder: cams, tables. It is not read again."""
-
-    @property
-    def mechanism(self):
-        return self.scene.mechanism
-
-    @property
-    def friction(self):
-        return self.scene.friction
-
-    @property
-    def crank_speed(self):
-        return self.scene.crank_speed
-
-    @property
-    def crank_acceleration(self):
-        return self.scene.crank_acceleration
-
-    @property
-    def loads(self):
-        return self.scene.loads
-
-    @cached_property
-    def motor(self) -> Motor | None:
-        """Motor of its drive, None if the file gives none."""
-        if self.table.drive is None:
-            return None
-        return self.tabulated.get(("drive", "motor")) or self.table.drive.motor.motor
-
-    @property
-    def flywheel(self):
-        """Flywheel of its drive, on the crank, kg m2; 0 if the file gives none."""
-        return 0.0 if self.table.drive is None else self.table.drive.flywheel
-
-    @cached_property
-    def _places(self):
-        return parameters.paths(self.table)
-
-    @property
-    def units(self):
-        """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x".
-
-        Those of the drive are left out: solutions of a variant are at its crank speed, whatever drives it.
-        """
-        return {path: place.unit for path, place in self._places.items()}
-
-    @property
-    def parameters(self):
-        """What stands in the file by path: a number in SI, or the word for one that is derived, "mid-length"."""
-        return {path: parameters.value(self.table, place.steps) for path, place in self._places.items()}
-
-    @property
-    def content(self):
-        """What a case's variant is made of as bytes, the same in every session: its table, and what files held.
-
-        Without its drive, which no solution depends on.
-        """
-        return self.table.model_dump_json(exclude={"drive"}).encode() + b"".join(
-            _bytes(part) for keys, part in self.tabulated.items() if keys[0] != "drive"
-        )
-
-    def varied(self, values) -> "Variant":
-        """The variant with other values at some paths of its file, in SI, as if they stood there.
-
-        What the file derives from others follows: a centre at mid-length, a spring that balances the slider, a cosine
-        law's coupler, counterweights. To vary a number and keep all others, vary the `scene`.
-
-        Parameters
-        ----------
-        values : dict of path to float or array (designs, 1)
-        """
-        known = self._places
-        checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
-        varied = parameters.with_values(self.table, {known[path].steps: value for path, value in values.items()})
-        return _made(varied, self.folder, self.tabulated)
-
-    @property
-    def files(self):
-        """Files that it is made from besides the case file, a list of paths."""
-        return [self.folder / name for _, _, name in parameters.files(self.table)]
-
-    def solve(self, angles=720) -> Solution:
-        """Solution at so many crank angles, evenly over the period of the loads from 0, one turn unless they take more.
-
-        The end of the period is left out.
-        """
-        checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
-        return self.scene.solve(angles)
-
-
-def _bytes(item):
-    """What was read from a file as bytes: arrays, and what is made of them."""
-    if is_dataclass(item):
-        return b"".join(_bytes(getattr(item, column.name)) for column in fields(item))
-    return np.asarray(item).tobytes() if isinstance(item, np.ndarray) else repr(item).encode()
-
-
-def _made(table, folder, tabulated):
-    """Variant of a validated table."""
-    scene, balanced = build.built(table, tabulated)
-    return Variant(scene, table, balanced, folder, tabulated)
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,6 +43,15 @@ class Case:
         How parameters spread, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
     designs : mapping of name to Design
         What the file wants to be found; `.find()` does.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> case = ks.load_case("sawframe_2r63")
+    >>> list(case.variants), case.reference
+    (['plain', 'cam-circle', 'cam-cosine'], 'plain')
+    >>> round(case.compare("plain", "cam-cosine").mean_torque_ratio, 3)
+    6.778
     """
 
     title: str
@@ -263,6 +156,14 @@ def load_case(path) -> Case:
         of units.
     UserWarning
         A sampled cam is noisy, or a file has the name of the shipped case that is read.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63").variants["plain"]
+    >>> s = saw.solve(360)
+    >>> print(f"{ks.extremes(s, 'O').largest:.0f} N")
+    286772 N
     """
     path, raw = reading.read(reading.place(path))
     head, problems = reading.validated(schema.CaseTable, raw, lambda keys: keys)
@@ -322,7 +223,7 @@ def _variant(name, own, common, folder, problems):
             return None
         read = build.tabulated(table, folder)
     try:
-        variant = _made(table, folder, read)
+        variant = made(table, folder, read)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", HintWarning)  # `load_case` gives them, with the file and the variant
             warnings.simplefilter("ignore", ConditionWarning)  # whoever solves it gets them

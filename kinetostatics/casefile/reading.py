@@ -23,7 +23,18 @@ _LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+
 
 
 def shipped_cases():
-    """Path by name of the cases that come with the library."""
+    """Path by name of the cases that come with the library.
+
+    Returns
+    -------
+    dict of str to Path
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> list(ks.shipped_cases())[:3]
+    ['chain_unit', 'compressor', 'in_line_twin']
+    """
     package = Path(__file__).parents[1]
     folder = next(path for path in (package / "cases", package.parent / "cases") if path.is_dir())
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}

@@ -3,7 +3,8 @@
 May import all rooms above: numbers to drive.
 
 balancing       full, partial, optimal counterweights
-linkage         classes of four-bars
+linkage         four-bars: swing, transmission, the chain unit
+grashof         their classes
 cam_contact     contact of a roller with its cam: side, curvature, Hertz pressure, limits
 hertz           line contact of two cylinders
 cam_rollers     the roller itself: spin and sliding, load and life of its pin
@@ -32,6 +33,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ..machine.profile import Peak
     from .cam_contact import Contact, contact
     from .followers import Surge, lift_off_speed, lifted, spring_surge, starting_torque
     from .found import Found
@@ -48,6 +50,7 @@ __all__ = [
     "Contact",
     "Found",
     "Front",
+    "Peak",
     "Spread",
     "Surge",
     "TorqueBalancing",
@@ -70,6 +73,7 @@ _WHERE = {
     "Contact": "cam_contact",
     "Found": "found",
     "Front": "fronts",
+    "Peak": "cam_contact",
     "Spread": "robust",
     "Surge": "followers",
     "TorqueBalancing": "torque_balanced",
@@ -95,3 +99,7 @@ def __getattr__(name):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     found = globals()[name] = getattr(import_module(f"{__name__}.{_WHERE[name]}"), name)
     return found
+
+
+def __dir__():
+    return __all__

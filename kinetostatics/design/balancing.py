@@ -42,6 +42,15 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
     ------
     ParameterError
         A counterweight is missing or not needed, breaks its limits, or the mechanism cannot be balanced so.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> found = ks.balancing.full(mower, crank=ks.Counterweight(arm=-0.05), coupler=ks.Counterweight(arm=-0.055))
+    >>> s = ks.solve(found.mechanism, 1.0, crank_speed=62.8)
+    >>> bool(abs(s.shaking_force).max() < 1e-9), round(found.added_mass, 1)  # N; kg is the price
+    (True, 60.1)
     """
     given = {name: item for name, item in [("coupler", coupler), ("rocker", rocker)] if item is not None}
     _refuse(mechanism)
@@ -79,6 +88,15 @@ def partial(mechanism, ratio="overall", *, crank):
     ParameterError
         The mechanism is no crank-slider or has no mass, the ratio is unknown, the condition cannot be reached by a
         counterweight on the crank, or the counterweight breaks its limits.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> found = ks.balancing.partial(mower, "across", crank=ks.Counterweight(arm=-0.02))
+    >>> s = ks.solve(found.mechanism, 1.0, crank_speed=62.8)
+    >>> abs(s.shaking_force).round(6)  # N: none across the guide
+    array([414.187807,   0.      ])
     """
     value = _ratio(ratio)
     _refuse(mechanism)
@@ -131,6 +149,16 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     ParameterError
         An unknown norm, a link that does not exist, no counterweight at all, limits that cannot be kept, or forces
         along and across guides that are not parallel.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> found = ks.balancing.optimal(mower, "mean", crank=ks.Counterweight(arm=0.035), angles=12)
+    >>> before, after = (ks.Scene(item, 62.8).solve(12).shaking_force for item in (mower, found.mechanism))
+    >>> print(f"{np.hypot(*after).mean() / np.hypot(*before).mean():.2f}")
+    0.56
     """
     _refuse_massless(mechanism)
     checks.require(
@@ -305,3 +333,7 @@ def _refuse_massless(mechanism):
         raise ParameterError(f"balancing works on one design at a time, got a batch of shape {mechanism.batch}")
     if not np.any(principal_points(mechanism).mass):
         raise ParameterError(f"the {mechanism.name} has no mass: there is nothing to balance")
+
+
+def __dir__():
+    return __all__

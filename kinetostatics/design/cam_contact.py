@@ -43,6 +43,15 @@ class Contact:
     roller : Roller
         What turns: its spin, its pin, its life.
     limits : dict of str to float
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.Circle(0.3, (-0.02, 0.0))
+    >>> saw = ks.cam_crank_slider(cam, 2.02, slider=ks.Link(600.0))
+    >>> found = ks.design.contact(ks.Scene(saw, 10.0).solve(4), 0.05, 0.04, 210e9, 0.3)
+    >>> found.sides, (found.pressure / 1e6).round(1)  # MPa
+    (('disk', 'ring'), array([532.4,  25.1, 523.9,  25.1]))
     """
 
     solution: Any = field(repr=False)

@@ -40,6 +40,15 @@ class Counterweight:
     ------
     ParameterError
         Both mass and arm are given, or neither, or a value is not possible.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> weight = ks.Counterweight(arm=-0.05, largest_mass=6.0)  # behind O, its mass to be found
+    >>> found = ks.balancing.partial(mower, "overall", crank=weight)
+    >>> round(found.counterweights["crank"][0], 3)  # kg
+    3.547
     """
 
     mass: float | None = None
@@ -106,6 +115,18 @@ class Balanced:
         Before, and with its counterweights, ready for `solve`.
     counterweights : dict of link to (mass, (along, across))
         kg and m.
+
+    Examples
+    --------
+    As `full`, `partial`, `optimal` and `counterweight` of ks.balancing return it.
+
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> found = ks.balancing.partial(mower, "overall", crank=ks.Counterweight(arm=-0.05))
+    >>> round(found.added_mass, 3), round(found.ratio, 6)
+    (3.547, 0.5)
+    >>> found.report()["counterweight arm [m]"].to_dict()
+    {'crank': -0.05}
     """
 
     bare: Mechanism
@@ -193,6 +214,15 @@ def counterweight(mechanism, link, unbalance, weight):
     ------
     ParameterError
         No such link, or the counterweight needed breaks its limits; with the numbers.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> found = ks.balancing.counterweight(mower, "crank", -0.2, ks.Counterweight(mass=4.0))
+    >>> mass, (along, across) = found.counterweights["crank"]
+    >>> mass, round(float(along), 6)
+    (4.0, -0.05)
     """
     checks.require(
         "counterweight",

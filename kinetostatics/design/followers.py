@@ -30,6 +30,16 @@ class Surge(NamedTuple):
         Times it swings in a turn of the crank at the solution's mean speed.
     amplitudes : array
         Of the spring's end by order, m; the first is its mean, orders count turns.
+
+    Examples
+    --------
+    As `ks.design.spring_surge` returns it.
+
+    >>> import kinetostatics as ks
+    >>> at_work = ks.solve(ks.crank_slider(0.1, 0.3), 0.5, crank_speed=10.0, loads=ks.Spring(2e3, 0.3))
+    >>> found = ks.design.spring_surge(at_work, 0.5)
+    >>> print(f"{found.natural_frequency:.1f} rad/s, {found.order:.2f} swings a turn")
+    198.7 rad/s, 19.87 swings a turn
     """
 
     natural_frequency: float
@@ -63,6 +73,11 @@ def lift_off_speed(solution, force="cam_force"):
     -------
     float
         0 where both sides carry it already at rest, inf where none of 1000 times the speed lifts it off.
+
+    Raises
+    ------
+    ParameterError
+        The solution has no cam roller, or is of a batch of designs.
 
     Examples
     --------
@@ -127,6 +142,11 @@ def lifted(solution, force="cam_force"):
     tuple of (float, float)
         Start and stop of each interval, rad; a stop beyond the period lies in the next one.
 
+    Raises
+    ------
+    ParameterError
+        There is no such force, or the solution is of a batch of designs.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -163,6 +183,21 @@ def starting_torque(solution):
 
     Springs and weights must be overcome, and friction; inertia is not. Without sign.
 
+    Parameters
+    ----------
+    solution : Solution
+        Of one design; its crank angles do not matter, its speed only for its sense.
+
+    Returns
+    -------
+    Peak
+        ``.value``, N m, at ``.angle``, rad.
+
+    Raises
+    ------
+    ParameterError
+        The solution is of a batch of designs.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -193,6 +228,11 @@ def spring_surge(solution, spring_mass):
     Returns
     -------
     Surge
+
+    Raises
+    ------
+    ParameterError
+        The solution has not one spring among its loads.
 
     Examples
     --------

@@ -45,6 +45,19 @@ class Found:
         The goal that each start came to; infinite, or a ratio of 0, where it kept not its limits.
     bound : float
         Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> spring = ks.Spring(600e3, free_position=2.0)
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
+    >>> found = ks.design.optimise(
+    ...     saw, {"spring.stiffness": (500e3, 900e3)}, minimise="rms balancing_torque", angles=90
+    ... )
+    >>> print(f"{found.values['spring.stiffness'] / 1e3:.0f} kN/m")
+    687 kN/m
+    >>> found.scene.solve(4).shape, found.active
+    ((4,), ())
     """
 
     scene: Any

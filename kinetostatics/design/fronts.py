@@ -25,6 +25,16 @@ class Front:
     designs : tuple of Found
     before : (float, float)
         Outputs of the source.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> spring = ks.Spring(600e3, free_position=2.0)
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
+    >>> vary = {"spring.stiffness": (100e3, 900e3)}
+    >>> found = ks.design.pareto(saw, vary, ("largest_absolute B", "rms balancing_torque"), points=3, angles=90)
+    >>> found.outputs, len(found.designs)
+    (('largest_absolute B', 'rms balancing_torque'), 3)
     """
 
     outputs: tuple[str, str]
@@ -39,16 +49,25 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Parameters
     ----------
     source, vary, limits, variant, reference, starts, seed
-        As for `optimise`, as are `angles`, `engine` and `progress`.
+        As for `optimise`.
     minimise : (str, str)
         Two outputs; a "-" in front of one makes it greatest: ("largest_absolute cam_force", "-ratio mean_absolute
         balancing_torque").
     points : int
         Designs on the front, at least 2: evenly between the ends, by the second output, of a ratio by its logarithm.
+    **options
+        `angles`, `engine` and `progress` of `optimise`.
 
     Returns
     -------
     Front
+
+    Raises
+    ------
+    ParameterError
+        What is asked for cannot be read, or names what the machine has not.
+    DesignError
+        No design keeps the limits.
 
     Examples
     --------

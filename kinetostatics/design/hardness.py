@@ -10,6 +10,20 @@ def pressure_from_hardness(brinell):
 
     2.22 HB + 200 MPa (AGMA 2001-D04, figure 2, grade 1), for 180 to 400 HB.
 
+    Parameters
+    ----------
+    brinell : float
+        HB, 180 to 400.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ParameterError
+        The hardness is outside what the standard tells of.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -29,6 +43,26 @@ def hardness_from_pressure(pressure):
     """Brinell hardness of steel that bears a Hertz pressure in Pa: the same the other way round.
 
     At least 180 HB, the softest that the standard tells of; beyond 400 HB extrapolated.
+
+    Parameters
+    ----------
+    pressure : float
+        Pa.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ParameterError
+        The pressure is negative or no number.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> round(ks.design.hardness_from_pressure(866e6), 6)
+    300.0
     """
     value = checks.singles("hardness_from_pressure", pressure=(pressure, {"low": 0.0}))["pressure"]
     return max(180.0, (value / 1e6 - 200.0) / 2.22)

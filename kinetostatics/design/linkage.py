@@ -6,7 +6,7 @@ angle zero; `chain_unit` builds it and `chain_unit_angle` turns its crank angle 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import asin, atan2, pi, sqrt
+from math import pi
 
 import numpy as np
 
@@ -16,10 +16,21 @@ from ..numbers import checks
 from ..numbers.planar import cross, dot
 from ..results.extremes import extremes
 from . import shapes
+from .grashof import Grashof, four_bar_of, grashof
+
+__all__ = [
+    "Grashof",
+    "Swing",
+    "chain_unit",
+    "chain_unit_angle",
+    "characteristics",
+    "grashof",
+    "rocker_angle",
+    "swing",
+    "transmission_angle",
+]
 
 QUARTER, WHOLE = pi / 2, ((0.0, 2 * pi),)
-CHANGE_POINT = 1e-12
-"""Difference of the sums of lengths, relative to them, below which a four-bar can reach a change point."""
 
 
 def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **links):
@@ -43,6 +54,13 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     ------
     ParameterError
         The coupler is shorter than the crank, so the parallel start is not possible.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> unit = ks.linkage.chain_unit(0.1, 1.0, 0.5)  # in lengths of the coupler
+    >>> [round(float(part), 6) for part in unit.groups[0].pivot]
+    [0.994987, -0.5]
     """
     checks.require(
         "chain unit",
@@ -63,13 +81,61 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
 
 
 def chain_unit_angle(angle):
-    """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad."""
+    """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad.
+
+    Parameters
+    ----------
+    angle : float or array
+        rad.
+
+    Returns
+    -------
+    float or array
+        rad.
+
+    Raises
+    ------
+    ParameterError
+        The angle is no number.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> np.degrees(ks.linkage.chain_unit_angle(np.radians([0.0, 90.0, 120.0]))).round(9)
+    array([ 90.,   0., -30.])
+    """
     checks.require("chain unit", checks.table("angle", angle))
     return QUARTER - np.asarray(angle)
 
 
 def rocker_angle(solution, start=QUARTER):
-    """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad."""
+    """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of a four-bar.
+    start : float
+        rad; where crank and rocker of the chain unit are parallel unless told.
+
+    Returns
+    -------
+    array (..., N)
+        rad.
+
+    Raises
+    ------
+    ParameterError
+        The solution is not of a four-bar.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), 0.0, crank_speed=1.0)
+    >>> round(float(ks.linkage.rocker_angle(s)), 4)
+    0.2115
+    """
     link = _bars_of(solution).rocker.link
     checks.require("rocker_angle", checks.finite("start", start))
     here, before = (at.placement.links[link].direction for at in (solution, solution.at(start)))
@@ -77,7 +143,31 @@ def rocker_angle(solution, start=QUARTER):
 
 
 def transmission_angle(solution):
-    """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi."""
+    """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of a four-bar.
+
+    Returns
+    -------
+    array (..., N)
+        rad.
+
+    Raises
+    ------
+    ParameterError
+        The solution is not of a four-bar.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), 0.0, crank_speed=1.0)
+    >>> np.degrees(ks.extremes(s, ks.linkage.transmission_angle).range).round(3)
+    array([ 77.132, 102.868])
+    """
     bars, links = _bars_of(solution), solution.placement.links
     coupler, rocker = (links[bar.link].direction for bar in (bars.coupler, bars.rocker))
     return np.arctan2(abs(cross(coupler, rocker)), dot(coupler, rocker))
@@ -93,6 +183,14 @@ class Swing:
         Extreme rocker angles psi, rad.
     largest_at, smallest_at : float
         Crank angles where they are reached, rad, as the library counts them.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.linkage.chain_unit(0.5, 1.0, 0.8), 0.0, crank_speed=1.0)
+    >>> found = ks.linkage.swing(s)
+    >>> round(found.range, 6), round(found.asymmetry, 6)
+    (1.350263, 0.565195)
     """
 
     largest: float
@@ -134,6 +232,20 @@ def swing(solution, start=QUARTER):
     Returns
     -------
     Swing
+
+    Raises
+    ------
+    ParameterError
+        The solution is not of a four-bar, its crank does not turn fully, or its rocker does.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), 0.0, crank_speed=1.0)
+    >>> found = ks.linkage.swing(s)
+    >>> [round(float(np.degrees(angle)), 3) for angle in (found.smallest, found.largest)]
+    [-10.957, 12.117]
     """
     bars = _bars_of(solution)
     found_class = grashof(solution.mechanism)
@@ -147,115 +259,9 @@ def swing(solution, start=QUARTER):
     return Swing(*map(float, (found.value[high], found.value[low], found.angle[high], found.angle[low])))
 
 
-@dataclass(frozen=True)
-class Grashof:
-    """Class of a four-bar by Grashof's rule.
-
-    Attributes
-    ----------
-    kind : str
-        "crank-rocker", "double-crank", "double-rocker", "rocker-crank" (Grashof linkages, by the shortest link),
-        "change-point", or "triple-rocker".
-    turning_joints : tuple of str
-        Joints whose two links turn fully against each other.
-    intervals : tuple of (float, float)
-        Crank-angle intervals in which it closes, rad, start in [0, 2 pi); one whole turn if the crank turns fully.
-    """
-
-    kind: str
-    turning_joints: tuple[str, ...]
-    intervals: tuple[tuple[float, float], ...]
-
-
-KINDS = {"crank": "crank-rocker", "coupler": "double-rocker", "rocker": "rocker-crank", "frame": "double-crank"}
-"""Kind of a Grashof linkage by its shortest link."""
-
-
-def grashof(mechanism):
-    """Grashof class of a four-bar, the joints that turn fully, and the crank angles at which it closes.
-
-    The shortest link turns fully against its neighbours if it and the longest are together shorter than the other two
-    (Grashof's rule, as in Uicker, Pennock and Shigley). Equality makes a change-point linkage: there the links come to
-    lie in one line, velocities at that angle are undefined, and on both sides of it the assembly is the chosen one.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-        A four-bar of one design.
-
-    Returns
-    -------
-    Grashof
-    """
-    crank, coupler, rocker, pivot = four_bar_of(mechanism)
-    frame = np.hypot(*pivot)
-    lengths = {"crank": crank.length, "coupler": coupler.length, "rocker": rocker.length, "frame": frame}
-    ends = {
-        "crank": (crank.start, crank.end),
-        "coupler": (coupler.start, coupler.end),
-        "rocker": (rocker.end, rocker.start),
-        "frame": (rocker.start, crank.start),
-    }
-    if any(np.ndim(length) for length in lengths.values()):
-        raise ParameterError("Grashof's rule is for one design at a time, got a batch of lengths")
-    if frame == 0:
-        raise ParameterError("Grashof's rule needs a frame: the rocker's pivot lies at O")
-    ordered = sorted(lengths, key=lambda name: lengths[name])
-    outer = lengths[ordered[0]] + lengths[ordered[3]]
-    inner = lengths[ordered[1]] + lengths[ordered[2]]
-    joints: tuple[str, ...]
-    kind, joints = KINDS[ordered[0]], ends[ordered[0]]
-    change_point = abs(outer - inner) <= CHANGE_POINT * inner
-    if change_point:
-        kind = "change-point"
-        shortest = (name for name in ordered if lengths[name] <= lengths[ordered[0]] * (1 + CHANGE_POINT))
-        joints = tuple(dict.fromkeys(joint for name in shortest for joint in ends[name]))
-    elif outer > inner:
-        kind, joints = "triple-rocker", ()
-    slack = 8 * CHANGE_POINT if change_point else 0.0
-    return Grashof(kind, joints, _closed_intervals(lengths, atan2(pivot[1], pivot[0]), slack))
-
-
-def four_bar_of(mechanism):
-    """The bars of a four-bar; an error for any other mechanism."""
-    checks.require("linkage", checks.mechanism("mechanism", mechanism))
-    bars = shapes.four_bar(mechanism)
-    if bars is None:
-        raise ParameterError(f"this is for four-bars, not for a {mechanism.name}")
-    return bars
-
-
 def _bars_of(solution):
     checks.require("linkage", checks.solution("solution", solution))
     return four_bar_of(solution.mechanism)
-
-
-def _closed_intervals(lengths, frame_angle, slack):
-    """Crank angles at which A is no nearer to O2 than the difference of coupler and rocker and no farther than the sum.
-
-    At the distance D the crank stands at theta from the frame line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b);
-    within `slack` of 0 or 1, as rounding of the lengths of a change-point linkage makes it, it is 0 or 1.
-    """
-    r, b = lengths["crank"], lengths["frame"]
-
-    def at_distance(distance):
-        square = (distance - (r - b)) * (distance + (r - b)) / (4 * r * b)
-        return 2 * asin(sqrt(0.0 if square <= slack else 1.0 if square >= 1 - slack else square))
-
-    near = at_distance(abs(lengths["coupler"] - lengths["rocker"]))
-    far = at_distance(lengths["coupler"] + lengths["rocker"])
-    turn = 2 * pi
-    if far <= near:
-        return ()
-    if near == 0 and far == pi:
-        return ((0.0, turn),)
-    if near == 0:
-        pieces = [(frame_angle - far, frame_angle + far)]
-    elif far == pi:
-        pieces = [(frame_angle + near, frame_angle + turn - near)]
-    else:
-        pieces = [(frame_angle + near, frame_angle + far), (frame_angle - far, frame_angle - near)]
-    return tuple(sorted((start % turn, start % turn + end - start) for start, end in pieces))
 
 
 def _standing(name, solution):
@@ -285,6 +291,14 @@ def characteristics(solutions, reference):
     ------
     ParameterError
         There is no such reference, or a solution is of something else or of a crank that stands still.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> units = {f"rho {rho}": ks.linkage.chain_unit(rho, 1.0, 0.5) for rho in (0.1, 0.2)}
+    >>> units = {name: ks.solve(unit, 0.0, crank_speed=1.0) for name, unit in units.items()}
+    >>> ks.linkage.characteristics(units, "rho 0.1").loc["amplitude ratio to rho 0.1"].round(4).to_dict()
+    {'rho 0.1': 1.0, 'rho 0.2': 2.1452}
     """
     import pandas as pd
 
@@ -315,3 +329,7 @@ def characteristics(solutions, reference):
     ]:
         table.loc[f"{ratio} to {reference}"] = table.loc[quantity] / table.loc[quantity, reference]
     return table
+
+
+def __dir__():
+    return __all__

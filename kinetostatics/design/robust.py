@@ -47,6 +47,22 @@ class Spread:
         Share of the design's crank speed within which each machine's own is set to what suits it best.
     seed : int
         Of the scrambled Sobol sequence.
+
+    Raises
+    ------
+    ParameterError
+        The quantile is not between 0 and 1, or a text cannot be read.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> spread = ks.design.Spread(0.95, {"spring.stiffness": "normal 0 % +- 1 %"})
+    >>> spring = ks.Spring(673e3, free_position=2.0)
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
+    >>> found = ks.design.over_spread(saw, "rms balancing_torque", spread, samples=64)
+    >>> print(f"{np.quantile(found, spread.quantile) / found.min():.2f}")
+    1.05
     """
 
     quantile: float
@@ -250,6 +266,11 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     -------
     array (samples,)
         For ``numpy.quantile``.
+
+    Raises
+    ------
+    ParameterError
+        What is asked for cannot be read, or names what the machine has not.
 
     Examples
     --------

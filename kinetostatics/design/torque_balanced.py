@@ -38,6 +38,14 @@ class TorqueBalancing:
         Of the spring, least and largest, m; weight of the follower counted in.
     reserve : float
         Times the force with which the spring must pull for contact, 2 omega sqrt(m E''), at least; above 1.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> drive = ks.load_case("chain_unit").variants["rho-0.1"].scene
+    >>> found = ks.design.torque_balancing_cam(drive, mass=0.3, travel=0.01)
+    >>> found.preload > 0, found.lifts_off
+    (True, ())
     """
 
     scene: Scene
@@ -84,6 +92,7 @@ class TorqueBalancing:
 
     @cached_property
     def largest_contact_force(self) -> Peak:
+        """N, and the crank angle."""
         return highest(self._contact_force)
 
     @property

@@ -31,6 +31,13 @@ def weight_options(source, cosine=8, *, variant=None, reference=None, counterwei
         "counterweight" (with sine terms; its centrifugal force goes to O), with the outputs of their reports; "bound"
         is of the symmetric cam.
 
+    Raises
+    ------
+    ParameterError
+        The source is neither a case nor a scene.
+    DesignError
+        The machine has no masses.
+
     Examples
     --------
     >>> import kinetostatics as ks

@@ -16,6 +16,7 @@ energy_flow where the energy of a turn goes
 search      the flywheel with which a machine runs as evenly as is asked
 saving      two machines in periodic running compared: what balancing saves
 running_solution its solution at the true speed, for all that looks at solutions
+powers      what its motor gives and what takes it
 running     a machine in periodic running
 periodic    exact periodic running, by all of these
 summary     what running comes to, in one table
@@ -26,11 +27,29 @@ standstill  whether coasting ends
 transient   starting and coasting
 """
 
+from .energy_flow import EnergyFlow
 from .motor import Motor
 from .periodic import steady
 from .running import Running
+from .saving import DrivenComparison
 from .sizing import Flywheel, flywheel
 from .trajectory import Event, Trajectory
 from .transient import coast, start
 
-__all__ = ["Event", "Flywheel", "Motor", "Running", "Trajectory", "coast", "flywheel", "start", "steady"]
+__all__ = [
+    "DrivenComparison",
+    "EnergyFlow",
+    "Event",
+    "Flywheel",
+    "Motor",
+    "Running",
+    "Trajectory",
+    "coast",
+    "flywheel",
+    "start",
+    "steady",
+]
+
+
+def __dir__():
+    return __all__

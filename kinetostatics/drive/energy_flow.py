@@ -45,7 +45,25 @@ class Part:
 
 @dataclass(frozen=True)
 class EnergyFlow:
-    """Where the energy of a turn goes; made by `Running.energy_flow`."""
+    """Where the energy of a turn goes; made by `Running.energy_flow`.
+
+    Attributes
+    ----------
+    parts : tuple of Part
+        Each with ``.name``, ``.kind``, ``.energy`` in a turn and ``.swing``, what it holds and returns, J.
+    turn_time : float
+        Duration of a turn of the crank, s.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> work = ks.ProcessForce(ks.Table([0.15, 0.25], [-200.0, -200.0], over="travel", back=[0.0, 0.0]))
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=work)
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> flow = ks.drive.steady(pump, motor, flywheel=0.05).energy_flow
+    >>> [(part.name, part.kind) for part in flow.parts][:2], flow.residual < 1e-12
+    ([('through the air gap', 'source'), ('rotor, by slip', 'loss')], True)
+    """
 
     parts: tuple[Part, ...]
     turn_time: float

@@ -25,6 +25,13 @@ class Motor:
         the crank; the motor drives toward its own positive speeds.
     inertia : float
         Moment of inertia of the rotor and all that turns with it, kg m2.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> motor = ks.drive.Motor.kloss(55e3, 154.5, synchronous_speed=157.08, overload=2.5, transmission=4.61)
+    >>> print(f"{motor.torque_at_crank(33.5):.0f} N m at the crank, at 33.5 rad/s of it")
+    1679 N m at the crank, at 33.5 rad/s of it
     """
 
     transmission: float = field(default=1.0, kw_only=True)
@@ -105,7 +112,7 @@ class Motor:
 
     @staticmethod
     def constant(torque, *, transmission=1.0, inertia=0.0) -> "Motor":
-        """Motor of the same torque at every speed, N m at its shaft; not 0, negative brakes.
+        """Motor of one `torque`, N m at its shaft: not 0, negative brakes; `transmission`, `inertia` as for `kloss`.
 
         Examples
         --------

@@ -30,6 +30,14 @@ class Flywheel:
         Coefficient of fluctuation reached.
     running : Running or None
         Periodic running with it, where a motor is given.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=ks.ProcessForce(-200.0))
+    >>> found = ks.drive.flywheel(pump, 0.01)
+    >>> print(f"{found.inertia:.4f} kg m2 for {found.energy:.2f} J")
+    0.2599 kg m2 for 25.99 J
     """
 
     inertia: float

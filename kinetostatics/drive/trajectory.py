@@ -20,7 +20,27 @@ STANDING = 1e-150
 
 
 class Event(NamedTuple):
-    """What happens at a time, s, and crank angle, rad: "start", "reversal", "standstill" or "end"."""
+    """What happens at a time and crank angle of a motion over time.
+
+    Of a `Trajectory` it is one of ``.events``.
+
+    Attributes
+    ----------
+    name : str
+        "start", "reversal", "standstill" or "end".
+    time : float
+        s.
+    crank_angle : float
+        rad.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pendulum = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15)), 1.0, loads=ks.Gravity())
+    >>> start, swung, *_ = ks.drive.coast(pendulum, 0.06, from_angle=-1.0, until=2.0).events
+    >>> swung.name, round(swung.time, 4)
+    ('reversal', 0.6057)
+    """
 
     name: str
     time: float
@@ -43,6 +63,17 @@ class Trajectory:
         In order of time.
     energy_drift : float
         Largest difference of kinetic energy and work done, J: what the integration lost or gained.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=ks.ProcessForce(-200.0))
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> motion = ks.drive.start(pump, motor, 0.05, from_angle=0.3)
+    >>> [event.name for event in motion.events], motion.crank_angle.shape == motion.time.shape
+    (['start', 'end'], True)
+    >>> print(f"{motion.at([0.1]).speed[0]:.2f} rad/s after 0.1 s")
+    34.35 rad/s after 0.1 s
     """
 
     scene: Scene

@@ -7,7 +7,21 @@ from .crank import ray as ray_at
 
 
 class Cam:
-    """What follows from r, r', r'' for every cam. A cam is one method: ``polar(angle, ray) -> r, r', r''``."""
+    """What follows from r, r', r'' for every cam. A cam is one method: ``polar(angle, ray) -> r, r', r''``.
+
+    Examples
+    --------
+    A cam of one's own: r = 0.3 m + 5 mm cos(2 phi).
+
+    >>> import kinetostatics as ks
+    >>> class Oval(ks.cams.Cam):
+    ...     def polar(self, angle, ray):
+    ...         cosine, sine = ray[0] ** 2 - ray[1] ** 2, 2.0 * ray[0] * ray[1]
+    ...         return 0.3 + 0.005 * cosine, -0.01 * sine, -0.02 * cosine
+    >>> cam = Oval()
+    >>> round(float(cam.curvature_radius(0.0)), 6), round(cam.base_radius(0.5), 6)  # m
+    (0.286231, 0.013975)
+    """
 
     def polar(self, angle, ray):
         raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")

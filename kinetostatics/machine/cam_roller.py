@@ -80,6 +80,20 @@ class CamRoller(checks.Checked, Group):
         Anything with ``polar(angle, ray)`` that returns r, r', r'' in m; taken as it is when the group is made.
     block : Link
         Block with roller; reference joint A, along the crank ray.
+
+    Raises
+    ------
+    ParameterError
+        The cam gives no r, r', r''.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> roller = ks.CamRoller(ks.cams.Circle(0.3, centre=(-0.0219, 0.0)), block=ks.Link(20.0))
+    >>> saw = ks.Mechanism("saw with a cam", ks.Crank(), (roller, ks.SliderGroup(2.0219, slider=ks.Link(600.0))))
+    >>> s = ks.solve(saw, 0.0, crank_speed=33.5)
+    >>> print(f"{s.cam_force:.0f} N")  # a ring around the roller pushes slider and block back inward
+    205131 N
     """
 
     cam: Any

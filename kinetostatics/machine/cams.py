@@ -17,9 +17,10 @@ from .cam import Cam
 from .crank import ray as ray_at
 from .harmonic_cam import Harmonic
 from .law_cam import LawCam, from_law
+from .profile import Profile
 from .sampled_cam import Sampled
 
-__all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "LawCam", "Sampled", "from_law"]
+__all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "LawCam", "Profile", "Sampled", "from_law"]
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -37,6 +38,14 @@ class Circle(Cam):
     ------
     ParameterError
         A value is not finite, the radius not positive, or O outside the circle.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.Circle(0.3, centre=(-0.0219, 0.0))
+    >>> radius, slope, bend = cam.radius(0.0)  # r, dr/dphi and d2r/dphi2, m
+    >>> round(float(radius), 6), round(float(cam.pressure_angle(1.5707963)), 4)
+    (0.2781, 0.0731)
     """
 
     pitch_radius: Any
@@ -124,6 +133,16 @@ class CosineLaw(checks.Checked, Cam):
     ------
     ParameterError
         A value is not finite or positive, or the pitch curve does not go around O.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.CosineLaw(amplitude=0.3, mean=2.0)
+    >>> round(float(cam.coupler_length), 8)  # the one with which a smooth cam exists
+    2.02190518
+    >>> saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600))
+    >>> round(float(ks.solve(saw, 1.0, crank_speed=33.5).slider_position), 9)  # 2 + 0.3 cos(1)
+    2.162090692
     """
 
     amplitude: Any
@@ -196,3 +215,7 @@ class CosineLaw(checks.Checked, Cam):
         by_c = (w - 1.0) * g
         by_c_twice = k * g * (2.0 - w * (2.0 - g / root))
         return singular * root - c * excess, -s * by_c, s * s * by_c_twice - c * by_c
+
+
+def __dir__():
+    return __all__

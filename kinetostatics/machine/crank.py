@@ -38,6 +38,26 @@ class Crank(checks.Checked):
     """Crank of a given length with pin A at its end; `length=None` makes it the slotted guide of a `CamRoller`.
 
     The angle of the crank ray is the crank angle, from +x, counter-clockwise.
+
+    Parameters
+    ----------
+    length : float or array, optional
+        O to A, m; arrays of shape (designs, 1) make a batch.
+    link : Link
+        Mass properties; reference joint O, along the crank ray.
+
+    Raises
+    ------
+    ParameterError
+        The length is not finite, or not greater than 0.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> crank = ks.Crank(0.3, ks.Link(mass=40.0, centre=-0.05))  # a weight behind O
+    >>> saw = ks.Mechanism("saw", crank, (ks.SliderGroup(2.0),))
+    >>> saw.links["crank"].mass
+    40.0
     """
 
     length: Any = None
@@ -79,10 +99,12 @@ class Crank(checks.Checked):
 
     @property
     def reaches(self):
+        """Length of the crank, if it has one, for a first look at the condition."""
         return () if self.length is None else (self.length,)
 
     @property
     def lengths(self):
+        """All lengths it has, the place of its mass centre among them, for a first look at the condition."""
         return (*self.link.centre, 0.0 if self.length is None else self.length)
 
     @property

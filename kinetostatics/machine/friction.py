@@ -72,6 +72,19 @@ class PinFriction(checks.Checked, Batched):
     mu : float or array
     radius : float or array
         Of the pin, m.
+
+    Raises
+    ------
+    ParameterError
+        The coefficient is negative, or a size not greater than 0.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, slider=ks.Link(600))
+    >>> s = ks.Scene(saw, 33.5, friction={"O": ks.PinFriction(mu=0.02, radius=0.05)}).solve(360)
+    >>> round(s.losses.friction["O"])  # W, mean over the turn
+    4373
     """
 
     mu: Any
@@ -91,6 +104,19 @@ class GuideFriction(checks.Checked, Batched):
     half_length : float or array, optional
         Half the length of the shoe, m: it carries the couple too by forces at its edges, which rub once the load
         leaves the middle half. Without, the force alone rubs.
+
+    Raises
+    ------
+    ParameterError
+        The coefficient is negative, or a size not greater than 0.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, slider=ks.Link(600))
+    >>> s = ks.solve(saw, 1.0, crank_speed=33.5, loads=[ks.Gravity()], friction={"guide": ks.GuideFriction(0.1)})
+    >>> round(float(abs(s.guide_friction / s.guide_force)), 9), bool(s.guide_friction * s.slider_velocity < 0)
+    (0.1, True)
     """
 
     mu: Any
@@ -102,7 +128,29 @@ class GuideFriction(checks.Checked, Batched):
 
 @dataclass(frozen=True, eq=False)
 class SlotFriction(checks.Checked, Batched):
-    """Friction of a block or rod in the slot or cylinder of another link, as `GuideFriction` on a guide."""
+    """Friction of a block or rod in the slot or cylinder of another link, as `GuideFriction` on a guide.
+
+    Parameters
+    ----------
+    mu : float or array
+    half_length : float or array, optional
+        Half the length of the block or bush, m.
+
+    Raises
+    ------
+    ParameterError
+        The coefficient is negative, or a size not greater than 0.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> shaper = ks.slotted_lever(0.15, pivot=(0.0, -0.3), lever=ks.Link(40.0, 0.3, 2.0))
+    >>> sorted(name for name, kind in shaper.friction_kinds.items() if kind is ks.SlotFriction)
+    ['slot']
+    >>> s = ks.Scene(shaper, 6.0, loads=[ks.Gravity()], friction={"slot": ks.SlotFriction(0.1)}).solve(360)
+    >>> round(s.losses.friction["slot"], 2)  # W
+    36.7
+    """
 
     mu: Any
     half_length: Any = None
@@ -121,6 +169,21 @@ class RollerFriction(checks.Checked, Batched):
         In the pin, or of its bearing.
     pin_radius, roller_radius : float or array
         m.
+
+    Raises
+    ------
+    ParameterError
+        The coefficient is negative, a size not greater than 0, or mu times pin_radius not less than roller_radius.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.CosineLaw(0.3, 2.0)
+    >>> saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600.0))
+    >>> roller = ks.RollerFriction(mu=0.02, pin_radius=0.03, roller_radius=0.06)
+    >>> s = ks.Scene(saw, 33.5, friction={"cam": roller}).solve(360)
+    >>> round(s.losses.friction["cam"])  # W
+    12237
     """
 
     mu: Any

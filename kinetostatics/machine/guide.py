@@ -36,6 +36,12 @@ class Guide(checks.Checked):
         m.
     exact : (x, y) or None
         Unit vector.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> ks.crank_slider(0.3, 2.0, guide=ks.Guide.at(0.0, 0.05)).guides  # level, 50 mm above O
+    {'slider': Guide(angle=0.0, guide_offset=0.05, exact=None)}
     """
 
     angle: Any = 0.0
@@ -64,19 +70,61 @@ class Guide(checks.Checked):
 
     @classmethod
     def at(cls, guide_angle=0.0, guide_offset=0.0):
-        """Guide at an angle (rad, counter-clockwise from +x) and offset (m)."""
+        """Guide at an angle and an offset from O.
+
+        Parameters
+        ----------
+        guide_angle : float or array
+            Direction in which the slider's coordinate grows, rad, counter-clockwise from +x.
+        guide_offset : float or array
+            Distance of the guide from O along its left normal, m; negative where it passes to the right of O.
+
+        Returns
+        -------
+        Guide
+
+        Raises
+        ------
+        ParameterError
+            A value is not finite.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import kinetostatics as ks
+        >>> upright = ks.crank_slider(0.05, 0.2, guide=ks.Guide.at(np.pi / 2))  # an engine with its cylinder on top
+        >>> s = ks.solve(upright, np.pi / 2, crank_speed=300.0)
+        >>> s.position("B").round(6), round(float(s.slider_position), 6)
+        (array([0.  , 0.25]), 0.25)
+        """
         if guide_angle is None:
             checks.require("guide", checks.finite("guide_angle", guide_angle))
         return cls(guide_angle, guide_offset)
 
     @classmethod
     def through(cls, W1, W2):
-        """Guide through two fixed points (x, y), m, directed from W1 to W2; numbers, not batches.
+        """Guide through two fixed points; its direction and offset are rounded once.
+
+        Parameters
+        ----------
+        W1, W2 : (x, y)
+            m; the slider's coordinate grows from W1 to W2. Numbers, not batches.
+
+        Returns
+        -------
+        Guide
 
         Raises
         ------
         ParameterError
             The points coincide or are not finite pairs.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> guide = ks.Guide.through((0.0, -0.02), (1.0, -0.02))  # 20 mm below O, as the mower study has it
+        >>> guide.direction, guide.guide_offset
+        ((1.0, 0.0), -0.02)
         """
         points = checks.examined("guide", {"W1": POINT, "W2": POINT}, {"W1": W1, "W2": W2})
         batch = [f"{name} must be one point, not a batch" for name, point in points.items() if any(map(np.ndim, point))]
@@ -111,6 +159,7 @@ class Guide(checks.Checked):
 
     @cached_property
     def line(self):
+        """The guide as kernels take it."""
         return Line(None if self.is_level else self.direction, present(self.guide_offset))
 
 

@@ -23,6 +23,16 @@ class Law:
 
     A law of one's own needs no more than to be called so; `knots` says at which angles its jerk or its acceleration
     jumps, if it does.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> def law(phi):  # a law of one's own: mid-stroke 2 m, the cosine and a little of the third order
+    ...     c1, s1, c3, s3 = np.cos(phi), np.sin(phi), np.cos(3 * phi), np.sin(3 * phi)
+    ...     return 2 + 0.3 * c1 + 1e-4 * c3, -0.3 * s1 - 3e-4 * s3, -0.3 * c1 - 9e-4 * c3, 0.3 * s1 + 27e-4 * s3
+    >>> round(ks.cams.from_law(law).coupler_length, 6)
+    2.021864
     """
 
     @property

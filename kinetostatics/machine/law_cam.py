@@ -80,6 +80,13 @@ class LawCam(Cam):
         rad and m.
     far, near : Turning
         Where the coupler is across the ray: in the half turn left of the guide, and right of it.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.from_law(ks.laws.cosine(0.3, 2.0))
+    >>> type(cam).__name__, round(cam.coupler_length, 8)
+    ('LawCam', 2.02190518)
     """
 
     law: Any

@@ -271,3 +271,7 @@ def table(angle, position, noise=None):
     law = Tabled(rows)
     rows.warn_if_uncertain("table of a law", "x''", "positions", law.force_error)
     return law
+
+
+def __dir__():
+    return __all__

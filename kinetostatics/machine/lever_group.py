@@ -183,10 +183,12 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
     )
 
     def found_on(self, throws):
+        """How it passes its change points on a crank with these throws."""
         return change_points.of_lever_group(self, throws)
 
     @property
     def start(self):
+        """Direction, as a vector, from which its words of assembly are counted."""
         return self.pivot
 
     @property

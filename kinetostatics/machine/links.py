@@ -73,6 +73,13 @@ class Link(checks.Checked):
     ------
     ParameterError
         A mass or inertia is negative, or a value is not finite.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> rod = ks.Link(mass=150.0, centre=1.0, inertia=20.5)  # mass centre 1 m from A on the line A -> B
+    >>> rod.joined(10.0, (2.0, 0.0))  # with 10 kg at B: centre and inertia follow
+    Link(mass=160.0, centre=(1.0625, 0.0), inertia=29.875)
     """
 
     mass: Any = 0.0
@@ -97,6 +104,7 @@ class Link(checks.Checked):
 
     @cached_property
     def body(self):
+        """The numbers as kernels take them: None is a zero that costs nothing."""
         return Body(*map(present, (self.mass, *self.centre, self.inertia)))
 
 

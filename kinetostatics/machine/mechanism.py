@@ -13,7 +13,7 @@ from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .crank import Crank
-from .friction import Turning
+from .friction import Turning, kind_for
 from .group import FRAME, MEMBERS, RATES, RESERVED, TRAVELS, Group, Resolved, smaller
 from .links import Wrench, arm, present
 
@@ -63,6 +63,18 @@ class Mechanism(Batched):
     groups : tuple
         `CamRoller`, `SliderGroup`, `Pin` ...; each hangs on a joint, or a pin on a link, that the crank or an earlier
         group has placed.
+
+    Raises
+    ------
+    ParameterError
+        A group hangs on what no part before it places, or two things would have one name: all such problems at once.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pistons = ks.SliderGroup(0.2), ks.SliderGroup(0.2, guide=ks.Guide.at(1.5708), pin="C", label="2")
+    >>> list(ks.Mechanism("V twin", ks.Crank(0.05), pistons).links)
+    ['crank', 'coupler', 'slider', 'coupler2', 'slider2']
     """
 
     name: str
@@ -152,6 +164,11 @@ class Mechanism(Batched):
                 still = whole.get(pair.link, pair.link) == whole.get(against, against)
                 found[name] = pair._replace(against=pair.link if still else against)
         return found
+
+    @property
+    def friction_kinds(self):
+        """Kind of friction that each joint may have, by its name in `friction`: `PinFriction`, `GuideFriction` ..."""
+        return {name: kind_for(pair) for name, pair in self.pairs.items()}
 
     @property
     def _wholes(self):

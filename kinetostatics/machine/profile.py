@@ -31,7 +31,16 @@ CUT = 1e-3
 
 
 class Peak(NamedTuple):
-    """A largest or smallest value over the turn, and the crank angle where it is, rad."""
+    """A largest or smallest value over the turn, and the crank angle where it is, rad.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.02, 0.0)), 2.02, slider=ks.Link(600.0))
+    >>> found = ks.design.contact(ks.Scene(saw, 10.0).solve(4), 0.05, 0.04, 210e9, 0.3).largest_pressure
+    >>> print(f"{found.value / 1e6:.1f} MPa")
+    532.4 MPa
+    """
 
     value: float
     angle: float
@@ -82,6 +91,13 @@ class Profile:
         Between the normal and the crank ray, rad.
     curvature_radius : array (N,)
         Of the working curve, m: positive where it is convex to the roller, negative where it is hollow.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> made = ks.cams.Circle(0.3, (-0.02, 0.0)).profile(0.05, 360)
+    >>> made.surface.shape, round(float(made.curvature_radius[0]), 9)  # m: a circle again
+    ((2, 360), 0.25)
     """
 
     cam: Any

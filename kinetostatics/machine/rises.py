@@ -13,7 +13,19 @@ import numpy as np
 
 
 class Motion(NamedTuple):
-    """A position and its derivatives: by the crank angle m, m/rad, m/rad2, m/rad3; of a rise pure numbers."""
+    """A position and its derivatives: by the crank angle m, m/rad, m/rad2, m/rad3; of a rise pure numbers.
+
+    Attributes
+    ----------
+    position, velocity, acceleration, jerk : array (..., N)
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> motion = ks.laws.cosine(0.3, 2.0)(0.5)
+    >>> round(float(motion.position), 6), round(float(motion.jerk), 6)
+    (2.263275, 0.143828)
+    """
 
     position: np.ndarray
     velocity: np.ndarray

@@ -78,7 +78,36 @@ class Sampled(Cam):
     def from_csv(cls, path, noise=None):
         """Read a table with two columns headed like ``angle [deg], radius [mm]``; any unit of angle and length.
 
-        Before the heading there may be lines of comment that begin with ``#``; `noise` as for the cam itself, in m.
+        Parameters
+        ----------
+        path : str or path
+            Its first lines may be comments that begin with ``#``.
+        noise : float, optional
+            As for the cam itself, m.
+
+        Returns
+        -------
+        Sampled
+
+        Raises
+        ------
+        CaseError
+            The file cannot be read, or makes no table.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import numpy as np
+        >>> import kinetostatics as ks
+        >>> angle = np.arange(0.0, 360.0, 5.0)
+        >>> radius = 300.0 - 20.0 * np.cos(np.radians(angle))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = Path(folder, "measured.csv")
+        ...     np.savetxt(path, np.c_[angle, radius], header="angle [deg], radius [mm]", delimiter=",", comments="")
+        ...     cam = ks.cams.Sampled.from_csv(path)
+        >>> round(float(cam.radius(0.0)[0]), 9)  # m
+        0.28
         """
         from ..numbers.files import read_columns
 

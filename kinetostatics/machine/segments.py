@@ -19,7 +19,16 @@ POLYNOMIALS = {"3-4-5": (3, 4, 5), "4-5-6-7": (4, 5, 6, 7)}
 
 @dataclass(frozen=True, eq=False)
 class Segment:
-    """A part of a turn in which the position goes from `start` to `end`, m, in `angle`, rad, by a curve."""
+    """A part of a turn in which the position goes from `start` to `end`, m, in `angle`, rad, by a curve.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> rise = ks.laws.cycloidal(1.7, 2.3, np.pi)
+    >>> [round(float(part), 6) for part in rise.at(np.pi / 2)]
+    [2.0, 0.381972, 0.0, -0.763944]
+    """
 
     start: float
     end: float
@@ -33,6 +42,7 @@ class Segment:
 
     @property
     def knots(self):
+        """Angles from its start at which its acceleration or jerk jumps, rad."""
         return tuple(self.angle * part for part in self.rise.breaks)
 
     def __call__(self, phi) -> Motion:
@@ -93,9 +103,25 @@ def harmonic(start, end, angle):
 
 
 def cycloidal(start, end, angle):
-    """Segment: cycloidal motion, a sine of acceleration; parameters as for `harmonic`.
+    """Segment: cycloidal motion, a sine of acceleration.
 
     Peak velocity 2, acceleration 2 pi, jerk 4 pi^2 of a stroke of 1 in an angle of 1.
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -107,7 +133,23 @@ def cycloidal(start, end, angle):
 
 
 def modified_sine(start, end, angle):
-    """Segment: modified sine, low velocity (Neklutin); parameters as for `harmonic`.
+    """Segment: modified sine, low velocity (Neklutin).
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -119,7 +161,23 @@ def modified_sine(start, end, angle):
 
 
 def modified_trapezoid(start, end, angle):
-    """Segment: modified trapezoid, low acceleration (Neklutin); parameters as for `harmonic`.
+    """Segment: modified trapezoid, low acceleration (Neklutin).
+
+    Parameters
+    ----------
+    start, end : float
+        Positions, m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
 
     Examples
     --------
@@ -145,6 +203,11 @@ def polynomial(start, end, angle, powers="3-4-5"):
     -------
     Segment
 
+    Raises
+    ------
+    ParameterError
+        As for `harmonic`, or the powers are none.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -163,7 +226,23 @@ def polynomial(start, end, angle, powers="3-4-5"):
 
 
 def dwell(position, angle):
-    """Segment: rest at a position, m, for an angle, rad.
+    """Segment: rest at a position.
+
+    Parameters
+    ----------
+    position : float
+        m.
+    angle : float
+        Crank angle it takes, rad.
+
+    Returns
+    -------
+    Segment
+
+    Raises
+    ------
+    ParameterError
+        A value is no number, or the angle not between 0 and a turn.
 
     Examples
     --------

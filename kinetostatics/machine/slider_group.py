@@ -197,10 +197,12 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
     )
 
     def found_on(self, throws):
+        """How it passes its change points on a crank with these throws."""
         return change_points.of_slider_group(self, throws)
 
     @property
     def start(self):
+        """Direction, as a vector, from which its words of assembly are counted."""
         x, y = self.guide.direction
         return y, -x
 

@@ -35,6 +35,14 @@ class PrincipalPoints:
     carried : dict of joint to mass
         Mass, kg, that moves with a joint no link holds at a constant distance: pin A of a cam-guided block, a fixed
         pivot.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.15), slider=ks.Link(5.0))
+    >>> points = ks.principal_points(mower)
+    >>> points.mass, {link: round(h, 6) for link, h in points.moduli.items()}
+    (8.0, {'crank': 0.035625, 'coupler': 0.225, 'slider': 0.0})
     """
 
     mass: Any
@@ -133,6 +141,21 @@ def principal_points(mechanism):
     PrincipalPoints
         `.moduli` (h by link, m), `.vectors`, `.contour`, `.mass_centre`, `.mass_centre_velocity`,
         `.mass_centre_acceleration` and `.shaking_force` of a solution.
+
+    Raises
+    ------
+    ParameterError
+        It is given no mechanism.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, crank=ks.Link(1.0, 0.019), coupler=ks.Link(2.0, 0.15), slider=ks.Link(5.0))
+    >>> s = ks.solve(mower, 1.0, crank_speed=63.0)
+    >>> points = ks.principal_points(mower)
+    >>> bool(np.allclose(points.shaking_force(s), s.shaking_force))
+    True
     """
     checks.require("principal_points", checks.mechanism("mechanism", mechanism))
     links = mechanism.links.items()

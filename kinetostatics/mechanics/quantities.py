@@ -136,7 +136,31 @@ def quantity(solution, name) -> Quantity:
 
 
 def components(solution, name):
-    """Values of a scalar quantity over the crank angles, or both components of a vector; "closure": of each group."""
+    """Values of a scalar quantity over the crank angles, or both components of a vector; "closure": of each group.
+
+    Parameters
+    ----------
+    solution : Solution
+    name : str
+        A quantity as for `extremes`.
+
+    Returns
+    -------
+    tuple of array (..., N)
+        SI.
+
+    Raises
+    ------
+    QuantityError
+        The solution has no such quantity.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5).solve(360)
+    >>> len(ks.precision.components(s, "balancing_torque")), len(ks.precision.components(s, "O"))
+    (1, 2)
+    """
     if name == "closure":
         return solution.closure
     found = quantity(solution, name)

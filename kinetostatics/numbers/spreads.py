@@ -26,7 +26,30 @@ _HELP = (
 
 
 def distributions(spreads):
-    """Distribution (scipy.stats) and unit by parameter; raises one `ParameterError` for all texts that are wrong."""
+    """Distribution and unit of each parameter of a table of designs.
+
+    Parameters
+    ----------
+    spreads : dict of parameter to text
+        As for `designs.sample`.
+
+    Returns
+    -------
+    dict of parameter to (distribution, unit)
+        Distributions as of scipy.stats, frozen, and the unit that their values are in.
+
+    Raises
+    ------
+    ParameterError
+        A text is of another form, or its unit not known; all of them at once.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> found, unit = ks.designs.distributions({"spring.stiffness": "normal 712 kN/m +- 5 kN/m"})["spring.stiffness"]
+    >>> float(found.mean()), float(found.std()), unit
+    (712.0, 5.0, 'kN/m')
+    """
     return read(spreads, _distribution)
 
 

@@ -20,6 +20,15 @@ class Comparison:
     """Dynamic coefficients of a reference mechanism against a balanced one; made by `compare`.
 
     Every ratio is reference / balanced: above 1 the balanced mechanism is better.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> found = ks.load_case("sawframe_2r63").compare("plain", "cam-cosine")
+    >>> found.torque_extremum_ratios.round(2)
+    array([7.27, 6.11, 6.45, 7.62])
+    >>> print(f"{found.peak_reaction_ratio('O'):.2f}")
+    14.57
     """
 
     reference: Any
@@ -139,6 +148,18 @@ def compare(reference, balanced):
         Ratios reference / balanced: `.torque_extremum_ratios`, `.mean_torque_ratio`, `.peak_reaction_ratio(joint)`,
         `.lost_power_ratio` with friction; ranges of cam and inertia force, `.frame()`. Of machines in periodic running
         also what their drives take: see `drive.saving.DrivenComparison`.
+
+    Examples
+    --------
+    What does a counterweight on the crank buy, and where?
+
+    >>> import kinetostatics as ks
+    >>> mower = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.15, 0.015), slider=ks.Link(5.0))
+    >>> weight = ks.Counterweight(arm=-0.05)
+    >>> balanced = ks.balancing.partial(mower, crank=weight).mechanism
+    >>> found = ks.compare(*(ks.solve(item, 0.0, crank_speed=63.0) for item in (mower, balanced)))
+    >>> print(f"{found.peak_reaction_ratio('O'):.2f} {found.mean_torque_ratio:.2f}")  # reference / balanced
+    2.06 1.00
     """
     reference, balanced = _solution(reference), _solution(balanced)
     checks.require("compare", checks.solution("reference", reference), checks.solution("balanced", balanced))

@@ -39,6 +39,15 @@ class Extremes:
         The value of a quantity that has no extremum because it does not change; NaN otherwise.
     left_out : array (L,)
         Crank angles around which no value has a correct digit, rad.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 0.0, crank_speed=33.5)
+    >>> found = ks.extremes(s, "slider_velocity")
+    >>> np.degrees(found.angle).round(3), found.value.round(4), found.maximum
+    (array([ 81.651, 278.349]), array([-10.1625,  10.1625]), array([False,  True]))
     """
 
     quantity: str
@@ -104,6 +113,15 @@ def extremes(solution, quantity):
     ConditionWarning
         Values around some crank angles have no correct digit, or the quantity grows without bound there; or friction
         jams there.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 0.0, crank_speed=33.5)
+    >>> ks.extremes(s, "balancing_torque").value.round(1)  # N m
+    array([ 34479. , -28315.7,  28315.7, -34479. ])
+    >>> print(f"{ks.extremes(s, 'O').largest:.1f} N")  # magnitude of the reaction
+    232305.7 N
     """
     checks.require("extremes", checks.solution("solution", solution), checks.quantity(quantity, function=True))
     found = extrema(solution, quantity)

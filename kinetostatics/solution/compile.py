@@ -89,6 +89,16 @@ class Program:
     quantities : tuple of str
     parameters : mapping of path to value
         Every number that can be given another value, as in the scene.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> scene = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5)
+    >>> program = ks.compile(scene, ("balancing_torque", "O"))
+    >>> sorted(program.parameters)
+    ['coupler_length', 'crank_length', 'crank_speed', 'slider.mass']
+    >>> program(1.0, {"slider.mass": 620.0})["O"].shape
+    (2,)
     """
 
     def __init__(self, scene, quantities, kept, compiled):

@@ -207,6 +207,20 @@ def solve(
         Something looks like a slip of units: angles in degrees, a mass centre far outside, hardly any inertia.
     UserWarning
         The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    >>> turn = np.linspace(0, 2 * np.pi, 360, endpoint=False)
+    >>> s = ks.solve(saw, turn, crank_speed=33.5, loads=[ks.Gravity()])
+    >>> s.reaction("O")[:, 0].round(1)  # N, x and y, at the first angle
+    array([-286594.6,     735.8])
+    >>> print(f"{s.balancing_torque[30]:.1f} N m at 30 deg")
+    37880.5 N m at 30 deg
+    >>> bool(s.power_residual < 1e-14)  # two ways to the torque agree
+    True
     """
     scene = object.__new__(Scene)
     vars(scene).update(mechanism=mechanism, crank_speed=crank_speed, crank_acceleration=crank_acceleration, loads=loads)

@@ -12,13 +12,14 @@ from ..engines.first_look import first_look
 from ..errors import ConditionWarning, ParameterError
 from ..machine.friction import Turning
 from ..machine.loads import period_of
-from ..mechanics import assembly, jamming
+from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
-from ..mechanics.quantities import all_found, of_scene, scale, values
+from ..mechanics.quantities import all_found, scale, values
 from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property
 from ..results.turn import Turn
+from . import contents
 from .angles import crank_angles
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
@@ -34,6 +35,8 @@ class Solution(Energies, Motion):
 
     The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
     """
+
+    __doc__ = contents.__doc__
 
     engine: Any = NUMPY
     silent: bool = field(default=False, repr=False)
@@ -122,68 +125,6 @@ class Solution(Energies, Motion):
         """Moment of the guide on the slider about the slider pin, N m."""
         return self.scalar("guide_moment")
 
-    @property
-    def guide_friction(self):
-        """Friction of the guide on the slider along the guide, N; 0 without friction."""
-        return self._of_friction("guide_friction")
-
-    @property
-    def friction_loss(self):
-        """Power lost by friction at all joints, (..., N), W, not negative."""
-        return self._of_friction("friction_loss")
-
-    @property
-    def friction_torque(self):
-        """Torque on the crank that friction takes, its loss over the crank speed, (..., N), N m."""
-        return self._of_friction("friction_torque")
-
-    def friction_loss_at(self, joint):
-        """Power lost by friction at a joint, named as in `friction`, (..., N), W; 0 where nothing rubs."""
-        self._look_up("joint that rubs", joint, self.mechanism.pairs)
-        return self._of_friction(f"{joint}_friction_loss")
-
-    @cached_property
-    def losses(self):
-        """Mean powers over the period, lost by joint and taken by loads, a `results.losses.Losses`; of one design."""
-        from ..results.losses import losses
-
-        return losses(self)
-
-    @property
-    def efficiency(self):
-        """Mechanical efficiency over the period: of what loads take and joints lose, the part that loads take."""
-        return self.losses.efficiency
-
-    def friction_at(self, joint):
-        """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
-        self._look_up("joint that rubs", joint, self.mechanism.pairs)
-        return self._of_friction(f"{joint}_friction")
-
-    @property
-    def friction_margin(self):
-        """How far friction is from jamming: 1 without friction; where it is positive there is one state of forces.
-
-        Of a guide or pin that rubs alone it is 1 - |kappa|, exactly: where it is 0 or less there is no state, or there
-        are two. Of several joints of a group it is a bound, whatever their loads and senses of motion: where it is 0 or
-        less there may still be one state; none is looked for, and friction is NaN.
-        """
-        return self._of_friction("friction_margin") if self.friction else self._scalar(1.0)
-
-    @property
-    def friction_residual(self):
-        """How much forces would change by one more pass over friction, relative to the largest of a group."""
-        return self._of_friction("friction_residual")
-
-    def _of_friction(self, name):
-        return self._found(name) if name in of_scene(self) else self._scalar(None)
-
-    @property
-    def converged(self):
-        """Whether friction and reactions were found together to rounding, (..., N) of bool; so they are without."""
-        if not self.friction.acting:
-            return np.broadcast_to(self.closed, self.shape)
-        return jamming.converged(self._found("friction_margin"), self._found("friction_residual"))
-
     def pin_load(self, joint):
         """Force on a pin by all rods on it together, (2, ..., N), N; on the link that owns the joint."""
         owner = self._look_up("joint", joint, self.mechanism.joints).link
@@ -205,7 +146,7 @@ class Solution(Energies, Motion):
 
     @property
     def balancing_torque(self):
-        """Torque on the crank that keeps the prescribed motion, from the crank's equilibrium, N m."""
+        """Torque on the crank that the drive must give, counter-clockwise positive, N m; times omega its power, W."""
         return self.scalar("balancing_torque")
 
     @property

@@ -14,14 +14,15 @@ ANGLES = 24
 """Crank angles at which speeds are compared."""
 
 
-def study_running(scene, motor, flywheel=0.0, *, methods=running.METHODS, repeats=3, progress=None):
+def study_running(scene, motor, flywheel=0.0, *, methods=None, repeats=3, progress=None):
     """Time and error of every method for periodic running under a motor.
 
     Parameters
     ----------
     scene, motor, flywheel
         As for `drive.steady`; loads must not depend on the speed, and the motor turn the crank counter-clockwise.
-    methods : sequence of Method
+    methods : sequence of Method, optional
+        `RUNNING_METHODS` unless told.
     repeats : int
         Of each timing; the median counts.
     progress : function, optional
@@ -39,6 +40,15 @@ def study_running(scene, motor, flywheel=0.0, *, methods=running.METHODS, repeat
         The `precision` extra is not installed.
     NotGivenError
         Loads depend on the speed, or cannot be computed at many digits.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=ks.ProcessForce(-10.0))
+    >>> motor = ks.drive.Motor.linear(20.0, 105.0)
+    >>> table = ks.precision.study_running(pump, motor, 0.05, methods=ks.precision.RUNNING_METHODS[:1], repeats=1)
+    >>> bool(table.loc[0, "error"] < 1e-12)
+    True
     """
     import numpy as np
 
@@ -49,23 +59,40 @@ def study_running(scene, motor, flywheel=0.0, *, methods=running.METHODS, repeat
     def error(found):
         return float(np.abs(found / exact - 1.0).max())
 
-    return _studied(problem, methods, error, "crank speed", "1", repeats, progress)
+    return _studied(problem, methods or running.METHODS, error, "crank speed", "1", repeats, progress)
 
 
-def study_motion(name, *, methods=motion.METHODS, repeats=3, progress=None):
+def study_motion(name, *, methods=None, repeats=3, progress=None):
     """Time and error of every method for a published motion over time.
 
     Parameters
     ----------
     name : str
-        Of `motion.BENCHMARKS`: "slider-crank of SUNDIALS", "N-four-bar of IFToMM, N = 2".
-    methods, repeats, progress
+        Of `BENCHMARKS`: "slider-crank of SUNDIALS", "N-four-bar of IFToMM, N = 2".
+    methods : sequence of Method, optional
+        `MOTION_METHODS` unless told.
+    repeats, progress
         As for `study_running`.
 
     Returns
     -------
     pandas.DataFrame
         As of `study_running`, with the error of the crank angle at the end, rad.
+
+    Raises
+    ------
+    ParameterError
+        There is no such benchmark.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import kinetostatics as ks
+    >>> (steps,) = (method for method in ks.precision.MOTION_METHODS if method.name.endswith("RK4"))
+    >>> coarse = [replace(steps, settings=(25,))]
+    >>> table = ks.precision.study_motion("slider-crank of SUNDIALS", methods=coarse, repeats=1)
+    >>> bool(table.loc[0, "error"] < 1e-3)  # rad
+    True
     """
     problem_with_name = checks.choice("benchmark", name, tuple(motion.BENCHMARKS))
     checks.require("study_motion", problem_with_name)
@@ -74,7 +101,7 @@ def study_motion(name, *, methods=motion.METHODS, repeats=3, progress=None):
     def error(found):
         return abs(float(found) - problem.exact)
 
-    return _studied(problem, methods, error, "crank angle at the end", "rad", repeats, progress)
+    return _studied(problem, methods or motion.METHODS, error, "crank angle at the end", "rad", repeats, progress)
 
 
 def _studied(problem, methods, error, label, unit, repeats, progress):

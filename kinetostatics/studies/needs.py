@@ -72,6 +72,14 @@ class Needs:
         Number of combinations run.
     left_out : dict of str to str
         Simplifications that were not tried in combinations, by name, and why not.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    >>> found = ks.needs(ks.Scene(saw, 33.5).solve(90), "balancing_torque", within=0.05, progress=False)
+    >>> found.smallest.name
+    'two-mass coupler'
     """
 
     quantity: str

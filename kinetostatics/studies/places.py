@@ -30,6 +30,15 @@ class Place:
     scene : function
         Solution for one number.
     quantity : str
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> place = ks.stability.PLACES[0]
+    >>> place.name, place.axis, place.quantity
+    ('dead centres, inclined guide', 'distance from it [rad]', 'slider_position')
+    >>> place.scene(1e-6).shape
+    (400,)
     """
 
     name: str

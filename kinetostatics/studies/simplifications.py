@@ -43,10 +43,22 @@ def two_mass_coupler(mechanism, only=None):
     only : str, optional
         What the couplers to be replaced are called without the labels of their groups; all unless told.
 
+    Returns
+    -------
+    Mechanism or None
+
     Raises
     ------
     NotGivenError
         A mass centre lies beyond a joint, so that the mass at the other would be negative.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    >>> simpler = ks.two_mass_coupler(saw)
+    >>> simpler.links["crank"].mass, simpler.links["slider"].mass, simpler.links["coupler"].mass
+    (75.0, 675.0, 0.0)
     """
     made = mechanism
     for bar in reversed(mechanism.couplers):

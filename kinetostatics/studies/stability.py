@@ -21,7 +21,7 @@ from .methods.certified import enclosure, relative_errors
 from .places import PLACES, Place
 from .timing import circumstances
 
-__all__ = ["PLACES", "Place", "study", "summary", "write"]
+__all__ = ["PLACES", "Place", "study", "summary"]
 
 ORDINARY = 1e-12
 """Error up to which a result is called exact without mention of the condition."""
@@ -41,8 +41,17 @@ METHOD_SETTINGS = {
 """Methods that take any crank angles, each at its best setting."""
 
 
-def study(places=PLACES, methods=METHODS, progress=None):
+def study(places=None, methods=None, progress=None):
     """Error and behaviour of every method at every place.
+
+    Parameters
+    ----------
+    places : sequence of Place, optional
+        `PLACES` unless told.
+    methods : sequence of Method, optional
+        `ks.precision.METHODS` unless told, as many as take any crank angles.
+    progress : function, optional
+        Called with the name of each place before it is looked at.
 
     Returns
     -------
@@ -50,12 +59,26 @@ def study(places=PLACES, methods=METHODS, progress=None):
         A row for each place, number and method: largest error over the crank angles, relative to the quantity's
         largest value; the largest condition; how many angles lose digits, flip to the other assembly, are NaN; what
         was raised; why it is not given.
+
+    Raises
+    ------
+    MissingLibraryError
+        The `precision` extra is not installed.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import kinetostatics as ks
+    >>> place = replace(ks.stability.PLACES[0], numbers=(1e-6, 1e-3))
+    >>> table = ks.stability.study([place], ks.precision.METHODS[:1])
+    >>> table[["number", "lost", "flipped", "nan"]].values.tolist()
+    [[1e-06, 0.0, 0.0, 0.0], [0.001, 0.0, 0.0, 0.0]]
     """
     import pandas as pd
 
-    chosen = [method for method in methods if method.name in METHOD_SETTINGS]
+    chosen = [method for method in (METHODS if methods is None else methods) if method.name in METHOD_SETTINGS]
     rows = []
-    for place in places:
+    for place in PLACES if places is None else places:
         if progress:
             progress(place.name)
         for number in place.numbers:
@@ -117,6 +140,24 @@ def summary(table):
     """What each method does at each place: worst error, where, and how many angles fail of all, a pandas DataFrame.
 
     The worst error is that of the numbers at which the condition leaves a digit; how many do not is told too.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        As of `study`.
+
+    Returns
+    -------
+    pandas.DataFrame
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import kinetostatics as ks
+    >>> place = replace(ks.stability.PLACES[0], numbers=(1e-6, 1e-3))
+    >>> table = ks.stability.study([place], ks.precision.METHODS[:1])
+    >>> ks.stability.summary(table)["does"].tolist()
+    ['exact']
     """
     import pandas as pd
 
@@ -157,7 +198,7 @@ def _verdict(counts, raised, given_up, worst):
     return ", ".join(text for text, count in said if count) or fine
 
 
-def write(folder, places=PLACES, progress=None, page=None):
+def write(folder, places=None, progress=None, page=None):
     """Run the study into a folder: all rows and the summary as CSV, and what ``page(table, path)`` draws of it.
 
     Returns the paths of the files; `views.charts.stability_page` draws the chart, as PNG and SVG.
@@ -174,3 +215,7 @@ def write(folder, places=PLACES, progress=None, page=None):
             frame.assign(**circumstances()).to_csv(temporary, index=False)
         paths.append(path)
     return [*paths, *(page(table, folder / "stability") if page else ())]
+
+
+def __dir__():
+    return __all__

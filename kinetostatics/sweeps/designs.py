@@ -14,6 +14,15 @@ from ..numbers import checks
 from ..numbers.headings import heading
 from ..numbers.spreads import LARGEST, axis, distributions, read
 
+__all__ = [
+    "distributions",
+    "grid",
+    "latin_hypercube",
+    "random",
+    "sample",
+    "sobol",
+]
+
 
 def grid(spreads) -> pd.DataFrame:
     """Every combination of evenly spaced values, the last parameter running fastest.
@@ -32,6 +41,12 @@ def grid(spreads) -> pd.DataFrame:
     ------
     ParameterError
         A text is of another form, or its unit not known; all of them at once.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> ks.designs.grid({"slider.mass": "500..700 kg:3", "crank_length": "0.2..0.4 m:2"}).shape
+    (6, 2)
     """
     axes = read(spreads, axis)
     _require_room(math.prod(axis.size for axis, _ in axes.values()), len(axes))
@@ -40,7 +55,34 @@ def grid(spreads) -> pd.DataFrame:
 
 
 def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
-    """Designs spread evenly over every parameter by itself; see `sample`."""
+    """Designs spread evenly over every parameter by itself (Latin hypercube).
+
+    Parameters
+    ----------
+    spreads : dict of parameter to text
+        As for `sample`.
+    count : int
+        Designs; one in each of as many equal parts of every parameter.
+    seed : int
+        Of the random numbers.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column for each parameter, with its unit.
+
+    Raises
+    ------
+    ParameterError
+        A text is of another form, its unit not known, or more designs than a table can hold.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> table = ks.designs.latin_hypercube({"slider.mass": "500..700 kg"}, 4)
+    >>> sorted(int(mass // 50 * 50) for mass in table["slider.mass [kg]"])  # one in each quarter
+    [500, 550, 600, 650]
+    """
     from scipy.stats import qmc
 
     _require_room(count, len(spreads))
@@ -48,7 +90,34 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
 
 
 def sobol(spreads, count, seed=0) -> pd.DataFrame:
-    """Designs of a scrambled Sobol sequence, `count` best a power of two; see `sample`."""
+    """Designs of a scrambled Sobol sequence, evenly spread over all parameters together.
+
+    Parameters
+    ----------
+    spreads : dict of parameter to text
+        As for `sample`.
+    count : int
+        Designs, best a power of two.
+    seed : int
+        Of the random numbers.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column for each parameter, with its unit.
+
+    Raises
+    ------
+    ParameterError
+        A text is of another form, its unit not known, or more designs than a table can hold.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> table = ks.designs.sobol({"slider.mass": "500..700 kg"}, 8)
+    >>> sorted(int(mass // 25 * 25) for mass in table["slider.mass [kg]"])  # one in each eighth
+    [500, 525, 550, 575, 600, 625, 650, 675]
+    """
     from scipy.stats import qmc
 
     _require_room(count, len(spreads))
@@ -56,7 +125,34 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
 
 
 def random(spreads, count, seed=0) -> pd.DataFrame:
-    """Independent random designs; see `sample`."""
+    """Independent random designs.
+
+    Parameters
+    ----------
+    spreads : dict of parameter to text
+        As for `sample`.
+    count : int
+        Designs.
+    seed : int
+        Of the random numbers.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column for each parameter, with its unit.
+
+    Raises
+    ------
+    ParameterError
+        A text is of another form, its unit not known, or more designs than a table can hold.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> table = ks.designs.random({"slider.mass": "500..700 kg"}, 100)
+    >>> bool(table["slider.mass [kg]"].between(500.0, 700.0).all())
+    True
+    """
     _require_room(count, len(spreads))
     return sample(spreads, lambda size: np.random.default_rng(seed).random((count, size)))
 
@@ -80,6 +176,14 @@ def sample(spreads, uniform) -> pd.DataFrame:
     ------
     ParameterError
         A text is of another form, or its unit not known; all of them at once.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> spreads = {"slider.mass": "500..700 kg", "spring.stiffness": "normal 712 kN/m +- 5 kN/m"}
+    >>> table = ks.designs.sample(spreads, [[0.25, 0.5], [0.75, 0.5]])  # by the shares below them
+    >>> table.round(6).values.tolist()
+    [[550.0, 712.0], [650.0, 712.0]]
     """
     found = distributions(spreads)
     numbers = np.asarray(uniform(len(found)) if callable(uniform) else uniform)
@@ -105,3 +209,7 @@ def _require_room(count, parameters):
 def columns(found):
     """Headings of parameters with units, from pairs that end with the unit, by parameter."""
     return [heading(name, unit) for name, (_, unit) in found.items()]
+
+
+def __dir__():
+    return __all__

@@ -32,6 +32,17 @@ class Tolerances:
     sensitivity : pandas.DataFrame
         By output and parameter: first-order and total Sobol index, the shares of the output's variance that the
         parameter's spread causes by itself, and together with others (Saltelli 2010).
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5)
+    >>> spreads = {"slider.mass": "normal 600 kg +- 10 kg"}
+    >>> found = ks.tolerances(saw, ["largest O"], spreads, count=64, progress=False)
+    >>> found.quantiles([0.05, 0.95]).round(-3).values.ravel()
+    array([226000., 238000.])
+    >>> round(found.share("largest O", above=240e3), 1)
+    0.0
     """
 
     table: pd.DataFrame
@@ -82,6 +93,17 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     ParameterError
         No spreads, a text that cannot be read, a count that is no power of two, or designs within the spread that
         cannot be computed or have an infinite output, which makes quantiles and indices meaningless.
+
+    Examples
+    --------
+    Which of two spreads matters for the support?
+
+    >>> import kinetostatics as ks
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5)
+    >>> spreads = {"slider.mass": "normal 600 kg +- 10 kg", "coupler_length": "1.999..2.001 m"}
+    >>> found = ks.tolerances(saw, ["largest O"], spreads, count=64, progress=False)
+    >>> found.sensitivity["total"].round(2).to_dict()
+    {('largest O [N]', 'slider.mass'): 1.0, ('largest O [N]', 'coupler_length'): 0.0}
     """
     if not (is_case(case) or is_varied(case) or callable(case)):
         raise ParameterError(

@@ -33,6 +33,13 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.Circle(0.3, (-0.02, 0.0))
+    >>> ks.plots.cam_profile(cam, roller_radius=0.05).get_aspect()
+    1.0
     """
     checks.require("cam_profile", _cam_problem(cam), checks.table("angles", list(angles)))
     ax = axes(ax)
@@ -75,6 +82,13 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.Circle(0.3, (-0.02, 0.0))
+    >>> ks.plots.cam_curvature(cam, roller_radius=0.05).get_xlabel()
+    'crank angle [deg]'
     """
     named = _named(cams, "cam_curvature", _cam_problem)
     checks.require(
@@ -106,6 +120,13 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.Circle(0.3, (-0.02, 0.0))
+    >>> ks.plots.cam_pressure_angle(cam, largest=0.5).get_xlabel()
+    'crank angle [deg]'
     """
     named = _named(cams, "cam_pressure_angle", _cam_problem)
     checks.require("cam_pressure_angle", None if largest is None else checks.positive("largest", largest))
@@ -131,6 +152,15 @@ def contact_pressure(contacts, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> cam = ks.cams.Circle(0.3, (-0.02, 0.0))
+    >>> saw = ks.cam_crank_slider(cam, 2.02, slider=ks.Link(600.0))
+    >>> found = ks.design.contact(ks.Scene(saw, 10.0).solve(90), 0.05, 0.04, 210e9, 0.3)
+    >>> ks.plots.contact_pressure(found).get_xlabel()
+    'crank angle [deg]'
     """
     named = _named(contacts, "contact_pressure", _contact_problem)
     ax = axes(ax)
@@ -159,6 +189,14 @@ def law_motion(laws, ax=None):
     Returns
     -------
     sequence of 4 Axes
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> rise, back = ks.laws.cycloidal(1.7, 2.3, np.pi), ks.laws.cycloidal(2.3, 1.7, np.pi)
+    >>> len(ks.plots.law_motion(ks.laws.joined(rise, back)))
+    4
     """
     import matplotlib.pyplot as plt
 

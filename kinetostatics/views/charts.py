@@ -50,6 +50,15 @@ def work_precision(table, ax=None, like=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5).solve(8)
+    >>> table = ks.precision.study(s, methods=ks.precision.METHODS[:1], repeats=1)
+    >>> ks.plots.work_precision(table).get_xscale()
+    'log'
     """
     whole = "time [ms]" in getattr(table, "columns", ())
     time = "time [ms]" if whole else "time [ns/angle]"
@@ -84,6 +93,15 @@ def error_by_distance(table, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import kinetostatics as ks
+    >>> place = replace(ks.stability.PLACES[0], numbers=(1e-6, 1e-3))
+    >>> table = ks.stability.study([place], ks.precision.METHODS[:1])
+    >>> ks.plots.error_by_distance(table).get_xlabel() == place.axis
+    True
     """
     shown = ("method", "ours", "number", "error", "nan", "raised", "not given", "condition", "axis", "label")
     require_columns("error_by_distance", table, shown)
@@ -119,6 +137,14 @@ def model_ladder(needs, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    >>> needs = ks.needs(ks.Scene(saw, 33.5).solve(90), "balancing_torque", within=0.05, progress=False)
+    >>> ks.plots.model_ladder(needs).get_yscale()
+    'log'
     """
     if not hasattr(needs, "ladder"):
         raise ParameterError(f"model_ladder: needs must be what ks.needs(...) returns, got a {type(needs).__name__}")
@@ -161,6 +187,15 @@ def sweep_map(table, parameters, output, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5)
+    >>> designs = ks.designs.grid({"slider.mass": "500..700 kg:3", "crank_length": "0.2..0.4 m:3"})
+    >>> table = ks.sweep(saw, designs, ["largest O"], angles=90, progress=False)
+    >>> ks.plots.sweep_map(table, list(designs), "largest O [N]").get_xlabel()
+    'slider.mass [kg]'
     """
     parameters = [parameters] if isinstance(parameters, str) else list(parameters or ())
     require_columns("sweep_map", table, (*parameters, output))

@@ -58,6 +58,15 @@ def mass_centres(solutions, angle=60, ax=None):
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> bare = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+    >>> balanced = ks.balancing.partial(bare, crank=ks.Counterweight(arm=-0.05)).mechanism
+    >>> solutions = {name: ks.Scene(item, 62.8).solve(90) for name, item in (("bare", bare), ("half", balanced))}
+    >>> ks.plots.mass_centres(solutions).get_aspect()
+    1.0
     """
     checks.require("mass_centres", checks.finite("angle", angle))
     named = labelled(solutions, "common mass centre")
@@ -87,6 +96,13 @@ def mechanism(solution, angles=(40, 160, 280), ax=None):
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> shaper = ks.slotted_lever(0.1, pivot=(0.0, -0.2), lever=ks.Link(8.0, 0.3, 0.4))
+    >>> ks.plots.mechanism(ks.Scene(shaper, 6.0, loads=[ks.Gravity()]).solve(8), angles=(60,)).get_aspect()
+    1.0
     """
     try:
         angles = np.atleast_1d(np.asarray(angles, dtype=float))
@@ -139,6 +155,16 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     Returns
     -------
     matplotlib.animation.FuncAnimation
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5).solve(8)
+    >>> film = ks.plots.animation(s, joints=["O"], frames=2)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     film.save(Path(folder, "saw.gif"), writer="pillow", dpi=40)
     """
     from matplotlib.animation import FuncAnimation
 

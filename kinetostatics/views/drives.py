@@ -5,8 +5,28 @@ import numpy as np
 from .canvas import INK, axes, display, styled
 
 
-def speed(runs, ax=None):
-    """Crank speed over the crank angle, its mean dotted; of a mapping of label to Running."""
+def crank_speed(runs, ax=None):
+    """Crank speed of machines in periodic running over the crank angle, its mean dotted.
+
+    Parameters
+    ----------
+    runs : mapping of label to Running
+        As of `ks.drive.steady`.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=ks.ProcessForce(-200.0))
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> runs = {f"{inertia} kg m2": ks.drive.steady(pump, motor, flywheel=inertia) for inertia in (0.05, 0.2)}
+    >>> ks.plots.crank_speed(runs).get_xlabel()
+    'crank angle [deg]'
+    """
     ax = axes(ax)
     for name, run, style in styled(runs):
         (line,) = ax.plot(*_closed(run, run.speed), linestyle=style, label=name)
@@ -15,8 +35,27 @@ def speed(runs, ax=None):
     return _finished(ax)
 
 
-def torques(run, ax=None):
-    """Torques at the crank over the crank angle: of the motor, of the machine with its inertia, of the loads alone."""
+def drive_torques(run, ax=None):
+    """Torques at the crank over the crank angle: of the motor, of the machine with its inertia, of the loads alone.
+
+    Parameters
+    ----------
+    run : Running
+        As of `ks.drive.steady`.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=ks.ProcessForce(-200.0))
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> ks.plots.drive_torques(ks.drive.steady(pump, motor, flywheel=0.05)).get_xlabel()
+    'crank angle [deg]'
+    """
     ax = axes(ax)
     ratio = 1.0 if run.motor is None else run.motor.transmission
     curves = {
@@ -34,7 +73,27 @@ def torques(run, ax=None):
 
 
 def energy_flow(runs, ax=None):
-    """Energy per turn, a bar for each part that gives or takes any; of a mapping of label to Running."""
+    """Energy per turn of machines in periodic running, a bar for each part that gives or takes any.
+
+    Parameters
+    ----------
+    runs : mapping of label to Running
+        As of `ks.drive.steady`.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=ks.ProcessForce(-200.0))
+    >>> motor = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5)
+    >>> runs = {f"{inertia} kg m2": ks.drive.steady(pump, motor, flywheel=inertia) for inertia in (0.05, 0.2)}
+    >>> ks.plots.energy_flow(runs).get_xlabel().split("[")[0]
+    'energy per turn '
+    """
     ax = axes(ax)
     shown = parts_that_move_energy(runs)
     flows = {name: {part.name: part.energy for part in run.energy_flow.parts} for name, run in runs.items()}

@@ -54,8 +54,8 @@ def draw_drive(case, runs, folder):
     """Draw speed, torques and energy flow of a case's variants in periodic running into a folder; returns the paths."""
     bars = len(drives.parts_that_move_energy(runs)) * (1 + len(runs))
     figures = {
-        "speed": _single(drives.speed),
-        "torque": partial(_one_each, drives.torques, width=6.4, height=3.2, columns=1),
+        "speed": _single(drives.crank_speed),
+        "torque": partial(_one_each, drives.drive_torques, width=6.4, height=3.2, columns=1),
         "energy": _single(drives.energy_flow, 7.2, 1.2 + 0.19 * bars),
     }
     paths = {name: Path(folder) / f"{case.path.stem}_drive_{name}.png" for name in figures}

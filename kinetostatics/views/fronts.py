@@ -15,6 +15,16 @@ def front(found, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> spring = ks.Spring(600e3, free_position=2.0)
+    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
+    >>> vary = {"spring.stiffness": (100e3, 900e3)}
+    >>> found = ks.design.pareto(saw, vary, ("largest_absolute B", "rms balancing_torque"), points=3, angles=90)
+    >>> ks.plots.front(found).has_data()
+    True
     """
     ax = axes(ax)
     scales, headings = [], []

@@ -20,6 +20,14 @@ def lost_power(solution, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> friction = {"O": ks.PinFriction(0.02, 0.05), "guide": ks.GuideFriction(0.1)}
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5, friction=friction).solve(90)
+    >>> ks.plots.lost_power(s).get_xlabel()
+    'crank angle [deg]'
     """
     solution = single(solution)
     _require_friction({"solution": solution})
@@ -48,6 +56,14 @@ def losses(solutions, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> friction = {"O": ks.PinFriction(0.02, 0.05), "guide": ks.GuideFriction(0.1)}
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5, friction=friction).solve(90)
+    >>> [text.get_text() for text in ks.plots.losses({"greased": s}).get_xticklabels()]
+    ['greased']
     """
     named = labelled(solutions if isinstance(solutions, Mapping) else {"solution": solutions}, "lost power")
     _require_friction(named)

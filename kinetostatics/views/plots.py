@@ -2,37 +2,42 @@
 
 Every function draws on `ax` (a new one if not given) and returns it; `animation` returns the film.
 
-Where a function takes `solutions`, give one `Solution` or a mapping of label to `Solution` to draw them together.
+Where a function takes `solutions`, give one `Solution` or a mapping of label to `Solution` to draw them together. A
+quantity that the mechanism has not is a `QuantityError`, a batch of designs a `ParameterError`.
 """
 
 from collections.abc import Mapping
 
-import matplotlib.pyplot as plt
 import numpy as np
 
-from ..design.linkage import chain_unit_angle, four_bar_of
 from ..errors import QuantityError
 from ..mechanics import quantities
-from ..mechanics.quantities import magnitude, of_mechanism, values
+from ..mechanics.quantities import of_mechanism, values
 from ..numbers.checks import choice, problem, require
 from ..results.extremes import extremes
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .canvas import INK, axes, closed, display, finished, labelled, styled
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .drawings import animation, mass_centres, mechanism
+from .drives import crank_speed, drive_torques, energy_flow
 from .fronts import front
 from .labels import label
 from .lost_power import losses, lost_power
+from .studies import chain_unit_motion, require_turning, shaking_force
 
 __all__ = [
     "acceleration_error",
     "animation",
+    "before_and_after",
     "cam_curvature",
     "cam_force",
     "cam_pressure_angle",
     "cam_profile",
     "chain_unit_motion",
     "contact_pressure",
+    "crank_speed",
+    "drive_torques",
+    "energy_flow",
     "error_by_distance",
     "front",
     "hodograph",
@@ -67,6 +72,15 @@ def over_turn(solutions, quantity, ax=None):
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> solutions = {name: saw.solve(name, 90) for name in ("plain", "cam-cosine")}
+    >>> ax = ks.plots.over_turn(solutions, "slider_velocity")
+    >>> ax.get_xlabel(), len(ax.get_legend().get_texts())
+    ('crank angle [deg]', 2)
     """
     ax = axes(ax)
     named = labelled(solutions, quantity)
@@ -79,17 +93,72 @@ def over_turn(solutions, quantity, ax=None):
 
 
 def torque(solutions, ax=None):
-    """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a)."""
+    """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> solutions = {name: saw.solve(name, 90) for name in ("plain", "cam-cosine")}
+    >>> ax = ks.plots.torque(solutions)
+    >>> ax.get_xlabel()  # ax.figure.savefig("torque.svg") keeps it
+    'crank angle [deg]'
+    """
     return over_turn(solutions, "balancing_torque", ax)
 
 
 def cam_force(solutions, ax=None):
-    """Force of the cam on the roller over the crank angle (figure 6b)."""
+    """Force of the cam on the roller over the crank angle (figure 6b).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        With a cam roller.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ks.plots.cam_force(saw.solve("cam-circle", 90)).get_xlabel()
+    'crank angle [deg]'
+    """
     return over_turn(solutions, "cam_force", ax)
 
 
 def pressure_angle(solutions, ax=None):
-    """Pressure angle of the cam pair over the crank angle (figure 5)."""
+    """Pressure angle of the cam pair over the crank angle (figure 5).
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        With a cam roller.
+    ax : Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ks.plots.pressure_angle(saw.solve("cam-circle", 90)).get_xlabel()
+    'crank angle [deg]'
+    """
     return over_turn(solutions, "pressure_angle", ax)
 
 
@@ -99,10 +168,28 @@ def acceleration_error(solutions, ax=None, slider=None):
     With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
     -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. The only slider, or that without a
     label, is meant unless told.
+
+    Parameters
+    ----------
+    solutions : Solution or mapping of label to Solution
+        With a slider.
+    ax : Axes, optional
+    slider : str, optional
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ks.plots.acceleration_error(saw.solve("cam-circle", 90)).get_xlabel()
+    'crank angle [deg]'
     """
     ax = axes(ax)
     named = labelled(solutions, "slider acceleration")
-    _require_turning(named)
+    require_turning(named)
     for name, solution, style in styled(named):
         half_stroke = np.ptp(extremes(solution, lambda motion: motion.travel(slider)).value) / 2
         square, alpha = solution.crank_speed**2, solution.crank_acceleration
@@ -131,6 +218,14 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     -------
     Axes
         With equal scales on both axes.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63")
+    >>> ax = ks.plots.hodograph(saw.solve("plain", 90), "O", marks=60)
+    >>> ax.get_aspect()
+    1.0
     """
     require("hodograph", problem("marks", marks, low=LEAST_MARKS))
     ax = axes(ax)
@@ -157,86 +252,29 @@ def hodograph(solutions, joint="O", ax=None, marks=30):
     return ax
 
 
-def chain_unit_motion(solutions, link, order=1, ax=None):
-    """Relative angular velocity or acceleration of a link of the chain unit (Belarusian study, figures 5-12).
-
-    Both are counted in the crank's sense of turning and divided by crank speed, or its square; the crank angle from
-    +y, clockwise.
+def before_and_after(found):
+    """Before and after a search: cam, torque, support reaction.
 
     Parameters
     ----------
-    solutions : Solution or mapping of label to Solution
-    link : "coupler" or "rocker"
-        Which link of the four-bar, whatever it is called.
-    order : 1 or 2
-        Velocity or acceleration.
-    ax : Axes, optional
+    found : Found
+        As `ks.design.torque_free_cam` and `ks.design.optimise` return it.
 
     Returns
     -------
-    Axes
+    Figure
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> found = ks.design.torque_free_cam(ks.load_case("sawframe_2r63"), cosine=2, gravity=False)
+    >>> figure = ks.plots.before_and_after(found)
+    >>> len(figure.axes)
+    6
     """
-    require(
-        "chain_unit_motion",
-        None if order in (1, 2) else f"order must be 1 or 2, got {order!r}",
-        choice("link", link, ("coupler", "rocker")),
-    )
-    ax = axes(ax)
-    named = labelled(solutions, f"{link} rate")
-    _require_turning(named)
-    for name, solution, style in styled(named):
-        turning = getattr(four_bar_of(solution.mechanism), link).link
-        angle = np.degrees(chain_unit_angle(solution.crank_angle)) % 360
-        rows = np.argsort(angle)
-        speed = solution.crank_speed
-        relative = (
-            solution.rate(turning) / speed
-            if order == 1
-            else solution.angular_acceleration(turning) / (speed * abs(speed))
-        )
-        ax.plot(angle[rows], relative[rows], linestyle=style, label=name)
-    kind = "velocity" if order == 1 else "acceleration"
-    finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1)
-    ax.set_xlabel("crank angle from +y, clockwise [deg]")
-    return ax
+    from .designs import page
 
-
-def shaking_force(solutions, by="direction", ax=None):
-    """Polar hodograph of the shaking force, by its own direction or by crank angle (mower study, figures 6a, 6b).
-
-    Parameters
-    ----------
-    solutions : Solution or mapping of label to Solution
-    by : "direction" or "crank angle"
-        What the polar angle is.
-    ax : polar Axes, optional
-
-    Returns
-    -------
-    Axes
-    """
-    require("shaking_force", choice("by", by, ("direction", "crank angle")))
-    if ax is None:
-        ax = plt.subplots(subplot_kw={"projection": "polar"}, layout="constrained")[1]
-    ax = axes(ax)
-    named = labelled(solutions, "shaking_force")
-    sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
-    factor, shown = display("N", sizes.values())
-    for name, solution, style in styled(named):
-        x, y = solution.shaking_force
-        angle = np.arctan2(y, x) if by == "direction" else solution.crank_angle
-        ax.plot(*closed(np.array([angle, factor * sizes[name]])), linestyle=style, label=name)
-    ax.set_title(f"shaking force [{shown}] by {by}", fontsize="medium")
-    if len(named) > 1:
-        ax.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.05, 1.0))
-    return ax
-
-
-def _require_turning(named):
-    still = [name for name, solution in named.items() if np.any(np.asarray(solution.crank_speed) == 0)]
-    require(
-        "plots", f"the crank speed of {', '.join(still)} is 0, but what is shown is relative to it" if still else None
-    )
+    return page(found)
 
 
 def _degrees(solution):
@@ -276,3 +314,7 @@ def _shared(degrees, points, near):
         labels.setdefault(first, []).append(f"{degrees[row]:.4g}°")
     for row, names in labels.items():
         yield ", ".join(names) if len(names) < 5 else f"{names[0]}, {names[1]} … {names[-1]}", points[:, row]
+
+
+def __dir__():
+    return __all__

@@ -38,11 +38,6 @@ def test_compare_gives_the_published_rows_beside_ours():
     assert (table["published"] != "").sum() == 9
 
 
-def test_turn_starts_at_zero_and_leaves_its_end_out():
-    angle = ks.load_case("sawframe_2r63").solve("plain", angles=4).crank_angle
-    np.testing.assert_allclose(np.degrees(angle), [0, 90, 180, 270])
-
-
 def test_a_variant_overrides_single_keys_of_what_is_common(tmp_path):
     text = PLAIN + '[variants.plain.coupler]\nmass = "100 kg"\n'
     coupler = ks.load_case(case_file(tmp_path, text)).variants["plain"].mechanism.links["coupler"]

@@ -27,16 +27,6 @@ def test_speed_is_the_integral_of_acceleration_and_time_that_of_slowness():
     assert time == pytest.approx(run.time[1] - run.time[0], rel=1e-12)
 
 
-def test_rotor_loss_is_slip_times_air_gap_power():
-    run = ks.drive.steady(saw(CUT, FAN), MOTOR, 100.0, angles=4096)
-    weight = 1.0 / np.abs(run.speed)
-    slip = 1.0 - run.motor_speed / 157.0
-    loss = TURN * np.mean(slip * run.motor_torque * 157.0 * weight)
-    assert run.rotor_loss_per_turn == pytest.approx(loss, rel=1e-4)
-    assert run.peak_power >= np.abs(run.motor_power).max()
-    assert run.mean_power == pytest.approx(np.sum(run.motor_power * weight) / np.sum(weight), rel=1e-4)
-
-
 def test_extremes_frames_and_comparison_take_running_as_any_solution():
     run = ks.drive.steady(saw(CUT), MOTOR, 1000.0)
     other = ks.drive.steady(saw(CUT), MOTOR, 50.0)

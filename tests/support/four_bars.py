@@ -21,6 +21,7 @@ LINKS = {
     "rocker": Body(5.0, (0.3, 0.08), 0.4),
 }
 FORCES = ("O", "A", "B", "O2")
+TURN = np.linspace(0.0, 2 * np.pi, 721) + 0.001
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,18 @@ def results(s):
     """All forces and moments by name; a vector as a complex number."""
     found = {name: planar(s.reaction(name)) for name in FORCES} | {"shaking_force": planar(s.shaking_force)}
     return found | {name: getattr(s, name) for name in (*TORQUES, "shaking_moment")}
+
+
+def of_lengths(lengths, frame_angle=0.0, assembly=1):
+    """Four-bar of the package with lengths of crank, coupler, rocker and frame."""
+    *links, frame = lengths
+    pivot = frame * np.exp(1j * frame_angle)
+    return ks.four_bar(*links, rocker_pivot=(pivot.real, pivot.imag), assembly=assembly)
+
+
+def swept(mechanism, angle=TURN):
+    """Its solution over the turn, NaN where it does not close."""
+    return ks.solve(mechanism, angle, crank_speed=1.0, on_gap="nan")
 
 
 # Reference

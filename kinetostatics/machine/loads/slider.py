@@ -72,9 +72,36 @@ class Spring(OnSlider):
 
     @classmethod
     def balancing(cls, mass, crank_speed, free_position, on="slider"):
-        """Spring that balances a slider of `mass` (kg) moving by a cosine law at `crank_speed` (rad/s).
+        """Spring that balances a slider that moves by a cosine law.
 
         Its stiffness, mass times crank speed squared, makes spring and inertia force equal and opposite all the way.
+
+        Parameters
+        ----------
+        mass : float
+            Of the slider and all that moves with it, kg.
+        crank_speed : float
+            rad/s.
+        free_position : float
+            Slider position at which the spring is free, mid-stroke of the law, m.
+        on : str
+            The slider.
+
+        Returns
+        -------
+        Spring
+
+        Raises
+        ------
+        ParameterError
+            The mass is negative, or a value not finite.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> spring = ks.Spring.balancing(600.0, 33.5, free_position=2.0)
+        >>> spring.stiffness  # N/m
+        673350.0
         """
         given = {"mass": mass, "crank_speed": crank_speed}
         rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}

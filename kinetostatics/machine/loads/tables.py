@@ -129,10 +129,24 @@ class Table:
         over : "angle" or "travel", optional
             Which column to take where the file has both; unless told, the travel.
 
+        Returns
+        -------
+        Table
+
         Raises
         ------
         CaseError
             The file cannot be read, or makes no table.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> diagram = ks.shipped_cases()["compressor"].parent / "compressor_indicator.csv"  # travel [mm] ...
+        >>> pressure = ks.ProcessForce(ks.Table.from_csv(diagram, area=-20e-4))
+        >>> pump = ks.crank_slider(0.05, 0.198, slider=ks.Link(1.2))
+        >>> s = ks.solve(pump, 0.1, crank_speed=100.0, loads=[pressure])
+        >>> round(float(s.balancing_torque), 1)
+        1.5
         """
         from ...numbers.files import headings, read_columns
 

@@ -40,6 +40,15 @@ class Method:
         Values of the setting, from coarse to fine.
     ours : bool
         Whether it is the library's own path.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5).solve(8)
+    >>> ours = ks.precision.METHODS[0]
+    >>> (torque,) = ours.prepare(s, "balancing_torque", None)()
+    >>> ours.name, torque.shape
+    ('ours, NumPy', (8,))
     """
 
     name: str

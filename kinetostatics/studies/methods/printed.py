@@ -6,7 +6,27 @@ from ...machine.cams import Circle, CosineLaw
 
 
 def turned_to_length(vector, angle, length):
-    """TurnV: a vector (2, N) turned counter-clockwise by an angle (rad) and given a length (Kotov 2024, equation 1)."""
+    """TurnV: a vector turned by an angle and given a length (Kotov 2024, equation 1).
+
+    Parameters
+    ----------
+    vector : array (2, N)
+    angle : float or array
+        Counter-clockwise, rad.
+    length : float
+        m.
+
+    Returns
+    -------
+    array (2, N)
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> ks.papers.turned_to_length(np.array([3.0, 4.0]), np.pi / 2, 10.0).round(12)
+    array([-8.,  6.])
+    """
     quarter = np.pi / 2
     x, y = vector
     scale = length / np.hypot(x, y)
@@ -40,6 +60,16 @@ def slider_by_double_cross(A, coupler_length, W1, W2, W):
     -------
     array (2, N)
         Slider pin B, m; NaN where the coupler does not reach the guide.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> ends = (0.0, -0.02), (0.3, -0.02)
+    >>> s = ks.solve(ks.crank_slider(0.038, 0.3, guide=ks.Guide.through(*ends)), [0.5, 1.0], crank_speed=1.0)
+    >>> pin = ks.papers.slider_by_double_cross(s.position("A"), 0.3, *ends, ends[1])
+    >>> bool(np.allclose(pin, s.position("B")))
+    True
     """
     guide = np.subtract(W2, W1)[:, None]
     unit = guide / np.hypot(*guide)
@@ -72,6 +102,15 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
     -------
     gamma, psi, coupler_rate, rocker_rate : arrays (N,)
         Coupler angle below +x and rocker angle clockwise from vertical, rad; rates at crank speed 1, clockwise.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> gamma, psi, *_ = ks.papers.chain_unit_by_atan_acos(0.1, 1.0, 0.5, 0.994987, np.array([0.0, 0.5]))
+    >>> s = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), ks.linkage.chain_unit_angle([0.0, 0.5]), crank_speed=1.0)
+    >>> bool(np.allclose(psi - psi[0], ks.linkage.rocker_angle(s), atol=1e-6))
+    True
     """
     r, c, h = crank_length, coupler_length, rocker_length
     b = np.hypot(pivot_x, h)
@@ -112,6 +151,15 @@ def four_bar_by_atan_acos(crank_length, coupler_length, rocker_length, pivot, as
     -------
     coupler, rocker : tuple of arrays (N,)
         Direction (rad, counter-clockwise from +x), angular velocity ratio to the crank and its slope.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kinetostatics as ks
+    >>> coupler, rocker = ks.papers.four_bar_by_atan_acos(0.1, 1.0, 0.5, (1.0, -0.5), 1, np.array([0.5]))
+    >>> s = ks.solve(ks.four_bar(0.1, 1.0, 0.5, rocker_pivot=(1.0, -0.5)), [0.5], crank_speed=1.0)
+    >>> bool(np.allclose(rocker[1], s.rate("rocker")))
+    True
     """
     r, b = crank_length, np.hypot(*pivot)
     frame = np.arctan2(pivot[1], pivot[0])

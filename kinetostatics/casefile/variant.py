@@ -1,0 +1,157 @@
+"""A variant of a case file: its scene, and the numbers of the file by their paths."""
+
+import typing
+from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..design import balancing
+from ..drive.motor import Motor
+from ..numbers import checks
+from ..numbers.lazy import cached_property
+from ..solution.scene import Scene
+from ..solution.solution import Solution
+from . import build, parameters, schema
+
+
+@dataclass(frozen=True, eq=False)
+class Variant:
+    """A scene of a case file, what the file says of it, and how it was balanced if it was.
+
+    Of a case it is ``case.variants["plain"]``; the scene is what its file says in numbers, ready to be solved.
+
+    Attributes
+    ----------
+    scene : Scene
+    table : pydantic model
+        Its table of the file, checked.
+    balanced : Balanced or None
+        How the file's counterweights were found.
+    folder : Path
+        Of the file.
+    tabulated : mapping of keys to what was read
+        From files beside the case file: cams, tables. They are not read again.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> saw = ks.load_case("sawframe_2r63").variants["cam-circle"]
+    >>> saw.parameters["slider.mass"], saw.units["slider.mass"]
+    (600.0, 'kg')
+    >>> heavier = saw.varied({"slider.mass": 620.0})  # its spring balances the slider, so it follows
+    >>> round(heavier.loads[1].stiffness / saw.loads[1].stiffness, 6)
+    1.033333
+    """
+
+    scene: Scene
+    table: schema.MechanismVariant = field(repr=False)
+    balanced: balancing.Balanced | None = None
+    folder: Path = field(default=Path(), repr=False)
+    tabulated: typing.Mapping[tuple[str | int, ...], typing.Any] = field(default_factory=dict, repr=False)
+    """By the keys that lead there what was read from a file in the folder: cams, tables. It is not read again."""
+
+    @property
+    def mechanism(self):
+        """Crank and groups."""
+        return self.scene.mechanism
+
+    @property
+    def friction(self):
+        """Friction by joint."""
+        return self.scene.friction
+
+    @property
+    def crank_speed(self):
+        """rad/s."""
+        return self.scene.crank_speed
+
+    @property
+    def crank_acceleration(self):
+        """rad/s2."""
+        return self.scene.crank_acceleration
+
+    @property
+    def loads(self):
+        """Loads, a tuple."""
+        return self.scene.loads
+
+    @cached_property
+    def motor(self) -> Motor | None:
+        """Motor of its drive, None if the file gives none."""
+        if self.table.drive is None:
+            return None
+        return self.tabulated.get(("drive", "motor")) or self.table.drive.motor.motor
+
+    @property
+    def flywheel(self):
+        """Flywheel of its drive, on the crank, kg m2; 0 if the file gives none."""
+        return 0.0 if self.table.drive is None else self.table.drive.flywheel
+
+    @cached_property
+    def _places(self):
+        return parameters.paths(self.table)
+
+    @property
+    def units(self):
+        """SI unit by path of every number that the file gives, defaults among them: "slider.mass", "cam.centre.x".
+
+        Those of the drive are left out: solutions of a variant are at its crank speed, whatever drives it.
+        """
+        return {path: place.unit for path, place in self._places.items()}
+
+    @property
+    def parameters(self):
+        """What stands in the file by path: a number in SI, or the word for one that is derived, "mid-length"."""
+        return {path: parameters.value(self.table, place.steps) for path, place in self._places.items()}
+
+    @property
+    def content(self):
+        """What a case's variant is made of as bytes, the same in every session: its table, and what files held.
+
+        Without its drive, which no solution depends on.
+        """
+        return self.table.model_dump_json(exclude={"drive"}).encode() + b"".join(
+            _bytes(part) for keys, part in self.tabulated.items() if keys[0] != "drive"
+        )
+
+    def varied(self, values) -> "Variant":
+        """The variant with other values at some paths of its file, in SI, as if they stood there.
+
+        What the file derives from others follows: a centre at mid-length, a spring that balances the slider, a cosine
+        law's coupler, counterweights. To vary a number and keep all others, vary the `scene`.
+
+        Parameters
+        ----------
+        values : dict of path to float or array (designs, 1)
+        """
+        known = self._places
+        checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
+        varied = parameters.with_values(self.table, {known[path].steps: value for path, value in values.items()})
+        return made(varied, self.folder, self.tabulated)
+
+    @property
+    def files(self):
+        """Files that it is made from besides the case file, a list of paths."""
+        return [self.folder / name for _, _, name in parameters.files(self.table)]
+
+    def solve(self, angles=720) -> Solution:
+        """Solution at so many crank angles, evenly over the period of the loads from 0, one turn unless they take more.
+
+        The end of the period is left out.
+        """
+        checks.require("solve", checks.count("angles", angles, size=checks.ANGLE))
+        return self.scene.solve(angles)
+
+
+def _bytes(item):
+    """What was read from a file as bytes: arrays, and what is made of them."""
+    if is_dataclass(item):
+        return b"".join(_bytes(getattr(item, column.name)) for column in fields(item))
+    return np.asarray(item).tobytes() if isinstance(item, np.ndarray) else repr(item).encode()
+
+
+def made(table, folder, tabulated):
+    """Variant of a validated table."""
+    scene, balanced = build.built(table, tabulated)
+    return Variant(scene, table, balanced, folder, tabulated)
