@@ -132,6 +132,16 @@ def told(name):
     return ", ".join(re.findall(r"\w+(?=\(|,|$)", ", ".join(re.sub(r"\(.*?\)", "", item.name) for item in items)))
 
 
+def escape_bars(app, what, name, item, options, lines):
+    """Leave ``|x|`` as it is written: no substitution, but a magnitude."""
+    example = False
+    for number, line in enumerate(lines):
+        example = bool(line.strip()) and (example or line.lstrip().startswith(">>>"))
+        if not example:
+            parts = re.split("(``.*?``)", line)
+            lines[number] = "".join(part if part.startswith("``") else part.replace("|", r"\|") for part in parts)
+
+
 def link_names(app, doctree, docname):
     """Let names as ``ks.solve`` in literal text lead to their pages."""
     objects = app.env.domains["py"].objects
@@ -156,5 +166,6 @@ def setup(app):
     sys.modules.update({full(name): found for name, found in modules().items()})
     app.add_directive("api", Api)
     app.connect("builder-inited", write_pages)
+    app.connect("autodoc-process-docstring", escape_bars, priority=900)  # after numpydoc
     app.connect("doctree-resolved", link_names)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -205,7 +205,7 @@ class Swing:
 
     @property
     def asymmetry(self):
-        """Asymmetry coefficient eta = ``|psi_min| / psi_max`` of the study."""
+        """Asymmetry coefficient eta = |psi_min| / psi_max of the study."""
         return abs(self.smallest) / self.largest
 
 
