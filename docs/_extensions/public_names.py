@@ -132,6 +132,12 @@ def told(name):
     return ", ".join(re.findall(r"\w+(?=\(|,|$)", ", ".join(re.sub(r"\(.*?\)", "", item.name) for item in items)))
 
 
+def only_told(app, what, name, item, skip, options):
+    """Leave out members that were not asked for by name where some were, which inherited ones else are not."""
+    asked = options.get("members")
+    return True if isinstance(asked, list | tuple | set) and asked and name not in asked else None
+
+
 def escape_bars(app, what, name, item, options, lines):
     """Leave ``|x|`` as it is written: no substitution, but a magnitude."""
     example = False
@@ -166,6 +172,7 @@ def setup(app):
     sys.modules.update({full(name): found for name, found in modules().items()})
     app.add_directive("api", Api)
     app.connect("builder-inited", write_pages)
+    app.connect("autodoc-skip-member", only_told)
     app.connect("autodoc-process-docstring", escape_bars, priority=900)  # after numpydoc
     app.connect("doctree-resolved", link_names)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
