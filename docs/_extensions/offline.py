@@ -1,4 +1,4 @@
-"""The built pages load nothing from elsewhere: no script, style, font or picture."""
+"""The built pages load nothing from elsewhere, no script, style, font or picture, and little from here."""
 
 import re
 
@@ -8,10 +8,13 @@ LOADED = re.compile(
     r"""<(?:script|img|iframe|source)[^>]*\ssrc=["'](?:https?:)?//[^>]*>|<link[^>]*\shref=["'](?:https?:)?//[^>]*>"""
 )
 IMPORTED = re.compile(r"""(?:@import|url\()\s*["']?(?:https?:)?//[^)"']*""")
+PICTURE = re.compile(r"""<img[^>]*\ssrc=["']([^"':]+)["']""")
+MOST = 300_000
+"""Bytes of pictures on a page."""
 
 
 def check(app, exception):
-    """Stop the build where a page or a style loads from another host."""
+    """Stop the build where a page or a style loads from another host, or a page too many bytes of pictures."""
     if exception or app.builder.format != "html":
         return
     found = {
@@ -22,6 +25,16 @@ def check(app, exception):
     }
     if found:
         raise ExtensionError("loaded from elsewhere:\n" + "\n".join(sorted(found)))
+    sizes = {path.relative_to(app.outdir): pictures(path) for path in app.outdir.rglob("*.html")}
+    large = [f"{page}: {size} bytes of pictures, {MOST} at most" for page, size in sizes.items() if size > MOST]
+    if large:
+        raise ExtensionError("\n".join(large))
+
+
+def pictures(path):
+    """Bytes of the pictures of a page."""
+    files = {(path.parent / name).resolve() for name in PICTURE.findall(path.read_text(encoding="utf-8"))}
+    return sum(file.stat().st_size for file in files if file.exists())
 
 
 def setup(app):
