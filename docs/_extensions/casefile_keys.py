@@ -93,6 +93,7 @@ BY_KEY: dict[str, list[Any]] = {
     "pivot": [["0 mm", "-240 mm"]],
     "pivot_name": ["O3"],
     "points": [9],
+    "poissons_ratio": [0.3],
     "radius": ["300 mm"],
     "ratio": ["across", {"mean |balancing torque|": "6.77"}],
     "seed": [1],
@@ -120,6 +121,7 @@ HEADINGS = {
     "groups": "[[common.groups]]",
     "loads": "[[common.loads]]",
     "balancing": "[variants.best.balancing]",
+    "roller": "[common.roller]",
     "linkage": '[published.linkage."psi max [deg]"]',
     "motor": "[common.drive.motor]",
     "drive": "[common.drive]",
@@ -172,6 +174,35 @@ class Part(NamedTuple):
 
 def sections():
     """Every table of a case file: heading, model, and the keys left out because they stand in another section."""
+    named = list(named_sections())
+    yield from named
+    for model in sorted(reached(model for _, model, _ in named) - {model for _, model, _ in named}, key=repr):
+        yield re.sub(r"(?<!^)([A-Z])", r" \1", model.__name__.removesuffix("Table")).capitalize(), model, ()
+
+
+def reached(models):
+    """Every table that stands in one of these, or in what stands there."""
+    found, left = set(), list(models)
+    while left:
+        model = left.pop()
+        found.add(model)
+        kinds = [kind for field in model.model_fields.values() for kind in tables_within(field.annotation)]
+        left += [kind for kind in kinds if kind not in found]
+    return found - {tables.Table}
+
+
+def tables_within(annotation):
+    """Tables within a type."""
+    for kind, _ in flattened(annotation):
+        if isinstance(kind, type) and issubclass(kind, tables.Table):
+            yield kind
+        else:
+            for part in typing.get_args(kind):
+                yield from tables_within(part)
+
+
+def named_sections():
+    """The sections in the order of the page; tables that it lacks follow."""
     yield "Head of the file", variants.CaseTable, ()
     yield "Every mechanism", variants.MechanismVariant, ()
     common = set(variants.MechanismVariant.model_fields)
@@ -258,7 +289,8 @@ def meaning(model, name):
             return "Which kind it is."
         return parts.MEANINGS.get(f"{word_of(model)}.{name}") or parts.MEANINGS.get(name, "")
     owners = [base for base in model.__mro__ if name in vars(base).get("__annotations__", ())]
-    return model.model_fields[name].description or (texts_below(owners[0]).get(name, "") if owners else "")
+    told = model.model_fields[name].description or (texts_below(owners[0]).get(name, "") if owners else "")
+    return told[:1].upper() + told[1:].removesuffix(".") + "." if told else ""
 
 
 @cache

@@ -1,13 +1,11 @@
 """The case-file reference has every key of the schema, each with a meaning and an example that the schema takes."""
 
 import tomllib
-import typing
 
 import pytest
 
 from kinetostatics.casefile import schema
 from kinetostatics.casefile.schema import MechanismVariant
-from kinetostatics.casefile.schema.tables import Table
 from support.pages import script
 
 KEYS = script("casefile_keys")
@@ -15,29 +13,8 @@ PARTS = KEYS.parts_of_the_reference()
 MODELS = {title: model for title, model, _ in KEYS.sections()}
 
 
-def reached(models):
-    """Every table that stands in one of these, or in what stands there."""
-    found, left = set(), list(models)
-    while left:
-        model = left.pop()
-        found.add(model)
-        kinds = [kind for field in model.model_fields.values() for kind in within(field.annotation)]
-        left += [kind for kind in kinds if kind not in found]
-    return found - {Table}
-
-
-def within(annotation):
-    """Tables within a type."""
-    for kind, _ in KEYS.flattened(annotation):
-        if isinstance(kind, type) and issubclass(kind, Table):
-            yield kind
-        else:
-            for part in typing.get_args(kind):
-                yield from within(part)
-
-
 def test_every_table_of_a_case_file_has_a_section():
-    whole = reached([schema.CaseTable, *schema.VARIANTS.values(), *KEYS.designs.KINDS.values()])
+    whole = KEYS.reached([schema.CaseTable, *schema.VARIANTS.values(), *KEYS.designs.KINDS.values()])
     told = set(MODELS.values()) - {MechanismVariant}
     assert {model.__name__ for model in whole} == {model.__name__ for model in told}
 
