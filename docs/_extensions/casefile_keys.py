@@ -287,10 +287,17 @@ def meaning(model, name):
     if model in schema.MADE_OF:
         if name == "kind":
             return "Which kind it is."
-        return parts.MEANINGS.get(f"{word_of(model)}.{name}") or parts.MEANINGS.get(name, "")
+        known = parts.MEANINGS.get(f"{word_of(model)}.{name}") or parts.MEANINGS.get(name)
+        return known or parameter(schema.MADE_OF[model], name)
     owners = [base for base in model.__mro__ if name in vars(base).get("__annotations__", ())]
     told = model.model_fields[name].description or (texts_below(owners[0]).get(name, "") if owners else "")
     return told[:1].upper() + told[1:].removesuffix(".") + "." if told else ""
+
+
+def parameter(kind, name):
+    """What the docstring of a class says of a parameter."""
+    text = re.search(rf"^{name} : .*\n((?:    .*(?:\n|\Z))+)", inspect.getdoc(kind), flags=re.MULTILINE)
+    return " ".join(text[1].split()) if text else ""
 
 
 @cache
