@@ -24,6 +24,7 @@ c.InlineBackend.rc = {"figure.figsize": (6.4, 3.6), "font.size": 9, "svg.hashsal
     encoding="utf-8",
 )
 os.environ["IPYTHONDIR"] = str(kernel.parents[1])
+os.environ.pop("MPLBACKEND", None)  # another one would show no figures
 
 project = "kinetostatics"
 author = "the kinetostatics developers"
@@ -38,7 +39,6 @@ extensions = [
     "numpydoc",
     "public_names",
     "sphinx.ext.autodoc",
-    "sphinx_design",
 ]
 exclude_patterns = ["_build", "**.ipynb_checkpoints", "README.md"]
 nitpicky = True
@@ -64,7 +64,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "kinetostatics"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-alone = ("index", "start", "casefile", "how_sure", "studies", "gallery", "glossary", "contributors", "search")
+alone = ("index", "start", "casefile", "how_sure", "gallery", "glossary", "contributors", "search")
 html_sidebars = {page: [] for page in alone}
 html_show_sourcelink = False
 html_theme_options = {

@@ -98,6 +98,7 @@ def main():
             kernel.parent.mkdir()
             kernel.write_text(KERNEL, encoding="utf-8")
             os.environ["IPYTHONDIR"] = folder
+            os.environ.pop("MPLBACKEND", None)  # another one would show no figures
             for path in paths:
                 path.write_text(executed(path), encoding="utf-8")
                 print(path.stem, flush=True)
