@@ -9,6 +9,7 @@ import base64
 import io
 import json
 import os
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -71,18 +72,27 @@ def problems(path):
         yield "it shows no picture"
     if any("widget" in kind for kind in shown):
         yield "it holds a widget, which nothing draws on a page"
+    if any("://" in link for output in outputs for link in loaded(output)):
+        yield "it loads something from elsewhere"
     if (size := pictures(outputs)) > MOST:
         yield f"its pictures take {size} bytes, {MOST} at most"
 
 
+def loaded(output):
+    """Links and sources in the HTML of an output."""
+    html = output.get("data", {}).get("text/html", "")
+    return re.findall(r"""(?:href|src)=["']([^"']+)""", html if isinstance(html, str) else "".join(html))
+
+
 def pictures(outputs):
     """Bytes of all pictures."""
-    return sum(
-        len(content if isinstance(content, str) else "".join(content))
+    texts = [
+        (kind, content if isinstance(content, str) else "".join(content))
         for output in outputs
         for kind, content in output.get("data", {}).items()
         if kind.startswith("image/")
-    )
+    ]
+    return sum(len(text if "svg" in kind else base64.b64decode(text)) for kind, text in texts)
 
 
 def main():
