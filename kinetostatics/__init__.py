@@ -103,6 +103,7 @@ if TYPE_CHECKING:
     from .machine.mechanism import Mechanism
     from .machine.pin import Pin
     from .machine.rocker_group import RockerGroup
+    from .machine.roller import Face, Roller
     from .machine.roller_follower import RollerFollower
     from .machine.slider_group import SliderGroup
     from .machine.swinging_follower import SwingingFollower
@@ -111,6 +112,7 @@ if TYPE_CHECKING:
     from .results.comparison import Comparison, compare
     from .results.extremes import Extremes, extremes
     from .results.losses import Losses
+    from .solution.certainty import Uncertainty
     from .solution.compile import Program, compile  # noqa: A004 - the contract's name
     from .solution.group_check import check
     from .solution.scene import Scene, solve
@@ -141,6 +143,7 @@ __all__ = [
     "DriveError",
     "Dyad",
     "Extremes",
+    "Face",
     "FileError",
     "FlatFollower",
     "Force",
@@ -168,6 +171,7 @@ __all__ = [
     "Program",
     "QuantityError",
     "RockerGroup",
+    "Roller",
     "RollerFollower",
     "RollerFriction",
     "Scene",
@@ -181,6 +185,7 @@ __all__ = [
     "Torque",
     "TorsionDamper",
     "TorsionSpring",
+    "Uncertainty",
     "Variant",
     "YokeGroup",
     "balancing",
@@ -241,6 +246,7 @@ _WHERE = {
     ],
     "machine.mechanism": ["Mechanism"],
     "machine.rocker_group": ["RockerGroup"],
+    "machine.roller": ["Face", "Roller"],
     "machine.roller_follower": ["RollerFollower"],
     "machine.pin": ["Pin"],
     "machine.slider_group": ["SliderGroup"],
@@ -250,6 +256,7 @@ _WHERE = {
     "results.comparison": ["Comparison", "compare"],
     "results.extremes": ["Extremes", "extremes"],
     "results.losses": ["Losses"],
+    "solution.certainty": ["Uncertainty"],
     "solution.compile": ["Program", "compile"],
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],

@@ -73,8 +73,8 @@ class AssemblyError(KinetostaticsError, ValueError):
     [(236.443, 303.557)]
     """
 
-    def __init__(self, condition, intervals=()):
-        super().__init__(f'{condition}. Change the lengths, or pass on_gap="nan" to get NaN there and the rest exact')
+    def __init__(self, condition, intervals=(), remedy=', or pass on_gap="nan" to get NaN there and the rest exact'):
+        super().__init__(f"{condition}. Change the lengths{remedy}")
         self.condition = condition
         self.intervals = tuple(intervals)
 

@@ -10,7 +10,7 @@ from ..machine.loads import TURN, Gravity, ProcessForce, Spring, Table, value_of
 from ..numbers.files import read_columns
 from ..solution.scene import Scene
 from . import chain, parameters, schema
-from .pieces import all_of, cam_of, friction_of, guide_of, link_of
+from .pieces import all_of, cam_of, friction_of, guide_of, link_of, roller_of
 
 
 def tabulated(table, folder):
@@ -106,7 +106,8 @@ def _cam_crank_slider(table, read):
     length = _cam_coupler_length(table, cam)
     links = {name: link_of(getattr(table, name)) for name in ("crank", "block", "slider")}
     coupler = link_of(table.coupler, length)
-    return cam_crank_slider(cam, length, guide=guide, assembly=table.assembly, coupler=coupler, **links)
+    others = {"assembly": table.assembly, "roller": roller_of(table.roller)}
+    return cam_crank_slider(cam, length, guide=guide, coupler=coupler, **links, **others)
 
 
 def _cam_coupler_length(table, cam):

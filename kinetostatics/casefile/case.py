@@ -82,7 +82,14 @@ class Case:
         return self.variants[name]
 
     def solve(self, name, angles=720) -> Solution:
-        """Solution of a variant at so many crank angles, evenly over the period of its loads from 0, end excluded."""
+        """Solution of a variant at so many crank angles, evenly over the period of its loads from 0, end excluded.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> ks.load_case("sawframe_2r63").solve("plain", 36).balancing_torque.shape
+        (36,)
+        """
         return self.variant(name).solve(angles)
 
     def compare(self, reference, balanced) -> Comparison:
@@ -90,7 +97,15 @@ class Case:
         return Comparison(self.solve(reference), self.solve(balanced), (reference, balanced))
 
     def comparison_table(self, balanced, reference=None):
-        """Table of dynamic coefficients with the published figures beside ours, as a pandas DataFrame."""
+        """Table of dynamic coefficients with the published figures beside ours, as a pandas DataFrame.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> table = ks.load_case("sawframe_2r63").comparison_table("cam-cosine")
+        >>> table.loc["mean |balancing torque|", "published"]
+        '6.77 (ratio)'
+        """
         table = self.compare(reference or self.reference, balanced).frame()
         printed = {
             quantity: f"{text} ({column})"

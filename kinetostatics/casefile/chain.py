@@ -6,7 +6,7 @@ from ..machine.loads import ProcessForce, Spring, Table
 from ..machine.mechanism import Mechanism
 from ..numbers.leaves import with_fields
 from . import schema
-from .pieces import PartsError, all_of, cam_of, guide_of, link_of
+from .pieces import PartsError, all_of, cam_of, guide_of, link_of, roller_of
 
 
 def chain(table, tabulated):
@@ -35,6 +35,8 @@ def _group(table, cam, guide_angle):
         values["guide"] = guide_of(table)
     if "cam" in values:
         values["cam"] = cam_of(table.cam, cam, guide_angle)
+    if "roller" in values:
+        values["roller"] = roller_of(table.roller)
     middles = {name: part.model_copy(update={"centre": (0.0, 0.0)}) for name, part in links.items() if _at_middle(part)}
     group = kind(**values | {name: link_of(middles.get(name, part)) for name, part in links.items()})
     lengths = {group.own_names[bar.link]: bar.length for bar in group.bars}

@@ -82,7 +82,7 @@ def write_found(path, case, found):
     Raises
     ------
     ParameterError
-        A part of a scene is a table or an object that case files have no text for.
+        A part of a scene is a function or an object that case files have no text for.
     """
     designs = [case.designs[name] for name in found]
     names = dict.fromkeys([case.reference, *(name for item in designs for name in (item.reference, item.source))])

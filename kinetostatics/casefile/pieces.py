@@ -7,6 +7,7 @@ from ..machine import cams
 from ..machine.friction import kind_for
 from ..machine.guide import Guide
 from ..machine.links import Link
+from ..machine.roller import Roller
 from ..numbers.checks import choice
 from . import schema
 
@@ -66,6 +67,11 @@ def cam_of(table, read, guide_angle):
     if isinstance(table, schema.HarmonicTable):
         return cams.Harmonic(table.cosine, table.sine, guide_angle)
     return cams.Circle(table.radius, table.centre)
+
+
+def roller_of(table):
+    """Roller of its table, or None."""
+    return None if table is None else Roller(**dict(table))
 
 
 def friction_of(tables, mechanism):

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -53,9 +54,9 @@ def _require_places(case, names, options):
     if options.out:
         there = f"{options.out} is there already; give another name" if os.path.lexists(options.out) else None
         checks.require("--out", there or files.unwritable(options.out, inputs=case.files, endings=(".toml",)))
-        for name in names:
-            for variant in (case.designs[name].reference, case.designs[name].source):
-                case_text.variant(variant, case.variant(variant).scene)
+        items = [case.designs[name] for name in names]
+        scenes = {name: case.variant(name).scene for item in items for name in (item.reference, item.source)}
+        case_text.tables(Path(options.out), scenes | {item.name: scenes[item.source] for item in items})
 
 
 def _found(item, options):

@@ -6,7 +6,7 @@ balancing       full, partial, optimal counterweights
 linkage         four-bars: swing, transmission, the chain unit
 grashof         their classes
 cam_contact     contact of a roller with its cam: side, curvature, Hertz pressure, limits
-hertz           line contact of two cylinders
+contact_asked   what it is asked with: the roller, both materials, limits
 cam_rollers     the roller itself: spin and sliding, load and life of its pin
 hardness        the pressure that steel bears
 followers       lift-off, surge of springs, torque to start
@@ -18,6 +18,7 @@ progress        bars that count its steps
 search          the search by SciPy's optimisers
 found           its result: the machine, what binds, what it costs
 case_text       scenes as case files
+spread          how numbers spread, and which quantile counts
 robust          quantiles over spreads as what is made least or greatest
 optimisation    any machine under limits
 fronts          the best of one output for each value of another
@@ -34,13 +35,15 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ..machine.profile import Peak
-    from .cam_contact import Contact, contact
+    from .cam_contact import Contact
+    from .contact_asked import contact
     from .followers import Surge, lift_off_speed, lifted, spring_surge, starting_torque
     from .found import Found
     from .fronts import Front, pareto
     from .hardness import hardness_from_pressure, pressure_from_hardness
     from .optimisation import optimise
-    from .robust import Spread, over_spread
+    from .robust import over_spread
+    from .spread import Spread
     from .torque_balanced import TorqueBalancing
     from .torque_balancing import torque_balancing_cam
     from .torque_free import torque_free_cam
@@ -74,10 +77,10 @@ _WHERE = {
     "Found": "found",
     "Front": "fronts",
     "Peak": "cam_contact",
-    "Spread": "robust",
+    "Spread": "spread",
     "Surge": "followers",
     "TorqueBalancing": "torque_balanced",
-    "contact": "cam_contact",
+    "contact": "contact_asked",
     "hardness_from_pressure": "hardness",
     "lift_off_speed": "followers",
     "lifted": "followers",

@@ -1,6 +1,7 @@
 """Scenes written as case files: what a design is, ready for `kinetostatics run` and `ks.load_case`.
 
 Keys and units are those of the parts' own rules, as case files have them; numbers are written with all their digits.
+Tables of loads and cams stand in CSV files beside it, called by its name, the variant and what they are of.
 """
 
 import json
@@ -10,14 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ParameterError
+from ..errors import FileError, ParameterError
 from ..machine.cam_roller import CamRoller
-from ..machine.cams import Circle, CosineLaw
+from ..machine.cams import Circle, CosineLaw, Sampled
 from ..machine.guide import Guide
 from ..machine.harmonic_cam import Harmonic
 from ..machine.links import Link
-from ..machine.loads import KINDS, Gravity
+from ..machine.loads import KINDS, TURN, Gravity, Table
 from ..machine.loads.places import Between, Place
+from ..machine.loads.tables import OVER, VALUES
+from ..machine.roller import Roller
 from ..machine.slider_group import SliderGroup
 from ..numbers import checks
 from ..numbers.files import written_whole
@@ -33,20 +36,38 @@ def write(path, title, scenes, source="", *, comment="", designs=None) -> Path:
     Raises
     ------
     ParameterError
-        A part of a scene is a function, a table or an object that case files have no text for.
+        A part of a scene is a function or an object that case files have no text for.
     FileError
-        The file cannot be written.
+        A file cannot be written, or one of a table is there already.
     """
     path = Path(path)
     parts = [f"# {line}" for line in comment.splitlines()]
     parts += [f"title = {_quoted(title)}"]
     parts += [f"source = {_quoted(source)}"] if source else []
     parts += [f"reference = {_quoted(next(iter(scenes)))}"]
-    parts += [variant(name, scene) for name, scene in scenes.items()]
+    parts += [variant(name, scene, path.stem) for name, scene in scenes.items()]
     parts += [table(f"design.{_key(name)}", raw) for name, raw in (designs or {}).items()]
+    for file, text in tables(path, scenes).items():
+        with written_whole(file) as place:
+            Path(place).write_text(text, encoding="utf-8")
     with written_whole(path) as place:
         Path(place).write_text("\n".join(parts) + "\n", encoding="utf-8")
     return path
+
+
+def tables(path, scenes) -> dict[Path, str]:
+    """Text of each file beside a case file that a table of its scenes stands in.
+
+    Raises
+    ------
+    FileError
+        One of them is there already.
+    """
+    beside = {path.with_name(file): text for name, scene in scenes.items() for file, text in _files(name, scene, path)}
+    there = [str(file) for file in beside if file.exists()]
+    if there:
+        raise FileError(f"{', '.join(there)}: there already; a case file of another name has tables of other names")
+    return beside
 
 
 def table(head, raw) -> str:
@@ -61,10 +82,10 @@ def _plain_text(value):
     return json.dumps(value, ensure_ascii=False)
 
 
-def variant(name, scene) -> str:
-    """Text of a variant of a case file: a scene under a name."""
+def variant(name, scene, stem="case") -> str:
+    """Text of a variant of a case file: a scene under a name; its tables are in files that begin with a stem."""
     head = f"variants.{_key(name)}"
-    keys, tables = _mechanism(scene.mechanism)
+    keys, tables = _mechanism(scene.mechanism, _file(stem, name, "cam"))
     keys["crank_speed"] = _number(scene.crank_speed, "rad/s", "crank_speed")
     if np.any(scene.crank_acceleration):
         keys["crank_acceleration"] = _number(scene.crank_acceleration, "rad/s^2", "crank_acceleration")
@@ -77,7 +98,8 @@ def variant(name, scene) -> str:
         tables.append(("gravity", _keys(item)))
     for joint, friction in scene.friction.items():
         tables.append((f"friction.{_key(joint)}", _keys(friction)))
-    tables += [("[loads]", {"kind": _quoted(_word(item)), **_keys(item)}) for item in others]
+    named = [(item, _file(stem, name, f"load_{number}")) for number, item in enumerate(others, 1)]
+    tables += [("[loads]", {"kind": _quoted(_word(item)), **_keys(item, file)}) for item, file in named]
     for table, own in tables:
         repeated = table.startswith("[")
         opened = f"[[{head}.{table[1:-1]}]]" if repeated else f"[{head}.{table}]"
@@ -85,8 +107,37 @@ def variant(name, scene) -> str:
     return "\n".join(lines)
 
 
-def _mechanism(mechanism):
-    """Keys of a mechanism, and its tables."""
+def _file(stem, variant, what):
+    """Name of the file of a table."""
+    plain = "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in variant)
+    return f"{stem}_{plain}_{what}.csv"
+
+
+def _files(variant, scene, path):
+    """Name and text of each file that a variant's tables stand in."""
+    others = [item for item in scene.loads if not isinstance(item, Gravity)]
+    for number, item in enumerate(others, 1):
+        found = item.value_now
+        if isinstance(found, Table):
+            column, unit = OVER[found.over]
+            of = item.RULES.rules[item.VALUE].rule.unit
+            columns = {f"{column} [{unit}]": found.x, f"{VALUES[of]} [{_spelled(of)}]": found.y}
+            if found.back is not None:
+                columns[f"{VALUES[of]}_back [{_spelled(of)}]"] = found.back
+            yield _file(path.stem, variant, f"load_{number}"), _columns(columns)
+    for group in scene.mechanism.groups:
+        if type(cam := getattr(group, "cam", None)) is Sampled:
+            columns = {"angle [rad]": cam.angle, "radius [m]": cam.samples}
+            yield _file(path.stem, variant, "cam"), _columns(columns)
+
+
+def _columns(columns):
+    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+    return "\n".join([", ".join(columns), *(", ".join(map(repr, row)) for row in rows)]) + "\n"
+
+
+def _mechanism(mechanism, cam_file):
+    """Keys of a mechanism, and its tables; a cam from a table stands in a file."""
     *before, last = mechanism.groups
     crank = _link(mechanism.crank.link)
     keys: dict[str, str] = {}
@@ -96,10 +147,12 @@ def _mechanism(mechanism):
     rollers = [group for group in before if isinstance(group, CamRoller)]
     usual = isinstance(last, SliderGroup) and (last.on, last.pin, last.label) == ("A", "B", "")
     if usual and len(before) == len(rollers) <= 1:
-        own = _keys(last) | (_keys(rollers[0]) if rollers else {})
+        own = _keys(last) | (_keys(rollers[0], cam_file) if rollers else {})
         kept = {key: value for key, value in own.items() if key not in ("on", "pin", "label")}
         return {"mechanism": _quoted("cam-crank-slider" if rollers else "crank-slider"), **keys, **kept}, tables
-    tables += [("[groups]", {"kind": _quoted(_group_word(group)), **_keys(group)}) for group in mechanism.groups]
+    tables += [
+        ("[groups]", {"kind": _quoted(_group_word(group)), **_keys(group, cam_file)}) for group in mechanism.groups
+    ]
     return {"mechanism": _quoted("chain"), "name": _quoted(mechanism.name), **keys}, tables
 
 
@@ -115,14 +168,18 @@ def _word(load):
     return load.PATH.replace("_", " ")
 
 
-def _keys(item):
-    """Keys of a part by its rules; those at their defaults are left out."""
+def _keys(item, file=""):
+    """Keys of a part by its rules; those at their defaults are left out, and a table stands in a file."""
     defaults = {field.name: field.default for field in fields(item)}
     found: dict[str, str] = {}
     for name, rule in item.RULES.rules.items():
         value = getattr(item, name)
-        if value is None or (
-            defaults[name] is not MISSING and type(value) is type(defaults[name]) and value == defaults[name]
+        if (
+            value is None
+            or name == "period"
+            or (  # a table has one, a constant none
+                defaults[name] is not MISSING and type(value) is type(defaults[name]) and value == defaults[name]
+            )
         ):
             continue
         if isinstance(value, Guide):
@@ -130,8 +187,12 @@ def _keys(item):
         elif isinstance(value, Link):
             link = _link(value)
             found |= {name: _inline(link)} if link else {}
+        elif isinstance(value, Roller):
+            found[name] = _inline(_keys(value))
         elif name == "cam":
-            found["cam"] = _cam(value)
+            found["cam"] = _cam(value, file)
+        elif isinstance(value, Table):
+            found[name] = _in_file(value, file)
         else:
             found[name] = _value(value, rule, name)
     return found
@@ -156,6 +217,14 @@ def _value(value, rule, name):
     return _number(value, _spelled(getattr(rule, "unit", "")), name)
 
 
+def _in_file(values, file):
+    """Text of a table of values that stands in a file."""
+    keys = {"file": _quoted(file), "over": _quoted(values.over)}
+    if values.period != TURN:
+        keys["period"] = _quoted(f"{360 * round(values.period / TURN)} deg")
+    return _inline(keys | ({"slider": _quoted(values.slider)} if values.slider is not None else {}))
+
+
 def _guide(guide):
     found = {"guide_angle": _number(guide.guide_angle, "rad", "guide_angle")} if np.any(guide.guide_angle) else {}
     return found | (
@@ -175,7 +244,10 @@ def _link(link):
     return found
 
 
-def _cam(cam):
+def _cam(cam, file):
+    if type(cam) is Sampled:
+        noise = {} if cam.smoothing is None else {"noise": _number(cam.smoothing, "m", "noise")}
+        return _inline({"kind": _quoted("sampled"), "table": _quoted(file), **noise})
     if type(cam) not in CAMS:
         raise ParameterError(
             f"case file: has no text for a cam of the class {type(cam).__name__}; write it by cam.export as .csv, and "

@@ -174,7 +174,16 @@ class Balanced:
         return pd.DataFrame.from_dict(rows, orient="index").rename_axis("link")
 
     def effect(self, *, crank_speed, crank_acceleration=0.0, loads=()):
-        """The price and the gain: largest forces, moments and torque before and after, as a pandas DataFrame."""
+        """The price and the gain: largest forces, moments and torque before and after, as a pandas DataFrame.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> mower = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0))
+        >>> found = ks.balancing.partial(mower, "overall", crank=ks.Counterweight(arm=-0.05))
+        >>> found.effect(crank_speed=62.8).loc["mass of links [kg]"].round(3).to_dict()
+        {'before': 7.0, 'after': 10.167, 'change [%]': 45.238}
+        """
         import pandas as pd
 
         angle = np.zeros(1)

@@ -11,8 +11,6 @@ from ..results.reductions import Output, parsed
 
 _FORM = re.compile(r"(?P<output>[^<>=≤≥]*?)\s*(?P<relation><=|>=|==?|≤|≥)\s*(?P<value>[^<>=≤≥]*)")
 _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
-TOPS = {"largest": (1.0,), "smallest": (-1.0,), "largest_absolute": (1.0, -1.0)}
-"""By reduction: which sides of a quantity its extreme is on."""
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,12 @@ import numpy as np
 
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
+from . import measures
 from .demands import Demand
 from .derived import scene_of
 from .problem import compared_value
-from .search import side_of
+from .robust import quantile
+from .search import is_raised, side_of
 
 TAKEN = ("reference", "before")
 """Variants of the case file beside the design's own."""
@@ -45,6 +47,8 @@ class Found:
         The goal that each start came to; infinite, or a ratio of 0, where it kept not its limits.
     bound : float
         Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
+    spread : (Output, Spread, float) or None
+        Of a robust design what a quantile of was made least, or greatest (sign -1), and over what.
 
     Examples
     --------
@@ -72,6 +76,7 @@ class Found:
     evaluations: int = 0
     starts: list[float] = field(default_factory=list)
     bound: float = np.inf
+    spread: tuple | None = field(default=None, repr=False)
 
     def __repr__(self):
         numbers = f"{len(self.values)} numbers of {self.scene.mechanism.name} varied"
@@ -86,6 +91,14 @@ class Found:
         for limit in self.limits:
             limits.setdefault(str(limit.output), []).append(limit)
         rows = {}
+        if self.spread is not None:
+            output, spread, sign = self.spread
+            before, after = (
+                quantile(scene, self.reference, output, spread, sign) if output.quantity in known(scene) else np.nan
+                for scene in (self.before, self.scene)
+            )
+            alone = {"limit": "", "binds": False, "price": np.nan}
+            rows[f"{spread.quantile:g} quantile of {output.column}"] = {"before": before, "after": after, **alone}
         for output in self.outputs:
             own = limits.get(str(output), [])
             rows[output.column] = {
@@ -160,8 +173,7 @@ def prices(problem, goal, limits, values):
     """
     from scipy.optimize import lsq_linear
 
-    output, sign = goal
-    slopes = sign * (output(values) if callable(output) else problem.output(output, values))[1]
+    slopes = _slopes(problem, goal, values)
     reach = problem.high - problem.low
     names, columns, free = [], [], []
     for limit in limits:
@@ -181,12 +193,27 @@ def prices(problem, goal, limits, values):
     matrix = np.array(columns).T * reach[:, None]
     weight = np.linalg.norm(matrix, axis=0)
     weight[weight == 0] = 1.0
-    low = np.where(free, -np.inf, 0.0)
-    solved = lsq_linear(matrix / weight, -slopes * reach, (low, np.full(low.size, np.inf)))
+    first, others = slopes[:, 0] * reach, (slopes[:, 1:] - slopes[:, :1]) * reach[:, None]
+    shares = others.shape[1]  # of the goal's peaks beside the first, where several compete
+    low = np.concatenate([np.where(free, -np.inf, 0.0), np.zeros(shares)])
+    solved = lsq_linear(np.hstack([matrix / weight, others]), -first, (low, np.full(low.size, np.inf)))
     found: dict[str, float] = {}
-    for name, price in zip(names, solved.x / weight, strict=True):
+    for name, price in zip(names, solved.x[: len(names)] / weight, strict=True):
         found[name] = found.get(name, 0.0) + float(price)
     return tuple(found), found
+
+
+def _slopes(problem, goal, values):
+    """Derivatives (n, peaks) of the goal, of a largest value those of each peak as high as it, the highest first."""
+    output, sign = goal
+    if callable(output):
+        return sign * output(values)[1][:, None]
+    if not is_raised(goal):
+        return sign * problem.output(output, values)[1][:, None]
+    heights, slopes = measures.bounded(output.reduction, problem.curves(values)[output.quantity], problem.turns)
+    order = np.argsort(-heights)
+    near = order[heights[order] >= heights.max() - BINDS * abs(heights.max())]
+    return slopes[:, near]
 
 
 def found_of(problem, goal, limits, reached, outputs, label, **more):
@@ -203,5 +230,6 @@ def found_of(problem, goal, limits, reached, outputs, label, **more):
         tuple(outputs),
         active,
         cost,
+        spread=(goal.output.output, goal.output.spread, goal.sign) if callable(goal.output) else None,
         **more,
     )

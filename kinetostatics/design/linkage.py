@@ -71,7 +71,7 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     )
     if pivot_x is None:
         square = (coupler_length - crank_length) * (coupler_length + crank_length)
-        if np.any(square <= 0):
+        if checks.known(square) and np.any(square <= 0):
             raise ParameterError(
                 f"chain unit: parallel start needs a coupler longer than the crank, got {np.min(coupler_length)} m and "
                 f"{np.max(crank_length)} m; give pivot_x for a free start"
@@ -205,7 +205,7 @@ class Swing:
 
     @property
     def asymmetry(self):
-        """Asymmetry coefficient eta = |psi_min| / psi_max of the study."""
+        """Asymmetry coefficient ``eta = |psi_min| / psi_max`` of the study."""
         return abs(self.smallest) / self.largest
 
 

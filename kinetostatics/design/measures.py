@@ -7,10 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..results.reductions import REACH, THROUGH
+from ..results.peaks import REACH, THROUGH
+from ..results.reductions import gained
 
 SECTORS = 72
 """Parts of the period whose largest values are limited one by one: where peaks compete, each counts."""
+WIDER = 12
+"""The same where each largest value is taken with each smallest."""
+SIDES = {"largest": (1.0,), "smallest": (-1.0,), "largest_absolute": (1.0, -1.0), "swing": (1.0, -1.0)}
+"""By reduction that is a largest value: which sides of a quantity, or its integral, its extreme is on."""
 _AROUND = np.arange(-REACH, REACH + 1)
 _ORDERS = np.arange(2 * REACH + 1)
 
@@ -29,11 +34,14 @@ def size(values, slopes) -> Curve:
     return Curve(found, np.einsum("cn,kcn->kn", towards, slopes))
 
 
-def reduced(reduction, curve):
-    """Value of a reduction, and its derivatives (n,)."""
+def reduced(reduction, curve, turns=1):
+    """Value of a reduction, and its derivatives (n,), of a curve over some turns."""
     if reduction in WEIGHTED:
         value, weights = WEIGHTED[reduction](curve.values)
         return value, curve.slopes @ weights
+    if reduction == "swing":
+        value, slopes = reduced("range", Curve(gained(curve.values), gained(curve.slopes)))
+        return turns * value, turns * slopes
     if reduction == "range":
         (high, above), (low, below) = (top(curve, side) for side in (1.0, -1.0))
         return high + low, above + below
@@ -43,7 +51,21 @@ def reduced(reduction, curve):
         side = 1.0 if reduction == "largest" else -1.0
         value, slopes = top(curve, side)
         return side * value, side * slopes
-    return _harmonic(curve, int(reduction.removeprefix("harmonic_")))
+    return _harmonic(curve, turns * int(reduction.removeprefix("harmonic_")))
+
+
+def bounded(reduction, curve, turns=1):
+    """Values (parts,) whose largest is a reduction of `SIDES`, of "smallest" its negative, with derivatives (n, parts).
+
+    Where peaks compete, each counts.
+    """
+    if reduction != "swing":
+        parts = [tops(curve, side) for side in SIDES[reduction]]
+        return np.concatenate([values for values, _ in parts]), np.concatenate([slopes for _, slopes in parts], axis=1)
+    energy = Curve(turns * gained(curve.values), turns * gained(curve.slopes))
+    (high, above), (low, below) = (tops(energy, side, WIDER) for side in SIDES[reduction])
+    pairs = above[:, :, None] + below[:, None, :]
+    return np.add.outer(high, low).ravel(), pairs.reshape(len(pairs), -1)
 
 
 def top(curve, side):

@@ -5,21 +5,25 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..drive.sizing import flywheel
 from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..numbers import checks
 from ..results.extremes import extrema
-from .demands import TOPS, Demand, demands, wanted
+from .demands import Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
 from .progress import shown
-from .robust import Sampled, not_spread
+from .robust import Sampled
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
+from .spread import not_spread
 
 ANGLES = 720
 """Crank angles over the period."""
 FEWEST_ANGLES = 12
 """Crank angles below which curves say nothing."""
+TRUE = ("largest", "smallest", "largest_absolute", "range")
+"""Reductions whose true values are true extremes."""
 TIGHTER = 4
 """How often limits are drawn in until true extremes keep them."""
 
@@ -52,8 +56,8 @@ def optimise(
     vary : dict of path to (low, high)
         Numbers in SI or texts with units: ``{"spring.stiffness": ("600 kN/m", "900 kN/m")}``.
     minimise, maximise : str
-        One of the two: an output as sweeps have them, "mean_absolute balancing_torque", "largest O",
-        "ratio mean_absolute balancing_torque" ...
+        One of the two: an output as sweeps have them, "mean_absolute balancing_torque", "largest O", "largest
+        contact_pressure", "swing balancing_torque", "ratio mean_absolute balancing_torque" ...
     limits : sequence of str
         "largest O <= 0.75 kN", "largest slider_position = 2.3 m", "ratio mean_absolute balancing_torque >= 50" ...
     variant, reference : str
@@ -285,7 +289,9 @@ def true_excess(limit, scene):
 
 def true_extreme(output, scene):
     """Value of an output of a scene; extremes are true ones."""
-    if output.ratio or output.reduction not in (*TOPS, "range"):
+    if (output.reduction, output.quantity, output.ratio) == ("swing", "balancing_torque", False) and scene.crank_speed:
+        return flywheel(scene, 1.0).energy
+    if output.ratio or output.reduction not in TRUE:
         return true_value(output, scene)
     low, high = extrema(scene.solve(12), output.quantity).range
     if output.reduction == "range":

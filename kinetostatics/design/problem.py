@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import KinetostaticsError, ParameterError
+from ..machine.loads import TURN
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
@@ -43,6 +44,7 @@ class Problem:
         self.names = tuple(vary)
         scene = scene_of(source)
         self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
+        self.turns = turns_of(scene)
         self.derived = Derived(source, self.names)
         self.quantities = tuple(dict.fromkeys(quantities))
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
@@ -74,7 +76,7 @@ class Problem:
 
     def output(self, output, values):
         """Value of an output of a design, and its derivatives."""
-        found, slopes = measures.reduced(output.reduction, self.curves(values)[output.quantity])
+        found, slopes = measures.reduced(output.reduction, self.curves(values)[output.quantity], self.turns)
         if not output.ratio:
             return found, slopes
         above, rises = self._compared.output(output, values)
@@ -172,7 +174,13 @@ def compared_value(output, scene, reference):
 def true_value(output, scene, angles=5760):
     """Value of an output of a scene, so many samples that it is true to rounding where the scene is smooth."""
     values = values_of(scene.solve(angles), output.quantity)
-    return float(own(output).reduced(np.broadcast_to(values, (angles,))[None])[0])
+    found, _ = own(output).estimated(np.broadcast_to(values, (angles,))[None], turns_of(scene))
+    return float(found[0])
+
+
+def turns_of(scene):
+    """Turns after which a scene repeats."""
+    return round(scene.period / TURN)
 
 
 def bounds(source, vary):
@@ -189,9 +197,12 @@ def bounds(source, vary):
             f", got {checks.shown(vary)}"
         )
     known, found, problems = source.units, [], []
+    own, scene = source.parameters, scene_of(source).parameters
     for path, given in vary.items():
         problem = checks.choice("parameter", path, tuple(known))
-        if problem is None:
+        if problem is None and own[path] is None and path not in scene:
+            problem = f"{path} is not told in the source, and absent from its scene; give it a value to begin with"
+        elif problem is None:
             try:
                 low, high = given
                 pair = [to_si(end, known[path]) if isinstance(end, str) else float(end) for end in (low, high)]

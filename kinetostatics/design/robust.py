@@ -4,23 +4,21 @@ Each sample is the design with its own deviations, the same whatever the design,
 quantile is Harrell and Davis's mean of ordered samples, which changes smoothly with the design, by exact derivatives.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from ..errors import KinetostaticsError, ParameterError
+from ..errors import KinetostaticsError
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
-from ..numbers import checks, spreads
-from ..numbers.units import base_factor, factor
+from ..numbers import checks
 from ..solution.compile import compile as compiled
 from . import measures
 from .demands import wanted
 from .derived import Derived, scene_of
-from .problem import chosen, own
+from .problem import chosen, own, turns_of
+from .spread import deviations, harrell_davis, not_spread, samples_problem
 
 ANGLES, TOGETHER = 180, 16
 """Crank angles of each sample, and samples computed at a time."""
@@ -28,81 +26,6 @@ SPEED = "crank_speed"
 NARROWED = 30
 """Steps of the golden section that trims a speed: to a millionth of the range."""
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
-
-
-@dataclass(frozen=True)
-class Spread:
-    """How numbers spread, and which quantile of an output counts; for `optimise` and `torque_free_cam`.
-
-    Parameters
-    ----------
-    quantile : float
-        Between 0 and 1: of an output to be made greatest that which few fall below, 0.05.
-    spreads : mapping of path to text
-        Deviations from the design: "normal 0 mm +- 0.05 mm", "-2..2 mm", and in per cent of the design's value "normal
-        0 % +- 0.5 %". What a text spreads about does not count, so the texts of a case's [tolerances] will do.
-    samples : int
-        While it is searched; a power of two.
-    trim : float
-        Share of the design's crank speed within which each machine's own is set to what suits it best.
-    seed : int
-        Of the scrambled Sobol sequence.
-
-    Raises
-    ------
-    ParameterError
-        The quantile is not between 0 and 1, or a text cannot be read.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import kinetostatics as ks
-    >>> spread = ks.design.Spread(0.95, {"spring.stiffness": "normal 0 % +- 1 %"})
-    >>> spring = ks.Spring(673e3, free_position=2.0)
-    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5, loads=[spring])
-    >>> found = ks.design.over_spread(saw, "rms balancing_torque", spread, samples=64)
-    >>> print(f"{np.quantile(found, spread.quantile) / found.min():.2f}")
-    1.05
-    """
-
-    quantile: float
-    spreads: Mapping[str, str]
-    samples: int = 256
-    trim: float = 0.0
-    seed: int = field(default=0)
-
-    def __post_init__(self):
-        checks.require(
-            "spread",
-            None
-            if isinstance(self.quantile, float) and 0 < self.quantile < 1
-            else (f"quantile must lie between 0 and 1, got {self.quantile!r}"),
-            None
-            if isinstance(self.spreads, Mapping) and self.spreads
-            else ('spreads must be a dict of path to text, such as {"slider.mass": "normal 0 % +- 1 %"}'),
-            _samples_problem(self.samples),
-            checks.single("trim", self.trim, low=0.0, high=1.0)[1],
-            checks.seed("seed", self.seed),
-        )
-        spreads.distributions(self.spreads)
-
-
-MOST_SAMPLES = 2**20
-
-
-def _samples_problem(samples):
-    """What is wrong with a number of samples, as a sentence, or None."""
-    whole = isinstance(samples, int) and 1 < samples <= MOST_SAMPLES
-    if whole and not samples & (samples - 1):
-        return None
-    return f"samples must be a power of two, up to {MOST_SAMPLES}, got {checks.shown(samples)}"
-
-
-def not_spread(name, value):
-    """What is wrong with what must be a `Spread`, or None."""
-    if isinstance(value, Spread):
-        return None
-    return f'{name} must be a Spread, as ks.design.Spread(0.05, {{"slider.mass": ...}}), got {checks.shown(value)}'
 
 
 class Sampled:
@@ -113,8 +36,8 @@ class Sampled:
         scene = scene_of(problem.source)
         checks.require("spread", *(checks.choice("parameter", path, tuple(scene.units)) for path in spread.spreads))
         self.count = spread.samples if samples is None else samples
-        self._shares, self._deviations = _deviations(spread, scene.units, self.count)
-        self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
+        self._shares, self._deviations = deviations(spread, scene.units, self.count)
+        self.angle, self.turns = np.linspace(0.0, scene.period, angles, endpoint=False), turns_of(scene)
         self._derived: Any = Derived(problem.source, problem.names) if problem.names else None
         designed = self._derived.paths if self._derived else ()
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
@@ -122,7 +45,7 @@ class Sampled:
         zeros = [path for path in self.paths if self._own[path] == 0.0]
         self.program = compiled(scene, output.quantity, zeros, problem.engine)
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
-        self._weights = _harrell_davis(spread.quantile, self.count)
+        self.weights = harrell_davis(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
 
@@ -133,7 +56,7 @@ class Sampled:
         except KinetostaticsError:  # a machine within the spread that cannot be built
             return np.nan, np.full(values.size, np.nan)
         order = np.argsort(found)
-        return self._weights @ found[order], self._weights @ slopes[order]
+        return self.weights @ found[order], self.weights @ slopes[order]
 
     def outputs(self, values):
         """The output of each sample."""
@@ -167,7 +90,7 @@ class Sampled:
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
             own_slopes = slopes[place] if sloped else np.zeros((0, curve.size))
-            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes))
+            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes), self.turns)
             if self.output.ratio:
                 value, row = above[place] / value, -above[place] / value**2 * row
             found[place] = value
@@ -191,7 +114,11 @@ class Sampled:
 
     def _above(self, numbers):
         """The reference's output for each sample."""
-        return own(self.output).reduced(self._of_reference(numbers)) if self.output.ratio else None
+        return self._reduced(self._of_reference(numbers)) if self.output.ratio else None
+
+    def _reduced(self, curves):
+        """The output, not its ratio, of curves (samples, N)."""
+        return own(self.output).estimated(curves, self.turns)[0]
 
     def _of_reference(self, numbers):
         """Curves of the reference, with those of the numbers that spread that it has too."""
@@ -207,15 +134,16 @@ class Sampled:
         slow, fast = (self._at_speed(numbers, 1.0 + side * self.spread.trim) for side in (-1.0, 1.0))
         (low, low_slopes), (high, high_slopes) = (self._curves(at, changes, sloped) for at in (slow, fast))
         below, above = (self._of_reference(at) if self.output.ratio else None for at in (slow, fast))
-        reduced = own(self.output).reduced
 
         def outputs(share):
-            found = reduced(_between(low, high, share[:, None]))
-            return self.sign * (reduced(_between(below, above, share[:, None])) / found if self.output.ratio else found)
+            found = self._reduced(_between(low, high, share[:, None]))
+            if self.output.ratio:
+                found = self._reduced(_between(below, above, share[:, None])) / found
+            return self.sign * found
 
         share = _least(outputs, len(low))[:, None]
         slopes = _between(low_slopes, high_slopes, share[..., None]) if sloped else None
-        compared = reduced(_between(below, above, share)) if self.output.ratio else None
+        compared = self._reduced(_between(below, above, share)) if self.output.ratio else None
         return _between(low, high, share), slopes, compared
 
     def _at_speed(self, numbers, share):
@@ -284,11 +212,25 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     >>> round(float(np.quantile(found, 0.05)), 1)
     5.2
     """
-    checks.require("over_spread", not_spread("spread", spread), _samples_problem(samples))
+    checks.require("over_spread", not_spread("spread", spread), samples_problem(samples))
     item, compared = chosen(source, variant, reference)
     text = wanted(output, scene_of(item))
-    bare = SimpleNamespace(source=item, reference=compared, names=(), engine="numpy", start=np.empty(0))
-    return Sampled(bare, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+    return _fixed(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+
+
+def quantile(scene, reference, output, spread, sign):
+    """The quantile of an output of a scene over its spread; NaN where a machine within it cannot be built."""
+    try:
+        sampled = _fixed(scene, reference, output, spread, sign)
+        return float(sampled.weights @ np.sort(sampled.outputs(np.empty(0))))
+    except KinetostaticsError:
+        return np.nan
+
+
+def _fixed(scene, reference, output, spread, sign, samples=None):
+    """An output over a spread of a scene of which no design varies anything."""
+    bare = SimpleNamespace(source=scene, reference=reference, names=(), engine="numpy", start=np.empty(0))
+    return Sampled(bare, output, spread, sign, samples)
 
 
 def _between(one, other, share):
@@ -309,31 +251,3 @@ def _least(function, count):
         inner, outer = np.where(left, new, outer), np.where(left, inner, new)
         at_inner, at_outer = np.where(left, value, at_outer), np.where(left, at_inner, value)
     return np.where(at_inner < at_outer, inner, outer)
-
-
-def _deviations(spread, known, count):
-    """Which numbers deviate in shares of their own value, and deviations (count,) of each."""
-    from scipy.stats import qmc
-
-    found = spreads.distributions(spread.spreads)
-    uniform = qmc.Sobol(len(found), rng=spread.seed).random(count)
-    shares, deviations = set(), {}
-    for (path, (distribution, unit)), column in zip(found.items(), uniform.T, strict=True):
-        deviations[path] = distribution.ppf(column) - distribution.median()
-        if unit.strip() in ("%", "percent"):
-            shares.add(path)
-            deviations[path] = deviations[path] * base_factor(unit)
-            continue
-        try:
-            deviations[path] = deviations[path] * factor(unit, known[path])
-        except ValueError as error:
-            raise ParameterError(f"spread: {path}: {error}") from None
-    return shares, deviations
-
-
-def _harrell_davis(quantile, count):
-    """Weights of the ordered samples in a quantile."""
-    from scipy.special import betainc
-
-    first, second = (count + 1) * quantile, (count + 1) * (1.0 - quantile)
-    return np.diff(betainc(first, second, np.linspace(0.0, 1.0, count + 1)))

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import measures
-from .demands import TOPS, Demand
+from .demands import Demand
 
 ROUNDS = 8
 """How often the variables are turned anew before a search ends."""
@@ -123,13 +123,10 @@ def side_of(problem, limit, values):
     """By how much a design exceeds a limit (parts,), not positive where it is kept, and derivatives (n, parts)."""
     output, relation = limit.output, limit.relation
     sign = -1.0 if relation == ">=" else 1.0
-    sides = TOPS.get(output.reduction, ())
-    bounded = bool(sides) and not output.ratio and relation != "="
+    bounded = output.reduction in measures.SIDES and not output.ratio and relation != "="
     if bounded and (relation == "<=") == (output.reduction != "smallest"):
-        curve = problem.curves(values)[output.quantity]
-        parts = [measures.tops(curve, side) for side in sides]
-        excess = np.concatenate([found for found, _ in parts]) - sign * limit.value
-        return excess, np.concatenate([slopes for _, slopes in parts], axis=1)
+        found, slopes = measures.bounded(output.reduction, problem.curves(values)[output.quantity], problem.turns)
+        return found - sign * limit.value, slopes
     found, slopes = problem.output(output, values)
     return np.array([sign * (found - limit.value)]), sign * slopes[:, None]
 
@@ -139,7 +136,7 @@ class _Turned:
 
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
-        self.raised = _is_raised(goal)
+        self.raised = is_raised(goal)
         self._last: tuple[Any, Any] = (None, None)
         first = self.reached(start)
         self.unit = abs(first) or 1.0
@@ -252,8 +249,8 @@ class _Turned:
         return np.append(found, np.nan_to_num(-excess / self.unit, nan=-FAR)), np.vstack([rows, np.nan_to_num(raised)])
 
 
-def _is_raised(goal):
+def is_raised(goal):
     """Whether the goal is a largest value, which an unknown of its own bounds."""
     if callable(goal.output) or goal.output.ratio:
         return False
-    return goal.output.reduction in TOPS and (goal.sign > 0) == (goal.output.reduction != "smallest")
+    return goal.output.reduction in measures.SIDES and (goal.sign > 0) == (goal.output.reduction != "smallest")

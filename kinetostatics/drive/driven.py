@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import DriveError, NotGivenError
+from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NONE
 from ..machine.loads import TURN, is_given, value_of
 from ..mechanics.pushes import title_of
@@ -197,10 +197,17 @@ class Driven:
         """The state, where all of it is finite; else what `solve` says of these crank angles."""
         finite = np.isfinite(state.torque).all() and np.isfinite(state.inertia).all()
         if not (finite and state.closure.min(initial=0.0) >= 0.0):
-            self.scene.solve(np.ravel(angle))
+            self._require_closing(angle)
         if not finite:
             raise DriveError(f"{self.scene.mechanism.name}: the loads have no finite torque at some crank angles")
         return state
+
+    def _require_closing(self, angle):
+        """Say where the machine does not close, which no drive turns."""
+        try:
+            self.scene.solve(np.ravel(angle))
+        except AssemblyError as error:
+            raise AssemblyError(error.condition, error.intervals, ": a drive turns the crank all round") from None
 
     def _require_no_acceleration(self, owner):
         if all(map(is_given, self.scene.loads)):

@@ -162,11 +162,31 @@ class Running(Powers):
         return self.flywheel - (0.0 if self.motor is None else self.motor.inertia_at_crank)
 
     def with_flywheel(self, inertia):
-        """Running of the same machine under the same motor with another flywheel on the crank, kg m2."""
+        """Running of the same machine under the same motor with another flywheel on the crank, kg m2.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> work = ks.ProcessForce(ks.Table([0.15, 0.25], [-200.0, -200.0], over="travel", back=[0.0, 0.0]))
+        >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=work)
+        >>> run = ks.drive.steady(pump, ks.drive.Motor.linear(20.0, 105.0), flywheel=0.05)
+        >>> run.with_flywheel(0.5).fluctuation < run.fluctuation
+        True
+        """
         return self._again(inertia)
 
     def flywheel_for(self, fluctuation):
-        """Flywheel on the crank with which the same machine has a coefficient of fluctuation, kg m2, or 0."""
+        """Flywheel on the crank with which the same machine has a coefficient of fluctuation, kg m2, or 0.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> work = ks.ProcessForce(ks.Table([0.15, 0.25], [-200.0, -200.0], over="travel", back=[0.0, 0.0]))
+        >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=work)
+        >>> run = ks.drive.steady(pump, ks.drive.Motor.linear(20.0, 105.0), flywheel=0.05)
+        >>> print(f"{run.flywheel_for(0.02):.3f} kg m2")
+        0.108 kg m2
+        """
         wanted = fluctuation_wanted("flywheel_for", fluctuation)
         unit = self.flywheel + self._state.inertia.max()
         return flywheel_for(wanted, self.with_flywheel, unit)[0]

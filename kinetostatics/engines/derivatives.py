@@ -38,13 +38,20 @@ def _adjoints(graph, output, parameters):
     for node in needed([output]):
         if any(part in wanted for part in node.arguments if isinstance(part, Node)):
             wanted.add(node)
+    found = adjoints(graph, output, wanted)
+    return tuple(found.get(parameter, 0.0) for parameter in parameters)
+
+
+def adjoints(graph, output, wanted):
+    """Derivatives of one output by each of the nodes wanted that it hangs on: a dict of nodes or numbers."""
     parts: dict[Node, list] = {output: [1.0]}
+    found = {}
     for node in reversed(needed([output])):
         if node in parts and node in wanted:
-            whole = parts[node] = [_total(parts[node])]
+            whole = found[node] = _total(parts[node])
             for argument, partial in _partials(graph, node, wanted):
-                parts.setdefault(argument, []).append(_times(partial, whole[0]))
-    return tuple(parts[parameter][0] if parameter in parts else 0.0 for parameter in parameters)
+                parts.setdefault(argument, []).append(_times(partial, whole))
+    return found
 
 
 def _times(one, other):

@@ -13,6 +13,7 @@ from ..errors import NotGivenError
 from ..mechanics.quantities import all_found, of_scene
 from ..numbers.elementary import read_only, stack
 from . import programs
+from .bounds import CAP
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,12 @@ class Kernels:
         state = state if self.way is None else replace(state, way=self.way)
         names = all_found(state) if names is None else names
         return {name: self._values(state, name) for name in names}
+
+    def with_bounds(self, state, names, tight=False):
+        raise NotGivenError(
+            f"{state.mechanism.name}: bounds belong to recorded arithmetic, and this solution is computed by the "
+            "kernels themselves, or in another way; solve it with plain numbers"
+        )
 
     def _values(self, state, name):
         if name == "closure":
@@ -61,6 +68,25 @@ class Recorded:
         if not (state.loads_are_given or np.isfinite(rows).all()):
             state.pushes, state.wrenches  # noqa: B018  an error if a load is no number where the mechanism closes
         return program.recording.named(read_only(rows))
+
+    def with_bounds(self, state, names, tight=False):
+        """Values by name, and by name bounds on their rounding errors, infinite or NaN where there is none.
+
+        Tight ones take several times as long; where a sign is not sure they may be the larger ones.
+
+        Raises
+        ------
+        NotGivenError
+            The kernels cannot be recorded, or code of the user's rounds in a way that is not known.
+        """
+        if not is_plain(state.crank_angle):
+            return KERNELS.with_bounds(state, names, tight)
+        program, leaves = programs.of(state, names)
+        rows = program.bounded(tight).run(state, leaves, self.compiled)
+        count = len(program.outputs)
+        named = program.recording.named
+        small = all(np.all(np.abs(leaf) <= CAP) for leaf in (*leaves.numbers, *leaves.tables))
+        return named(rows[:count]), named(rows[count:] if small else np.full_like(rows[count:], np.inf))
 
 
 def is_plain(angle):

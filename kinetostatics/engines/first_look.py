@@ -2,7 +2,8 @@
 
 from ..machine import hints
 from . import writing
-from .programs import PLAIN, made
+from .operations import PLAIN
+from .programs import made
 from .record import recorded
 from .trace import needed
 

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError, QuantityError
-from ..numbers.elementary import ROUNDING
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves
 from . import loops, writing
+from .bounds import Bounds
 from .compiled import _loaded, available
 from .derivatives import gradients
+from .operations import ARRAYS, BY_DESIGN, PLAIN
 from .recent import kept_for_same_angles
 from .record import record
 from .trace import needed, operations
@@ -42,6 +43,7 @@ class Program:
         self.recording = recording
         self.outputs = recording.outputs if outputs is None else outputs
         self._slopes: dict[tuple[int, ...], Program] = {}
+        self._bounded: dict[bool, Program] = {}
         self._computed = 0.0
 
     def by_parameters(self, places):
@@ -63,6 +65,20 @@ class Program:
             self._slopes[places] = Program(recording, (*self.outputs, *(part for row in rows for part in row)))
         return self._slopes[places]
 
+    def bounded(self, tight=False):
+        """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
+
+        Raises
+        ------
+        NotGivenError
+            Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
+        """
+        if tight not in self._bounded:
+            bounds = Bounds(self.recording.graph, self.recording.inputs)
+            found = map(bounds.tight, self.outputs) if tight else bounds.of(self.outputs)
+            self._bounded[tight] = Program(self.recording, (*self.outputs, *found))
+        return self._bounded[tight]
+
     @cached_property
     def unrecorded(self):
         """Names of code of the user's behind the outputs that could not be recorded."""
@@ -76,7 +92,7 @@ class Program:
     @cached_property
     def _buffered(self):
         source, count = writing.buffered_line(self.outputs)
-        return [made(source, _ARRAYS | by_design) for by_design in (PLAIN, _BY_DESIGN)], count
+        return [made(source, ARRAYS | by_design) for by_design in (PLAIN, BY_DESIGN)], count
 
     @cached_property
     def loop(self):
@@ -210,75 +226,6 @@ def _buffers(count, shape):
     if held is None or held.size < size:
         held = _memory.held = np.empty(max(size, 1))
     return held[:size].reshape(count, *shape)
-
-
-# What operations are called on plain numbers, and on arrays
-
-
-def _plain_root(square, unit):
-    if square > 0.0:
-        return math.sqrt(square)
-    return 0.0 if square >= -ROUNDING * unit else math.nan
-
-
-def _plain_divisor(root, unit):
-    return unit if root < unit else root
-
-
-def _root(square, unit):
-    return np.where(square >= -ROUNDING * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
-
-
-def _root_of(square, unit, out):
-    np.maximum(square, 0.0, out=out)
-    np.sqrt(out, out)
-    np.copyto(out, np.nan, where=np.less(square, -ROUNDING * unit))
-
-
-def _sqrt(square):
-    return math.sqrt(square) if square >= 0.0 else math.nan
-
-
-PLAIN = {
-    "sin": lambda angle: float(np.sin(angle)),
-    "cos": lambda angle: float(np.cos(angle)),
-    "atan": lambda slope: float(np.arctan(slope)),
-    "sqrt": _sqrt,
-    "abs": abs,
-    "copysign": math.copysign,
-    "root": _plain_root,
-    "divisor": _plain_divisor,
-    "nan": math.nan,
-    "inf": math.inf,
-}
-_BY_DESIGN = {
-    "sin": np.sin,
-    "cos": np.cos,
-    "atan": np.arctan,
-    "sqrt": np.sqrt,
-    "abs": np.abs,
-    "copysign": np.copysign,
-    "root": _root,
-    "divisor": np.maximum,
-    "nan": math.nan,
-    "inf": math.inf,
-}
-_ARRAYS = {
-    "add": np.add,
-    "subtract": np.subtract,
-    "multiply": np.multiply,
-    "divide": np.divide,
-    "negative": np.negative,
-    "positive": np.positive,
-    "sin_of": np.sin,
-    "cos_of": np.cos,
-    "sqrt_of": np.sqrt,
-    "arctan": np.arctan,
-    "absolute": np.absolute,
-    "sign_of": lambda value, out: np.copysign(1.0, value, out),
-    "root_of": _root_of,
-    "maximum": lambda one, other, out: np.maximum(one, other, out=out),
-}
 
 
 # Programs kept by structure

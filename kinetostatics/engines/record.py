@@ -5,12 +5,13 @@ recorded arithmetic holds for all scenes of that structure, whatever their numbe
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import NotGivenError
 from ..machine import loads
 from ..machine.crank import ray
 from ..machine.friction import NONE
@@ -19,8 +20,11 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
+from ..numbers.elementary import UNIT
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
+from ..numbers.planar import plus
+from .bounds import Error
 from .trace import Graph, Node, needed, operations
 
 
@@ -58,6 +62,8 @@ class Recording:
         One for each number of a scene, in the order of its leaves.
     tables : tuple of Table
     graph : Graph
+    inputs : mapping of Node to function
+        ``input(bounds) -> Error`` of inputs that are not exact, as `bounds.Bounds` takes it.
     """
 
     quantities: tuple[str, ...]
@@ -67,6 +73,7 @@ class Recording:
     parameters: tuple[Node, ...]
     tables: tuple[Table, ...]
     graph: Graph
+    inputs: dict[Node, Callable[[Any], Error]] = field(default_factory=dict)
 
     def named(self, rows):
         """Results by name from rows (outputs, ...): (...) of a number, (rows, ...) of a vector and the closure."""
@@ -121,6 +128,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
         tuple(recorder.parameters),
         tuple(recorder.tables),
         recorder.graph,
+        recorder.inputs,
     )
 
 
@@ -136,6 +144,7 @@ class _Recorder:
         self.graph = Graph()
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
+        self.inputs: dict[Node, Callable[[Any], Error]] = {}
         self._rows = self._arrays = 0
         mechanism, speed, acceleration, items, *friction = put_together(
             structure, self._parameter, self._array, lambda: None
@@ -143,6 +152,8 @@ class _Recorder:
         self.angle = self._nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))
+        for guide in mechanism.guides.values():
+            self.inputs.update((part, _rounded_once) for part in guide.rounded if isinstance(part, Node))
         idle = Dynamics(mechanism, self.angle, speed, acceleration, (), next(iter(friction), NONE), way)
         self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(items)))
 
@@ -158,7 +169,10 @@ class _Recorder:
     def _tabled(self, rows, compute, moved_by=""):
         first, self._rows = self._rows, self._rows + rows
         self.tables.append(Table(range(first, self._rows), compute, moved_by))
-        return [self._nodes(self.graph.row(first + place)) for place in range(rows)]
+        found = [self.graph.row(first + place) for place in range(rows)]
+        if moved_by:
+            self.inputs.update((node, _unproven(moved_by)) for node in found)
+        return [self._nodes(node) for node in found]
 
     def _nodes(self, *nodes):
         return np.array(nodes, dtype=object)
@@ -204,8 +218,19 @@ class _Recorder:
             return motion.loads[place].value_now
 
         if table.over == "angle":
-            return self._tabled(1, lambda motion, arrays: [item(motion)(motion)])[0]
-        return table.read(idle, self._tabled(3, lambda motion, arrays: item(motion).pieces(motion)))
+            (values,) = self._tabled(1, lambda motion, arrays: [item(motion)(motion)])
+            (errors,) = self._tabled(1, lambda motion, arrays: [item(motion).rounding(motion) / UNIT])
+            self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
+            return values
+        pieces = self._tabled(3, lambda motion, arrays: item(motion).pieces(motion))
+        within = self._tabled(3, lambda motion, arrays: item(motion).kinks_within(motion))
+        self.inputs |= _of_pieces(
+            [part[0] for part in pieces],
+            [part[0] for part in within],
+            table.place(idle)[0],
+            np.ravel(table.rate(idle))[0],
+        )
+        return table.read(idle, pieces)
 
     def _is_elementwise(self, part, compute):
         """Whether recorded numbers go through a part, and each result hangs on its own crank angle alone."""
@@ -234,3 +259,34 @@ class _Tabled:
 
     def polar(self, angle, ray):
         return self.values
+
+
+# What is known of inputs that are not exact
+
+
+def _rounded_once(bounds):
+    return Error(1.0, None)
+
+
+def _unproven(what):
+    def error(bounds):
+        raise NotGivenError(
+            f"no bound can be given: {what} does more than arithmetic with sin, cos and sqrt of `elementary`, so its "
+            "own rounding is not known"
+        )
+
+    return error
+
+
+def _of_pieces(pieces, within, travel, rate):
+    """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
+    _, value, slope = pieces
+    steepest, jump, near = within
+
+    def of_value(bounds):
+        bounds.of((travel, rate))
+        jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
+        jumps = plus(jumps, 0.0 / bounds.above(near, bounds.total(travel)))
+        return Error(0.0, bounds.fused(steepest, bounds.total(travel), jumps))
+
+    return {value: of_value, slope: lambda bounds: Error(4.0, None)}

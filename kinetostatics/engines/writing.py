@@ -59,6 +59,22 @@ SPREAD = f"""            for place in range(results.shape[1]):
                     row[k] = block[{AT_ONCE} * place + k]"""
 
 
+FUSED = """from numba.core import types
+from numba.extending import intrinsic
+
+
+@intrinsic
+def fma(typing, one, other, more):
+    def written(context, builder, signature, arguments):
+        return builder.fma(*arguments)
+
+    return types.float64(types.float64, types.float64, types.float64), written
+
+
+"""
+"""What a loop with fused products and sums has before all else: only bounds do, whose last bit counts for nothing."""
+
+
 def loop(outputs) -> str:
     """Source of a module with ``loop(angle, sine, cosine, parameters, tables, results)``.
 
@@ -66,17 +82,19 @@ def loop(outputs) -> str:
     designs, N), and fills results (designs, outputs, N).
     """
     nodes = needed(outputs)
+    fused = any(node.operation == "fma" for node in nodes)
+    header = LOOP_HEADER.replace("\n\n\n@", f"\n{FUSED}@", 1) if fused else LOOP_HEADER
     by_design = [f"        {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
     by_angle = [_defined(node) for node in nodes if _is_computed_by_angle(node)]
     if len(outputs) <= ROWS_AT_ONCE:
         rows = [f"        row_{place} = results[design, {place}]" for place in range(len(outputs))]
         ends = [f"row_{place}[i] = {_name(part)}" for place, part in enumerate(outputs)]
         inner = ["        for i in range(angle.shape[1]):", *(f"            {each}" for each in by_angle + ends)]
-        return LOOP_HEADER + "\n".join([LOOP, *by_design, *rows, *inner]) + "\n"
+        return header + "\n".join([LOOP, *by_design, *rows, *inner]) + "\n"
     ends = [f"block[{place * AT_ONCE} + k] = {_name(part)}" for place, part in enumerate(outputs)]
     memory = f"    block = empty({len(outputs) * AT_ONCE})"
     inner = [BLOCKS, *(f"                {each}" for each in by_angle + ends), SPREAD]
-    return LOOP_HEADER + "\n".join([memory, LOOP, *by_design, *inner]) + "\n"
+    return header + "\n".join([memory, LOOP, *by_design, *inner]) + "\n"
 
 
 def line(outputs, argument_names="angle, sine, cosine, parameters, tables") -> str:
@@ -150,6 +168,7 @@ _OPERATIONS = {
     ("held", 1): "positive",
     ("root", 2): "root_of",
     ("divisor", 2): "maximum",
+    ("fma", 3): "multiply_add",
 }
 """By operation and number of arguments: the array function that takes its result's place as last argument."""
 _IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "divisor")

@@ -83,6 +83,7 @@ def cam_crank_slider(
     block=Link(),
     coupler=Link(),
     slider=Link(),
+    roller=None,
 ):
     """Cam-balanced crank-slider: slotted crank, block with a roller on a fixed cam, coupler and slider.
 
@@ -94,6 +95,8 @@ def cam_crank_slider(
         As for `crank_slider`; the mass centre of the slotted crank lies on it at a constant distance from O.
     block : Link
         Block with roller; reference joint A, along the crank ray.
+    roller : Roller, optional
+        Size and material of the roller, for its contact pressure.
 
     Returns
     -------
@@ -114,7 +117,7 @@ def cam_crank_slider(
     group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
     if isinstance(cam, CosineLaw | LawCam):
         _warn_off_law(cam, group)
-    return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block), group))
+    return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block, roller), group))
 
 
 def four_bar(

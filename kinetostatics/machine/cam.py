@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..numbers.elementary import namespace, sqrt
+from ..numbers.elementary import atan
+from ..numbers.planar import curvature
 from .crank import ray as ray_at
 
 
@@ -45,16 +46,11 @@ class Cam:
     def pressure_angle(self, phi):
         """Angle between the cam normal and the crank ray, atan(r'/r), rad; positive where the radius grows."""
         r, slope, _ = self.radius(phi)
-        return namespace(r).atan(slope / r)
+        return atan(slope / r)
 
     def curvature_radius(self, phi):
-        """Signed radius of curvature of the pitch curve, m; negative where it is hollow.
-
-        (r^2 + r'^2)^(3/2) / (r^2 + 2 r'^2 - r r''), for a polar curve.
-        """
-        r, slope, second = self.radius(phi)
-        square = r * r + slope * slope
-        return square * sqrt(square) / (square + slope * slope - r * second)
+        """Signed radius of curvature of the pitch curve, m; negative where it is hollow."""
+        return 1.0 / bend(*self.radius(phi))
 
     def profile(self, roller_radius, angle, side="disk"):
         """Working curve for a roller.
@@ -150,6 +146,14 @@ class Cam:
         from .workshop import export
 
         export(self, path, roller_radius, cutter_radius, points, units, side, clockwise)
+
+
+def bend(radius, slope, second):
+    """Curvature of a pitch curve from r, r', r'', 1/m, positive where it is convex seen from outside.
+
+    (r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^(3/2): of its place as seen from the ray, where r turns with it.
+    """
+    return curvature((slope, radius), (second - radius, 2.0 * slope))
 
 
 def _array(phi):

@@ -12,12 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import namespace, sqrt
+from ..numbers.elementary import atan, sqrt
 from ..numbers.planar import cross, dot, minus, vector
+from .cam import bend
 from .crank import ray
 from .friction import Rolling, Slide, Sliding
 from .group import Group, Output, Point, Resolved, Slot
 from .links import Joint, Link, LinkMotion, Wrench
+from .roller import Roller, Touch
 
 FINE = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
 """Crank angles at which the curvature of cams is looked at, rad."""
@@ -80,6 +82,8 @@ class CamRoller(checks.Checked, Group):
         Anything with ``polar(angle, ray)`` that returns r, r', r'' in m; taken as it is when the group is made.
     block : Link
         Block with roller; reference joint A, along the crank ray.
+    roller : Roller, optional
+        Size and material of the roller, for its contact pressure.
 
     Raises
     ------
@@ -98,12 +102,14 @@ class CamRoller(checks.Checked, Group):
 
     cam: Any
     block: Link = Link()
+    roller: Roller | None = None
 
     TRUSTED = True
     RULES = checks.Rules(
         "cam roller",
         cam=checks.Own(("polar",), "one of ks.cams or alike"),
         block=checks.Made(Link, "a Link"),
+        roller=checks.Optional(checks.Made(Roller, "a Roller")),
     )
 
     @property
@@ -127,10 +133,8 @@ class CamRoller(checks.Checked, Group):
     @cached_property
     def tightest(self):
         """Smallest radius of curvature of the pitch curve, on a grid, m; None where the curve is not plain numbers."""
-        r, slope, second = self.cam.polar(FINE, ray(FINE))
-        square = r * r + slope * slope
         with np.errstate(divide="ignore"):
-            curved = np.abs(square * sqrt(square) / (square + slope * slope - r * second))
+            curved = abs(1.0 / bend(*self.cam.polar(FINE, ray(FINE))))
         return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
 
     @property
@@ -161,12 +165,19 @@ class CamRoller(checks.Checked, Group):
     def pairs(self):
         return PAIRS
 
+    @property
+    def contacts(self):
+        return {} if self.roller is None else {"contact_pressure": Touch(self.roller, "cam_force")}
+
+    def relative_radius(self, name, placement, side):
+        return self.contacts[name].body.relative_radius(bend(*placement.details["cam"]), side)
+
     def sliding(self, name, placement):
         return Slide(placement.ray, placement.details["cam"][1])
 
     def motion(self, name, placement):
         radius, slope, _ = placement.details["cam"]
-        return namespace(slope).atan(slope / radius)
+        return atan(slope / radius)
 
     def place(self, placement):
         polar = self.cam.polar(placement.angle, placement.ray)
@@ -189,7 +200,8 @@ class CamRoller(checks.Checked, Group):
     def follow(self, placement, joints):
         """Place the block at joints found in another way."""
         joint = joints["A"]
-        self._set(placement, joint, tuple(dot(vector(part), placement.ray) for part in joint))
+        radius, slope, outward = (dot(vector(part), placement.ray) for part in joint)
+        self._set(placement, joint, (radius, slope, outward + radius))
 
     def _set(self, placement, joint, polar):
         placement.joints["A"] = joint

@@ -81,6 +81,7 @@ class Crank(checks.Checked):
     own_names: ClassVar = {"crank": "crank"}
     guides: ClassVar[dict] = {}
     motions: ClassVar[dict] = {}
+    contacts: ClassVar[dict] = {}
     curves: ClassVar[dict] = {}
     pairs: ClassVar = {"O": Turning("crank", "O")}
     slots = ()

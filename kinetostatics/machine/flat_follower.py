@@ -11,10 +11,12 @@ from itertools import pairwise
 import numpy as np
 
 from ..numbers import checks
+from ..numbers.elementary import root
 from ..numbers.planar import minus, plus, turned, unturned, vector
 from .group import Output
 from .guided_follower import RULES, FollowerForces, GuidedFollower
 from .links import Wrench
+from .roller import Face
 
 
 def forces(travel, guide, load, push):
@@ -50,6 +52,8 @@ class FlatFollower(GuidedFollower):
         Name of the point of the face on the guide.
     label : str
         Put behind the names of link and forces of a second follower in one mechanism.
+    face : Face, optional
+        Width and material of the face, for its contact pressure.
 
     Raises
     ------
@@ -61,7 +65,8 @@ class FlatFollower(GuidedFollower):
     "contact_force" (N), of the cam on the face, positive outward: where it is negative the follower would lift off.
     "guide_force" (N), ground on follower along the guide's left normal, and "guide_moment" (N m) about `pin`; "guide",
     the same force as a vector. "contact_place" (m), of the contact from O along the guide's left normal.
-    "curvature_radius" (m), of the cam there: where it is not positive no cam moves the follower so.
+    "curvature_radius" (m), of the cam there: where it is not positive no cam moves the follower so. With a face
+    "contact_pressure" (Pa), NaN where the follower would lift off.
 
     Examples
     --------
@@ -74,9 +79,21 @@ class FlatFollower(GuidedFollower):
     (0.01, 250.0)
     """
 
+    face: Face | None = None
+
     TRUSTED = True
-    RULES = checks.Rules("flat follower", **RULES)
+    RULES = checks.Rules("flat follower", **RULES, face=checks.Optional(checks.Made(Face, "a Face")))
     forces = staticmethod(forces)
+
+    @property
+    def pressed(self):
+        """What the cam presses on: its `Face`, or None."""
+        return self.face
+
+    def relative_radius(self, name, placement, side):
+        """That of the cam; NaN where nothing touches."""
+        travel = placement.travels[self.moved]
+        return (travel.position + travel.second) * root(side, 1.0)
 
     @property
     def motions(self):
@@ -86,7 +103,7 @@ class FlatFollower(GuidedFollower):
         }
 
     def motion(self, name, placement):
-        travel = placement.travels[self._follower]
+        travel = placement.travels[self.moved]
         return -travel.first if name == "contact_place" + self.label else travel.position + travel.second
 
     def pitch(self, law):
@@ -96,11 +113,11 @@ class FlatFollower(GuidedFollower):
 
     def closure(self, placement):
         """Radius of curvature of the cam beside the distance of its contact from O, squared, negative if hollow."""
-        travel = placement.travels[self._follower]
+        travel = placement.travels[self.moved]
         radius, reach = travel.position + travel.second, travel.position
         return radius * abs(radius) / (radius * radius + reach * reach + travel.first * travel.first)
 
     def requirement(self, placement):
-        travel = placement.travels[self._follower]
+        travel = placement.travels[self.moved]
         smallest = np.min(travel.position + travel.second)
         return f"the cam must be convex, but its radius of curvature s + s'' falls to {smallest:.6g} m"

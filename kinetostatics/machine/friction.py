@@ -313,6 +313,7 @@ def problems(mechanism, given):
             yield f"friction: {name!r} {what} and takes a {wanted}, got {checks.shown(friction)}"
         elif isinstance(pairs[name], Rolling):
             yield from _too_large(mechanism, name, friction)
+            yield from _another(mechanism, name, friction)
 
 
 def _too_large(mechanism, name, friction):
@@ -325,4 +326,18 @@ def _too_large(mechanism, name, friction):
             f"friction: roller_radius of {name!r}, {np.max(friction.roller_radius):.6g} m, must be less than the "
             f"smallest radius of curvature of its path, {np.min(tightest):.6g} m: no cam has such a profile; give a "
             "smaller roller or a larger cam"
+        )
+
+
+def _another(mechanism, name, friction):
+    """Say where a roller has another radius in its friction than on its cam."""
+    roller = next((getattr(group, "roller", None) for group in mechanism.groups if name in group.pairs), None)
+    given = friction.roller_radius
+    if roller is None or not (checks.known(roller.radius) and checks.known(given)):
+        return
+    if np.any(other := np.asarray(given) != roller.radius):
+        yield checks.Problem(
+            f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be that of the roller of its group, "
+            f"{np.max(roller.radius):.6g} m",
+            other,
         )

@@ -14,6 +14,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     outlines    curves fixed to links, as cams are, points (2, K) by link, in its axes
     outputs     the reactions and other forces it finds, each an `Output` with its unit
     motions     quantities of its motion besides those of joints and links, each an `Output`
+    contacts    line contacts by the name of their pressure, each a `roller.Touch`
     pairs       which of its links rub against what, by reaction, each a pair of `friction`
 
 (those that it has none of are left out: `Group` says so), and computes, by kernels without branches on values,
@@ -26,8 +27,9 @@ frozen dataclass derived from `Group`. It declares, by name,
     motion(name, placement)           a quantity of `motions`
     elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
     sliding(name, placement)          direction and rate of a sliding pair: a `friction.Slide`
+    relative_radius(name, placement, side)  of both curvatures of a contact together, by the sign of its force
 
-The last four may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
+The last five may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
 not be arithmetic: engines then tabulate it.
 
 How to write one
@@ -303,6 +305,11 @@ class Group:
     @property
     def motions(self):
         """Quantities of its motion besides those of joints and links, each an `Output`; ``motion(name, placement)``."""
+        return {}
+
+    @property
+    def contacts(self):
+        """Line contacts by the name of their pressure, each a `Touch`; ``relative_radius(name, placement, side)``."""
         return {}
 
 

@@ -139,6 +139,11 @@ class Guide(checks.Checked):
             return cls(None, float((x * y1 - y * x1) / length), (float(x / length), float(y / length)))
 
     @property
+    def rounded(self):
+        """What was rounded once when it was made: direction and offset of a guide through two points."""
+        return () if self.exact is None else (*self.exact, self.guide_offset)
+
+    @property
     def is_level(self):
         """Whether it points along +x, by plain numbers."""
         if self.exact is None:

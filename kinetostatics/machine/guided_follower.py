@@ -9,19 +9,16 @@ from typing import Any, ClassVar, NamedTuple
 
 from ..numbers import checks
 from ..numbers.planar import dot, number, turned, vector
-from .disk_cam import DiskCam
-from .follower_law import Lawful
+from . import follower
 from .friction import Slide, Sliding
-from .group import FRAME, Group, Output, Point, Resolved
+from .group import FRAME, Point, Resolved
 from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench
 
 RULES = {
-    "cam": Lawful(),
+    **follower.RULES,
     "guide": checks.Made(Guide, "made by Guide.at or .through"),
     "follower": checks.Made(Link, "a Link"),
-    "pin": checks.Name(),
-    "label": checks.Name(may_be_empty=True),
 }
 
 
@@ -35,7 +32,7 @@ class FollowerForces(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class GuidedFollower(checks.Checked, Group):
+class GuidedFollower(follower.Follower):
     """Follower on a guide, moved by a cam on the crank; its kinds give ``forces(travel, guide, load, push)``."""
 
     cam: Any
@@ -49,57 +46,41 @@ class GuidedFollower(checks.Checked, Group):
 
     @property
     def links(self):
-        return {self._follower: self.follower}
+        return {self.moved: self.follower}
 
     @property
     def references(self):
-        return {self._follower: self.pin}
+        return {self.moved: self.pin}
 
     @property
     def lengths(self):
         return (*getattr(self.cam, "lengths", ()), self.guide.guide_offset, *self.follower.centre)
 
     @property
-    def hangs_on(self):
-        return ("O",)
-
-    @property
-    def _follower(self):
+    def moved(self):
+        """Name of the link that the cam moves."""
         return "follower" + self.label
 
     @property
     def joints(self):
-        return {self.pin: Point(self._follower)}
+        return {self.pin: Point(self.moved)}
 
     @property
     def guides(self):
-        return {self._follower: self.guide}
+        return {self.moved: self.guide}
 
     @property
     def outputs(self):
-        text = f"cam on {self._follower} along the common normal, positive outward"
-        return {
-            "contact_force" + self.label: Output("N", False, text),
-            **guide_outputs(self._follower, self.pin, self.label),
-        }
+        return {**self.contact_force, **guide_outputs(self.moved, self.pin, self.label)}
 
     @property
     def pairs(self):
         label = self.label
-        sliding = Sliding(self._follower, self.pin, FRAME, "guide_force" + label, "guide_moment" + label)
+        sliding = Sliding(self.moved, self.pin, FRAME, "guide_force" + label, "guide_moment" + label)
         return {"guide" + label: sliding}
 
-    @property
-    def disk(self):
-        """The cam itself, in its own axes: those of +x and +y at crank angle 0; for workshop and figures."""
-        return DiskCam(self)
-
-    @property
-    def outlines(self):
-        return {"crank": self.disk.outline}
-
     def sliding(self, name, placement):
-        return Slide(self.guide.line.direction, placement.travels[self._follower].first)
+        return Slide(self.guide.line.direction, placement.travels[self.moved].first)
 
     def place(self, placement):
         travel, line = Joint(*self.cam.polar(placement.angle, placement.ray)), self.guide.line
@@ -113,17 +94,17 @@ class GuidedFollower(checks.Checked, Group):
 
     def _set(self, placement, follower, travel):
         placement.joints[self.pin] = follower.joint
-        placement.links[self._follower] = follower
-        placement.travels[self._follower] = travel
+        placement.links[self.moved] = follower
+        placement.travels[self.moved] = travel
 
     def elongation(self, placement, free_position):
         """Coordinate of the pin along the guide less a free position, m."""
-        return placement.travels[self._follower].position - free_position
+        return placement.travels[self.moved].position - free_position
 
     def resolve(self, placement, loads, along) -> Resolved:
         guide, label = self.guide.line, self.label
-        travel, load = placement.travels[self._follower], loads[self._follower]
-        found = type(self).forces(travel, guide, load, along.get(self._follower))
+        travel, load = placement.travels[self.moved], loads[self.moved]
+        found = type(self).forces(travel, guide, load, along.get(self.moved))
         scalars = {
             "contact_force" + label: found.contact,
             "guide_force" + label: found.guide_force,

@@ -44,7 +44,15 @@ class Law:
         raise TypeError(f"{type(self).__name__} must define __call__(phi) -> position, velocity, acceleration, jerk")
 
     def shifted(self, phase):
-        """The same law, later by a phase, rad."""
+        """The same law, later by a phase, rad.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> law = ks.laws.cosine(0.3, 2.0)
+        >>> round(float(law.shifted(0.5)(0.5).position), 9), round(float(law(0.0).position), 9)
+        (2.3, 2.3)
+        """
         return Shifted(self, **checks.singles("law", phase=(phase, {"unit": "rad"})))
 
 

@@ -346,5 +346,5 @@ def _name_problems(parts):
             add(forces, what, kind, [name for name in outputs if part.outputs[name].vector == vector])
         endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
         add(forces, "quantity", kind, [f"{link}{ending}" for link in part.links for ending in endings])
-        add(forces, "quantity", kind, part.motions)
+        add(forces, "quantity", kind, [*part.motions, *part.contacts])
     return problems

@@ -14,6 +14,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
+from .cam import bend
 from .crank import ray as ray_at
 from .law import TURN
 
@@ -117,6 +118,13 @@ class Profile:
         ------
         ParameterError
             The cutter does not fit into a hollow of the working curve, or cuts into another part of it.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> made = ks.cams.Circle(0.3).profile(0.05, 4)
+        >>> abs(made.cutter_path(0.02)[:, 0]).round(6)  # m: the disk's 0.25 m and the cutter's radius
+        array([0.27, 0.  ])
         """
         radius = checks.singles("cutter_path", cutter_radius=(cutter_radius, POSITIVE))["cutter_radius"]
         hollow = self.smallest_hollow
@@ -156,7 +164,7 @@ class Profile:
     @cached_property
     def largest_roller_radius(self):
         """Radius of the roller from which the cam would be undercut, m, by the pitch curve's curvature; inf without."""
-        sharpest = highest(lambda angle: _bend(self.cam, angle, self.side))
+        sharpest = highest(lambda angle: _toward(self.cam, angle, self.side))
         return 1.0 / sharpest.value if sharpest.value > 0 else np.inf
 
     def exceeded(self, *, pressure_angle=None, curvature_radius=None):
@@ -181,10 +189,8 @@ class Profile:
 
 
 def curvature(cam, angle):
-    """Curvature of the pitch curve, 1/m, positive where it is convex seen from outside."""
-    r, slope, second = cam.radius(angle)
-    square = r * r + slope * slope
-    return (square + slope * slope - r * second) / (square * np.sqrt(square))
+    """Curvature of the pitch curve at crank angles, 1/m, positive where it is convex seen from outside."""
+    return bend(*cam.radius(angle))
 
 
 def surface_curvature(bend, roller_radius, side):
@@ -192,7 +198,7 @@ def surface_curvature(bend, roller_radius, side):
     return -side * bend / (1.0 + side * bend * roller_radius)
 
 
-def _bend(cam, angle, side):
+def _toward(cam, angle, side):
     """Curvature of the pitch curve toward the side of the cam, which the roller must fit into, 1/m."""
     return -SIDES[side] * curvature(cam, angle)
 
@@ -207,8 +213,8 @@ def profile(cam, roller_radius, angle, side="disk"):
     pitch, normal, made = _curves(cam, radius, angle, side)
     r, slope, _ = cam.radius(angle)
     with np.errstate(divide="ignore"):
-        bend = 1.0 / surface_curvature(curvature(cam, angle), radius, SIDES[side])
-    return Profile(cam, radius, angle, side, pitch, made, normal, np.arctan2(slope, r), bend)
+        curved = 1.0 / surface_curvature(curvature(cam, angle), radius, SIDES[side])
+    return Profile(cam, radius, angle, side, pitch, made, normal, np.arctan2(slope, r), curved)
 
 
 def _curves(cam, radius, angle, side):
@@ -238,9 +244,9 @@ def _cut_away(cam, radius, side):
             f"{np.degrees(least.angle):.6g} deg"
         )
         return
-    sharpest = highest(lambda angle: _bend(cam, angle, side))
+    sharpest = highest(lambda angle: _toward(cam, angle, side))
     if sharpest.value * radius >= 1.0:
-        where = " and ".join(_intervals(GRID, _bend(cam, GRID, side) * radius >= 1.0)) or "there alone"
+        where = " and ".join(_intervals(GRID, _toward(cam, GRID, side) * radius >= 1.0)) or "there alone"
         yield (
             f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
             f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "

@@ -15,11 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import namespace, sqrt
+from ..numbers.elementary import atan, sqrt
 from ..numbers.planar import minus, number, plus, turned, unturned, vector
 from .group import Output
 from .guided_follower import RULES, FollowerForces, GuidedFollower
 from .links import Wrench
+from .roller import Roller
 
 
 def forces(travel, guide, load, push):
@@ -55,6 +56,8 @@ class RollerFollower(GuidedFollower):
         Name of the roller centre.
     label : str
         Put behind the names of link and forces of a second roller follower in one mechanism.
+    roller : Roller, optional
+        Size and material of the roller, for its contact pressure.
 
     Raises
     ------
@@ -66,6 +69,7 @@ class RollerFollower(GuidedFollower):
     "contact_force" (N), of the cam on the roller along the common normal, positive outward: where it is negative the
     follower would lift off. "guide_force" (N), ground on follower along the guide's left normal, and "guide_moment"
     (N m) about `pin`; "guide", the same force as a vector. "pressure_angle" (rad), of the contact force from the guide.
+    With a roller "contact_pressure" (Pa), where the force is negative on a ring around the pitch curve.
 
     Examples
     --------
@@ -80,9 +84,16 @@ class RollerFollower(GuidedFollower):
     -11.309932
     """
 
+    roller: Roller | None = None
+
     TRUSTED = True
-    RULES = checks.Rules("roller follower", **RULES)
+    RULES = checks.Rules("roller follower", **RULES, roller=checks.Optional(checks.Made(Roller, "a Roller")))
     forces = staticmethod(forces)
+
+    @property
+    def pressed(self):
+        """What the cam presses on: its `Roller`, or None."""
+        return self.roller
 
     @property
     def motions(self):
@@ -91,7 +102,7 @@ class RollerFollower(GuidedFollower):
 
     def motion(self, name, placement):
         reach, climb = self._across(placement)
-        return namespace(climb).atan(climb / reach)
+        return atan(climb / reach)
 
     def pitch(self, law):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""
@@ -100,7 +111,7 @@ class RollerFollower(GuidedFollower):
 
     def _across(self, placement):
         """Across the pitch curve, along the guide and to its left, not of length 1."""
-        travel = placement.travels[self._follower]
+        travel = placement.travels[self.moved]
         return travel.position, plus(self.guide.line.offset, travel.first)
 
     def closure(self, placement):
@@ -109,5 +120,5 @@ class RollerFollower(GuidedFollower):
         return reach * abs(reach) / (reach * reach + climb * climb)
 
     def requirement(self, placement):
-        lowest = np.min(placement.travels[self._follower].position)
+        lowest = np.min(placement.travels[self.moved].position)
         return f"the roller centre must stay ahead of O along its guide, but its coordinate falls to {lowest:.6g} m"

@@ -16,13 +16,13 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import cos, namespace, sin
+from ..numbers.elementary import atan, cos, sin
 from ..numbers.planar import added, cross, dot, left, length, number, stretched, subtracted, turned
-from .disk_cam import DiskCam
-from .follower_law import Lawful
+from . import follower
 from .friction import Turning
-from .group import FRAME, Bar, Group, Output, Point, Resolved
+from .group import FRAME, Bar, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench, between
+from .roller import Roller
 
 
 class SwingingMotion(NamedTuple):
@@ -77,7 +77,7 @@ def resolve(motion, arm_length, load):
 
 
 @dataclass(frozen=True, eq=False)
-class SwingingFollower(checks.Checked, Group):
+class SwingingFollower(follower.Follower):
     """Arm about the fixed joint `pivot_name` whose roller runs on a cam fixed to the crank, as a law says.
 
     Parameters
@@ -99,6 +99,8 @@ class SwingingFollower(checks.Checked, Group):
         Names of the roller centre and of the pivot.
     label : str
         Put behind the names of link and forces of a second swinging follower in one mechanism.
+    roller : Roller, optional
+        Size and material of the roller, for its contact pressure.
 
     Raises
     ------
@@ -109,7 +111,8 @@ class SwingingFollower(checks.Checked, Group):
     -----
     "contact_force" (N), of the cam on the roller along the common normal, positive outward: where it is negative the
     follower would lift off. `pivot_name`, a vector in N, ground on arm. "pressure_angle" (rad), of the contact force
-    from the way of the roller centre.
+    from the way of the roller centre. With a roller "contact_pressure" (Pa), where the force is negative on a ring
+    around the pitch curve.
 
     Examples
     --------
@@ -131,6 +134,7 @@ class SwingingFollower(checks.Checked, Group):
     pin: str = "R"
     pivot_name: str = "Q"
     label: str = ""
+    roller: Roller | None = None
 
     def _pivot_apart(self):
         """Say where the pivot is at O."""
@@ -143,51 +147,48 @@ class SwingingFollower(checks.Checked, Group):
     RULES = checks.Rules(
         "swinging follower",
         _pivot_apart,
-        cam=Lawful(),
+        **follower.RULES,
         arm_length=checks.Number("m", "arm length", low=0.0, strict=True),
         pivot=checks.Pair("m", "follower pivot"),
         assembly=checks.Sign(),
         arm=checks.Made(Link, "a Link"),
-        pin=checks.Name(),
         pivot_name=checks.Name(),
-        label=checks.Name(may_be_empty=True),
+        roller=checks.Optional(checks.Made(Roller, "a Roller")),
     )
 
     @property
     def links(self):
-        return {self._arm: self.arm}
+        return {self.moved: self.arm}
 
     @property
     def references(self):
-        return {self._arm: self.pivot_name}
+        return {self.moved: self.pivot_name}
 
     @property
     def bars(self):
-        return (Bar(self.pivot_name, self.pin, self._arm, self.arm_length),)
+        return (Bar(self.pivot_name, self.pin, self.moved, self.arm_length),)
 
     @property
     def lengths(self):
         return (self.arm_length, *self.pivot, *self.arm.centre)
 
     @property
-    def hangs_on(self):
-        return ("O",)
-
-    @property
-    def _arm(self):
+    def moved(self):
+        """Name of the link that the cam moves."""
         return "arm" + self.label
 
     @property
+    def pressed(self):
+        """What the cam presses on: its `Roller`, or None."""
+        return self.roller
+
+    @property
     def joints(self):
-        return {self.pin: Point(self._arm, self.arm_length), self.pivot_name: Point(FRAME, *self.pivot)}
+        return {self.pin: Point(self.moved, self.arm_length), self.pivot_name: Point(FRAME, *self.pivot)}
 
     @property
     def outputs(self):
-        text = f"cam on {self._arm} along the common normal, positive outward"
-        return {
-            "contact_force" + self.label: Output("N", False, text),
-            self.pivot_name: Output("N", True, f"ground on {self._arm}"),
-        }
+        return {**self.contact_force, self.pivot_name: Output("N", True, f"ground on {self.moved}")}
 
     @property
     def motions(self):
@@ -196,16 +197,7 @@ class SwingingFollower(checks.Checked, Group):
 
     @property
     def pairs(self):
-        return {self.pivot_name: Turning(self._arm, self.pivot_name)}
-
-    @property
-    def disk(self):
-        """The cam itself, in its own axes: those of +x and +y at crank angle 0; for workshop and figures."""
-        return DiskCam(self)
-
-    @property
-    def outlines(self):
-        return {"crank": self.disk.outline}
+        return {self.pivot_name: Turning(self.moved, self.pivot_name)}
 
     def pitch(self, law):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""
@@ -213,9 +205,9 @@ class SwingingFollower(checks.Checked, Group):
         return tuple(x + 1j * y for x, y in placed)
 
     def motion(self, name, placement):
-        found = placement.details[self._arm]
+        found = placement.details[self.moved]
         sine = dot(found.arm.direction, found.across)
-        return namespace(sine).atan(abs(sine / found.lever))
+        return atan(abs(sine / found.lever))
 
     def place(self, placement):
         swing = self.cam.polar(placement.angle, placement.ray)
@@ -230,22 +222,22 @@ class SwingingFollower(checks.Checked, Group):
     def _set(self, placement, motion):
         placement.joints[self.pin] = motion.roller
         placement.joints[self.pivot_name] = motion.arm.joint
-        placement.links[self._arm] = motion.arm
-        placement.details[self._arm] = motion
+        placement.links[self.moved] = motion.arm
+        placement.details[self.moved] = motion
 
     def closure(self, placement):
         """Squared cosine of the pressure angle, negative where the arm is on the other side of the line of centres."""
-        found = placement.details[self._arm]
+        found = placement.details[self.moved]
         return self.assembly * found.lever * abs(found.lever) / dot(found.across, found.across)
 
     def requirement(self, placement):
         return (
-            f"the {self._arm} must stay on its side of the line from O to {self.pivot_name}, its angle from it between "
-            "0 and pi"
+            f"the {self.moved} must stay on its side of the line from O to {self.pivot_name}, its angle from it "
+            "between 0 and pi"
         )
 
     def resolve(self, placement, loads, along) -> Resolved:
-        found = resolve(placement.details[self._arm], self.arm_length, loads[self._arm])
+        found = resolve(placement.details[self.moved], self.arm_length, loads[self.moved])
         return Resolved(
             {self.pivot_name: found.pivot}, {"contact_force" + self.label: found.contact}, {"crank": found.on_arm}
         )

@@ -16,7 +16,7 @@ from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
 from ..numbers.planar import added, minus, moment, number, plus, product
-from . import energy
+from . import contact, energy
 from .friction import Rubbing, driving
 from .friction_laws import larger, smaller
 from .motion import Motion
@@ -137,6 +137,10 @@ class Dynamics(Motion):
         if not hasattr(found, "shape"):  # a constant has the gaps of the others
             found = found + 0.0 * scalars["balancing_torque"]
         return self._scalar(found)
+
+    def pressure(self, name):
+        """Hertz pressure of a contact by name, (..., N), Pa; NaN where there is no such contact."""
+        return self._scalar(contact.pressure(self, name))
 
     @property
     def balancing_torque(self):

@@ -78,7 +78,15 @@ class PrincipalPoints:
         return corners
 
     def mass_centre(self, motion):
-        """Position of the common mass centre, (2, ..., N), m."""
+        """Position of the common mass centre, (2, ..., N), m.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> mower = ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.15), slider=ks.Link(5.0))
+        >>> ks.principal_points(mower).mass_centre(ks.solve(mower, 0.0, crank_speed=63.0)).round(6)  # m
+        array([0.295143, 0.      ])
+        """
         return self.contour(motion)[-1]
 
     def mass_centre_velocity(self, motion):

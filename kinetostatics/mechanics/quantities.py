@@ -27,9 +27,9 @@ class Quantity(NamedTuple):
         From a motion, dynamics or solution to its values: (..., N), of a vector (2, ..., N).
     vector : bool
     kind : str
-        "reaction", "force" (a force, moment or torque by name), "slider", "motion", "whole" (of the whole mechanism),
-        "energy" (of the whole mechanism too, in no table unless asked for), "rate", "friction", or "check" of its
-        solution.
+        "reaction", "force" (a force, moment or torque by name), "slider", "motion", "contact" (its pressure), "whole"
+        (of the whole mechanism), "energy" (of the whole mechanism too, in no table unless asked for), "rate",
+        "friction", or "check" of its solution.
     owner : str
         Link that a rate is of.
     """
@@ -76,6 +76,8 @@ def _declared(mechanism):
     for group in mechanism.groups:
         for name, output in group.motions.items():
             add(name, output.unit, methodcaller("measure", name), kind="motion")
+        for name in group.contacts:
+            add(name, "Pa", methodcaller("pressure", name), kind="contact")
     for name, output in outputs.items():
         if output.vector:
             add(name, output.unit, methodcaller("reaction", name), True, "reaction", f"reaction {name}")

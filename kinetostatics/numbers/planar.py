@@ -20,6 +20,12 @@ def length(a):
     return sqrt(dot(a, a))
 
 
+def curvature(first, second):
+    """Signed curvature of a path from two derivatives of its place, positive where it turns to the left."""
+    square = dot(first, first)
+    return cross(first, second) / (square * sqrt(square))
+
+
 def left(a):
     """Vector a after a quarter turn counter-clockwise."""
     return (-a[1], a[0])

@@ -11,7 +11,7 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .extremes import extremes
 from .losses import lose
-from .means import mean_absolute_torque
+from .means import mean_absolute_torque, mean_absolute_torque_errors
 from .turn import SAME
 
 
@@ -58,6 +58,11 @@ class Comparison:
     def mean_torques(self):
         """Mean absolute balancing torque of reference and balanced mechanism, integral over the turn, N m."""
         return mean_absolute_torque(self.reference), mean_absolute_torque(self.balanced)
+
+    @cached_property
+    def mean_torque_errors(self):
+        """Errors of the mean torques of both, N m: `rounding`, which is proven, and about that of the `quadrature`."""
+        return mean_absolute_torque_errors(self.reference), mean_absolute_torque_errors(self.balanced)
 
     @property
     def mean_torque_ratio(self):

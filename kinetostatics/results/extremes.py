@@ -2,15 +2,16 @@
 
 import warnings
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import ConditionWarning, ParameterError
-from ..mechanics import jamming
+from ..errors import ConditionWarning, NotGivenError, ParameterError
+from ..mechanics import jamming, quantities
 from ..mechanics.quantities import scale, unit_of, values
 from ..numbers import checks
 from ..numbers.elementary import UNIT
+from ..numbers.lazy import cached_property
 from .turn import SAME, require_single, runs
 
 FLOOR = 1e-13
@@ -39,6 +40,8 @@ class Extremes:
         The value of a quantity that has no extremum because it does not change; NaN otherwise.
     left_out : array (L,)
         Crank angles around which no value has a correct digit, rad.
+    solution : Solution or None
+        None for a function of the user's.
 
     Examples
     --------
@@ -56,6 +59,22 @@ class Extremes:
     maximum: np.ndarray
     constant: float = np.nan
     left_out: np.ndarray = field(default_factory=lambda: np.empty(0), repr=False)
+    solution: Any = field(default=None, repr=False)
+
+    @cached_property
+    def error_bound(self):
+        """Proven bound on the rounding error of each value, (K,): of the quantity at the angle told.
+
+        Raises
+        ------
+        NotGivenError
+            As for `Solution.error_bound`, or the quantity is a function of yours.
+        """
+        if self.solution is None:
+            raise NotGivenError("no bound can be given: the quantity is a function of yours")
+        vector = quantities.quantity(self.solution, self.quantity).vector
+        at = self.solution.at(self.angle)
+        return at.error_bound(f"|{self.quantity}|" if vector else self.quantity)
 
     @property
     def range(self):
@@ -164,7 +183,7 @@ def extrema(solution, quantity):
     require_single(solution, "extremes", quantity)
     grows = callable(quantity) or solution.mechanism.grows(quantity)
     turn = solution.sampled_for_forces if grows else solution.sampled
-    position = unit_of(solution, quantity) == "m"
+    position, own = unit_of(solution, quantity) == "m", None if callable(quantity) else solution
     left_out = np.empty(0) if position else turn.lost
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         samples = np.asarray(function(turn.at))
@@ -182,7 +201,7 @@ def extrema(solution, quantity):
         if not any(maximum.size for *_, maximum in found):
             constant = float(np.max(samples[good])) if good.any() else np.nan
             nothing = np.empty(0)
-            return Extremes(str(quantity), nothing, nothing, nothing.astype(bool), constant, left_out)
+            return Extremes(str(quantity), nothing, nothing, nothing.astype(bool), constant, left_out, own)
         brackets, value, floor, maximum = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
         angle, sign = brackets[1], np.where(maximum, -1.0, 1.0)
         inner = brackets[0] < brackets[2]
@@ -199,7 +218,7 @@ def extrema(solution, quantity):
         order = np.argsort(angle, kind="stable")
         angle, value, maximum, inner = angle[order], value[order], maximum[order], inner[order]
         kept = _kept(angle, value, maximum, inner, CONTINUED * size)
-    return Extremes(str(quantity), angle[kept], value[kept], maximum[kept], np.nan, left_out)
+    return Extremes(str(quantity), angle[kept], value[kept], maximum[kept], np.nan, left_out, own)
 
 
 def _sizes(turn, quantity, samples, good, position):

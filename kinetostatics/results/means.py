@@ -1,6 +1,7 @@
 """Means over the period: integrals that know where their functions jump, have kinks or change their sign."""
 
 import warnings
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,8 @@ LARGEST = 2**17
 """Crank angles evaluated at a time."""
 WORK = 2**17
 """Panels after which the quadrature stops."""
+SUMMED = 64
+"""Roundings, at most, that a value of a panel meets on its way into the sum of all."""
 FLOOR = 1e-14
 """Share of the largest term of a sum that is its rounding."""
 
@@ -55,12 +58,50 @@ def mean_absolute_torque(solution):
     mean = np.inf
     if not np.isinf(peaks.value).any():
         floor = FLOOR * turn.at.at(turn.angle[turn.usable]).largest_torque_term
-        mean, error = _mean_absolute(lambda angle: turn.at.at(turn.clear(angle)).balancing_torque, turn, floor)
+        (mean,), (error,) = _means_of_absolute(lambda angle: [_torque(turn, angle)], turn, floor)
         if error > PRECISE * mean + floor:
             words.append(f"mean torque: it is right to about {error:.2g} N m of {mean:.6g} only, so uneven is the load")
     for text in filter(None, words):
         warnings.warn(text, ConditionWarning, stacklevel=2)
     return mean
+
+
+class MeanErrors(NamedTuple):
+    """By how much a mean may be wrong.
+
+    Attributes
+    ----------
+    rounding : float
+        Proven bound on what all rounding errors of the values and of their sum make.
+    quadrature : float
+        About what the mean differs by from that of the function between the nodes.
+    """
+
+    rounding: float
+    quadrature: float
+
+
+def mean_absolute_torque_errors(solution):
+    """Errors of `mean_absolute_torque`, N m.
+
+    Raises
+    ------
+    NotGivenError
+        As for `Solution.error_bound`.
+    """
+    turn = closed_turn(solution, "mean torque")
+    floor = FLOOR * turn.at.at(turn.angle[turn.usable]).largest_torque_term
+
+    def torque_and_bound(angle):
+        at = turn.at.at(turn.clear(angle))
+        return [at.balancing_torque, at.error_bound("balancing_torque")]
+
+    (mean, bound), (wrong, _) = _means_of_absolute(torque_and_bound, turn, floor)
+    return MeanErrors(float(bound + SUMMED * UNIT * mean), float(wrong))
+
+
+def _torque(turn, angle):
+    return turn.at.at(turn.clear(angle)).balancing_torque
 
 
 def energy_per_turn(solution):
@@ -142,13 +183,18 @@ def _grid(turn):
     return np.unique(np.concatenate([even, turn.limits % turn.period, turn.kinks]))
 
 
-def _mean_absolute(function, turn, floor):
-    """Mean of the absolute value of a function of the crank angle, and about how much it may be wrong."""
+def _means_of_absolute(functions, turn, floor):
+    """Means of the absolute values of functions of the crank angle, and about how much they may be wrong.
+
+    ``functions(angle)`` gives a row for each; of the first, whose rounding is `floor`, the sign changes.
+    """
     from scipy.optimize import elementwise
 
+    def first(angle):
+        return functions(angle)[0]
+
     grid = _grid(turn)
-    samples = function(grid)
+    samples = first(grid)
     change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
-    zeros = elementwise.find_root(function, (grid[change], grid[change + 1])).x if change.size else []
-    found, wrong = means(lambda angle: np.abs(function(angle))[None], turn, floor, zeros)
-    return float(found[0]), float(wrong[0])
+    zeros = elementwise.find_root(first, (grid[change], grid[change + 1])).x if change.size else []
+    return means(lambda angle: np.abs(functions(angle)), turn, floor, zeros)

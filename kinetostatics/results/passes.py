@@ -8,7 +8,8 @@ import numpy as np
 
 from ..engines import compiled
 from ..numbers.elementary import ROUNDING
-from .reductions import INNER, MEAN, PEAK, REACH, THROUGH, TINY
+from .peaks import INNER, REACH, THROUGH, TINY
+from .reductions import MEAN, PEAK
 from .turn import NEAR
 
 KINDS = (
@@ -22,7 +23,7 @@ KINDS = (
     "mean_absolute",
     "rms",
 )
-"""Reductions that are there, by their number; harmonics are not."""
+"""Reductions that are there, by their number; harmonics and the swing are not."""
 
 
 def _summing(name, term):
@@ -317,7 +318,7 @@ class Passes:
     """
 
     def __init__(self, outputs, rows, first, angle, turns):
-        kinds = [KINDS.index(item.reduction) if item.order is None else -1 for item in outputs]
+        kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
         self._passes, self._turns = compiled._loaded(SOURCE).passes, turns
         self._given = (
             np.array(rows, dtype=np.int64),

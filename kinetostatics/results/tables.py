@@ -45,7 +45,10 @@ def extremes_frame(solution):
 def _rounded(solution, name, ends):
     """Smallest and largest value of a quantity, 0 where they are rounding of what it is a sum of."""
     terms = [scale(solution, name), *np.abs(ends)]
-    return _zeroed(ends, FLOOR * max((float(term) for term in terms if np.isfinite(term)), default=0.0))
+    rounding = (
+        np.sqrt(FLOOR) if of_scene(solution)[name].kind == "contact" else FLOOR
+    )  # a pressure is a root of a force
+    return _zeroed(ends, rounding * max((float(term) for term in terms if np.isfinite(term)), default=0.0))
 
 
 def _zeroed(values, floor):

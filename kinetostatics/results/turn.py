@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.loads import TURN, Table, is_given, period_of, refusals, value_of
-from ..mechanics import assembly
+from ..mechanics import assembly, contact
 from ..mechanics.pushes import given, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -89,7 +89,7 @@ class Turn:
             grid = np.unique(np.concatenate([grid, *(np.mod(jumps + side, solution.period) for side in BESIDE)]))
         first = solution.at(grid)
         require_repeating(solution)
-        checks.require("extremes", *refusals(first))
+        checks.require("extremes", *refusals(first), *contact.refusals(first))
         near = assembly.near_limits(solution.mechanism, NEAR)
         gaps = assembly.gaps(solution.mechanism) if near.size else ()
         own = TURN * solution.mechanism.turns

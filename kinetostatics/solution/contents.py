@@ -57,6 +57,8 @@ cam_force : array (..., N)
 slot_force : array (..., N)
     N; of a slotted crank on the block across the ray, positive with growing crank angle; of a lever on its block and of
     a yoke's slider on its block along the left normal of the slot.
+contact_pressure : array (..., N)
+    Largest Hertz pressure between cam and roller, Pa, of a cam that has a `Roller`.
 shaking_force, shaking_moment : array (2, ..., N), array (..., N)
     Of the inertia of all moving masses on the frame, N; about O, N m.
 reduced_inertia, reduced_inertia_slope : array (..., N)
@@ -87,6 +89,8 @@ reaction(joint)
 scalar(name)
     A force or moment by name, (..., N): those above, "slot_moment", "cylinder_force", "cylinder_moment",
     "contact_force" ...
+pressure(name)
+    Hertz pressure of a contact by name, (..., N), Pa: "contact_pressure" with the label of its follower.
 pin_load(joint)
     Force on a pin by all rods on it together, (2, ..., N), N; on the link that owns the joint.
 inertia_force(link)
@@ -107,6 +111,10 @@ at(crank_angle)
     The same mechanism, speed and loads at other crank angles.
 condition_of(quantity)
     Condition of one quantity, cancellation of its terms counted in.
+error_bound(quantity, tight)
+    Proven bound on the rounding error of each value, in the quantity's shape and unit; ``"|O|"`` for a magnitude.
+uncertainty(quantity, inputs)
+    What standard uncertainties of inputs, by path, and rounding do to each value, as `Uncertainty`.
 frame()
     All results as a pandas DataFrame, units in the headings.
 

@@ -9,7 +9,7 @@ from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import of_scene, still
 from ..results.turn import NEAR
 
-ORDER = ("rate", "reaction", "force", "friction", "whole", "slider", "motion")
+ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", "motion")
 """Kinds of quantities as they stand in the table, after the positions of joints; energies are left out."""
 
 

@@ -15,7 +15,7 @@ from ..machine import friction as rubbing
 from ..machine import hints
 from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, refusals, value_of
 from ..machine.mechanism import Mechanism
-from ..mechanics import jamming
+from ..mechanics import contact, jamming
 from ..numbers import checks, paths
 from ..numbers.lazy import cached_property
 from .angles import crank_angles, problems
@@ -240,7 +240,7 @@ def _solved(scene, crank_angle, on_gap, engine):
         checks.require("solve", jamming.standing(solution))
         solution = jamming.settled(solution)
         jamming.check(solution, on_gap)
-    checks.require("solve", *refusals(solution))
+    checks.require("solve", *refusals(solution), *(contact.refusals(solution) if on_gap == "raise" else ()))
     return solution
 
 

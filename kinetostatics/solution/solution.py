@@ -21,6 +21,8 @@ from ..numbers.lazy import cached_property
 from ..results.turn import Turn
 from . import contents
 from .angles import crank_angles
+from .certainty import Certainty
+from .contacts import Contacts
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
 
@@ -30,7 +32,7 @@ SCENE = tuple(field.name for field in fields(Motion))
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Energies, Motion):
+class Solution(Certainty, Energies, Contacts, Motion):
     """Motion and forces of a mechanism; every result is computed when first asked for, and kept.
 
     The balancing torque is the torque on the crank that keeps the prescribed motion, counter-clockwise positive.
@@ -65,7 +67,16 @@ class Solution(Energies, Motion):
         return f"<Solution: {self.mechanism.name}, shape {self.shape}, {in_a_line(self)}>"
 
     def at(self, crank_angle):
-        """The same mechanism, speed and loads at other crank angles."""
+        """The same mechanism, speed and loads at other crank angles.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+        >>> s = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360)
+        >>> print(f"{s.at(0.5).balancing_torque:.1f} N m")
+        37051.3 N m
+        """
         varying = over_the_angles(self)
         if varying:
             raise ParameterError(
@@ -99,6 +110,14 @@ class Solution(Energies, Motion):
 
         "O": ground on crank; "A": on the coupler at A, from crank or block; "B": coupler on slider; "guide": ground
         on slider.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+        >>> s = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360)
+        >>> print(f"{s.reaction('guide')[1, 90]:.0f} N")  # upward, by the ground on the slider at 90 deg
+        702 N
         """
         found = self._force("reaction", joint, True)
         self._warn_of_growth(joint, found)
@@ -182,7 +201,16 @@ class Solution(Energies, Motion):
         return self._found("shaking_moment")
 
     def inertia_force(self, link):
-        """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N."""
+        """Inertia force of one link, minus mass times acceleration of its mass centre, (2, ..., N), N.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+        >>> s = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360)
+        >>> print(f"{s.inertia_force('slider')[0, 0]:.0f} N")  # outward at the outer dead centre
+        232306 N
+        """
         return self.dynamics.inertia_force(link)
 
     @property
@@ -194,8 +222,8 @@ class Solution(Energies, Motion):
     def condition(self):
         """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
 
-        A bound of the true magnification: the sum over all lengths and the crank angle p of |p dq/dp|, over the largest
-        term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
+        A bound of the true magnification: the sum over all lengths and the crank angle p of ``|p dq/dp|``, over the
+        largest term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
         at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
         16 - log10(condition) correct digits of its largest term, or more.
 
@@ -211,6 +239,14 @@ class Solution(Energies, Motion):
 
         Geometry (`condition`) times cancellation: the largest of the terms that a force or torque is the sum of, over
         its largest value, where spring and inertia nearly balance for instance. 16 - log10 of it are the digits left.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+        >>> s = ks.Scene(saw, 33.5, loads=[ks.Gravity()]).solve(360)
+        >>> bool(s.condition_of("O").max() < 1e3)  # 13 digits and more
+        True
         """
         largest = np.asarray(self.dynamics.largest(values(replace(self, silent=True), quantity)))
         terms = np.broadcast_to(scale(self, quantity), largest.shape)

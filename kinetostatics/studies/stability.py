@@ -18,6 +18,7 @@ from ..numbers import checks
 from ..numbers.elementary import UNIT
 from .methods import METHODS
 from .methods.certified import enclosure, relative_errors
+from .methods.engines import proven
 from .places import PLACES, Place
 from .timing import circumstances
 
@@ -57,7 +58,8 @@ def study(places=None, methods=None, progress=None):
     -------
     pandas.DataFrame
         A row for each place, number and method: largest error over the crank angles, relative to the quantity's
-        largest value; the largest condition; how many angles lose digits, flip to the other assembly, are NaN; what
+        largest value; the largest condition; the largest bound that `Solution.error_bound` proves for the library's own
+        values, infinite where it proves none; how many angles lose digits, flip to the other assembly, are NaN; what
         was raised; why it is not given.
 
     Raises
@@ -92,6 +94,7 @@ def _at(place, number, methods):
         reference = enclosure(solution, place.quantity, digits=20)
         bound = UNIT * _within_a_turn(solution).condition_of(place.quantity)
         other = _other_assembly(solution, place.quantity)
+        largest = float(np.max(proven(solution, place.quantity))) / reference.largest
     known = declared(solution, place.quantity)
     common = {"place": place.name, "axis": place.axis, "number": number, "quantity": place.quantity}
     common |= {"label": known.label, "unit": known.unit}
@@ -99,6 +102,7 @@ def _at(place, number, methods):
         {
             **common,
             "condition": np.max(bound) / UNIT,
+            "bound": largest,
             **_behaviour(method, solution, place.quantity, reference, bound, other),
         }
         for method in methods

@@ -16,7 +16,8 @@ from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import components, quantity
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
-from ..results.reductions import Output, lowest
+from ..results.peaks import lowest
+from ..results.reductions import Output
 from ..results.turn import repeating_problem
 from ..solution.scene import Scene
 from . import together

@@ -57,7 +57,8 @@ def sweep(
         A column for each parameter: of a case or scene its path with a unit, "spring.stiffness [kN/m]" (see
         `designs.grid`, `.latin_hypercube` ...); of a function its keyword. Without a unit in SI.
     outputs : sequence of str
-        "largest O", "mean_absolute balancing_torque", "range cam_force", "harmonic_2 balancing_torque" ...; with
+        "largest O", "mean_absolute balancing_torque", "range cam_force", "harmonic_2 balancing_torque", "largest
+        contact_pressure" (of a cam with a `Roller`), "swing balancing_torque" (the energy of its flywheel, J) ...; with
         "ratio" in front the reference's number divided by the design's. All reductions: `reductions.REDUCTIONS`.
     variant, reference : str
         Of a case: which variant the designs vary (the only one, or the first besides the reference), and which one

@@ -13,6 +13,7 @@ from ..engines import loops, programs
 from ..errors import ParameterError
 from ..machine.friction import PASSES
 from ..machine.loads import TURN, refusals
+from ..mechanics import contact
 from ..mechanics.quantities import sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
@@ -45,7 +46,7 @@ def run(scene, job, count, outputs):
     nearest to a limit position (designs,), NaN if it is not near.
     """
     solution = solution_of(scene, job.angles)
-    checks.require("solve", *refusals(solution))
+    checks.require("solve", *refusals(solution), *contact.refusals(solution))
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
         raise ParameterError(

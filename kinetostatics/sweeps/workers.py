@@ -17,6 +17,8 @@ from .chunks import rows, run_chunk
 
 ATTEMPTS = 3
 """How often a chunk is run whose worker dies, before the designs that do it are looked for."""
+ALONE = 2
+"""How often a design by itself is run whose worker dies, before it has no numbers."""
 WAITING = 256
 """Chunks handed to an executor at a time; to workers of our own two for each."""
 
@@ -180,10 +182,15 @@ def computed(job, rows_of, numbers, workers):
 
 
 def _narrowed(job, frame, workers):
-    """Outputs of designs that may kill their worker, run by themselves: half by half, down to those that do it."""
-    for found in workers.survived(run_chunk, job, frame):
-        return found
-    if len(frame) == 1:
+    """Outputs of designs that may kill their worker, run by themselves: half by half, down to those that do it.
+
+    One alone is tried again: a worker may die of something else.
+    """
+    alone = len(frame) == 1
+    for _ in range(ALONE if alone else 1):
+        for found in workers.survived(run_chunk, job, frame):
+            return found
+    if alone:
         return rows(job, frame, np.full((len(job.outputs), 1), np.nan), np.array(["the worker died with this design"]))
     halves = np.array_split(np.arange(len(frame)), 2)
     return pd.concat([_narrowed(job, frame.iloc[half], workers) for half in halves])

@@ -69,6 +69,8 @@ def display(name, arrays):
     if name == "rad":
         return 180 / np.pi, "deg"
     largest = max(float(np.nanmax(np.abs(array))) for array in arrays)
+    if name == "Pa" and largest >= 1e5:
+        return 1e-6, "MPa"
     return (1e-3, f"k{name}") if name in ("N", "N m", "W") and largest >= 1e4 else (1.0, name)
 
 

@@ -39,6 +39,8 @@ def _styles(table):
 def work_precision(table, ax=None, like=None):
     """Error over time, both logarithmic: a curve for each method with a setting, else a point.
 
+    Where a method proves a bound on its error a line leads from the error up to it.
+
     Parameters
     ----------
     table : pandas.DataFrame
@@ -71,6 +73,9 @@ def work_precision(table, ax=None, like=None):
             setting = rows["setting"].iloc[0]
             text = f"{name} ({setting})" if setting else name
             ax.plot(rows[time], np.maximum(rows["error"], EXACT), label=text, **style)
+            proven = rows[np.isfinite(rows["bound"])] if "bound" in rows else rows[:0]
+            ax.vlines(proven[time], np.maximum(proven["error"], EXACT), proven["bound"], color=style["color"], lw=1.0)
+            ax.plot(proven[time], proven["bound"], "_", color=style["color"], markersize=9)
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 30))
     ax.set_xlabel("time [ms]" if whole else "time [ns per crank angle]")
     text = "largest error over the turn, relative to largest value [1]"
@@ -80,7 +85,9 @@ def work_precision(table, ax=None, like=None):
 
 
 def error_by_distance(table, ax=None):
-    """Error of every method over the number that leads to a place, logarithmic; dashed: condition times rounding.
+    """Error of every method over the number that leads to a place, logarithmic.
+
+    Dashed is the condition times rounding, dotted the bound that the library proves for its own values.
 
     Errors of a thousand times the largest value and more, and NaN, lie on the upper edge.
 
@@ -118,6 +125,8 @@ def error_by_distance(table, ax=None):
         "k--",
         label="condition x rounding",
     )
+    if "bound" in problem:
+        ax.plot(problem["number"], problem["bound"].clip(EXACT, USELESS), "k:", label="proven bound of ours")
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3 * USELESS), xlabel=table["axis"].iloc[0])
     ax.set_ylabel(f"error of {table['label'].iloc[0]} [1]")
     ax.grid(visible=True, alpha=0.3)

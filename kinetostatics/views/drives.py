@@ -1,7 +1,11 @@
 """Figures of machines in periodic running: speed, torque of the motor against that of the loads, where energy goes."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from ..drive.running import Running
+from ..numbers import checks
 from .canvas import INK, axes, display, styled
 
 
@@ -27,6 +31,7 @@ def crank_speed(runs, ax=None):
     >>> ks.plots.crank_speed(runs).get_xlabel()
     'crank angle [deg]'
     """
+    _require_running(runs)
     ax = axes(ax)
     for name, run, style in styled(runs):
         (line,) = ax.plot(*_closed(run, run.speed), linestyle=style, label=name)
@@ -56,6 +61,7 @@ def drive_torques(run, ax=None):
     >>> ks.plots.drive_torques(ks.drive.steady(pump, motor, flywheel=0.05)).get_xlabel()
     'crank angle [deg]'
     """
+    _require_running({"run": run})
     ax = axes(ax)
     ratio = 1.0 if run.motor is None else run.motor.transmission
     curves = {
@@ -94,6 +100,7 @@ def energy_flow(runs, ax=None):
     >>> ks.plots.energy_flow(runs).get_xlabel().split("[")[0]
     'energy per turn '
     """
+    _require_running(runs)
     ax = axes(ax)
     shown = parts_that_move_energy(runs)
     flows = {name: {part.name: part.energy for part in run.energy_flow.parts} for name, run in runs.items()}
@@ -123,6 +130,15 @@ def parts_that_move_energy(runs):
     parts = {part.name: None for run in runs.values() for part in run.energy_flow.parts}
     moving = {part.name for run in runs.values() for part in run.energy_flow.parts if part.energy}
     return [name for name in parts if name in moving]
+
+
+def _require_running(runs):
+    """Refuse what is no mapping of label to Running."""
+    wanted = 'runs must be a dict of label to Running, as {"saw": ks.drive.steady(scene, motor)}'
+    several = isinstance(runs, Mapping) and runs
+    wrong = [name for name, run in runs.items() if not isinstance(run, Running)] if several else []
+    given = f"{checks.shown(runs[wrong[0]])} for {wrong[0]!r}" if wrong else checks.shown(runs)
+    checks.require("plots", None if several and not wrong else f"{wanted}, got {given}")
 
 
 def _closed(run, values):

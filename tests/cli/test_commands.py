@@ -190,7 +190,7 @@ def test_list_has_a_line_for_each_shipped_case_with_title_and_variants(capsys):
 
 
 @pytest.mark.parametrize("kind", STARTERS)
-def test_a_new_case_compares_its_variants_as_it_is_written(tmp_path, monkeypatch, capsys, kind):
+def test_a_new_case_compares_its_variants_and_finds_its_design_as_it_is_written(tmp_path, monkeypatch, capsys, kind):
     monkeypatch.chdir(tmp_path)
     assert main(["new", "my pump", "--kind", kind]) == 0
     assert capsys.readouterr().out == 'wrote my pump.toml; kinetostatics run "my pump.toml"\n'
@@ -198,6 +198,8 @@ def test_a_new_case_compares_its_variants_as_it_is_written(tmp_path, monkeypatch
     printed = capsys.readouterr().out
     assert printed.startswith("my pump\n")
     assert " / " in printed
+    assert main(["design", "my pump.toml"]) == 0
+    assert "crank: least largest shaking_force, from " in capsys.readouterr().out
 
 
 def test_a_new_case_is_a_crank_slider_unless_told(tmp_path, capsys):

@@ -78,7 +78,7 @@ def test_an_impossible_demand_ends_with_the_reason_and_nothing_written(tmp_path,
     assert list(tmp_path.iterdir()) == [saw]
 
 
-def test_scenes_that_no_file_can_hold_are_refused_before_the_search(tmp_path, capsys):
+def test_tables_stand_beside_what_is_found_and_take_no_other_file_s_place(tmp_path, capsys):
     (tmp_path / "cam.csv").write_text(
         "angle [deg], radius [m]\n" + "".join(f"{step}, 0.3\n" for step in range(0, 360, 5))
     )
@@ -86,9 +86,20 @@ def test_scenes_that_no_file_can_hold_are_refused_before_the_search(tmp_path, ca
     more += 'cam = { kind = "sampled", table = "cam.csv" }\n'
     saw = saw_with(more + STIFFER.replace("cam-circle", "cut").replace("spring.stiffness", "coupler_length").replace(
         '"600 kN/m", "900 kN/m"', '"1.9 m", "2.1 m"'), tmp_path)  # fmt: skip
-    assert main(["design", str(saw), "--out", str(tmp_path / "found.toml")]) == 2
+    found = tmp_path / "found.toml"
+    assert main(["design", str(saw), "--out", str(found)]) == 0
+    assert {path.name for path in tmp_path.glob("found*")} == {
+        "found.toml",
+        "found_cut_cam.csv",
+        "found_stiffer_cam.csv",
+    }
+    assert ks.load_case(found).variant("stiffer").parameters["coupler_length"] == pytest.approx(2.1)
+    found.unlink()
+    capsys.readouterr()
+    assert main(["design", str(saw), "--out", str(found)]) == 2
     told = capsys.readouterr().err
-    assert "has no text for a cam of the class Sampled" in told
+    assert "found_cut_cam.csv" in told
+    assert "there already" in told
     assert "searching" not in told
 
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.design import hertz
+from kinetostatics.machine import hertz
 from support.cam_contacts import CAM, STEEL, contact, solved
 from support.machines import ANGLES
 
@@ -35,7 +35,7 @@ def test_two_materials_press_like_their_mean_compliance():
 
 def test_steel_on_steel_has_the_factor_of_the_handbooks():
     """p0 = 0.418 sqrt(F E / (w R)) for equal moduli and a ratio of 0.3 (Dubbel; Hertz's formula by Stribeck)."""
-    modulus = hertz.modulus([STEEL, STEEL])
+    modulus = hertz.modulus(STEEL, STEEL)
     assert hertz.pressure(5e3, 0.02, modulus, 0.04) == pytest.approx(
         0.418 * np.sqrt(5e3 * 210e9 / (0.02 * 0.04)), rel=6e-4
     )

@@ -23,7 +23,7 @@ def test_groups_loads_and_friction_of_every_kind_are_written(tmp_path):
     bar, link = ks.Link(2.0, (0.1, 0.02), 0.01), ks.Link(1.0)
     cam = ks.cams.Harmonic((0.1, 0.01), (0.002,), 0.3)
     groups = (
-        ks.CamRoller(cam, link),
+        ks.CamRoller(cam, link, ks.Roller(0.01, 0.02, 210e9, 0.3, cam_youngs_modulus=110e9)),
         ks.SliderGroup(0.4, ks.Guide.at(0.3, 0.01), coupler=bar, slider=link),
         ks.Pin("coupler", (0.2, 0.05), name="C"),
         ks.Dyad(0.3, 0.35, on=("C", "B"), pin="D", link1=bar)
@@ -45,7 +45,7 @@ def test_groups_loads_and_friction_of_every_kind_are_written(tmp_path):
     scene = ks.Scene(ks.Mechanism("odd one", ks.Crank(None, link), groups), 12.0, 3.0, loads, friction)
     read = ks.load_case(case_text.write(tmp_path / "odd.toml", "Odd", {"one": scene})).variant("one").scene
     assert read.mechanism.name == "odd one"
-    for name in ("O", "guide", "D", "cam_force", "balancing_torque"):
+    for name in ("O", "guide", "D", "cam_force", "contact_pressure", "balancing_torque"):
         one, other = (ks.extremes(item.solve(12), name).range for item in (scene, read))
         np.testing.assert_allclose(one, other, rtol=1e-12)
 
@@ -66,7 +66,7 @@ def test_a_design_is_written_with_what_it_was_and_what_it_is_compared_with(tmp_p
     ("load", "message"),
     [
         (ks.ProcessForce(lambda motion: 0.0 * motion.crank_angle), "force must be one number"),
-        (ks.ProcessForce(ks.Table([0.0, 2.0, 4.0], [1.0, 2.0, 0.0], over="angle")), "force must be one number"),
+        (ks.Torque(lambda motion: 0.0 * motion.crank_angle, on="crank"), "value must be one number"),
     ],
 )
 def test_what_case_files_have_no_text_for_is_refused(tmp_path, load, message):
@@ -76,9 +76,34 @@ def test_what_case_files_have_no_text_for_is_refused(tmp_path, load, message):
     assert not (tmp_path / "no.toml").exists()
 
 
-def test_a_cam_of_ones_own_is_refused(tmp_path):
+TWO_TURNS = ks.Table(np.arange(8) * np.pi / 2, np.cos(np.arange(8.0)), period=4 * np.pi)
+DIAGRAM = ks.Table([0.1, 0.2, 0.3], [-900.0, -500.0, 1 / 3], over="travel", back=[0.0, 1.0, 0.0], slider="slider")
+
+
+def test_tables_of_loads_and_cams_stand_in_files_beside_it(tmp_path):
     angle = np.linspace(0, 2 * np.pi, 90, endpoint=False)
-    cam = ks.cams.Sampled(angle, 0.3 + 0.0 * angle)
-    scene = ks.Scene(ks.cam_crank_slider(cam, 2.0, slider=ks.Link(1.0)), 10.0)
-    with pytest.raises(ks.ParameterError, match="no text for a cam of the class Sampled"):
+    cam = ks.cams.Sampled(angle, 0.1 + 0.01 * np.cos(angle) + 1e-9 * np.cos(40 * angle), noise=1e-9)
+    follower = ks.Mechanism("bare", ks.Crank(None), (ks.CamRoller(cam, ks.Link(2.0)),))
+    pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0))
+    loads = [ks.Gravity(), ks.ProcessForce(TWO_TURNS, period=4 * np.pi), ks.Torque(TWO_TURNS, on="coupler")]
+    scenes = {
+        "cam": ks.Scene(follower, 10.0),
+        "two turns": ks.Scene(pump, 10.0, loads=loads),
+        "diagram": ks.Scene(pump, 10.0, loads=ks.ProcessForce(DIAGRAM)),
+    }
+    read = ks.load_case(case_text.write(tmp_path / "made.toml", "Made", scenes))
+    files = {"cam_cam", "two-turns_load_1", "two-turns_load_2", "diagram_load_1"}
+    assert {path.stem.removeprefix("made_") for path in tmp_path.glob("*.csv")} == files
+    for name, scene in scenes.items():
+        one, other = scene.solve(360), read.variant(name).scene.solve(360)
+        assert one.period == other.period
+        np.testing.assert_allclose(other.balancing_torque, one.balancing_torque, rtol=1e-13, atol=1e-13)
+    with pytest.raises(ks.errors.FileError, match="there already"):
+        case_text.write(tmp_path / "made.toml", "Made", scenes)
+
+
+def test_a_cam_of_ones_own_is_refused(tmp_path):
+    cam = ks.cams.from_law(ks.laws.cosine(0.3, 2.0))
+    scene = ks.Scene(ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(1.0)), 10.0)
+    with pytest.raises(ks.ParameterError, match="no text for a cam of the class LawCam"):
         case_text.write(tmp_path / "no.toml", "No", {"one": scene})

@@ -223,3 +223,17 @@ def test_rocker_angle_of_a_single_crank_angle_is_single():
     solution = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 2 / 3), np.pi / 2, crank_speed=-1.0)
     assert ks.linkage.rocker_angle(solution).shape == ()
     assert ks.linkage.rocker_angle(solution) == 0.0
+
+
+def test_a_chain_unit_of_a_case_is_optimised_with_its_pivot_as_its_start_says():
+    """The parallel start puts the rocker's pivot where crank and coupler say, through every step."""
+    case = ks.load_case("chain_unit")
+    vary = {"crank_length": ("0.1 m", "0.2 m"), "coupler_length": ("0.25 m", "0.35 m")}
+    found = ks.design.optimise(
+        case, vary, "mean_absolute balancing_torque", limits=["largest O >= 300 N"], variant="rho-0.5"
+    )
+    crank, coupler = found.values["crank_length"], found.values["coupler_length"]
+    pivot = found.scene.parameters["rocker_pivot.x"]
+    assert pivot == pytest.approx(np.sqrt(coupler**2 - crank**2), rel=1e-14)
+    assert crank != pytest.approx(0.15, rel=1e-3)
+    assert ks.extremes(found.scene.solve(12), "O").largest >= 300 * (1 - 1e-9)

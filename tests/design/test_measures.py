@@ -50,3 +50,15 @@ def test_magnitude_of_a_vector_has_the_slope_along_it():
     found = measures.size(values, slopes)
     assert_allclose(found.values, np.hypot(*values))
     assert_allclose(found.slopes[0], 3 * np.cos(ANGLE) ** 2 / found.values, atol=1e-15)
+
+
+def test_the_largest_of_its_parts_is_the_swing_and_each_has_its_own_slopes():
+    whole, rises = measures.reduced("swing", curve(POINT), turns=2)
+    values, slopes = measures.bounded("swing", curve(POINT), turns=2)
+    assert_allclose(values.max(), whole, rtol=1e-12)
+    assert_allclose(slopes[:, values.argmax()], rises, rtol=1e-12)
+    step = 1e-6
+    for place in range(POINT.size):
+        move = step * np.eye(POINT.size)[place]
+        high, low = (measures.bounded("swing", curve(POINT + side * move), turns=2)[0] for side in (1, -1))
+        assert_allclose(slopes[place], (high - low) / (2 * step), rtol=0, atol=2e-7)

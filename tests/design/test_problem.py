@@ -1,9 +1,14 @@
 """Outputs as functions of the numbers that vary, with their derivatives."""
 
 import numpy as np
+import pytest
 
-from kinetostatics.design.problem import Problem
+import kinetostatics as ks
+from kinetostatics.design.demands import wanted
+from kinetostatics.design.problem import Problem, true_value
+from support.case_files import case_file
 from support.improved_saws import CIRCLE
+from support.plain_case import PLAIN
 
 
 def test_derivatives_of_a_design_are_those_of_small_changes():
@@ -15,3 +20,47 @@ def test_derivatives_of_a_design_are_those_of_small_changes():
             high, low = (problem.curves(start + side * move)[name][0] for side in (1, -1))
             slopes = problem.curves(start)[name].slopes[place]
             assert np.abs((high - low) / (2 * step) - slopes).max() < 1e-6 * np.abs(slopes).max()
+
+
+FOUR_STROKE = ks.Scene(
+    ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)),
+    100.0,
+    loads=ks.ProcessForce(lambda motion: 300.0 * np.cos(1.5 * motion.crank_angle), period=4 * np.pi),
+)
+
+
+@pytest.mark.parametrize("name", ["harmonic_1", "harmonic_2", "swing", "largest", "rms"])
+def test_outputs_over_two_turns_are_those_of_sweeps(name):
+    """Harmonics are those of the crank angle, and energy is gained over the whole period."""
+    text = f"{name} balancing_torque"
+    table = ks.sweep(FOUR_STROKE, ks.designs.grid({"slider.mass": "1..2 kg:2"}), [text], progress=False)
+    problem = Problem(FOUR_STROKE, {"slider.mass": (0.5, 3.0)}, ["balancing_torque"])
+    for mass, expected in table.to_numpy(dtype=object)[:, :2]:
+        output = wanted(text, FOUR_STROKE)
+        assert problem.output(output, np.array([mass]))[0] == pytest.approx(expected, rel=1e-7)
+        assert true_value(output, FOUR_STROKE.varied({"slider.mass": mass})) == pytest.approx(expected, rel=1e-7)
+
+
+def test_a_number_that_is_not_told_is_refused_and_one_that_follows_is_not(tmp_path):
+    text = (
+        PLAIN
+        + """[variants.cam]
+mechanism = "cam-crank-slider"
+cam = { kind = "cosine-law", amplitude = "0.3 m", mean = "2 m" }
+roller = { radius = "50 mm", width = "60 mm", youngs_modulus = "210 GPa", poissons_ratio = 0.3 }
+"""
+    )
+    variant = ks.load_case(case_file(tmp_path, text)).variant("cam")
+    vary = {"roller.cam_youngs_modulus": ("100 GPa", "200 GPa"), "coupler_length": ("2 m", "2.1 m")}
+    with pytest.raises(
+        ks.ParameterError, match=r"roller\.cam_youngs_modulus is not told in the source, .*; give it a value"
+    ):
+        Problem(variant, vary, ["contact_pressure"])
+    told = ks.load_case(
+        case_file(tmp_path, text.replace("poissons", 'cam_youngs_modulus = "150 GPa", poissons'))
+    ).variant("cam")
+    problem = Problem(told, vary, ["contact_pressure"])
+    assert problem.start == pytest.approx([150e9, told.scene.parameters["coupler_length"]])
+    value, slopes = problem.output(wanted("largest contact_pressure", told), problem.start)
+    assert value > 0
+    assert slopes[0] > 0  # a stiffer cam is pressed harder

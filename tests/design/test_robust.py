@@ -93,5 +93,21 @@ def test_a_robust_design_keeps_more_than_the_best_at_nominal_numbers():
     )  # fmt: skip
     assert 22 < ks_quantile(linear) < 24
     assert ks_quantile(robust) >= 32.5
+    row = robust.report().loc[f"0.05 quantile of {RATIO} [1]"]
+    assert_allclose(row["after"], max(robust.starts), rtol=1e-9)
+    assert np.isnan(row["before"])  # the plain saw has no cam to spread
+    assert f"0.05 quantile of {RATIO} [1]" not in linear.report().index
     assert max(map(abs, ks.extremes(robust.scene.solve(90), "cam_force").range)) <= 20e3 * (1 + 1e-9)
     assert ks_quantile(linear, trim=0.03) >= 125
+
+
+def test_a_report_tells_the_quantile_before_and_after():
+    spread = ks.design.Spread(0.05, CIRCLE, samples=32)
+    circle = {"variant": "cam-circle"}
+    found = ks.design.optimise(SAW, {"spring.stiffness": (6e5, 9e5)}, maximise=RATIO, robust=spread, **circle)
+    row = found.report().iloc[0]
+    assert row.name == f"0.05 quantile of {RATIO} [1]"
+    assert_allclose(row["after"], found.starts[0], rtol=1e-9)
+    samples = ks.design.over_spread(SAW, RATIO, spread, samples=32, **circle)
+    assert np.sort(samples)[0] < row["before"] < np.sort(samples)[3]
+    assert row["before"] < row["after"]

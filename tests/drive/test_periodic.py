@@ -233,3 +233,4 @@ def test_a_mechanism_that_does_not_make_full_turns_is_refused_with_its_gaps():
     with pytest.raises(ks.AssemblyError) as caught:
         ks.drive.steady(rocking, MOTOR, 1.0)
     assert caught.value.intervals
+    assert str(caught.value).endswith(". Change the lengths: a drive turns the crank all round")

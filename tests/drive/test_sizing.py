@@ -116,3 +116,32 @@ def test_what_is_no_coefficient_of_fluctuation_is_refused(wanted):
 def test_a_motor_too_weak_is_told_whatever_the_flywheel():
     with pytest.raises(ks.DriveError, match="the motor is too weak"):
         ks.drive.flywheel(ks.Scene(SAW, 33.0, loads=ks.Torque(-9e3, on="crank")), 0.01, MOTOR)
+
+
+@pytest.mark.parametrize("turns", [1, 2])
+def test_the_swing_of_the_torque_is_the_textbook_s_energy(turns):
+    """Whatever the period: the crank's inertia is in the torque, whose mean the motor gives."""
+    force = ks.Table(
+        np.linspace(0, turns * TURN, 24, endpoint=False), np.cos(np.arange(24.0) ** 2), period=turns * TURN
+    )
+    scene = ks.Scene(SAW, 20.0, loads=[ks.ProcessForce(force, period=turns * TURN), ks.Gravity()])
+    table = ks.sweep(
+        scene, ks.designs.grid({"crank_speed": "10..20 rad/s:2"}), ["swing balancing_torque"], progress=False
+    )
+    for speed, found in table.to_numpy(dtype=object)[:, :2]:
+        energy = ks.drive.flywheel(scene.varied({"crank_speed": speed}), 0.01).energy
+        assert found == pytest.approx(energy, rel=1e-6)
+
+
+def test_the_flywheel_by_the_swing_is_the_true_one_but_for_the_fluctuation_itself():
+    """Swing / (delta omega^2) takes the speed as constant: it is off by a share that falls with delta."""
+    pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 110.0, loads=ks.ProcessForce(-200.0))
+    motor = ks.drive.Motor.linear(50.0, 110.0)
+    off = []
+    for wanted in (0.02, 0.005):
+        true = ks.drive.flywheel(pump, wanted, motor)
+        speed = true.running.mean_speed
+        energy = ks.drive.flywheel(pump.varied({"crank_speed": speed}), wanted).energy
+        off.append(abs(energy / (wanted * speed**2) / true.inertia - 1.0))
+    assert off[0] < 0.1 * 0.02
+    assert off[1] < off[0] / 3.5

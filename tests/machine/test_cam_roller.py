@@ -37,3 +37,13 @@ def test_a_cam_roller_alone_is_a_mechanism():
     """Without any bar: a block that the slotted crank drives around a circle takes its centrifugal force."""
     machine = ks.Mechanism("wheel", ks.Crank(None), (ks.CamRoller(ks.cams.Circle(0.2), ks.Link(3.0)),))
     np.testing.assert_allclose(ks.solve(machine, TURN, crank_speed=10.0).cam_force, 3.0 * 0.2 * 100.0, rtol=1e-13)
+
+
+def test_a_block_placed_where_it_is_found_knows_how_its_path_is_curved():
+    """Methods under study find joints in another way; on a circle the curvature is that of the circle."""
+    placed, again = ROLLER.place(TURN), ROLLER.place(TURN)
+    group = ks.CamRoller(CAM, BLOCK, ks.Roller(0.05, 0.06, 210e9, 0.3))
+    group.follow(again, placed.joints)
+    for side, room in ((-1.0, 0.25), (1.0, 0.35)):
+        found = group.relative_radius("contact_pressure", again, side)
+        assert found == pytest.approx(np.full(25, 0.05 * room / 0.3), rel=1e-13)

@@ -42,3 +42,12 @@ def test_absent_numbers_count_as_zero_and_stay_absent(a, b):
     assert planar.number(planar.product(a, b)) == one * other
     assert z(planar.stretched(a, A if b else None)) == one * z(A if b else None)
     assert planar.quotient(a, 2.0) == (None if a is None else 1.5)
+
+
+def test_a_circle_run_to_the_left_has_the_curvature_of_its_radius_at_whatever_speed():
+    for angle, rate, growth in product((0.0, 1.0, 4.0), (2.0, -3.0), (0.0, 5.0)):
+        turn = cmath.exp(1j * angle)
+        first = 0.4j * rate * turn
+        second = 0.4j * growth * turn - 0.4 * rate * rate * turn
+        found = planar.curvature((first.real, first.imag), (second.real, second.imag))
+        assert found == pytest.approx(2.5 if rate > 0 else -2.5, rel=1e-13)

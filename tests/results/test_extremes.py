@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import brentq
 
 import kinetostatics as ks
+from kinetostatics.errors import NotGivenError
 from support.every import every
 from support.machines import ANGLES, KINDS, Machine, largest
 
@@ -197,3 +198,15 @@ def test_mean_torque_closes_in_on_the_jumps_of_a_load():
     torque = np.abs(solution.at(inner.ravel()).balancing_torque).reshape(inner.shape)
     expected = np.sum(half * weights * torque) / (2 * np.pi)
     assert ks.compare(solution, solution).mean_torques[0] == pytest.approx(expected, rel=1e-7)
+
+
+def test_extremes_have_proven_bounds_at_their_angles():
+    saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    s = ks.solve(saw, 8, crank_speed=33.5, loads=[ks.Gravity()])
+    for quantity in ("balancing_torque", "O"):
+        found = ks.extremes(s, quantity)
+        assert found.error_bound.shape == found.value.shape
+        assert np.all(found.error_bound > 0)
+        assert np.all(found.error_bound < 1e-14 * np.max(np.abs(found.value)))
+    with pytest.raises(NotGivenError, match="function of yours"):
+        ks.extremes(s, lambda s: s.guide_force).error_bound  # noqa: B018

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.means import energy_per_turn, mean_absolute_torque, means
+from kinetostatics.results.means import energy_per_turn, mean_absolute_torque, mean_absolute_torque_errors, means
 
 TURN = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0)), 0.0, crank_speed=3.0).sampled
 WHOLE = 2 * np.pi
@@ -57,3 +57,13 @@ def test_where_friction_jams_in_the_turn_there_is_no_mean(of):
         of(solution)
     assert caught.value.angles
     assert "on_gap" not in str(caught.value)
+
+
+def test_errors_of_a_mean_are_rounding_and_quadrature():
+    saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    s = ks.solve(saw, 8, crank_speed=33.5, loads=[ks.Gravity()])
+    rounding, quadrature = mean_absolute_torque_errors(s)
+    mean = mean_absolute_torque(s)
+    assert 0 < rounding < 1e-13 * mean
+    assert 0 <= quadrature < 1e-12 * mean
+    assert ks.compare(s, s).mean_torque_errors[0] == (rounding, quadrature)

@@ -10,7 +10,7 @@ from kinetostatics.results.passes import KINDS, Passes
 from kinetostatics.results.reductions import parsed
 
 pytestmark = pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)")
-OUTPUTS = [parsed(f"{kind} O") for kind in (*KINDS, "harmonic_2")]
+OUTPUTS = [parsed(f"{kind} O") for kind in (*KINDS, "harmonic_2", "swing")]
 
 
 def signals(count):

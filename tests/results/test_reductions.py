@@ -101,3 +101,38 @@ def test_outputs_are_read_with_any_name_of_a_quantity():
             parsed(text)
     with pytest.raises(ks.ParameterError, match="did you mean 'largest'"):
         parsed("larges O")
+
+
+def test_swing_is_the_range_of_the_integral_of_a_sum_of_waves():
+    """Against the integral in closed form on a fine grid; the mean does not count, and over two turns it doubles."""
+    fine = np.linspace(0, 2 * np.pi, 400_001)
+    integral = 3.0 * np.sin(fine) + 0.5 * np.sin(4 * fine + 0.3) - 0.2 * np.cos(7 * fine)
+    for count in (96, 97):
+        angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
+        values = 3.0 * np.cos(angle) + 2.0 * np.cos(4 * angle + 0.3) + 1.4 * np.sin(7 * angle)
+        output = parsed("swing balancing_torque")
+        for mean in (0.0, -40.0):
+            found, rough = output.estimated((values + mean)[None])
+            assert found[0] == pytest.approx(np.ptp(integral), rel=2e-7)
+            assert not rough[0]
+        assert output.estimated(values[None], 2)[0][0] == pytest.approx(2 * found[0], rel=1e-12)
+
+
+def test_swing_is_exact_at_samples_and_close_where_a_torque_jumps():
+    """5 over a quarter of the turn, else 0: the energy above the mean is 15/4 times pi/2."""
+    angle = np.linspace(0, 2 * np.pi, 720, endpoint=False)
+    values = np.where((angle > 1.0) & (angle < 1.0 + np.pi / 2), 5.0, 0.0)
+    found, rough = parsed("swing balancing_torque").estimated(values[None])
+    assert found[0] == pytest.approx(15 / 4 * np.pi / 2, rel=2e-3)
+    assert not rough[0]
+    assert parsed("swing balancing_torque").estimated(np.cos(20 * angle[::15] + 0.2)[None])[1][0]  # 48 samples
+    assert np.isnan(parsed("swing O").reduced(np.full((1, 36), np.nan))[0])
+
+
+def test_swing_has_the_unit_of_energy_and_is_of_torques_alone():
+    scene = ks.Scene(ks.crank_slider(0.1, 0.4, slider=ks.Link(3.0)), 10.0)
+    assert parsed("swing balancing_torque").of(scene).column == "swing balancing_torque [J]"
+    assert parsed("ratio swing balancing_torque").of(scene).column == "ratio swing balancing_torque [1]"
+    for name in ("O", "slider_position"):
+        with pytest.raises(ks.ParameterError, match=r"swing is the energy that a torque gives .* is in (N|m)$"):
+            parsed(f"swing {name}").of(scene)

@@ -12,7 +12,9 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPool
 from contextlib import closing
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
+import pandas as pd
 import pytest
 
 import kinetostatics as ks
@@ -252,3 +254,26 @@ def test_errors_of_the_library_end_the_sweep(monkeypatch):
 
 def raising(error, *call):
     raise error
+
+
+class Mortal:
+    """Workers of which some die: by the number of designs they are given, and how often they do so before."""
+
+    def __init__(self, dying):
+        self.dying, self.tried = dying, []
+
+    def survived(self, function, job, frame):
+        """What a call gives in a tuple, as of `Workers`."""
+        names = tuple(frame.index)
+        self.tried.append(names)
+        return () if self.dying(names, self.tried.count(names)) else ((names,),)
+
+
+def test_a_harmless_design_whose_worker_dies_of_something_else_is_tried_again(monkeypatch):
+    """Design 2 kills its worker each time; that of design 3 dies once, of something else."""
+    monkeypatch.setattr(dispatch, "rows", lambda job, frame, numbers, reasons: [*frame.index, *reasons])
+    monkeypatch.setattr(dispatch.pd, "concat", list)
+    hands = Mortal(lambda names, times: 2 in names or (names == (3,) and times == 1))
+    found = dispatch._narrowed(SimpleNamespace(outputs=()), pd.DataFrame({"x": [0.0] * 4}), hands)
+    assert found == [((0, 1),), [[2, "the worker died with this design"], ((3,),)]]
+    assert hands.tried.count((2,)) == dispatch.ALONE

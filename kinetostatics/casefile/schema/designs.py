@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from ...design.robust import Spread
+from ...design.spread import Spread
 from ...errors import ParameterError
 from ...numbers.units import shown
 from .tables import Table, one_of

@@ -21,7 +21,7 @@ from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
 from ...numbers import checks
 from ...numbers.units import shown, to_si
-from .tables import Cam, LinkTable, Table, list_of, one_of, value_in
+from .tables import Cam, LinkTable, RollerTable, Table, list_of, one_of, value_in
 from .texts import Angle, Coordinate, GuidePoints, Stiffness, pair_of, reader
 
 GUIDE = {
@@ -126,7 +126,7 @@ GROUPS = {
     "cam roller": CamRoller,
 }
 OTHERS: dict[Any, dict[str, Any]] = {
-    CamRoller: {"cam": Cam},
+    CamRoller: {"cam": Cam, "roller": RollerTable | None},
     Spring: {"stiffness": Stiffness},
     ProcessForce: {"period": None},  # a table has one, a constant none
 }
@@ -181,6 +181,7 @@ MEANINGS = {
     "pin.name": "Name of the joint that it adds.",
     "cam roller.cam": "The path of the roller centre A about O.",
     "cam roller.block": "Mass properties of block and roller, from A along the crank.",
+    "cam roller.roller": "Size and material of the roller, for its contact pressure.",
     # loads
     "spring.stiffness": 'Of all springs together; "balance the slider": slider mass times crank speed squared.',
     "spring.free_position": "Coordinate of the slider's pin along its guide at which they are free.",

@@ -7,6 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Fiel
 
 from ...design.balancing import RATIOS
 from ...machine.cams import Harmonic
+from ...machine.roller import LARGEST_RATIO
 from ...numbers.checks import choice, nearest
 from ...numbers.units import shown
 from .texts import (
@@ -17,6 +18,7 @@ from .texts import (
     Inertia,
     Length,
     Mass,
+    Modulus,
     Period,
     Point,
     Weight,
@@ -156,6 +158,28 @@ class HarmonicTable(Table):
 
 CAMS = {"circle": CircleTable, "cosine-law": CosineLawTable, "harmonic": HarmonicTable, "sampled": SampledTable}
 Cam = one_of("cam", CAMS)
+
+
+# Rollers
+
+PoissonsRatio = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST_RATIO, allow_inf_nan=False), "1"]
+
+
+class RollerTable(Table):
+    """A cam's roller with its materials: with it "contact_pressure" is an output."""
+
+    radius: Length
+    """Of the roller."""
+    width: Length
+    """Of the contact."""
+    youngs_modulus: Modulus
+    """Of the roller, and of the cam unless that is told."""
+    poissons_ratio: PoissonsRatio
+    """Of the roller, from 0 to 0.5, and of the cam unless that is told."""
+    cam_youngs_modulus: Modulus | None = None
+    """Of the cam."""
+    cam_poissons_ratio: PoissonsRatio | None = None
+    """Of the cam."""
 
 
 # Counterweights

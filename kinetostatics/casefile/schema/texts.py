@@ -33,6 +33,7 @@ Mass = Annotated[float, BeforeValidator(reader("kg", low=0.0)), "kg"]
 Inertia = Annotated[float, BeforeValidator(reader("kg m^2", low=0.0)), "kg m^2"]
 Speed = Annotated[float, BeforeValidator(reader("rad/s")), "rad/s"]
 AngularAcceleration = Annotated[float, BeforeValidator(reader("rad/s^2")), "rad/s^2"]
+Modulus = Annotated[float, BeforeValidator(reader("Pa", low=0.0, strict=True)), "Pa"]
 GravityAcceleration = Annotated[float, BeforeValidator(reader("m/s^2", low=0.0)), "m/s^2"]
 
 _STIFFNESS = reader("N/m", low=0.0)

@@ -13,7 +13,7 @@ from ...numbers import checks
 from ...numbers.units import shown
 from .drives import DriveTable
 from .parts import Groups, Loads, by
-from .tables import BalancingTable, Cam, GravityTable, LinkTable, Table, value_in
+from .tables import BalancingTable, Cam, GravityTable, LinkTable, RollerTable, Table, value_in
 from .texts import (
     Angle,
     AngularAcceleration,
@@ -161,6 +161,8 @@ class CamVariant(SliderVariant):
     """A to B; left out for a cosine-law cam, whose mean it then is."""
     block: LinkTable = LinkTable()
     """Mass properties of block and roller, from A along the crank."""
+    roller: RollerTable | None = None
+    """Size and material of the roller, for its contact pressure."""
 
 
 class RockerVariant(MechanismVariant):

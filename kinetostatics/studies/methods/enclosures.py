@@ -1,8 +1,8 @@
 """Enclosures: the library's own kernels on `arb` numbers, intervals that hold what exact arithmetic would give.
 
 (Johansson 2017, *Arb: efficient arbitrary-precision midpoint-radius interval arithmetic*.) The mechanism is the one
-whose numbers are the doubles that the solution holds, each taken exactly. Of the stored direction of a guide only the
-direction counts: its length is 1 but for rounding, and no guide has any other.
+whose numbers are the doubles that the solution holds, each taken exactly. Of a guide through two points only the
+direction of its unit vector counts: its length is 1 but for rounding.
 """
 
 import importlib
@@ -179,7 +179,7 @@ def _load_on_arb(arb, item, what, motion, solution):
 
 
 def _copied(item, arb):
-    """The item with arb numbers in place of its own; guides by direction, not by the rounding of its length."""
+    """The item with arb numbers in place of its own; guides through points by direction, not by its length."""
 
     def number(value):
         if isinstance(value, np.ndarray):
@@ -187,6 +187,8 @@ def _copied(item, arb):
         return arb(value) if isinstance(value, int) else arb(float(value))
 
     def guide(own):
+        if own.exact is None:
+            return with_fields(own, angle=mapped(own.angle, number), guide_offset=mapped(own.guide_offset, number))
         offset, direction = mapped(own.guide_offset, number), _direction(own.direction, arb)
         return with_fields(own, angle=None, guide_offset=offset, exact=direction)
 

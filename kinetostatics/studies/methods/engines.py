@@ -7,6 +7,7 @@ import numpy as np
 
 from ...engines import programs
 from ...engines.compiled import require
+from ...engines.engines import COMPILED, NUMPY
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import components
 from ...solution.scene import Scene, unchecked
@@ -33,6 +34,25 @@ def compiled_run(solution, quantity):
 
 def _compiled(solution, quantity, setting):
     return compiled_run(solution, quantity)
+
+
+def _numpy_with_bounds(solution, quantity, setting):
+    return lambda: _with_bounds(_solved(solution, solution.crank_angle), quantity, NUMPY)
+
+
+def _compiled_with_bounds(solution, quantity, setting):
+    require()
+    return lambda: _with_bounds(solution, quantity, COMPILED)
+
+
+def _with_bounds(solution, quantity, engine):
+    values, _ = engine.with_bounds(solution.dynamics, (quantity,))
+    return tuple(np.reshape(values[quantity], (-1, *solution.shape)))
+
+
+def proven(solution, quantity):
+    """Bound on the errors of a solution's values (N,), of a vector on their magnitude."""
+    return np.linalg.norm(np.reshape(solution.error_bound(quantity), (-1, *solution.shape)), axis=0)
 
 
 def _jax(solution, quantity, setting):
@@ -70,8 +90,10 @@ def _by_power(solution, quantity, setting):
 
 
 METHODS = (
-    Method("ours, NumPy", _numpy, ours=True),
-    Method("ours, compiled", _compiled, ours=True),
+    Method("ours, NumPy", _numpy, ours=True, bound=proven),
+    Method("ours, compiled", _compiled, ours=True, bound=proven),
+    Method("ours, NumPy, with proven bounds", _numpy_with_bounds, ours=True, bound=proven),
+    Method("ours, compiled, with proven bounds", _compiled_with_bounds, ours=True, bound=proven),
     Method("ours, JAX jit", _jax, ours=True),
     Method("ours, torque by powers", _by_power, ours=True),
     Method("single precision", _single),

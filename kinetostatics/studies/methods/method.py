@@ -40,6 +40,9 @@ class Method:
         Values of the setting, from coarse to fine.
     ours : bool
         Whether it is the library's own path.
+    bound : function, optional
+        ``bound(solution, quantity)``: what the method itself proves its error to be at most, (N,). Without, it does not
+        know how wrong it is.
 
     Examples
     --------
@@ -56,6 +59,7 @@ class Method:
     setting: str = ""
     settings: tuple[Any, ...] = (None,)
     ours: bool = False
+    bound: Callable[[Any, str], Any] | None = None
 
 
 def require_one_design(solution):

@@ -35,6 +35,13 @@ class Posture:
     def vector(self, pair):
         return self.mp.mpc(*map(self.number, pair))
 
+    def along(self, guide):
+        """Unit vector of a guide: by its angle, which is given exactly, or by the direction that two points gave it."""
+        if guide.exact is None:
+            return self.mp.expj(self.number(guide.angle))
+        direction = self.vector(guide.exact)
+        return direction / abs(direction)
+
     def table(self, angle):
         """Joints, mass centres and directions of links at a crank angle."""
         ray = self.mp.expj(angle)
@@ -59,7 +66,7 @@ class Posture:
         if not group.passes:
             return side
         (kind, _), slides = parted(group.passage), isinstance(group, SliderGroup)
-        start = -1j * self.vector(group.guide.direction) if slides else self.vector(group.pivot)
+        start = -1j * self.along(group.guide) if slides else self.vector(group.pivot)
         throw = self.mechanism.throws[group.on]
         psi = self._angle - self.mp.arg(start if throw.ahead else start / self.vector(throw.at))
         half = self.mp.sin(psi / 2)
@@ -70,8 +77,7 @@ class Posture:
         mp, side = self.mp, self.side(group)
         coupler, slider = group.links
         start, length = joints[group.on], self.number(group.coupler_length)
-        along = self.vector(group.guide.direction)
-        along /= abs(along)
+        along = self.along(group.guide)
         lean = mp.asin((self.number(group.guide.guide_offset) - cross(along, start)) / length)
         direction = mp.expj(mp.arg(along) + (lean if side > 0 else mp.pi - lean))
         joints[group.pin] = start + length * direction
@@ -118,8 +124,7 @@ class Posture:
 
     def add_yoke(self, group, joints, links):
         block, slider = group.links
-        along = self.vector(group.guide.direction)
-        along /= abs(along)
+        along = self.along(group.guide)
         way = along * self.mp.expj(self.number(group.slot_angle))
         foot = left(along) * self.number(group.guide.guide_offset)
         joints[group.pin] = foot + cross(joints[group.on] - foot, way) / cross(along, way) * along
@@ -147,8 +152,7 @@ class Posture:
             pivot = self.vector(group.pivot)
             direction = self.mp.expj(self.mp.arg(-pivot) - group.assembly * value)
             return pivot + self.number(group.arm_length) * direction, direction
-        along = self.vector(group.guide.direction)
-        along /= abs(along)
+        along = self.along(group.guide)
         return along * self.mp.mpc(value, self.number(group.guide.guide_offset)), along
 
     def roller(self, cam, angle):

@@ -239,8 +239,7 @@ def test_cams_that_cannot_be_certified_are_named():
 
 def test_other_refusals():
     s = scene("circle")
-    with pytest.raises(NotGivenError, match="pressure_angle cannot be computed on arb numbers"):
-        enclosure(s, "pressure_angle")
+    assert enclosure(s, "pressure_angle").radius < 1e-30
     with pytest.raises(NotGivenError, match="quantity of the independent path is 'pressure_angle'"):
         independent(s, "pressure_angle", [0])
     with pytest.raises(QuantityError, match="'nonsense'"):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from kinetostatics.design import hertz
+from kinetostatics.machine import hertz
 
-STEEL = hertz.modulus([(2.1e11, 0.3), (2.1e11, 0.3)])
+STEEL = hertz.modulus((2.1e11, 0.3), (2.1e11, 0.3))
 
 
 def test_equal_materials_have_half_of_one_plane_modulus():

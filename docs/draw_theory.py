@@ -1,0 +1,340 @@
+"""The drawings of the theory: python docs/draw_theory.py [NAME ...]. Without names all are drawn, into docs/theory."""
+
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from pictures import as_svg, look
+
+import kinetostatics as ks
+from kinetostatics.machine.friction import Sliding, Turning
+from kinetostatics.mechanics.motion import Motion
+from kinetostatics.views import symbols
+from kinetostatics.views.canvas import ACCENT, INK, LOAD, STEEL
+from kinetostatics.views.drawings import LINES, PLATES
+from kinetostatics.views.shape import Shape
+
+FOLDER = Path(__file__).parent / "theory"
+TURN = np.radians(np.arange(720) / 2)
+SHAFT = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11, "lw": 1.4}
+
+
+# Bodies apart, with what acts on each
+
+
+def forces(solution):
+    """By link: what acts on it, each (text, point, vector, whether it is the library's own value or its opposite)."""
+    made, found = solution.mechanism, {name: [] for name in solution.mechanism.links}
+    for name, pair in made.pairs.items():
+        point, against = solution.position(pair.joint)[:, 0], getattr(pair, "against", "frame")
+        if isinstance(pair, Turning) or (name in made.outputs and made.outputs[name].vector):
+            force = solution.reaction(name)[:, 0]
+            text = name
+        else:
+            text = pair.force
+            force = solution.scalar(text)[0] * _along(solution, pair)
+            if text == "cylinder_force":
+                point = solution.position(made.references[against])[:, 0]
+        found[pair.link].append((text, point, force, True))
+        if against != "frame":
+            found[against].append(("-" + text, point, -force, False))
+    return found
+
+
+def _along(solution, pair):
+    """Unit vector along which the force of a pair counts."""
+    if not isinstance(pair, Sliding):  # a roller: inward normal of its path
+        velocity = solution.velocity(pair.joint)[:, 0]
+        return symbols.left(velocity / np.hypot(*velocity))
+    if pair.against in solution.mechanism.guides:  # a yoke: left normal of its slot
+        return symbols.left(np.array(solution.placement.links[pair.link].direction, dtype=float).reshape(2))
+    return symbols.left(np.array(solution.placement.links[pair.against].direction, dtype=float).reshape(2))
+
+
+def lines(solution, shape, name):
+    """One link as it is drawn in a mechanism: each (style, points)."""
+    made = solution.mechanism
+    place, turn = solution.position(made.references[name])[:, 0], np.ravel(solution.placement.links[name].direction)
+
+    def put(points):
+        return place[:, None] + np.outer(turn, points[0]) + np.outer(symbols.left(turn), points[1])
+
+    corners = shape.corners[name]
+    if corners.shape[1] > 1 and name != "cylinder":
+        yield LINES["bar"], put(corners[:, np.argsort(corners[0])[[0, -1]]])
+    for slot, ends in shape.slots.items():
+        if slot.link == name and not slot.rod:
+            yield LINES["slotted"], put(ends)
+            yield LINES["slot"], put(ends)
+    if name in ("rod", "cylinder"):
+        reach = solution.measure("cylinder_length")[0]
+        yield LINES["bar" if name == "rod" else "slotted"], put(np.array([[0.0, 0.7 * reach], [0.0, 0.0]]))
+    if name in made.guides or name == "block":
+        size = shape.unit * (1.0 if name in made.guides else 0.8)
+        yield PLATES["block"], place[:, None] + _box(turn, size)
+
+
+def _box(turn, size):
+    return size * (np.outer(turn, symbols.RECTANGLE[:, 0]) + np.outer(symbols.left(turn), symbols.RECTANGLE[:, 1]))
+
+
+def arrow(ax, start, tip, text, colour=ACCENT, own=True, tail=False):
+    """A force, its name at the tip or the tail: whole for what the library calls so, dashed for its opposite."""
+    line = {**SHAFT, "color": colour, "ls": "-" if own else (0, (3, 2))}
+    ax.annotate("", tip, start, arrowprops=line, zorder=6)
+    ax.update_datalim([start, tip])
+    away = np.subtract(start, tip) if tail else np.subtract(tip, start)
+    ax.annotate(
+        text.replace("-", "\N{MINUS SIGN}"),
+        start if tail else tip,
+        (9.0 + 1.6 * len(text) * abs(away[0]) / np.hypot(*away)) * away / np.hypot(*away),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        color=colour,
+        fontsize="small",
+        zorder=7,
+    )
+
+
+def apart(solution, link, place, degrees, gap=0.36):
+    """Bodies of a mechanism side by side, each with the forces on it; the load on a link at a place of it."""
+    acting, made = forces(solution), solution.mechanism
+    shape = Shape(Motion(made, TURN, 0.0, 0.0))
+    largest = max(np.hypot(*force) for some in acting.values() for _, _, force, _ in some)
+    scale = 0.35 * shape.size / largest
+    figure, ax = plt.subplots()
+    reached = top = 0.0
+    names: list = []
+    for name, some in acting.items():
+        drawn = list(lines(solution, shape, name))
+        middle = np.mean(np.concatenate([points for _, points in drawn], axis=1), axis=1)
+        arrows = []
+        for text, point, force, own in some:
+            vector = scale * force
+            pushes = vector @ (middle - point) > 1e-3 * shape.size * np.hypot(*vector)
+            if np.hypot(*force) > 1e-9 * largest:
+                arrows.append((point - vector * pushes, point + vector * (not pushes), text, ACCENT, own, pushes))
+        if name == link:
+            point = solution.position((link, *place))[:, 0]
+            arrows.append((point, point + 0.25 * shape.size * _unit(degrees), "load", LOAD, True, False))
+        if name == "crank":
+            sense = np.sign(solution.balancing_torque[0])
+            level = np.array([[1.0], [0.0]])
+            ring = symbols.placed(symbols.COUPLE, np.zeros((2, 1)), level, 1.8 * shape.unit, sense)[..., 0]
+            drawn.append(({"color": LOAD, "lw": 1.4}, ring))
+        corners = [points for _, points in drawn] + [np.column_stack(item[:2]) for item in arrows]
+        low, high = (np.nanmax(np.sign(way) * np.concatenate(corners, axis=1), axis=1) for way in (-1, 1))
+        shift = np.array([reached + low[0], (low[1] - high[1]) / 2])
+        reached += low[0] + high[0] + gap * shape.size
+        names.append((shift[0] + (high[0] - low[0]) / 2, name))
+        top = max(top, (low[1] + high[1]) / 2)
+        for style, points in drawn:
+            points = points + shift[:, None]
+            ax.fill(*points, **style) if "fc" in style else ax.plot(*points, **style)
+        for start, tip, *rest in arrows:
+            arrow(ax, start + shift, tip + shift, *rest)
+        for _, point, *_ in some:
+            ax.plot(*(point + shift), "o", ms=4, mfc="white", mec=INK, zorder=8)
+        if name == "crank":
+            ax.annotate("M", shift, (-18, 8), textcoords="offset points", color=LOAD, fontsize="small", ha="right")
+    for place, name in names:
+        ax.annotate(name, (place, top), (0, 16), textcoords="offset points", ha="center", style="italic")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.autoscale_view()
+    ax.margins(0.08)
+    ax.axis("off")
+    return figure
+
+
+POSE = np.radians([50.0])
+
+
+def _unit(degrees):
+    return np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+
+
+def crank_slider():
+    """Crank-slider on an inclined guide."""
+    machine = ks.crank_slider(0.1, 0.25, guide_angle=np.radians(10))
+    s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.ProcessForce(-500.0)])
+    return apart(s, "slider", (0.0, 0.0), 190, gap=0.45)
+
+
+def four_bar():
+    """Four-bar with a force on its rocker."""
+    machine = ks.four_bar(0.1, 0.25, 0.18, rocker_pivot=(0.25, -0.02))
+    s = ks.solve(
+        machine, POSE, crank_speed=1.0, loads=[ks.Force(300.0, at=("rocker", 0.1, 0.0), direction=np.radians(200))]
+    )
+    return apart(s, "rocker", (0.1, 0.0), 200)
+
+
+def lever():
+    """Slotted lever with a force on it."""
+    machine = ks.slotted_lever(0.1, pivot=(0.0, -0.2))
+    s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.Force(-300.0, at=("lever", 0.12, 0.0))])
+    return apart(s, "lever", (0.12, 0.0), 180)
+
+
+def cylinder():
+    """Swinging cylinder with a force on it."""
+    machine = ks.Mechanism("swinging cylinder", ks.Crank(0.1), (ks.CylinderGroup((0.3, -0.1)),))
+    s = ks.solve(
+        machine, POSE, crank_speed=1.0, loads=[ks.Force(300.0, at=("cylinder", 0.1, 0.0), direction=np.radians(-90))]
+    )
+    return apart(s, "cylinder", (0.1, 0.0), -90)
+
+
+def yoke():
+    """Scotch yoke with an inclined slot."""
+    machine = ks.Mechanism("yoke", ks.Crank(0.1), (ks.YokeGroup(ks.Guide.at(0.0), slot_angle=np.radians(75)),))
+    s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.ProcessForce(-500.0)])
+    return apart(s, "slider", (0.0, 0.0), 180, gap=0.55)
+
+
+def cam_roller():
+    """Cam-guided crank-slider."""
+    machine = ks.cam_crank_slider(ks.cams.Circle(0.1, (-0.05, -0.02)), 0.28)
+    s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.ProcessForce(-500.0)])
+    return apart(s, "slider", (0.0, 0.0), 180)
+
+
+# Frames
+
+
+def angle_mark(ax, centre, radius, start, end, text, colour=INK, place=1.25):
+    """An arc with an arrow from one angle to another, rad."""
+    turn = np.linspace(start, end, 60)
+    ax.plot(centre[0] + radius * np.cos(turn), centre[1] + radius * np.sin(turn), color=colour, lw=0.9)
+    tip = centre + radius * np.array([np.cos(end), np.sin(end)])
+    before = centre + radius * np.array([np.cos(turn[-6]), np.sin(turn[-6])])
+    ax.annotate("", tip, before, arrowprops={**SHAFT, "color": colour, "lw": 0.9, "mutation_scale": 8})
+    middle = centre + place * radius * np.array([np.cos((start + end) / 2), np.sin((start + end) / 2)])
+    ax.text(*middle, text, color=colour, ha="center", va="center")
+
+
+def signs():
+    """Crank angle, guide with its direction and normal, axes of links, senses of torque and rates."""
+    lean, offset = np.radians(12.0), -0.045
+    machine = ks.crank_slider(0.1, 0.28, guide_angle=lean, guide_offset=offset)
+    phi = np.radians(62.0)
+    s = ks.solve(machine, [phi], crank_speed=1.0)
+    u = np.array([np.cos(lean), np.sin(lean)])
+    n = symbols.left(u)
+    a, b = (s.position(name)[:, 0] for name in "AB")
+    figure, ax = plt.subplots()
+    for way, text in ((np.array([0.4, 0.0]), "x"), (np.array([0.0, 0.16]), "y")):
+        ax.annotate("", way, (0, 0), arrowprops={**SHAFT, "color": INK, "lw": 0.8, "mutation_scale": 9})
+        ax.text(*(1.03 * way), text, ha="center", va="center")
+    foot = offset * n
+    rail = symbols.hatched(foot + 0.1 * u - 0.011 * n, foot + 0.42 * u - 0.011 * n, 0.008)
+    ax.plot(*rail, color=INK, lw=0.8, alpha=0.6)
+    ax.plot(*np.stack([foot - 0.03 * u, foot + 0.46 * u], axis=1), color=INK, lw=0.6, ls="-.")
+    for start, end in (((0.0, 0.0), a), (a, b)):
+        ax.plot(*np.stack([start, end], axis=1), **LINES["bar"])
+    ax.fill(*(b[:, None] + _box(u, 0.016)), **PLATES["block"])
+    ax.plot(0, 0, marker=symbols.PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8)
+    for point, name, shift in (((0, 0), "O", (-0.018, 0.006)), (a, "A", (-0.012, 0.014)), (b, "B", (-0.022, 0.022))):
+        ax.plot(*point, "o", ms=5, mfc="white", mec=INK, zorder=8)
+        ax.text(*(np.asarray(point) + shift), name, ha="center", va="center")
+    angle_mark(ax, np.zeros(2), 0.055, 0.0, phi, r"$\varphi$", ACCENT, 1.22)
+    angle_mark(ax, np.zeros(2), 0.03, np.radians(110), np.radians(245), r"$M,\ \omega > 0$", LOAD, 2.0)
+    arrow(ax, foot + 0.36 * u, foot + 0.43 * u, "u", INK)
+    arrow(ax, foot + 0.36 * u, foot + 0.36 * u + 0.05 * n, "n", INK)
+    ax.annotate("", foot, (0, 0), arrowprops={**SHAFT, "color": ACCENT, "lw": 0.9, "mutation_scale": 8})
+    ax.text(*(0.8 * foot + (0.022, 0.002)), "e < 0", color=ACCENT, ha="center", va="center", fontsize="small")
+    q = (b - a) / np.hypot(*(b - a))
+    arrow(ax, a, a + 0.07 * q, "along")
+    arrow(ax, a, a + 0.045 * symbols.left(q), "across")
+    ax.text(*(foot + 0.47 * u + 0.012 * n), "guide", rotation=12, fontsize="small", va="center")
+    ax.update_datalim([(0.0, 0.17), (-0.1, 0.0)])
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.autoscale_view()
+    ax.margins(0.04)
+    ax.axis("off")
+    return figure
+
+
+def groups():
+    """Each group in one pose."""
+    crank, pivot = ks.Crank(0.1), (0.28, -0.02)
+    cam = ks.CamRoller(ks.cams.Circle(0.1, (-0.03, 0.0)))
+    dyad = (ks.RockerGroup(0.25, 0.18, pivot), ks.Pin(on="crank", at=(0.03, 0.06), name="C"))
+    chains = {
+        "SliderGroup": (crank, (ks.SliderGroup(0.25),)),
+        "RockerGroup": (crank, (ks.RockerGroup(0.25, 0.18, pivot),)),
+        "Dyad (on B and C)": (crank, (*dyad, ks.Dyad(0.2, 0.22, on=("B", "C"), assembly=-1))),
+        "LeverGroup": (crank, (ks.LeverGroup((0.0, -0.18)),)),
+        "CylinderGroup": (crank, (ks.CylinderGroup((0.3, 0.0)),)),
+        "YokeGroup": (crank, (ks.YokeGroup(ks.Guide.at(0.0)),)),
+        "CamRoller and SliderGroup": (ks.Crank(None), (cam, ks.SliderGroup(0.25))),
+        "RollerFollower": (ks.Crank(None), (ks.RollerFollower(ks.laws.cosine(0.03, 0.12)),)),
+    }
+    figure, axes = plt.subplots(2, 4)
+    for ax, (name, (driver, chain)) in zip(axes.flat, chains.items(), strict=True):
+        s = ks.solve(ks.Mechanism(name, driver, chain), TURN, crank_speed=1.0)
+        ks.plots.mechanism(s, angles=(60,), ax=ax)
+        ax.set_title(name, fontsize="medium")
+        ax.axis("off")
+    return figure
+
+
+def friction():
+    """A pin that rubs, and a shoe that carries a couple."""
+    figure, (pin, shoe) = plt.subplots(1, 2)
+    around = np.linspace(0.0, 2 * np.pi, 200)
+    circle = np.array([np.cos(around), np.sin(around)])
+    pin.fill(*(1.9 * circle), fc="0.92", ec=STEEL, lw=1.2)
+    pin.fill(*circle, fc="white", ec=INK, lw=1.2)
+    pin.plot(*(0.3 * circle), color=ACCENT, lw=1.0, ls="--")
+    pin.text(0.62, -0.45, r"$\mu\, r$", color=ACCENT, ha="center")
+    angle_mark(pin, np.zeros(2), 1.55, np.radians(100), np.radians(170), r"$\omega_{rel}$", STEEL, 0.8)
+    arrow(pin, np.array([-0.3, -2.6]), np.array([-0.3, 0.0]), "R", tail=True)
+    pin.plot([0.0, -0.3], [0.0, 0.0], color=ACCENT, lw=1.0)
+    pin.plot(0, 0, "+", color=INK)
+    pin.set_title("pin: R touches the friction circle", fontsize="medium")
+    shoe.fill([-1, 1, 1, -1], [0, 0, 0.7, 0.7], fc=STEEL, ec="none", alpha=0.7)
+    shoe.plot(*symbols.hatched(np.array([-2.2, -0.03]), np.array([2.4, -0.03]), 0.18), color=INK, lw=0.8)
+    arrow(shoe, np.array([1.1, 0.4]), np.array([1.9, 0.4]), "v", INK)
+    arrow(shoe, np.array([-0.95, -1.2]), np.array([-0.95, -0.03]), "N/2 - C/2b", tail=True)
+    arrow(shoe, np.array([0.95, -1.2]), np.array([0.95, -0.03]), "N/2 + C/2b", tail=True)
+    arrow(shoe, np.array([-1.0, 0.12]), np.array([-1.9, 0.12]), "F", LOAD)
+    shoe.annotate("", (-1, 1.1), (1, 1.1), arrowprops={**SHAFT, "arrowstyle": "<->", "color": INK, "lw": 0.8})
+    shoe.text(0.0, 1.25, "2b", ha="center")
+    shoe.set_title("shoe: F = \N{GREEK SMALL LETTER MU} max(|N|, |C|/b) against v", fontsize="medium")
+    for ax in (pin, shoe):
+        ax.set_aspect("equal", adjustable="datalim")
+        ax.autoscale_view()
+        ax.margins(0.12)
+        ax.axis("off")
+    return figure
+
+
+DRAWINGS = {
+    "signs": (signs, (6.4, 3.1)),
+    "groups": (groups, (7.6, 4.0)),
+    "crank_slider": (crank_slider, (6.4, 1.7)),
+    "four_bar": (four_bar, (6.4, 1.9)),
+    "lever": (lever, (6.4, 2.9)),
+    "cylinder": (cylinder, (6.4, 2.0)),
+    "yoke": (yoke, (6.4, 2.3)),
+    "cam_roller": (cam_roller, (7.0, 1.6)),
+    "friction": (friction, (6.4, 2.5)),
+}
+"""How each is drawn, and its size in inches."""
+
+
+def drawn(name):
+    """A drawing as SVG."""
+    draw, size = DRAWINGS[name]
+    with look(name, size):
+        svg = as_svg(draw())
+        plt.close("all")
+    return svg
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:] or DRAWINGS:
+        (FOLDER / f"{name}.svg").write_text(drawn(name), encoding="utf-8")

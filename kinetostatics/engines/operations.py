@@ -1,0 +1,81 @@
+"""What recorded operations do to plain numbers, to arrays with new memory, and to arrays with memory given."""
+
+import math
+
+import numpy as np
+
+from ..numbers.elementary import ROUNDING
+
+
+def _plain_root(square, unit):
+    if square > 0.0:
+        return math.sqrt(square)
+    return 0.0 if square >= -ROUNDING * unit else math.nan
+
+
+def _plain_divisor(root, unit):
+    return unit if root < unit else root
+
+
+def _root(square, unit):
+    return np.where(square >= -ROUNDING * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
+
+
+def _root_of(square, unit, out):
+    np.maximum(square, 0.0, out=out)
+    np.sqrt(out, out)
+    np.copyto(out, np.nan, where=np.less(square, -ROUNDING * unit))
+
+
+def _multiply_add(one, other, more, out):
+    np.multiply(one, other, out=out)
+    np.add(out, more, out=out)
+
+
+def _sqrt(square):
+    return math.sqrt(square) if square >= 0.0 else math.nan
+
+
+PLAIN = {
+    "sin": lambda angle: float(np.sin(angle)),
+    "cos": lambda angle: float(np.cos(angle)),
+    "atan": lambda slope: float(np.arctan(slope)),
+    "sqrt": _sqrt,
+    "abs": abs,
+    "copysign": math.copysign,
+    "root": _plain_root,
+    "divisor": _plain_divisor,
+    "fma": lambda one, other, more: one * other + more,
+    "nan": math.nan,
+    "inf": math.inf,
+}
+BY_DESIGN = {
+    "sin": np.sin,
+    "cos": np.cos,
+    "atan": np.arctan,
+    "sqrt": np.sqrt,
+    "abs": np.abs,
+    "copysign": np.copysign,
+    "root": _root,
+    "divisor": np.maximum,
+    "fma": lambda one, other, more: one * other + more,
+    "nan": math.nan,
+    "inf": math.inf,
+}
+ARRAYS = {
+    "add": np.add,
+    "subtract": np.subtract,
+    "multiply": np.multiply,
+    "divide": np.divide,
+    "negative": np.negative,
+    "positive": np.positive,
+    "sin_of": np.sin,
+    "cos_of": np.cos,
+    "sqrt_of": np.sqrt,
+    "arctan": np.arctan,
+    "absolute": np.absolute,
+    "sign_of": lambda value, out: np.copysign(1.0, value, out),
+    "root_of": _root_of,
+    "multiply_add": _multiply_add,
+    "maximum": lambda one, other, out: np.maximum(one, other, out=out),
+}

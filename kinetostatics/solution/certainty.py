@@ -1,0 +1,179 @@
+"""How sure each value of a solution is: proven bounds on rounding, and what uncertain inputs do."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..engines.bounds import SAFE
+from ..errors import QuantityError
+from ..mechanics import quantities
+from ..numbers import checks
+from ..numbers.elementary import UNIT, read_only
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """Uncertainty of a quantity at each crank angle, all in the unit and shape of the quantity.
+
+    Attributes
+    ----------
+    inputs : dict of path to array
+        What the standard uncertainty of each input alone makes.
+    rounding : array
+        Proven bound on the rounding error.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.solve(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 0.5, crank_speed=100.0)
+    >>> found = s.uncertainty("balancing_torque", {"crank_length": 1e-5, "slider.mass": 0.01})
+    >>> {path: round(float(share), 4) for path, share in found.inputs.items()}
+    {'crank_length': 0.0069, 'slider.mass': 0.1488}
+    """
+
+    inputs: dict[str, Any]
+    rounding: Any
+
+    @property
+    def tolerance(self):
+        """Standard uncertainty from all inputs, independent of each other: the root of the sum of their squares."""
+        parts = list(self.inputs.values())
+        return np.sqrt(np.sum(np.square(parts), axis=0)) if parts else np.zeros_like(self.rounding)
+
+    @property
+    def total(self):
+        """Tolerance and, as a bound is no standard deviation, rounding added to it."""
+        return self.tolerance + self.rounding
+
+    def __array__(self, dtype=None, copy=None):
+        return np.asarray(self.total, dtype)
+
+    def __repr__(self):
+        rows = {**self.inputs, "all inputs": self.tolerance, "rounding": self.rounding}
+        with np.errstate(all="ignore"):
+            return "\n".join(f"{np.nanmax(values, initial=0.0):12.3g}  {name}" for name, values in rows.items())
+
+
+class Certainty:
+    """Bounds and uncertainties of a solution's values."""
+
+    dynamics: Any
+    engine: Any
+    crank_angle: Any
+    mechanism: Any
+    crank_speed: Any
+    crank_acceleration: Any
+    loads: Any
+    friction: Any
+
+    def error_bound(self, quantity, tight=False):
+        """Proven bound on the rounding error of each value of a quantity, by running error analysis.
+
+        No value of a certified computation in exact arithmetic differs from the solution's by more. Exact are the
+        numbers given to constructors, as floats, and the crank angles; what is derived from them, directions of guides
+        and gravity among it, is bounded. A guide through two points counts as rounded once.
+
+        Parameters
+        ----------
+        quantity : str
+            "balancing_torque", a joint (its reaction), "slider_velocity" ...; ``"|O|"`` for the magnitude of a vector.
+        tight : bool
+            Whether it may take some ten times as long, and be up to ten times smaller.
+
+        Returns
+        -------
+        array
+            Shaped as the quantity, in its unit: of a vector for each component. Infinite where nothing can be proven
+            (a divisor may vanish, a sign is not sure), NaN where there is no value.
+
+        Raises
+        ------
+        QuantityError
+            The mechanism has no such quantity; the message lists those it has.
+        NotGivenError
+            A group, load or cam does more than recorded arithmetic, so its own rounding is not known.
+
+        Notes
+        -----
+        Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, section 3.3.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+        >>> s = ks.solve(pump, [0.5, 1.0], crank_speed=100.0)
+        >>> bool((s.error_bound("balancing_torque") < 1e-13).all())
+        True
+        """
+        name = self._inner(quantity)
+        values, bounds = self._with_bounds(name)
+        if tight:
+            bounds = np.fmin(bounds, self._with_bounds(name, tight)[1])
+        if name != quantity:
+            values = np.hypot(*values)
+            bounds = np.hypot(*bounds) * SAFE + 4 * UNIT * values
+        return read_only(np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds)))[()]
+
+    def uncertainty(self, quantity, inputs):
+        """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
+
+        To first order in the inputs, by exact derivatives (JCGM 100:2008, *Guide to the expression of uncertainty in
+        measurement*, section 5.1); see `tolerances` for spreads of any size and kind.
+
+        Parameters
+        ----------
+        quantity : str
+            As for `error_bound`.
+        inputs : mapping of path to float
+            Standard uncertainties, SI, of numbers of the scene named as in case files: ``{"crank_length": 1e-5}``.
+
+        Returns
+        -------
+        Uncertainty
+            Also an array of its `total`.
+
+        Raises
+        ------
+        QuantityError, NotGivenError
+            As for `error_bound`; derivatives too are of recorded arithmetic alone.
+        ParameterError
+            There is no such number, or an uncertainty is negative or not finite.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+        >>> s = ks.solve(pump, [0.5, 1.0], crank_speed=100.0)
+        >>> s.uncertainty("balancing_torque", {"crank_length": 1e-5, "slider.mass": 0.01}).tolerance.round(4)
+        array([0.1489, 0.1048])
+        """
+        from .compile import compile as compiled
+        from .scene import Scene
+
+        inputs = checks.singles("uncertainty", **{path: (value, {"low": 0.0}) for path, value in dict(inputs).items()})
+        name = self._inner(quantity)
+        rounding = self.error_bound(quantity)
+        if not inputs:
+            return Uncertainty({}, rounding)
+        scene = Scene(self.mechanism, self.crank_speed, self.crank_acceleration, self.loads, self.friction)
+        program = compiled(scene, name, tuple(inputs), engine="compiled" if self.engine.compiled else "numpy")
+        slopes = program.derivatives(self.crank_angle, tuple(inputs))[name]
+        if name != quantity:
+            x, y = quantities.components(self, name)
+            slopes = {path: (x * slope[0] + y * slope[1]) / np.hypot(x, y) for path, slope in slopes.items()}
+        return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in slopes.items()}, rounding)
+
+    def _with_bounds(self, name, tight=False):
+        """Values of a quantity, and bounds on their errors."""
+        return [found[name] for found in self.engine.with_bounds(self.dynamics, (name,), tight)]
+
+    def _inner(self, quantity):
+        """The vector whose magnitude is asked for, or the quantity itself."""
+        magnitude = isinstance(quantity, str) and len(quantity) > 2 and quantity[0] == quantity[-1] == "|"
+        name = quantity[1:-1] if magnitude else quantity
+        if magnitude and not quantities.quantity(self, name).vector:
+            raise QuantityError(f"{quantity}: only of a vector there is a magnitude, and {name} is a number")
+        checks.require("quantity", checks.quantity(name))
+        quantities.quantity(self, name)
+        return name

@@ -1,0 +1,96 @@
+"""Bounds on rounding errors: never less than the true error, and not much more."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics import ConditionWarning
+from kinetostatics.engines import bounds, programs
+from kinetostatics.engines.trace import Graph
+from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.studies.methods.enclosures import enclosure
+from support.bounded import FAMILIES, errors, solution
+from support.every import every
+
+TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False)
+
+
+def bounded(scene, quantity, angles=TURN):
+    s = scene.solve(angles)
+    return s, s.error_bound(quantity)
+
+
+@every("family", FAMILIES)
+def test_no_value_of_random_machines_is_off_by_more_than_its_bound(family):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)
+    found = errors(made, ("balancing_torque", *made.reactions, "crank_angular_acceleration", "kinetic_energy"))
+    assert found.values > 10
+    assert found.wrong == []
+
+
+@every(
+    "case, variant, most",
+    [
+        ("sawframe_2r63", "plain", 20),
+        ("sawframe_2r63", "cam-cosine", 60),
+        ("chain_unit", "rho-0.5", 150),
+        ("toggle_press", "coining", 100),
+    ],
+)
+def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(case, variant, most):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    scene = ks.load_case(case).variants[variant].scene
+    s, bound = bounded(scene, "balancing_torque", TURN + 0.01)
+    exact = enclosure(s, "balancing_torque").exact[0]
+    error = np.array([abs(float(truth - float(value))) for truth, value in zip(exact, s.balancing_torque, strict=True)])
+    assert np.all(error <= bound)
+    assert np.max(bound) < most * np.max(error)
+    tight = s.error_bound("balancing_torque", tight=True)
+    assert np.all(error <= tight)
+    assert np.max(tight) < 20 * np.max(error)
+
+
+def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_hand():
+    graph = Graph()
+    one, two = graph.parameter(0), graph.parameter(1)
+    outputs = one + two, one * two, one / two, (one * one).sqrt(), (one + two) * one
+    found = programs.Program(None, bounds.Bounds(graph).of(outputs))
+    values = found._by_numbers(np.zeros(1), [3.0, 0.7], (1,))[:, 0]
+    wanted = [3.7 * UNIT, 2.1 * UNIT, 3.0 / 0.7 * UNIT, 1.5 * 3.0 * UNIT, 2 * 3.7 * 3.0 * UNIT]
+    np.testing.assert_allclose(values, wanted, rtol=1e-8)
+
+
+def test_where_a_divisor_may_vanish_or_a_root_be_clamped_there_is_no_bound():
+    folded = ks.crank_slider(0.5, 0.5, coupler=ks.Link(1.0), slider=ks.Link(1.0))
+    with pytest.warns(ConditionWarning):
+        s = ks.solve(folded, [0.3, np.pi / 2], crank_speed=1.0, on_gap="nan")
+    found = s.error_bound("B")
+    assert np.isfinite(found[:, 0]).all()
+    assert not np.isfinite(found[:, 1]).any()
+
+
+def test_numbers_beyond_the_cap_have_no_bound():
+    pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1e31))
+    assert np.isinf(ks.solve(pump, TURN, crank_speed=1.0).error_bound("balancing_torque")).all()
+
+
+def test_what_is_too_small_for_a_double_is_bounded_too():
+    pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1e-300))
+    s, bound = bounded(ks.Scene(pump, 1e-9), "balancing_torque", [1.0])
+    assert s.balancing_torque[0] == pytest.approx(0.0, abs=1e-300)
+    assert 0.0 < bound[0] < 1e-270
+
+
+@every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")])
+def test_elementary_functions_of_numpy_keep_to_their_ulp(function, exact):
+    flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    random = np.random.default_rng(1)
+    angles = np.concatenate(
+        [random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)]
+    )
+    own = getattr(np, function)(angles)
+    with flint.ctx.workprec(200):
+        truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
+        error = [float(abs((flint.arb(float(v)) - t) / t)) for v, t in zip(own, truth, strict=True)]
+    assert max(error) <= bounds.ULP.get(function, bounds.ULP["atan"]) * UNIT

@@ -1,0 +1,38 @@
+"""Recorded operations give the same on plain numbers, on arrays, and into memory given."""
+
+import math
+
+import numpy as np
+import pytest
+
+from kinetostatics.engines.operations import ARRAYS, BY_DESIGN, PLAIN
+from kinetostatics.engines.writing import _OPERATIONS
+from kinetostatics.numbers.elementary import ROUNDING
+from support.every import every
+
+VALUES = (-1.0, -ROUNDING / 2, 0.0, 1e-300, 0.3, 2.0)
+
+
+@every("name", ["sin", "cos", "atan", "sqrt", "abs", "root", "divisor", "fma"])
+def test_plain_numbers_and_arrays_agree(name):
+    count = {"root": 1, "divisor": 1, "fma": 2}.get(name, 0)
+    with np.errstate(invalid="ignore"):
+        arrays = BY_DESIGN[name](np.array(VALUES), *[1.0] * count)
+    for value, found in zip(VALUES, arrays, strict=True):
+        plain = PLAIN[name](value, *[1.0] * count)
+        assert plain == pytest.approx(found, rel=1e-15, abs=0, nan_ok=True)
+
+
+@every("operation", [kind for kind in _OPERATIONS if kind[0] in BY_DESIGN])
+def test_memory_given_receives_the_same(operation):
+    kind, count = operation
+    values, out = np.array(VALUES), np.empty(len(VALUES))
+    with np.errstate(invalid="ignore"):
+        ARRAYS[_OPERATIONS[operation]](values, *[1.0] * (count - 1), out)
+        expected = BY_DESIGN[kind](values, *[1.0] * (count - 1))
+    np.testing.assert_array_equal(out, expected)
+
+
+def test_a_root_forgives_rounding_only():
+    assert PLAIN["root"](-ROUNDING / 2, 1.0) == 0.0
+    assert math.isnan(PLAIN["root"](-3 * ROUNDING, 1.0))

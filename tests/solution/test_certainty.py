@@ -1,0 +1,99 @@
+"""Bounds and uncertainties as a solution gives them: shapes, magnitudes, refusals, and against Monte Carlo."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.errors import NotGivenError, ParameterError, QuantityError
+from support.every import every
+
+TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+
+
+def solved(angles=TURN, machine=SAW, **options):
+    return ks.solve(machine, angles, crank_speed=33.5, loads=[ks.Gravity()], **options)
+
+
+def test_bounds_are_shaped_as_the_quantity_and_locked():
+    s = solved()
+    assert s.error_bound("balancing_torque").shape == TURN.shape
+    assert s.error_bound("O").shape == s.reaction("O").shape
+    assert s.error_bound("|O|").shape == TURN.shape
+    assert np.ndim(solved(0.5).error_bound("balancing_torque")) == 0
+    with pytest.raises(ValueError, match="read-only"):
+        s.error_bound("O")[0] = 0.0
+
+
+def test_the_bound_of_a_magnitude_covers_those_of_its_components():
+    s = solved()
+    x, y = s.error_bound("O")
+    assert np.all(s.error_bound("|O|") >= np.hypot(x, y))
+    assert np.all(s.error_bound("|O|") < np.hypot(x, y) + 1e-15 * np.hypot(*s.reaction("O")))
+
+
+def test_tight_bounds_are_no_larger_than_plain_ones():
+    s = solved(np.linspace(0, 6, 7))
+    for quantity in ("balancing_torque", "O", "|O|"):
+        assert np.all(s.error_bound(quantity, tight=True) <= s.error_bound(quantity) * (1 + 1e-8))
+
+
+def test_a_batch_of_designs_has_the_bounds_of_each_alone():
+    masses = np.array([[300.0], [600.0]])
+    batch = solved(machine=ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(masses)))
+    np.testing.assert_array_equal(batch.error_bound("O")[:, 1], solved().error_bound("O"))
+
+
+def test_gaps_have_no_bound_as_they_have_no_value():
+    s = ks.solve(ks.crank_slider(0.5, 0.4), [0.1, 1.5], crank_speed=1.0, on_gap="nan")
+    assert np.isnan(s.error_bound("slider_velocity")).tolist() == [False, True]
+
+
+@every("quantity", ["nothing", "|nothing|", "|balancing_torque|", "||", 3])
+def test_what_is_no_quantity_is_refused(quantity):
+    with pytest.raises((QuantityError, ParameterError)):
+        solved().error_bound(quantity)
+
+
+def test_code_of_the_users_that_cannot_be_recorded_has_no_bound():
+    pressed = ks.ProcessForce(lambda motion: np.interp(motion.crank_angle, [0, 7], [0, 7]))
+    s = ks.solve(SAW, TURN, crank_speed=1.0, loads=[pressed])
+    with pytest.raises(NotGivenError, match="its own rounding is not known"):
+        s.error_bound("balancing_torque")
+
+
+def test_uncertainty_is_what_a_monte_carlo_spread_shows():
+    s, spreads = solved(), {"crank_length": 1e-4, "slider.mass": 2.0, "guide_offset": 2e-4}
+    found = s.uncertainty("balancing_torque", spreads)
+    random = np.random.default_rng(0)
+    scene = ks.Scene(SAW, 33.5, loads=(ks.Gravity(),))
+    drawn = {
+        path: scene_value + spread * random.standard_normal((2000, 1))
+        for (path, spread), scene_value in zip(spreads.items(), (0.3, 600.0, 0.0), strict=True)
+    }
+    values = ks.compile(scene, "balancing_torque", parameters=tuple(spreads))(TURN, drawn)["balancing_torque"]
+    np.testing.assert_allclose(values.std(axis=0), found.tolerance, rtol=0.06, atol=0.06 * found.tolerance.max())
+
+
+def test_uncertainty_adds_rounding_to_the_root_sum_of_squares():
+    s = solved()
+    found = s.uncertainty("|O|", {"crank_length": 1e-5, "slider.mass": 1.0})
+    parts = np.array(list(found.inputs.values()))
+    np.testing.assert_allclose(found.total, np.sqrt((parts**2).sum(axis=0)) + s.error_bound("|O|"), rtol=1e-14)
+    np.testing.assert_array_equal(np.asarray(found), found.total)
+    assert "rounding" in repr(found)
+    assert np.all(s.uncertainty("O", {}).total == s.error_bound("O"))
+
+
+@every(
+    "inputs, message",
+    [
+        ({"crank_length": -1.0}, "at least 0"),
+        ({"crank_length": np.nan}, "finite"),
+        ({"crank": 1.0}, "allowed"),
+        ({"crank_length": np.array([[1.0], [2.0]])}, "one number"),
+    ],
+)
+def test_wrong_uncertainties_are_refused(inputs, message):
+    with pytest.raises(ParameterError, match=message):
+        solved().uncertainty("O", inputs)
