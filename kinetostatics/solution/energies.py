@@ -102,8 +102,8 @@ class Energies:
         """How far friction is from jamming: 1 without friction; where it is positive there is one state of forces.
 
         Of a guide or pin that rubs alone it is ``1 - |kappa|``, exactly: where it is 0 or less there is no state, or
-        there are two. Of several joints of a group it is a bound, whatever their loads and senses of motion: where it is 0 or
-        less there may still be one state; none is looked for, and friction is NaN.
+        there are two. Of several joints of a group it is a bound, whatever their loads and senses of motion: where it
+        is 0 or less there may still be one state; none is looked for, and friction is NaN.
         """
         return self._of_friction("friction_margin") if self.friction else self._scalar(1.0)
 

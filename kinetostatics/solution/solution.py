@@ -223,8 +223,8 @@ class Solution(Certainty, Energies, Contacts, Motion):
         """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
 
         A bound of the true magnification: the sum over all lengths and the crank angle p of ``|p dq/dp|``, over the
-        largest term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost, infinite
-        at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
+        largest term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost,
+        infinite at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
         16 - log10(condition) correct digits of its largest term, or more.
 
         Where change points are passed ("open", "crossed") it is of motion and torque alone, which are ordinary there;
