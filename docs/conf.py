@@ -32,12 +32,13 @@ copyright = author  # noqa: A001 - Sphinx's name
 version = release = version_of("kinetostatics")
 
 extensions = [
+    "casefile_keys",
     "mathml",
     "myst_nb",
+    "offline",
     "numpydoc",
+    "public_names",
     "sphinx.ext.autodoc",
-    "sphinx.ext.autosummary",
-    "sphinx_design",
 ]
 exclude_patterns = ["_build", "**.ipynb_checkpoints", "README.md"]
 nitpicky = True
@@ -55,13 +56,16 @@ nb_merge_streams = True
 html_math_renderer = "mathml"
 
 autodoc_typehints = "none"  # docstrings say types, shapes and units
-autosummary_generate = True
+default_role = "literal"  # single backticks in docstrings
+toc_object_entries_show_parents = "hide"
 numpydoc_show_class_members = False
 
 html_theme = "pydata_sphinx_theme"
 html_title = "kinetostatics"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+alone = ("index", "start", "casefile", "how_sure", "gallery", "glossary", "contributors", "search")
+html_sidebars = {page: [] for page in alone}
 html_show_sourcelink = False
 html_theme_options = {
     "navbar_end": ["theme-switcher"],

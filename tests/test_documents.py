@@ -1,6 +1,5 @@
-"""What README and notebooks show is what runs."""
+"""What the README shows is what runs."""
 
-import json
 import re
 from pathlib import Path
 
@@ -11,7 +10,6 @@ import kinetostatics as ks
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 
 
 def python_blocks():
@@ -78,14 +76,6 @@ def test_readme_links_lead_to_files():
     links = [link for link in re.findall(r"\]\(([^)]+)\)", README) if "://" not in link]
     assert links
     assert all((ROOT / link).exists() for link in links)
-
-
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_is_saved_without_output(path):
-    """That it runs is for ``.ci/run`` to show: together they take minutes."""
-    notebook = json.loads(path.read_text(encoding="utf-8"))
-    cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
-    assert all(not cell["outputs"] and cell["execution_count"] is None for cell in cells)
 
 
 def test_version_of_the_package_is_that_of_changelog_and_citation():

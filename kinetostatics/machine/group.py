@@ -63,7 +63,7 @@ belongs to its structure, and gives `turns` and `change_points`; `kink(crank)` s
 
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
-forces and power; tests/machine/test_a_group_of_ones_own.py has a whole example.
+forces and power; tests/machine/test_group.py has a whole example.
 
 *Hand calculations.* `Solution.explain` tells what the kernels compute, under the names of local variables. The module
 may say in ``TERMS`` how an engineer writes a variable, and what it is: ``{"across": ("d", "from pin to guide")}``, of

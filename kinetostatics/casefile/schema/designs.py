@@ -33,10 +33,15 @@ class RobustTable(Table):
     """A quantile over how numbers spread, keys as of `ks.design.Spread`."""
 
     quantile: Number
+    """Which quantile of the output counts, between 0 and 1."""
     spreads: dict[str, str]
+    """How numbers spread, by path, as in [tolerances]."""
     samples: Count = 256
+    """Machines drawn while it is searched; a power of two."""
     trim: Number = 0.0
+    """Share of the crank speed within which each machine's own is set to what suits it best."""
     seed: Seed = 0
+    """Of the drawing."""
 
     @property
     def spread(self) -> Spread:
@@ -56,21 +61,32 @@ class DesignTable(Table):
     """Keys common to every design."""
 
     variant: str | None = None
+    """Which variant varies: the only one, or the first besides the reference, unless told."""
     reference: str | None = None
+    """Which one ratios refer to: the case's reference unless told."""
     limits: tuple[str, ...] = ()
+    """What must hold, at true extremes."""
     starts: Count = 1
+    """Searches; the first begins at the variant itself."""
     seed: Seed = 0
+    """Of where the others begin."""
 
 
 class OptimumTable(DesignTable):
     """The best of any machine within bounds and limits."""
 
     kind: Literal["optimum"]
+    """The best of any machine within bounds and limits."""
     vary: Vary
+    """Lowest and highest value, by path."""
     minimise: str | None = None
+    """Output to be made least."""
     maximise: str | None = None
+    """Output to be made largest, in place of that."""
     robust: RobustTable | None = None
+    """A quantile over how numbers spread is the goal."""
     angles: Annotated[int, Field(strict=True, ge=12, le=100_000)] = 720
+    """Crank angles over the period."""
 
     @model_validator(mode="after")
     def _one_aim(self):
@@ -83,17 +99,29 @@ class TorqueFreeCamTable(DesignTable):
     """A cam-balanced crank-slider; the mean magnitude of its torque is made least unless told."""
 
     kind: Literal["torque-free-cam"]
+    """A cam-balanced crank-slider that needs least torque."""
     cosine: Annotated[int, Field(strict=True, ge=1, le=64)] = 8
+    """Cosine terms of the cam."""
     sine: Terms = 0
+    """Sine terms of the cam."""
     vary: dict[str, Bounds] = Field(default_factory=dict)
+    """Further numbers that vary, or other bounds: lowest and highest value, by path."""
     minimise: str | None = None
+    """Output to be made least: the mean magnitude of the torque unless told."""
     maximise: str | None = None
+    """Output to be made largest, in place of that."""
     robust: RobustTable | None = None
+    """A quantile over how numbers spread is the goal."""
     ends: Annotated[tuple[float, float] | None, BeforeValidator(pair_of("m"))] = None
+    """Where the slider turns back; as in the variant unless told."""
     guide_offset: Coordinate | None = None
+    """Distance of the guide from O; as in the variant unless told."""
     coupler_spring: Angle | None = None
+    """Free angle of a torsion spring between coupler and slider that carries the coupler's weight."""
     counterweight: Mass | None = None
+    """Mass on the crank, whose place is found, and a guide offset with it."""
     cubic: Annotated[tuple[float, float] | None, BeforeValidator(pair_of("N/m^3"))] = None
+    """Bounds of the springs' cubic term; without it they are linear."""
 
     @model_validator(mode="after")
     def _one_aim_at_most(self):
@@ -106,10 +134,15 @@ class FrontTable(DesignTable):
     """The best of one output for each value of another."""
 
     kind: Literal["front"]
+    """The best of one output for each value of another."""
     vary: Vary
+    """Lowest and highest value, by path."""
     minimise: Annotated[tuple[str, ...], Field(min_length=2, max_length=2)]
+    """The two outputs."""
     points: Annotated[int, Field(strict=True, ge=2, le=100)] = 9
+    """Designs on the front."""
     angles: Annotated[int, Field(strict=True, ge=12, le=100_000)] = 720
+    """Crank angles over the period."""
 
 
 KINDS = {"optimum": OptimumTable, "torque-free-cam": TorqueFreeCamTable, "front": FrontTable}

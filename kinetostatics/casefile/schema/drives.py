@@ -36,7 +36,9 @@ class MotorTable(Table):
     """Keys common to every motor."""
 
     transmission: Factor = 1.0
+    """Motor speed over crank speed; negative where they turn against each other."""
     inertia: Turning = 0.0
+    """Of the rotor, at its own shaft."""
 
     @property
     def motor(self) -> Motor:
@@ -55,30 +57,44 @@ class MotorTable(Table):
 
 class KlossTable(MotorTable):
     kind: Literal["kloss"]
+    """An induction motor by Kloss's formula."""
     power: Power
+    """Rated, at the shaft."""
     speed: MotorSpeed
+    """Rated, of the motor's shaft."""
     synchronous_speed: MotorSpeed
+    """Without load."""
     overload: Factor
+    """Breakdown torque over rated torque."""
 
 
 class LinearTable(MotorTable):
     kind: Literal["linear"]
+    """A torque that falls in a straight line."""
     torque: StandstillTorque
+    """At rest."""
     speed: MotorSpeed
+    """Without torque."""
 
 
 class ConstantTable(MotorTable):
     kind: Literal["constant"]
+    """The same torque at every speed."""
     torque: Torque
+    """At the motor's shaft."""
 
 
 class TorqueTable(MotorTable):
     """Torque over speed, in rows here or in columns of a CSV file."""
 
     kind: Literal["table"]
+    """Torque over speed, by rows."""
     speed: _row("rad/s") = None  # type: ignore[valid-type]
+    """Of the motor's shaft, a row of texts."""
     torque: _row("N m") = None  # type: ignore[valid-type]
+    """At the motor's shaft, a row of texts."""
     file: str | None = None
+    """CSV file with columns speed and torque, in place of the rows."""
 
     @property
     def motor(self):
@@ -108,4 +124,6 @@ class DriveTable(Table):
     """A motor, and a flywheel on the crank."""
 
     motor: MotorOfKind
+    """What drives."""
     flywheel: Turning = 0.0
+    """Moment of inertia on the crank, beside its own link."""

@@ -74,13 +74,18 @@ def list_of(kind, name, least=0) -> Any:
 
 class LinkTable(Table):
     mass: Mass = 0.0
+    """Of the link."""
     centre: Centre = (0.0, 0.0)
+    """Mass centre, along the link from its reference joint, or [along, across]; "mid-length" of a coupler or rocker."""
     inertia: Inertia = 0.0
+    """Moment of inertia about the mass centre."""
 
 
 class GravityTable(Table):
     acceleration: GravityAcceleration = 9.81
+    """Of free fall."""
     direction: Angle = -math.pi / 2
+    """In which weights pull, from +x."""
 
 
 # Values of loads
@@ -90,10 +95,15 @@ class ValuesTable(Table):
     """Values by crank angle or by travel, in a CSV file; pressures with the area that they act on."""
 
     file: str
+    """CSV file beside the case; each column headed by its name and unit: travel [mm], force [kN]."""
     over: Literal["angle", "travel"] | None = None
+    """Which column to go by where the file has both."""
     area: Annotated[float | None, BeforeValidator(reader("m^2"))] = None
+    """By which pressures become forces along the guide; negative where they push against its direction."""
     period: Period = None
+    """Crank angle after which the table repeats: one turn unless told, two for four strokes."""
     slider: str | None = None
+    """Over travel, the slider it goes by: unless told the one that the load acts on."""
 
 
 TAGS |= {"value:text": Table, "value:file": ValuesTable}
@@ -112,26 +122,38 @@ def value_in(unit) -> Any:
 
 class CircleTable(Table):
     kind: Literal["circle"]
+    """A circle."""
     radius: Length
+    """Of the circle that the roller centre runs on."""
     centre: Point = (0.0, 0.0)
+    """Its centre, from O."""
 
 
 class CosineLawTable(Table):
     kind: Literal["cosine-law"]
+    """Moves the slider exactly by a cosine."""
     amplitude: Length
+    """Half the stroke of the slider."""
     mean: Length
+    """Coordinate of the slider at mid-stroke."""
 
 
 class SampledTable(Table):
     kind: Literal["sampled"]
+    """A curve through measured points."""
     table: str
+    """CSV file of crank angle and radius of the roller centre."""
     noise: Length | None = None
+    """How far off the radii may be, which smooths them; without, the curve runs through all of them."""
 
 
 class HarmonicTable(Table):
     kind: Literal["harmonic"]
+    """A series of cosines and sines."""
     cosine: Annotated[Any, BeforeValidator(series_of("m")), Harmonic.RULES.rules["cosine"]]
+    """Mean radius, and coefficients of the cosines of once, twice ... the crank angle from the guide."""
     sine: Annotated[Any, BeforeValidator(series_of("m")), Harmonic.RULES.rules["sine"]] = ()
+    """Coefficients of the sines of once, twice ... that angle."""
 
 
 CAMS = {"circle": CircleTable, "cosine-law": CosineLawTable, "harmonic": HarmonicTable, "sampled": SampledTable}
@@ -146,14 +168,18 @@ PoissonsRatio = Annotated[float, Field(strict=True, ge=0.0, le=LARGEST_RATIO, al
 class RollerTable(Table):
     """A cam's roller with its materials: with it "contact_pressure" is an output."""
 
-    radius: Length = Field(description="radius of the roller")
-    width: Length = Field(description="width of the contact")
-    youngs_modulus: Modulus = Field(description="Young's modulus of the roller, and of the cam unless that is told")
-    poissons_ratio: PoissonsRatio = Field(
-        description="Poisson's ratio of the roller, from 0 to 0.5, and of the cam unless that is told"
-    )
-    cam_youngs_modulus: Modulus | None = Field(None, description="Young's modulus of the cam")
-    cam_poissons_ratio: PoissonsRatio | None = Field(None, description="Poisson's ratio of the cam")
+    radius: Length
+    """Of the roller."""
+    width: Length
+    """Of the contact."""
+    youngs_modulus: Modulus
+    """Of the roller, and of the cam unless that is told."""
+    poissons_ratio: PoissonsRatio
+    """Of the roller, from 0 to 0.5, and of the cam unless that is told."""
+    cam_youngs_modulus: Modulus | None = None
+    """Of the cam."""
+    cam_poissons_ratio: PoissonsRatio | None = None
+    """Of the cam."""
 
 
 # Counterweights
@@ -169,19 +195,33 @@ def _ratio(value):
 
 class CounterweightTable(Table):
     mass: Mass | None = None
+    """Of the counterweight; its arm follows."""
     arm: Coordinate | None = None
+    """Of its centre from the link's reference joint; negative behind the joint. Its mass follows."""
     whole_link: Annotated[bool, Field(strict=True)] = False
+    """Whether mass and arm are those of the link together with its counterweight."""
     largest_mass: Mass | None = None
+    """Limit of what follows."""
     largest_arm: Length | None = None
+    """Limit of what follows."""
     keep_out: Length | None = None
+    """Radius around the reference joint that it must stay outside of."""
 
 
 class BalancingTable(Table):
     method: Literal["full", "partial", "optimal"]
+    """The whole shaking force, a part of it by the crank alone, or the least norm of it."""
     ratio: Annotated[float | str, BeforeValidator(_ratio)] = "overall"
+    """Of a partial balance: "across", "along", "overall", or the ratio of unbalances, a number."""
     norm: Literal["largest", "mean", "along", "across", "weighted"] = "largest"
+    """What an optimal balance makes least."""
     weights: tuple[Weight, Weight] = (1.0, 0.0)
+    """Of force, 1/N, and moment, 1/(N m), for the norm "weighted"."""
     phase: Annotated[bool, Field(strict=True)] = False
+    """Whether a counterweight may lie beside its link's line."""
     crank: CounterweightTable | None = None
+    """Counterweight on the crank."""
     coupler: CounterweightTable | None = None
+    """Counterweight on the coupler."""
     rocker: CounterweightTable | None = None
+    """Counterweight on the rocker."""

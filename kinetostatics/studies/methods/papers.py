@@ -151,7 +151,9 @@ def _groups(mechanism, sign):
         return (_as(RockerByAtanAcos, groups[0], crank_length=mechanism.crank.length),)
     cams = {Circle: CircleAsPrinted, CosineLaw: CosineLawAsPrinted}
     if kinds == [CamRoller, SliderGroup] and type(cam := groups[0].cam) in cams:
-        return RollerByAngles(_as(cams[type(cam)], cam), groups[0].block, sign), _as(SliderByAsin, groups[1])
+        return RollerByAngles(_as(cams[type(cam)], cam), groups[0].block, groups[0].roller, sign), _as(
+            SliderByAsin, groups[1]
+        )
     raise NotGivenError(f"no study has formulas for the groups, or this cam, of {mechanism.name}")
 
 

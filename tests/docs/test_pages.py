@@ -1,0 +1,72 @@
+"""Every page is found, its links lead somewhere, its code is run by the build; the first page keeps its promise."""
+
+import re
+
+import numpy as np
+import pytest
+
+from support.pages import DOCS, RUN_AT_BUILD, code_cells, links, pages, shown_code, text_of
+
+PAGES = pages()
+LINES = 15
+"""Of code, from a drawing to its forces."""
+RUN_BY_TESTS = {"gallery": "tests/docs/test_gallery.py"}
+"""Pages that show code as the repository's own page does, and the test that runs it."""
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_links_lead_to_pages_and_files(name):
+    for link in links(text_of(PAGES[name])):
+        path, _, _ = link.partition("#")
+        if "://" in link or not path:
+            continue
+        made = re.sub(r"^(\.\./)*notebooks/", "../notebooks/", path)
+        found = (DOCS / made) if made != path or path.startswith("notebooks/") else (PAGES[name].parent / path)
+        assert found.resolve().exists(), link
+
+
+def test_every_page_stands_in_one_list_of_pages():
+    below = {}
+    for name, path in PAGES.items():
+        for tree in re.findall(r"```\{toctree\}\n(.*?)```", text_of(path), flags=re.DOTALL):
+            entries = [line.strip() for line in tree.splitlines() if line.strip() and not line.startswith(":")]
+            for entry in entries:
+                full = (path.parent / entry).relative_to(DOCS).as_posix()
+                assert full not in below, f"{full} stands in {below.get(full)} and {name}"
+                below[full] = name
+    assert set(PAGES) - {"index"} <= set(below)
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_python_on_a_page_is_run_by_the_build_or_by_a_test(name):
+    text = text_of(PAGES[name])
+    if code_cells(text):
+        assert RUN_AT_BUILD.match(text), "a page with code cells needs the header of docs/start.md"
+    if shown_code(text):
+        assert (DOCS.parent / RUN_BY_TESTS[name]).exists()
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_pages_name_no_host_to_load_from(name):
+    assert not re.search(r"!\[[^\]]*\]\((?:https?:)?//|<(?:script|img|iframe)\b[^>]*//", text_of(PAGES[name]))
+
+
+def test_the_first_page_goes_from_a_drawing_to_a_table_of_forces(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = text_of(PAGES["index"])
+    code = code_cells(text)[0]
+    assert len([line for line in code.splitlines() if line.strip()]) <= LINES
+    names: dict = {}
+    exec(compile(code, "index", "exec"), names)
+    assert "reaction_O_y [N]" in capsys.readouterr().out
+    assert {"reaction_B_x [N]", "guide_force [N]"} <= set(
+        (tmp_path / "press.csv").read_text().split("\n")[0].split(",")
+    )
+    peak = names["ks"].extremes(names["s"], "balancing_torque")
+    told = float(re.search(r"(\d+) degrees, where the torque is largest", text)[1])
+    assert np.degrees(peak.angle[np.argmax(np.abs(peak.value))]) == pytest.approx(told, abs=0.5)
+
+
+def test_the_first_page_counts_its_lines():
+    written = re.search(r"(\w+) lines of code", text_of(PAGES["index"]))[1]
+    assert written == "Fifteen"
