@@ -116,6 +116,7 @@ if TYPE_CHECKING:
     from .results.losses import Losses
     from .solution.certainty import Uncertainty
     from .solution.compile import Program, compile  # noqa: A004 - the contract's name
+    from .solution.explanation import Explanation
     from .solution.group_check import check
     from .solution.scene import Scene, solve
     from .solution.solution import Solution
@@ -145,6 +146,7 @@ __all__ = [
     "DesignError",
     "DriveError",
     "Dyad",
+    "Explanation",
     "Extremes",
     "Face",
     "FileError",
@@ -262,6 +264,7 @@ _WHERE = {
     "results.losses": ["Losses"],
     "solution.certainty": ["Uncertainty"],
     "solution.compile": ["Program", "compile"],
+    "solution.explanation": ["Explanation"],
     "solution.group_check": ["check"],
     "solution.scene": ["Scene", "solve"],
     "solution.solution": ["Solution"],

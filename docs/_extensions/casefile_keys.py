@@ -57,6 +57,7 @@ BY_KEY: dict[str, list[Any]] = {
     "cubic": ["1 MN/m^3", ["0 N/m^3", "50 MN/m^3"]],
     "cosine": [["300 mm", "-2 mm"]],
     "ends": [["1.7 m", "2.3 m"]],
+    "figures": [{"torque": "6a"}],
     "file": ["values.csv"],
     "free_position": ["2 m"],
     "guide_offset": ["-20 mm"],
@@ -111,6 +112,7 @@ BY_KEY: dict[str, list[Any]] = {
     "value": ["-500 N", "-20 N m", {"largest cam force": "49 kN"}],
     "vary": [{"slider.mass": ["500 kg", "600 kg"]}],
     "weights": [[1.0, 0.1]],
+    "where": ["table 1"],
 }
 """Values tried before those of shipped cases, the first that a key takes is its example."""
 HEADINGS = {

@@ -62,6 +62,14 @@ class Explanation:
     value : float or array (2,)
         The quantity as the solution gives it.
     unit : str
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0).solve(4)
+    >>> told = s.explain("balancing_torque", 0.5)
+    >>> round(float(told.value), 6), told.unit
+    (14.875291, 'N m')
     """
 
     mechanism: str
