@@ -434,6 +434,7 @@ NO_NUMBERS = {
 }
 """Parameters that take no number with a unit."""
 RESULTS = {
+    "Explanation",
     "Found",
     "Front",
     "Contact",
