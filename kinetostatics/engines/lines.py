@@ -5,6 +5,7 @@ is used more than once, or where the formula would grow too long. So every value
 given or a line before it.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -66,11 +67,11 @@ def lines(names, outputs, recorder, state):
         if node not in trees:
             trees[node] = _tree(names, node, ends, raised)
             waiting += (names.graph[place] for place in names_in(trees[node])) if trees[node] else ()
-    units, found = _Units(names), []
-    for node in _ordered(names, trees):
-        value = values[node]
-        found.append(Line(names.of[node], trees[node], value, units.of(node), abs(value) <= NOISE * sizes[node], node))
-    return found
+    units, noise = _Units(names), _noise(values, sizes)
+    return [
+        Line(names.of[node], trees[node], values[node], units.of(node), node in noise, node)
+        for node in _ordered(names, trees)
+    ]
 
 
 def _ordered(names, trees):
@@ -211,6 +212,13 @@ def _values(names, outputs, recorder, state):
     for node in every:
         sizes[node] = _size(node, values, sizes)
     return values, sizes
+
+
+def _noise(values, sizes):
+    """Nodes whose values are zero but for rounding; none where one divides by such a value, so that rounding decides."""
+    found = {node for node, value in values.items() if math.isfinite(value) and abs(value) <= NOISE * sizes[node]}
+    divided = any(node.operation == "/" and values[node] and node.arguments[1] in found for node in values)
+    return set() if divided else found
 
 
 def _size(node, values, sizes):

@@ -163,10 +163,11 @@ def written_whole(path):
     problem = unwritable(path)
     if problem:
         raise FileError(problem)
-    path = Path(os.path.realpath(path))
+    path = Path(path)
     if path.exists() and not path.is_file():  # a pipe or a device takes what is written as it comes
         yield path
         return
+    path = Path(os.path.realpath(path))
     path.parent.mkdir(parents=True, exist_ok=True)
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
@@ -209,6 +210,8 @@ def unwritable(path, *, inputs=(), endings=()):
     endings : sequence of str
         Those a file may have; pipes and devices have none.
     """
+    if not isinstance(path, str | os.PathLike):
+        return f"{path!r} is no name of a file: give a text or a path"
     path = Path(path)
     try:
         if path.is_dir():

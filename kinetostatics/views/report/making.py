@@ -87,7 +87,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
 
         text = html.page(subject, tell)
         with files.written_whole(path) as temporary:
-            Path(temporary).write_text(text, encoding="utf-8")
+            Path(temporary).write_text(text, encoding="utf-8", errors="replace")  # names of files may be no text
         if pdf is not None:
             tell("PDF")
             with files.written_whole(pdf) as temporary:

@@ -1,6 +1,7 @@
 """What is reported: machines side by side, solved at the angles that a reader can choose, and where they come from."""
 
 import hashlib
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -137,15 +138,21 @@ def _of_scenes(scenes, variant, title, command):
             None if isinstance(scene, Scene) else f"{name!r} must be a Scene, got a {type(scene).__name__}"
             for name, scene in scenes.items()
         ),
+        *(f"{name!r} labels several scenes; give each its own" for name in _twice(map(str, scenes))),
     )
     several = [name for name, scene in scenes.items() if scene.solve(1).shape != (1,)]
     if several:
         raise ParameterError(
-            f"report: {', '.join(map(str, several))} holds several designs; give a scene of one design"
+            f"report: {', '.join(map(str, several))} holds arrays, several designs or values for certain crank angles; "
+            "give a scene of one design, and what varies over the turn as a ks.Table or a function"
         )
     step = _step(scenes.values())
     machines = {str(name): Machine(str(name), scene, step, _numbers(scene)) for name, scene in scenes.items()}
     return Subject(title or " and ".join(dict.fromkeys(_kinds(machines))), "", machines, command)
+
+
+def _twice(names):
+    return [name for name, count in Counter(names).items() if count > 1]
 
 
 def _numbers(scene):
