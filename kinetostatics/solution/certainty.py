@@ -1,5 +1,6 @@
 """How sure each value of a solution is: proven bounds on rounding, and what uncertain inputs do."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -153,7 +154,9 @@ class Certainty:
 
         scene = Scene(self.mechanism, self.crank_speed, self.crank_acceleration, self.loads, self.friction)
         units = scene.units
-        given = {path: (value, units.get(path, ""), {"low": 0.0}) for path, value in dict(inputs).items()}
+        named = isinstance(inputs, Mapping) and all(isinstance(path, str) for path in inputs)
+        checks.require("uncertainty", None if named else f"inputs must map paths to numbers, got {inputs!r}")
+        given = {path: (value, units.get(path, ""), {"low": 0.0}) for path, value in inputs.items()}
         inputs = checks.singles("uncertainty", **given)
         name = self._inner(quantity)
         rounding = self.error_bound(quantity)
@@ -163,7 +166,12 @@ class Certainty:
         slopes = program.derivatives(self.crank_angle, tuple(inputs))[name]
         if name != quantity:
             x, y = quantities.components(self, name)
-            slopes = {path: (x * slope[0] + y * slope[1]) / np.hypot(x, y) for path, slope in slopes.items()}
+            size = np.hypot(x, y)
+            with np.errstate(divide="ignore", invalid="ignore"):  # from no vector at all it grows whatever the sense
+                slopes = {
+                    path: np.where(size == 0.0, np.hypot(*slope), (x * slope[0] + y * slope[1]) / size)
+                    for path, slope in slopes.items()
+                }
         return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in slopes.items()}, rounding)
 
     def _with_bounds(self, name, tight=False):

@@ -3,6 +3,7 @@
 from typing import Any
 
 from ..mechanics.quantities import of_scene
+from ..numbers import checks
 
 
 class Contacts:
@@ -16,6 +17,7 @@ class Contacts:
 
         Of a second follower the name ends with its label.
         """
+        checks.require("pressure", checks.quantity(name))
         known = of_scene(self)
         return self._found(name) if name in known and known[name].kind == "contact" else self.dynamics.pressure(name)
 

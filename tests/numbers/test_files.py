@@ -1,5 +1,8 @@
 """Files: columns read to SI, and results that are written whole or not at all."""
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -38,3 +41,13 @@ def test_what_cannot_be_written_is_said_before(tmp_path):
     assert unwritable_folder(tmp_path / "new") is None
     assert "is read as input" in unwritable(tmp_path / "file", inputs=[tmp_path / "file"])
     assert unwritable_folder(tmp_path / "file" / "folder")
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="the system has no names for open files")
+def test_an_open_pipe_takes_what_is_written():
+    reading, writing = os.pipe()
+    with written_whole(f"/dev/fd/{writing}") as path:
+        Path(path).write_text("whole", encoding="utf-8")
+    os.close(writing)
+    with open(reading, encoding="utf-8") as pipe:
+        assert pipe.read() == "whole"

@@ -97,3 +97,16 @@ def test_uncertainty_adds_rounding_to_the_root_sum_of_squares():
 def test_wrong_uncertainties_are_refused(inputs, message):
     with pytest.raises(ParameterError, match=message):
         solved().uncertainty("O", inputs)
+
+
+@every("inputs", [None, 3, "ab", [("slider.mass", 1.0)], {3: 1.0}])
+def test_what_names_no_inputs_is_refused(inputs):
+    with pytest.raises(ks.ParameterError, match="inputs must map paths to numbers"):
+        ks.solve(ks.crank_slider(0.1, 0.4), 0.5, crank_speed=5.0).uncertainty("O", inputs)
+
+
+def test_a_reaction_that_is_zero_grows_by_what_its_components_do():
+    s = ks.solve(ks.crank_slider(0.1, 0.4), [0.5, 1.0], crank_speed=5.0)
+    parts = s.uncertainty("O", {"slider.mass": 0.1}).tolerance
+    assert (parts > 0.0).any()
+    np.testing.assert_allclose(s.uncertainty("|O|", {"slider.mass": 0.1}).tolerance, np.hypot(*parts), rtol=1e-14)

@@ -30,3 +30,8 @@ def test_a_quantity_of_another_kind_is_no_pressure():
         solved(machine=rolled()).pressure("O")
     with pytest.raises(ks.QuantityError, match="has no contact pressure"):
         ks.solve(ks.crank_slider(0.1, 0.4), np.zeros(2), crank_speed=1.0).contact_pressure  # noqa: B018
+
+
+def test_what_is_no_name_is_no_pressure():
+    with pytest.raises(ks.ParameterError, match="quantity must be a name"):
+        solved(machine=rolled()).pressure([])

@@ -93,6 +93,8 @@ def _scaled(quantity, wanted):
     magnitude = quantity.magnitude
     if isinstance(magnitude, bool | complex | str) or getattr(magnitude, "dtype", np.dtype(float)).kind not in "iufO":
         return magnitude  # is refused for what it is
+    if getattr(magnitude, "dtype", np.dtype(float)) in (np.float16, np.float32):  # else converted in so few digits
+        quantity = quantity._REGISTRY.Quantity(magnitude.astype(float), quantity.units)
     try:
         return quantity.to(wanted).magnitude
     except TypeError:  # decimals in a registry of floats, or the other way round

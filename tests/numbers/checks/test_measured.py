@@ -122,6 +122,14 @@ def test_quantities_agree_with_the_texts_of_case_files():
         assert plain(UNITS.Quantity(text), unit) == pytest.approx(to_si(text, unit), rel=4e-16)
 
 
+@every("kind", [np.float16, np.float32, np.uint8])
+def test_few_digits_are_converted_in_double_precision(kind):
+    assert plain(UNITS.Quantity(kind(100), "mm"), "m") == 0.1
+    assert plain(UNITS.Quantity(np.array([100], dtype=kind), "mm"), "m")[0] == 0.1
+    with pytest.raises(ks.ParameterError, match="masked array"):
+        ks.Link(UNITS.Quantity(np.ma.array([[1]], mask=[[True]], dtype=kind), "g"))
+
+
 @pytest.mark.slow_start
 def test_plain_numbers_import_no_pint():
     code = (

@@ -70,3 +70,16 @@ def test_what_fails_leaves_what_was_there(tmp_path, monkeypatch):
         ks.report(plain(), path)
     assert path.read_text(encoding="utf-8") == "before"
     assert [item.name for item in tmp_path.iterdir()] == ["x.html"]
+
+
+@every(
+    "path, pdf", [(None, None), (3, None), (b"x.html", None), (["x.html"], None), ("x.html", 3), ("x.html", b"y.pdf")]
+)
+def test_what_is_no_name_of_a_file_is_refused(path, pdf):
+    with pytest.raises(ks.ParameterError, match="is no name of a file"):
+        ks.report(plain(), path, pdf=pdf)
+
+
+def test_letters_that_no_file_can_hold_are_replaced(tmp_path):
+    path = ks.report(plain(), tmp_path / "x.html", title="saw \udcff", command="kinetostatics report \udcff.toml")
+    assert "saw ?" in words(path.read_text(encoding="utf-8"))
