@@ -215,7 +215,7 @@ def _values(names, outputs, recorder, state):
 
 
 def _noise(values, sizes):
-    """Nodes whose values are zero but for rounding; none where one divides by such a value, so that rounding decides."""
+    """Nodes whose values are zero but for rounding; none where a value is divided by one, so that rounding decides."""
     found = {node for node, value in values.items() if math.isfinite(value) and abs(value) <= NOISE * sizes[node]}
     divided = any(node.operation == "/" and values[node] and node.arguments[1] in found for node in values)
     return set() if divided else found
