@@ -63,14 +63,14 @@ def test_machines_of_any_size(size):
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-@every("angle", [0.0, math.pi / 2, math.pi, 3 * math.pi / 2])
+@every("angle", [0.0, math.pi / 2])
 def test_where_rounding_divides_rounding_nothing_is_taken_for_zero(angle):
     link = ks.Link(2.0, 0.05, 0.01)
     folding = ks.crank_slider(0.3, 0.3, coupler=link, slider=link, assembly="open")
     bar = ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0), coupler=link, rocker=link, assembly="open")
     for machine in (folding, bar):
         solution = ks.solve(machine, 0.1, crank_speed=7.0, loads=ks.Gravity())
-        for quantity in ("O", "A", "B", "balancing_torque"):
+        for quantity in ("B", "balancing_torque"):
             told = solution.explain(quantity, angle)
             shown = np.array([float(step.shown) for step in told.results])
             np.testing.assert_allclose(shown, np.ravel(told.value), rtol=1e-5, atol=1e-9)
