@@ -15,7 +15,7 @@ FIGURES = 15.95
 """Digits of a double number."""
 OUTSTANDING = 1e4
 """Times the usual bound of a rounding error from which on the largest is told beside it, with its place."""
-ZERO = "Numbers that are not listed are zero."
+ZERO = "Numbers that are not listed are zero, but motor, flywheel and tables of values, which stand in the case file."
 
 
 def glance(subject):
@@ -167,7 +167,7 @@ def _bound(solution, name):
     usual = float(np.median(bounds[proven]))
     text, notes = number(bounds[worst], 2), []
     if bounds[worst] > OUTSTANDING * usual:  # at a jump, a value may be that before or behind it
-        notes.append(f"but {text} at {number(np.degrees(solution.crank_angle[worst]))}°")
+        notes.append(f"but {text} at {number(np.degrees(solution.crank_angle[worst]))}°, a jump or near a limit")
         text = number(usual, 2)
     if not proven.all():
         notes.append(f"not proven at {np.count_nonzero(~proven)} of {proven.size} angles")
@@ -199,7 +199,7 @@ def losses(subject):
 def driven(subject):
     """Periodic running by machine under the motor of the case, its tables, and what is told of those that cannot."""
     from ...drive.periodic import steady
-    from ...drive.summary import energy_table, summary
+    from ...drive.summary import energy_table, mistaken_speed, summary
     from ...drive.transient import start
 
     runs: dict[str, Any] = {}
@@ -214,6 +214,8 @@ def driven(subject):
             starts[name] = start(*parts)
         except DriveError as error:
             reasons.append(f"{name}: {error}")
+        if name in runs and (doubt := mistaken_speed(runs[name], machine.scene)):
+            reasons.append(f"{name}: {doubt}")
     tables = []
     if runs:
         tables.append(of_frame(summary(runs, starts), "Speed, power and start-up"))
