@@ -268,12 +268,15 @@ class Table:
         return x[piece], np.where(returning, self.back[piece], y[piece]), slope
 
     def rounding(self, motion):
-        """Bound on the error of values read by crank angle: of the angle in its own turn, N or N m."""
+        """Bound on the error of values read by crank angle, N or N m.
+
+        Outside of its rows a turn more or less is rounded too, and with it where the last piece ends.
+        """
         angle, (start, value, slope) = np.asarray(motion.crank_angle), self.pieces(motion)
         x, y = np.append(self.x, self.x[0] + self.period), np.append(self.y, self.y[0])
         steepest = np.max(np.abs(np.diff(y) / np.diff(x)))
-        own = (angle >= self.x[0]) & (angle < self.x[0] + self.period)
-        turned = np.where(own, 0.0, steepest * (np.abs(angle) + self.period))
+        inside = (angle >= self.x[0]) & (angle <= self.x[-1])
+        turned = np.where(inside, 0.0, steepest * (np.abs(angle) + self.period))
         return 8 * UNIT * (np.abs(slope * (angle - start)) + np.abs(value) + turned)
 
     def kinks_within(self, motion):

@@ -1,5 +1,7 @@
 """Tables by crank angle and travel: what they give to any load, their derivatives, kinks and jumps, and CSV files."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -175,3 +177,16 @@ def test_kinks_of_a_table_over_travel_lie_in_both_turns_of_a_branch():
     assert (kinks < 2 * np.pi).any()
     assert (kinks > 2 * np.pi).any()
     assert jumps.size == 4
+
+
+def test_a_steep_last_piece_of_a_table_by_angle_is_off_by_no_more_than_its_rounding():
+    """Where the first row is not at 0, the end of the last piece is rounded."""
+    first, last = 0.1, 6.37
+    table = ks.Table([first, 1.0, last], [0.0, 500.0, 1000.0])
+    motion = solved(table, np.linspace(last, first + 2 * np.pi, 9)[1:-1])
+    end = Fraction(first) + Fraction(2 * np.pi)
+    share = [(Fraction(angle) - Fraction(last)) / (end - Fraction(last)) for angle in motion.crank_angle]
+    error = [
+        abs(float(Fraction(float(value)) - 1000 * (1 - part))) for value, part in zip(table(motion), share, strict=True)
+    ]
+    assert np.all(error <= table.rounding(motion))
