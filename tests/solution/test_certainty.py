@@ -97,3 +97,11 @@ def test_uncertainty_adds_rounding_to_the_root_sum_of_squares():
 def test_wrong_uncertainties_are_refused(inputs, message):
     with pytest.raises(ParameterError, match=message):
         solved().uncertainty("O", inputs)
+
+
+def test_the_magnitude_of_a_vector_that_vanishes_is_as_uncertain_as_the_vector():
+    s = ks.solve(ks.crank_slider(0.3, 2.0), [0.0, 1.0], crank_speed=5.0, loads=[ks.Gravity()])
+    found = s.uncertainty("|O|", {"slider.mass": 2.0})
+    parts = s.uncertainty("O", {"slider.mass": 2.0}).tolerance
+    np.testing.assert_allclose(found.tolerance, np.hypot(*parts), rtol=1e-14)
+    assert np.all(found.tolerance > 1.0)
