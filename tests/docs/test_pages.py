@@ -20,8 +20,8 @@ def test_links_lead_to_pages_and_files(name):
         path, _, _ = link.partition("#")
         if "://" in link or not path:
             continue
-        made = re.sub(r"^(\.\./)*notebooks/", "../notebooks/", path)
-        found = (DOCS / made) if made != path or path.startswith("notebooks/") else (PAGES[name].parent / path)
+        notebook = re.fullmatch(r"(?:\.\./)*(notebooks/.*)", path)  # copied beside the pages when they are built
+        found = DOCS.parent / notebook[1] if notebook else PAGES[name].parent / path
         assert found.resolve().exists(), link
 
 
