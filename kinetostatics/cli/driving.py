@@ -13,7 +13,7 @@ from .printed import print_table, require_writable, say, write_table
 def drive(options):
     from ..casefile.case import load_case
     from ..drive.periodic import steady
-    from ..drive.summary import energy_table, summary
+    from ..drive.summary import energy_table, mistaken_speed, summary
     from ..drive.transient import start
 
     case = load_case(options.case)
@@ -34,6 +34,9 @@ def drive(options):
             starts[name] = start(*system, from_angle=options.start)
         except DriveError as error:
             reasons[name] = str(error)
+    for name, run in runs.items():
+        if doubt := mistaken_speed(run, driven[name].scene):
+            reasons[name] = f"{doubt}\n{reasons[name]}" if name in reasons else doubt
     if not runs:
         raise DriveError("\n".join(f"{name}: {reason}" for name, reason in reasons.items()))
     tables = {"running": summary(runs, starts), "energy_per_turn": energy_table(runs)}

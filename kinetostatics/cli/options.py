@@ -22,7 +22,7 @@ def parser():
     """The parser; each command's options name the function that carries it out."""
     main = argparse.ArgumentParser(
         prog="kinetostatics",
-        description="Forces and drive torque of planar slider mechanisms, from a case file.",
+        description="Forces and drive torque of planar mechanisms, from a case file.",
         epilog=EPILOG,
     )
     main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")

@@ -4,6 +4,9 @@ import math
 
 from .energy_flow import HELD, ROTOR
 
+OFF = 1.5
+"""Times by which the speed under a motor may be off that of the scene before a word is said of it."""
+
 
 def summary(runs, starts):
     """Table with a column for each machine, a pandas DataFrame, its rows with their units.
@@ -30,6 +33,17 @@ def energy_table(runs):
         for name, run in runs.items()
     }
     return _table(columns)
+
+
+def mistaken_speed(run, scene):
+    """What is told of a machine whose motor turns it much faster or slower than its scene says; None otherwise."""
+    meant, mean = abs(float(scene.crank_speed)), abs(run.mean_speed)
+    if meant == 0.0 or meant / OFF <= mean <= meant * OFF:
+        return None
+    return (
+        f"the motor turns the crank at {mean:.6g} rad/s, but the crank speed given is {meant:.6g} rad/s: is the "
+        f"transmission of the motor, {run.motor.transmission:.6g}, right?"
+    )
 
 
 def _table(columns):

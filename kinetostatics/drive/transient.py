@@ -176,7 +176,7 @@ def _no_start(driven, angle, what):
     remedies = [f"a motor with {asked[most] / rest:.3g} times the torque at rest" if rest > 0.0 else "another motor"]
     easy = _easiest(places, asked - rest, driven.direction)
     if easy is not None:
-        remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which the loads help it round")
+        remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which that torque carries it round")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
         f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "

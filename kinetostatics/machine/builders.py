@@ -64,8 +64,8 @@ def crank_slider(
     --------
     >>> import kinetostatics as ks
     >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
-    >>> round(float(ks.solve(pump, 0.0, crank_speed=100.0).balancing_torque), 6)
-    0.0
+    >>> round(float(ks.solve(pump, 0.5, crank_speed=100.0).balancing_torque), 4)  # N m at 0.5 rad
+    14.8753
     """
     group = SliderGroup(coupler_length, _guide(guide, guide_angle, guide_offset), assembly, coupler, slider)
     return Mechanism("crank-slider", Crank(crank_length, crank), (group,))

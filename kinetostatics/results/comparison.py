@@ -112,6 +112,7 @@ class Comparison:
         reference, matched = self.torque_extremes
         for number, row in enumerate(zip(reference.value, matched, self.torque_extremum_ratios, strict=True), 1):
             rows.append((f"torque extremum {number}", "N m", *row))
+        rows += self._hidden_peak(reference.value, matched)
         rows += self._lost()
         for joint in self.reference.reactions:
             if joint in self.balanced.reactions:
@@ -138,6 +139,14 @@ class Comparison:
         """A quantity of both mechanisms, 0 where it is rounding."""
         both = zip((self.reference, self.balanced), pair, strict=True)
         return [float(without_rounding(solution, name, [value])[0]) for solution, value in both]
+
+    def _hidden_peak(self, *shown):
+        """A row of the largest torques, where one of them is none of the extrema shown."""
+        both = self.reference, self.balanced
+        peaks = [abs(extremes(solution, "balancing_torque").largest) for solution in both]
+        if any(not np.isclose(np.abs(some), peak, rtol=1e-9).any() for some, peak in zip(shown, peaks, strict=True)):
+            peaks = self._without_rounding("balancing_torque", peaks)
+            yield "largest |balancing torque|", "N m", *peaks, _ratio(*peaks)
 
     def _lost(self):
         """Rows of the power lost by joint, all together, and of the efficiency; none where no power is lost."""

@@ -139,7 +139,7 @@ def _tried(job, designs, engines, hands):
 
 
 def _bar(shown, total):
-    from tqdm.auto import tqdm
+    from tqdm import tqdm
 
     return tqdm(total=total, unit=" designs", disable=not shown)
 

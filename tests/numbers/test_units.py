@@ -33,3 +33,12 @@ def test_factors_go_to_the_unit_and_to_the_base():
 
 def test_long_values_are_shown_short():
     assert len(shown("x" * 1000)) < 100
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "advice"),
+    [("250", "rad", '"250 deg" or "250 rad"'), ("60", "rad/s", '"60 rpm" or "60 rad/s"'), ("down", "rad", '"90 deg"')],
+)
+def test_advice_is_in_the_units_of_drawings(text, unit, advice):
+    with pytest.raises(ValueError, match=f"write for example {advice}$"):
+        to_si(text, unit)

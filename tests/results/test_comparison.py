@@ -31,6 +31,17 @@ def test_the_table_has_a_row_for_each_coefficient_with_its_unit():
     assert table.loc["power residual", ["reference", "balanced"]].max() < 1e-12
 
 
+def test_a_peak_that_no_extremum_of_the_reference_matches_has_a_row():
+    """A press strikes where it idles without an extremum; the ratio of its peaks would be in no row."""
+    press = ks.crank_slider(0.08, 0.4, slider=ks.Link(90.0))
+    work = ks.ProcessForce(ks.Table([0.32, 0.47, 0.4701, 0.48], [0, 0, -30e3, -30e3], over="travel", back=[0] * 4))
+    idle, working = (ks.solve(press, 0.0, crank_speed=6.0, loads=loads) for loads in ((), (work,)))
+    row = ks.compare(idle, working).frame().loc["largest |balancing torque|"]
+    assert row["balanced"] == pytest.approx(abs(ks.extremes(working, "balancing_torque").largest), rel=1e-12)
+    assert row["ratio"] == pytest.approx(row["reference"] / row["balanced"], rel=1e-12)
+    assert "largest |balancing torque|" not in ks.compare(idle, idle).frame().index
+
+
 def test_the_two_sides_of_a_jump_on_a_flank_are_no_extremum_to_match():
     """Friction makes the torque jump at dead centres, where it falls or rises on."""
     case = ks.load_case("sawframe_2r63_friction")

@@ -22,6 +22,8 @@ def order_problem(x, over):
     what, remedy = ("angles", "for a jump give two angles close together")
     if over == "travel":
         what, remedy = "travel", "give the stroke back as back=..., in a file as a third column"
+        if x[row] == x[row - 1]:
+            remedy = "for a jump give two travels close together"
     return f"{what} must {'fall' if falls else 'rise'}, but {here} follows {before} in row {row + 1}; {remedy}"
 
 

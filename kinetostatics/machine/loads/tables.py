@@ -39,8 +39,9 @@ class Rows:
 class Table:
     """Values for any load: linear between rows by crank angle, or by the travel of a slider.
 
-    It passes through every row, adds no extrema between them, and has a kink at each. It is a function of the crank
-    angle once read: extremes, means, `Solution.at` and sweeps take it, programs give derivatives through its travel.
+    It passes through every row, adds no extrema between them, and has a kink at each; a jump is two rows close
+    together. It is a function of the crank angle once read: extremes, means, `Solution.at` and sweeps take it, programs
+    give derivatives through its travel.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ FIGURES = 15.95
 """Digits of a double number."""
 OUTSTANDING = 1e4
 """Times the usual bound of a rounding error from which on a bound is told apart, with its place."""
-ZERO = "Numbers that are not listed are zero."
+ZERO = "Numbers that are not listed are zero, but motor, flywheel and tables of values, which stand in the case file."
 
 
 def glance(subject):
@@ -169,7 +169,7 @@ def _bound(solution, name):
         place = int(np.argmax(np.where(apart, bounds, -1.0)))
         where = f"{number(np.degrees(solution.crank_angle[place]))}°"
         others = "" if (count := np.count_nonzero(apart)) == 1 else f", the largest of {count} that stand out"
-        notes.append(f"but {at_most(bounds[place])} at {where}{others}")
+        notes.append(f"but {at_most(bounds[place])} at {where}, a jump or near a limit{others}")
     if not proven.all():
         notes.append(f"not proven at {np.count_nonzero(~proven)} of {proven.size} angles")
     text = at_most(np.max(bounds[proven & ~apart]))
@@ -201,7 +201,7 @@ def losses(subject):
 def driven(subject):
     """Periodic running by machine under the motor of the case, its tables, and what is told of those that cannot."""
     from ...drive.periodic import steady
-    from ...drive.summary import energy_table, summary
+    from ...drive.summary import energy_table, mistaken_speed, summary
     from ...drive.transient import start
 
     runs: dict[str, Any] = {}
@@ -216,6 +216,8 @@ def driven(subject):
             starts[name] = start(*parts)
         except DriveError as error:
             reasons.append(f"{name}: {error}")
+        if name in runs and (doubt := mistaken_speed(runs[name], machine.scene)):
+            reasons.append(f"{name}: {doubt}")
     tables = []
     if runs:
         tables.append(of_frame(summary(runs, starts), "Speed, power and start-up"))
