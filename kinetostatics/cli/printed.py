@@ -4,9 +4,9 @@ import shutil
 import sys
 import textwrap
 
-from ..errors import CaseError
 from ..numbers import checks, files
 from ..numbers.headings import parted
+from ..views.report.tables import require_places
 
 STDOUT = "-"
 """Name of a file that stands for standard output."""
@@ -69,14 +69,8 @@ def print_table(table):
 
 def with_published(table, published, path):
     """Cells as text, the published figure behind ours in brackets."""
+    require_places(table, published, path)
     cells = table.map(_cell).astype(object)
-    problems = [checks.choice("published: row", quantity, tuple(cells.index)) for quantity in published] + [
-        checks.choice(f"published: column of {quantity!r}", column, tuple(cells.columns))
-        for quantity, entries in published.items()
-        for column in entries
-    ]
-    if any(problems):
-        raise CaseError(path, [problem for problem in problems if problem])
     for quantity, entries in published.items():
         for column, printed in entries.items():
             cells.loc[quantity, column] += f" ({printed})"

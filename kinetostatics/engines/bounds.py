@@ -72,9 +72,9 @@ class Bounds:
         unsure = {node for node in needed([output]) if self.total(node) is not None}
         slopes = adjoints(self._graph, output, unsure) if output in unsure else {}
         self.of(slopes.values())
-        total = None
-        for node, slope in slopes.items():
-            own = self.total(node) if node.operation in INPUTS else self._sum(self.own(node), node)
+        total = DUST if slopes else None
+        for node, slope in slopes.items():  # what derivatives hold comes with its whole error
+            own = self.total(node) if node.operation in (*INPUTS, "held") else self._sum(self.own(node), node)
             if own is not None:
                 total = self.fused(self.largest(slope), own, total)
         return _whole(total)
@@ -90,7 +90,7 @@ class Bounds:
         """What an operation itself adds to the error of its result."""
         kind, arguments = node.operation, node.arguments
         if kind in ("*", "/"):
-            return EXACT if any(map(_is_scaling, arguments[kind == "/" :])) else Error(1.0, DUST)
+            return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, DUST)
         if kind in ("+", "-"):
             return Error(1.0, None) if len(arguments) == 2 else EXACT
         if kind == "divisor":  # none is proven where the guard may act
@@ -193,7 +193,8 @@ def _of_product(bounds, more, node, left, right):
     if isinstance(own, Node):
         across = more if other is None else bounds.fused(bounds.largest(left), other, more)
         return Error(first + second, bounds.fused(size(right), own, across))
-    return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), more))
+    across = more if None in (own, other) else plus(UNIT * own * other, more)
+    return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), across))
 
 
 def _of_quotient(bounds, more, node, above, below):
@@ -205,7 +206,8 @@ def _of_quotient(bounds, more, node, above, below):
 def _of_root(bounds, more, node, square, unit=None):
     relative, rest = bounds.error(square)
     if isinstance(rest, Node):
-        rest = bounds.fused(0.5 * rest, node / bounds.clear(square), more)
+        left = bounds.above(square, bounds.total(square))  # nothing, if it may be negative
+        rest = bounds.fused(0.5 * rest, node / left, more)
     elif rest is not None:
         rest = math.sqrt(rest / UNIT)
     return Error(0.5 * relative, rest)

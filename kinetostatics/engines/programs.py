@@ -132,13 +132,16 @@ class Program:
         with np.errstate(all="ignore"):
             sine, cosine = _turn(angle)
             if len(shape) == 1:
-                for start in range(0, shape[0], BLOCK):
-                    part = slice(start, start + BLOCK)
-                    given = [row[part] if np.size(row) > 1 else row for row in rows]
-                    own = results[:, part]
-                    single(angle[part], sine[part], cosine[part], numbers, given, _buffers(count, own.shape[1:]), own)
-            else:
-                batch(angle, sine, cosine, numbers, rows, np.empty((count, *shape)), results)
+                try:
+                    for start in range(0, shape[0], BLOCK):
+                        part = slice(start, start + BLOCK)
+                        given = [row[part] if np.size(row) > 1 else row for row in rows]
+                        own, free = results[:, part], _buffers(count, results[0, part].shape)
+                        single(angle[part], sine[part], cosine[part], numbers, given, free, own)
+                    return results
+                except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
+                    numbers = list(map(np.float64, numbers))
+            batch(angle, sine, cosine, numbers, rows, np.empty((count, *shape)), results)
         return results
 
     @cached_property

@@ -15,7 +15,7 @@ from ..errors import NotGivenError
 from ..machine import loads
 from ..machine.crank import ray
 from ..machine.friction import NONE
-from ..machine.loads import Load, ProcessForce
+from ..machine.loads import Load, ProcessForce, table_errors
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import all_found, components, of_scene
@@ -229,12 +229,14 @@ class Recorder:
 
         if table.over == "angle":
             (values,) = self._tabled((("value", 0, unit),), lambda motion, arrays: [item(motion)(motion)], of=place)
-            (errors,) = self._tabled(ERRORS[:1], lambda motion, arrays: [item(motion).rounding(motion) / UNIT])
+            (errors,) = self._tabled(
+                ERRORS[:1], lambda motion, arrays: [table_errors.rounding(item(motion), motion) / UNIT]
+            )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
         names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
         pieces = self._tabled(names, lambda motion, arrays: item(motion).pieces(motion), of=place)
-        within = self._tabled(ERRORS, lambda motion, arrays: item(motion).kinks_within(motion))
+        within = self._tabled(ERRORS, lambda motion, arrays: table_errors.kinks_within(item(motion), motion))
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))

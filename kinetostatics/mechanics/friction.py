@@ -294,10 +294,8 @@ class _System:
         """
         matrix: list[list] = [[None] * self.count for _ in range(self.count)]
         for law, slopes, effects in zip(self.laws, self.slopes, self.effects, strict=True):
-            sizes = [
-                product(abs(law.factor), size_of("size" if law.kind == "itself" else law.kind, slope))
-                for slope in slopes
-            ]
+            kind = "size" if law.kind == "itself" else law.kind
+            sizes = [product(abs(law.factor), size_of(kind, slope)) for slope in slopes]
             for place, _ in effects:
                 matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
         return reduce(smaller, _pivots(matrix))

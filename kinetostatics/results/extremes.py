@@ -72,6 +72,8 @@ class Extremes:
         """
         if self.solution is None:
             raise NotGivenError("no bound can be given: the quantity is a function of yours")
+        if not len(self):
+            return np.empty(0)
         vector = quantities.quantity(self.solution, self.quantity).vector
         at = self.solution.at(self.angle)
         return at.error_bound(f"|{self.quantity}|" if vector else self.quantity)

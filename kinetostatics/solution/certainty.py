@@ -165,13 +165,8 @@ class Certainty:
         program = compiled(scene, name, tuple(inputs), engine="compiled" if self.engine.compiled else "numpy")
         slopes = program.derivatives(self.crank_angle, tuple(inputs))[name]
         if name != quantity:
-            x, y = quantities.components(self, name)
-            size = np.hypot(x, y)
-            with np.errstate(divide="ignore", invalid="ignore"):  # from no vector at all it grows whatever the sense
-                slopes = {
-                    path: np.where(size == 0.0, np.hypot(*slope), (x * slope[0] + y * slope[1]) / size)
-                    for path, slope in slopes.items()
-                }
+            vector = quantities.components(self, name)
+            slopes = {path: _of_magnitude(vector, slope) for path, slope in slopes.items()}
         return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in slopes.items()}, rounding)
 
     def _with_bounds(self, name, tight=False):
@@ -187,3 +182,10 @@ class Certainty:
         checks.require("quantity", checks.quantity(name))
         quantities.quantity(self, name)
         return name
+
+
+def _of_magnitude(vector, slope):
+    """Derivative of the magnitude of a vector from that of the vector; of one that vanishes the magnitude of that."""
+    (x, y), size = vector, np.hypot(*vector)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(size > 0.0, (x * slope[0] + y * slope[1]) / size, np.hypot(*slope))[()]

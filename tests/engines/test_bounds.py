@@ -51,12 +51,18 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(case, variant, 
     assert np.max(tight) < 20 * np.max(error)
 
 
+def bounds_of(graph, outputs, values, tight=False):
+    """Bounds of outputs at some values of the parameters of a graph."""
+    own = bounds.Bounds(graph)
+    found = tuple(map(own.tight, outputs)) if tight else own.of(outputs)
+    return programs.Program(None, found)._by_numbers(np.zeros(1), values, (1,))[:, 0]
+
+
 def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_hand():
     graph = Graph()
     one, two = graph.parameter(0), graph.parameter(1)
     outputs = one + two, one * two, one / two, (one * one).sqrt(), (one + two) * one
-    found = programs.Program(None, bounds.Bounds(graph).of(outputs))
-    values = found._by_numbers(np.zeros(1), [3.0, 0.7], (1,))[:, 0]
+    values = bounds_of(graph, outputs, [3.0, 0.7])
     wanted = [3.7 * UNIT, 2.1 * UNIT, 3.0 / 0.7 * UNIT, 1.5 * 3.0 * UNIT, 2 * 3.7 * 3.0 * UNIT]
     np.testing.assert_allclose(values, wanted, rtol=1e-8)
 
@@ -68,6 +74,38 @@ def test_where_a_divisor_may_vanish_or_a_root_be_clamped_there_is_no_bound():
     found = s.error_bound("B")
     assert np.isfinite(found[:, 0]).all()
     assert not np.isfinite(found[:, 1]).any()
+
+
+def test_a_root_of_what_is_proven_to_be_negative_has_no_bound():
+    graph = Graph()
+    one, other, unit = map(graph.parameter, range(3))
+    square = one * one - other * other
+    (bound,) = bounds_of(graph, [square.forgiving_root(unit)], [1.0, 1.0 + 6 * UNIT, 2.0])
+    assert not np.isfinite(bound)
+
+
+def test_what_a_factor_of_two_loses_of_the_smallest_numbers_is_bounded():
+    graph = Graph()
+    tiny, divisor = map(graph.parameter, range(2))
+    found = bounds_of(graph, [0.5 * tiny, 0.5 * tiny / divisor], [5e-324, 1e-29])
+    assert found[0] >= 2.5e-324
+    assert found[1] >= 2.5e-324 / 1e-29
+
+
+def test_a_product_of_two_numbers_lost_as_too_small_is_bounded():
+    graph = Graph()
+    one, other, huge = map(graph.parameter, range(3))
+    lost = [(part * part * huge * huge).forgiving_root(huge) for part in (one, other)]  # 0, and truly 1e-140
+    (bound,) = bounds_of(graph, [lost[0] * lost[1]], [1e-170, 1e-170, 1e30])
+    assert bound >= 1e-280
+
+
+def test_a_tight_bound_takes_the_error_of_what_derivatives_hold():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    outputs = [(one + other).held() * one, (one + other) * one]
+    held, free = bounds_of(graph, outputs, [3.0, 0.7], tight=True)
+    assert held == pytest.approx(free, rel=1e-8, abs=0.0)
 
 
 def test_numbers_beyond_the_cap_have_no_bound():

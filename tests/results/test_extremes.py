@@ -210,3 +210,9 @@ def test_extremes_have_proven_bounds_at_their_angles():
         assert np.all(found.error_bound < 1e-14 * np.max(np.abs(found.value)))
     with pytest.raises(NotGivenError, match="function of yours"):
         ks.extremes(s, lambda s: s.guide_force).error_bound  # noqa: B018
+
+
+def test_a_quantity_that_does_not_change_has_no_extremes_and_no_bounds_of_them():
+    s = ks.solve(ks.crank_slider(0.3, 2.0, crank=ks.Link(5.0)), 8, crank_speed=33.5, loads=[ks.Gravity()])
+    for quantity in ("shaking_force", "balancing_torque"):
+        assert ks.extremes(s, quantity).error_bound.shape == (0,)

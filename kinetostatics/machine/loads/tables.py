@@ -8,7 +8,6 @@ import numpy as np
 
 from ...errors import CaseError, ParameterError
 from ...numbers import checks
-from ...numbers.elementary import UNIT
 from ...numbers.leaves import with_fields
 from . import rows
 from .period import TURN, WholeTurns
@@ -267,31 +266,6 @@ class Table:
         returning = self.returns(motion)
         slope = np.where(returning, (np.diff(self.back) / step)[piece], (np.diff(y) / step)[piece])
         return x[piece], np.where(returning, self.back[piece], y[piece]), slope
-
-    def rounding(self, motion):
-        """Bound on the error of values read by crank angle: of the angle in its own turn, N or N m."""
-        angle, (start, value, slope) = np.asarray(motion.crank_angle), self.pieces(motion)
-        x, y = np.append(self.x, self.x[0] + self.period), np.append(self.y, self.y[0])
-        steepest = np.max(np.abs(np.diff(y) / np.diff(x)))
-        own = (angle >= self.x[0]) & (angle < self.x[0] + self.period)
-        turned = np.where(own, 0.0, steepest * (np.abs(angle) + self.period))
-        return 8 * UNIT * (np.abs(slope * (angle - start)) + np.abs(value) + turned)
-
-    def kinks_within(self, motion):
-        """Over travel, what bounds need to know of its kinks and jumps (see `engines.record`).
-
-        By how much the slope changes at the row beside each place, N/m or N m/m, how far the value may jump there, and
-        how near, m or m a radian, a row or the end of a stroke must be for it not to be zero.
-        """
-        near = 1e-6 * float(self.x[-1] - self.x[0])
-        place = np.asarray(self.place(motion), dtype=float)
-        sides = [self.y] if self.back is None else [self.y, self.back]
-        steepest = max(float(np.max(np.abs(np.diff(side) / np.diff(self.x)))) for side in sides)
-        row = np.clip(np.searchsorted(self.x, place), 1, self.x.size - 1)
-        beside = np.minimum(np.abs(place - self.x[row - 1]), np.abs(place - self.x[row])) <= near
-        jump = 0.0 if self.back is None else float(np.max(np.abs(self.y - self.back)))
-        standing = np.abs(self.rate(motion)) <= near
-        return np.where(beside, 2.0 * steepest, 0.0), np.where(standing, jump, 0.0), near
 
     def rate(self, motion):
         """Rate of the slider along its guide by the crank angle, m."""

@@ -9,12 +9,12 @@ from ...mechanics.quantities import label_of, of_scene, unit_of
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
 from .tables import Table, digits_of, of_frame, times, with_published
-from .words import DIGITS, angle, number, pretty
+from .words import DIGITS, angle, at_most, number, pretty
 
 FIGURES = 15.95
 """Digits of a double number."""
 OUTSTANDING = 1e4
-"""Times the usual bound of a rounding error from which on the largest is told beside it, with its place."""
+"""Times the usual bound of a rounding error from which on a bound is told apart, with its place."""
 ZERO = "Numbers that are not listed are zero, but motor, flywheel and tables of values, which stand in the case file."
 
 
@@ -155,7 +155,7 @@ def _certainty(solution):
 
 
 def _bound(solution, name):
-    """Largest bound of a rounding error over the turn; below it where one stands out, or where none can be proven."""
+    """Largest bound of a rounding error over the turn; below it where some stand out, or where none can be proven."""
     try:
         bounds = solution.error_bound(name)
     except NotGivenError:
@@ -163,14 +163,16 @@ def _bound(solution, name):
     proven = np.isfinite(bounds)
     if not proven.any():
         return "not proven"
-    worst = int(np.argmax(np.where(proven, bounds, -1.0)))
-    usual = float(np.median(bounds[proven]))
-    text, notes = number(bounds[worst], 2), []
-    if bounds[worst] > OUTSTANDING * usual:  # at a jump, a value may be that before or behind it
-        notes.append(f"but {text} at {number(np.degrees(solution.crank_angle[worst]))}°, a jump or near a limit")
-        text = number(usual, 2)
+    apart = proven & (bounds > OUTSTANDING * np.median(bounds[proven]))  # at a jump, a value may be the one beyond it
+    notes = []
+    if apart.any():
+        place = int(np.argmax(np.where(apart, bounds, -1.0)))
+        where = f"{number(np.degrees(solution.crank_angle[place]))}°"
+        others = "" if (count := np.count_nonzero(apart)) == 1 else f", the largest of {count} that stand out"
+        notes.append(f"but {at_most(bounds[place])} at {where}, a jump or near a limit{others}")
     if not proven.all():
         notes.append(f"not proven at {np.count_nonzero(~proven)} of {proven.size} angles")
+    text = at_most(np.max(bounds[proven & ~apart]))
     return (text, "; ".join(notes)) if notes else text
 
 

@@ -55,7 +55,7 @@ def of_frame(frame, caption, note=""):
 
 def with_published(frame, published, path, caption, note=""):
     """Table of a frame, the published figure behind ours in brackets where there is one."""
-    require_rows(frame, published, path)
+    require_places(frame, published, path)
     table = of_frame(frame, caption, note)
     places = {str(name): row for row, name in enumerate(frame.index)}
     columns = [str(name) for name in frame.columns]
@@ -67,7 +67,7 @@ def with_published(frame, published, path, caption, note=""):
     return table
 
 
-def require_rows(frame, published, path):
+def require_places(frame, published, path):
     """Every published figure has a row and a column to stand in."""
     problems = [checks.choice("published: row", quantity, tuple(frame.index)) for quantity in published] + [
         checks.choice(f"published: column of {quantity!r}", column, tuple(frame.columns))

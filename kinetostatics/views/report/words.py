@@ -1,6 +1,7 @@
 """Words and numbers as a reader wants them."""
 
 import math
+from decimal import ROUND_CEILING, Context, Decimal
 
 DIGITS = 6
 """Significant digits of a number in a table, at most."""
@@ -33,6 +34,11 @@ def number(value, digits=DIGITS):
     if "e+" in text and abs(value) < PLAIN:  # then the last figures before the point are zeros
         text = f"{float(text):.0f}"
     return text.replace("inf", "∞")
+
+
+def at_most(bound):
+    """A bound with two digits, rounded up."""
+    return number(float(Decimal(float(bound)).normalize(Context(2, ROUND_CEILING))), 2)
 
 
 def angle(value):

@@ -82,11 +82,14 @@ def test_certainty_tells_power_balance_condition_and_how_friction_was_found():
 
 def test_rounding_errors_have_their_proven_bounds_and_where_these_stand_out():
     found = sections.certainty(subject("shaper"))
-    bound = subject("shaper").machines["idle"].solution.error_bound("balancing_torque").max()
+    of_cutting, of_idle = (
+        np.sort(subject("shaper").machines[name].solution.error_bound("balancing_torque"))
+        for name in ("cutting", "idle")
+    )
     cutting, idle = table_of(found, "rounding error of the torque, proven bound [N·m]")[1:]
-    assert float(idle) == pytest.approx(bound, rel=0.05)
-    assert float(cutting[0]) < 1e-10
-    assert re.fullmatch(r"but 830 at \d+°, a jump or near a limit", cutting[1])
+    assert of_idle[-1] <= float(idle) < 1.1 * of_idle[-1]
+    assert of_cutting[-3] <= float(cutting[0]) < 1.1 * of_cutting[-3]
+    assert re.fullmatch(r"but 840 at \d+°, a jump or near a limit, the largest of 2 that stand out", cutting[1])
     rubbing = table_of(sections.certainty(RUBBING()), "rounding error of the torque, proven bound [N·m]")
     assert rubbing[1][1] == "not proven at 1 of 360 angles"
 

@@ -2,7 +2,7 @@
 
 import math
 
-from kinetostatics.views.report.words import angle, number, pretty
+from kinetostatics.views.report.words import angle, at_most, number, pretty
 from support.every import every
 
 
@@ -28,3 +28,8 @@ def test_units_have_raised_exponents_and_dots(unit, text):
 def test_an_angle_of_rounding_is_zero():
     assert angle(1.1e-13) == angle(-1e-9) == "0.00"
     assert angle(math.nan) == ""
+
+
+@every("bound, text", [(1.23e-10, "1.3e-10"), (0.25, "0.25"), (0.2500001, "0.26"), (9.91, "10"), (0.0, "0")])
+def test_a_bound_is_never_told_smaller_than_it_is(bound, text):
+    assert at_most(bound) == text

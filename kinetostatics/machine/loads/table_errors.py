@@ -1,0 +1,35 @@
+"""What bounds need to know of a table: its own rounding, and its kinks and jumps."""
+
+import numpy as np
+
+from ...numbers.elementary import UNIT
+
+
+def rounding(table, motion):
+    """Bound on the error of values read by crank angle, N or N m.
+
+    Outside of its rows a turn more or less is rounded too, and with it where the last piece ends.
+    """
+    angle, (start, value, slope) = np.asarray(motion.crank_angle), table.pieces(motion)
+    x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
+    steepest = np.max(np.abs(np.diff(y) / np.diff(x)))
+    inside = (angle >= table.x[0]) & (angle <= table.x[-1])
+    turned = np.where(inside, 0.0, steepest * (np.abs(angle) + table.period))
+    return 8 * UNIT * (np.abs(slope * (angle - start)) + np.abs(value) + turned)
+
+
+def kinks_within(table, motion):
+    """Over travel, what bounds need to know of its kinks and jumps (see `engines.record`).
+
+    By how much the slope changes at the row beside each place, N/m or N m/m, how far the value may jump there, and
+    how near, m or m a radian, a row or the end of a stroke must be for it not to be zero.
+    """
+    near = 1e-6 * float(table.x[-1] - table.x[0])
+    place = np.asarray(table.place(motion), dtype=float)
+    sides = [table.y] if table.back is None else [table.y, table.back]
+    steepest = max(float(np.max(np.abs(np.diff(side) / np.diff(table.x)))) for side in sides)
+    row = np.clip(np.searchsorted(table.x, place), 1, table.x.size - 1)
+    beside = np.minimum(np.abs(place - table.x[row - 1]), np.abs(place - table.x[row])) <= near
+    jump = 0.0 if table.back is None else float(np.max(np.abs(table.y - table.back)))
+    standing = np.abs(table.rate(motion)) <= near
+    return np.where(beside, 2.0 * steepest, 0.0), np.where(standing, jump, 0.0), near

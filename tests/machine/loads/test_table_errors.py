@@ -1,0 +1,32 @@
+"""Rounding, kinks and jumps of tables, as bounds need them."""
+
+from fractions import Fraction
+
+import numpy as np
+
+import kinetostatics as ks
+from kinetostatics.machine.loads import table_errors
+
+
+def test_a_steep_last_piece_of_a_table_by_angle_is_off_by_no_more_than_its_rounding():
+    """Where the first row is not at 0, the end of the last piece is rounded."""
+    first, last = 0.1, 6.37
+    table = ks.Table([first, 1.0, last], [0.0, 500.0, 1000.0])
+    angles = np.linspace(last, first + 2 * np.pi, 9)[1:-1]
+    motion = ks.solve(ks.crank_slider(0.05, 0.2), angles, crank_speed=100.0, loads=ks.ProcessForce(table))
+    end = Fraction(first) + Fraction(2 * np.pi)
+    share = [(Fraction(angle) - Fraction(last)) / (end - Fraction(last)) for angle in motion.crank_angle]
+    error = [
+        abs(float(Fraction(float(value)) - 1000 * (1 - part))) for value, part in zip(table(motion), share, strict=True)
+    ]
+    assert np.all(error <= table_errors.rounding(table, motion))
+
+
+def test_kinks_and_jumps_are_told_beside_rows_and_ends_of_strokes_only():
+    pump = ks.crank_slider(0.05, 0.2)
+    table = ks.Table([0.15, 0.2, 0.25], [-900.0, -500.0, -100.0], over="travel", back=[0.0, 0.0, 0.0], slider="slider")
+    s = ks.solve(pump, [0.0, 1.0, np.pi], crank_speed=100.0, loads=ks.ProcessForce(table))
+    kinks, jumps, near = table_errors.kinks_within(table, s)
+    assert np.flatnonzero(jumps).tolist() == [0, 2]
+    assert kinks[1] == 0.0
+    assert 0.0 < near < 1e-6
