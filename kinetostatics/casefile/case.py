@@ -50,7 +50,7 @@ class Case:
     >>> case = ks.load_case("sawframe_2r63")
     >>> list(case.variants), case.reference
     (['plain', 'cam-circle', 'cam-cosine'], 'plain')
-    >>> round(case.compare("plain", "cam-cosine").mean_torque_ratio, 3)
+    >>> round(float(case.compare("plain", "cam-cosine").mean_torque_ratio), 3)
     6.778
     """
 

@@ -60,15 +60,24 @@ SPREAD = f"""            for place in range(results.shape[1]):
 
 
 FUSED = """from numba.core import types
-from numba.extending import intrinsic
+from numba.extending import intrinsic, overload
 
 
 @intrinsic
-def fma(typing, one, other, more):
+def fused(typing, one, other, more):
     def written(context, builder, signature, arguments):
         return builder.fma(*arguments)
 
     return types.float64(types.float64, types.float64, types.float64), written
+
+
+def fma(one, other, more):
+    return one * other + more
+
+
+@overload(fma)
+def compiled_fma(one, other, more):
+    return lambda one, other, more: fused(one, other, more)
 
 
 """

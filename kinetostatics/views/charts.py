@@ -75,7 +75,7 @@ def work_precision(table, ax=None, like=None):
             setting = rows["setting"].iloc[0]
             text = f"{name} ({setting})" if setting else name
             ax.plot(rows[time], np.maximum(rows["error"], EXACT), label=text, **style)
-            proven = rows[np.isfinite(rows["bound"])] if "bound" in rows else rows[:0]
+            proven = rows.dropna(subset=["bound"]) if "bound" in rows else rows.assign(bound=np.nan)[:0]
             ax.vlines(proven[time], np.maximum(proven["error"], EXACT), proven["bound"], color=style["color"], lw=1.0)
             ax.plot(proven[time], proven["bound"], "_", color=style["color"], markersize=9)
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 30))

@@ -288,7 +288,7 @@ def test_chart_of_a_place_has_units_a_line_a_method_and_the_condition_dashed(tab
     assert ax.get_ylabel().endswith("[1]")
     lines = {line.get_label(): line for line in ax.lines}
     given = rows[rows["not given"] == ""]
-    assert set(lines) == {*given["method"], "condition x rounding"}
+    assert set(lines) == {*given["method"], "condition x rounding", "proven bound of ours"}
     dashed = [name for name, line in lines.items() if line.get_linestyle() == "--"]
     assert dashed == ["condition x rounding"]
     limit = rows.drop_duplicates("number").set_index("number")["condition"] * 2.0**-53
