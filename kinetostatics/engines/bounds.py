@@ -22,7 +22,7 @@ DUST = 2.0**-960
 CAP = 2.0**100
 """Largest input, in SI, for which dust stays dust."""
 ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
-"""Largest relative error of a function of any backend, in `UNIT`; tests hold NumPy and compiled loops to it."""
+"""Largest relative error of a function of any backend, in `UNIT`; a test holds NumPy and compiled loops to it."""
 
 
 class Error(NamedTuple):

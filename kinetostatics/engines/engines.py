@@ -85,8 +85,12 @@ class Recorded:
         rows = program.bounded(tight).run(state, leaves, self.compiled)
         count = len(program.outputs)
         named = program.recording.named
-        small = all(np.all(np.abs(leaf) <= CAP) for leaf in (*leaves.numbers, *leaves.tables))
+        small = all(map(_is_small, (*leaves.numbers, *leaves.tables)))
         return named(rows[:count]), named(rows[count:] if small else np.full_like(rows[count:], np.inf))
+
+
+def _is_small(leaf):
+    return abs(leaf) <= CAP if type(leaf) is float else np.all(np.abs(leaf) <= CAP)
 
 
 def is_plain(angle):

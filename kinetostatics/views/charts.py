@@ -80,7 +80,7 @@ def work_precision(table, ax=None, like=None):
             ax.plot(proven[time], proven["bound"], "_", color=style["color"], markersize=9)
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 30))
     ax.set_xlabel("time [ms]" if whole else "time [ns per crank angle]")
-    text = "largest error over the turn, relative to largest value [1]"
+    text = "largest error / largest value [1]"
     ax.set_ylabel(f"error of the {table['label'].iloc[0]} [{table['unit'].iloc[0]}]" if whole else text)
     ax.grid(visible=True, which="major", alpha=0.3)
     return ax

@@ -5,7 +5,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
-from kinetostatics.engines import bounds, programs
+from kinetostatics.engines import bounds, loops, programs
+from kinetostatics.engines.compiled import available
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.methods.enclosures import enclosure
@@ -121,14 +122,16 @@ def test_what_is_too_small_for_a_double_is_bounded_too():
 
 
 @every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")])
-def test_elementary_functions_of_numpy_keep_to_their_ulp(function, exact):
+def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(function, exact):
     flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
     random = np.random.default_rng(1)
     angles = np.concatenate(
         [random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)]
     )
-    own = getattr(np, function)(angles)
+    found = [getattr(np, function)(angles)]
+    if available() and function != "arctan":
+        found.append(loops.turn(angles[None])[function == "cos"][0])
     with flint.ctx.workprec(200):
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
-        error = [float(abs((flint.arb(float(v)) - t) / t)) for v, t in zip(own, truth, strict=True)]
+        error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
     assert max(error) <= bounds.ULP.get(function, bounds.ULP["atan"]) * UNIT

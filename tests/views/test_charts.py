@@ -24,7 +24,7 @@ def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_ea
     assert ks.plots.work_precision is charts.work_precision
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
     assert ax.get_xlabel() == "time [ns per crank angle]"
-    assert ax.get_ylabel() == "largest error over the turn, relative to largest value [1]"
+    assert ax.get_ylabel() == "largest error / largest value [1]"
     handles, names = ax.get_legend_handles_labels()
     assert names == [f"{method.name} ({method.setting})" if method.setting else method.name for method in FEW]
     for line, method in zip(handles, FEW, strict=True):
