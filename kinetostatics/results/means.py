@@ -72,7 +72,7 @@ class MeanErrors(NamedTuple):
     Attributes
     ----------
     rounding : float
-        Proven bound on what all rounding errors of the values and of their sum make.
+        What all rounding errors of the values and of their sum make at most: the mean of the values' proven bounds.
     quadrature : float
         About what the mean differs by from that of the function between the nodes.
     """
