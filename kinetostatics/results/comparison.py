@@ -15,7 +15,6 @@ from .means import mean_absolute_torque, mean_absolute_torque_errors
 from .rounding import without_rounding
 from .turn import SAME
 
-
 FAR = 2 * np.sin(np.pi / 8)
 """Distance on the unit circle, that of an eighth of a turn, from which an extremum is not the same one any more."""
 
