@@ -44,8 +44,8 @@ class Comparison:
         """Extrema of the balancing torque of the reference, and the matching ones of the balanced mechanism, N m.
 
         To each extremum of the reference belongs the balanced one of the same kind (maximum or minimum) nearest in
-        crank angle, if it is within an eighth of a turn; NaN if there is none. The two sides of a jump on a flank, as friction makes at dead centres, are
-        none of them.
+        crank angle, if it is within an eighth of a turn; NaN if there is none. The two sides of a jump on a flank, as
+        friction makes at dead centres, are none of them.
         """
         reference = _without_jumps(extremes(self.reference, "balancing_torque"))
         balanced = _without_jumps(extremes(self.balanced, "balancing_torque"))
