@@ -16,14 +16,18 @@ from support.every import every
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False)
 
 
+@pytest.fixture
+def flint():
+    return pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+
+
 def bounded(scene, quantity, angles=TURN):
     s = scene.solve(angles)
     return s, s.error_bound(quantity)
 
 
 @every("family", FAMILIES)
-def test_no_value_of_random_machines_is_off_by_more_than_its_bound(family):
-    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+def test_no_value_of_random_machines_is_off_by_more_than_its_bound(flint, family):
     made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)
     found = errors(made, ("balancing_torque", *made.reactions, "crank_angular_acceleration", "kinetic_energy"))
     assert found.values > 10
@@ -39,8 +43,7 @@ def test_no_value_of_random_machines_is_off_by_more_than_its_bound(family):
         ("toggle_press", "coining", 100),
     ],
 )
-def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(case, variant, most):
-    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, variant, most):
     scene = ks.load_case(case).variants[variant].scene
     s, bound = bounded(scene, "balancing_torque", TURN + 0.01)
     exact = enclosure(s, "balancing_torque").exact[0]
@@ -122,8 +125,7 @@ def test_what_is_too_small_for_a_double_is_bounded_too():
 
 
 @every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")])
-def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(function, exact):
-    flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(flint, function, exact):
     random = np.random.default_rng(1)
     angles = np.concatenate(
         [random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)]
