@@ -346,8 +346,8 @@ def seen(found):
         return found.speed.tobytes()
     if isinstance(found, ks.balancing.Balanced):
         return repr(found.counterweights)
-    if hasattr(found, "c") and hasattr(found, "x"):  # a spline of SciPy's, whatever else its versions keep
-        return [np.asarray(part).tobytes() for part in (found.c, found.x)]
+    if type(found).__module__.startswith("scipy"):  # a spline, whatever else its versions keep
+        return [np.asarray(getattr(found, part)).tobytes() for part in "ctx" if hasattr(found, part)]
     if hasattr(found, "__dict__") and not isinstance(found, type):
         return {name: seen(part) for name, part in vars(found).items() if name != "unit"}
     if isinstance(found, np.ndarray):
