@@ -15,9 +15,6 @@ from .means import mean_absolute_torque, mean_absolute_torque_errors
 from .rounding import without_rounding
 from .turn import SAME
 
-FAR = 2 * np.sin(np.pi / 8)
-"""Distance on the unit circle, that of an eighth of a turn, from which an extremum is not the same one any more."""
-
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
@@ -44,8 +41,8 @@ class Comparison:
         """Extrema of the balancing torque of the reference, and the matching ones of the balanced mechanism, N m.
 
         To each extremum of the reference belongs the balanced one of the same kind (maximum or minimum) nearest in
-        crank angle, if it is within an eighth of a turn; NaN if there is none. The two sides of a jump on a flank, as
-        friction makes at dead centres, are none of them.
+        crank angle; NaN if there is none. The two sides of a jump on a flank, as friction makes at dead centres, are
+        none of them.
         """
         reference = _without_jumps(extremes(self.reference, "balancing_torque"))
         balanced = _without_jumps(extremes(self.balanced, "balancing_torque"))
@@ -208,7 +205,7 @@ def _matched(reference, balanced):
     if not distance.size:
         return np.full(len(reference), np.nan)
     nearest = np.argmin(distance, axis=1)
-    return np.where(distance.min(axis=1) < FAR, balanced.value[nearest], np.nan)
+    return np.where(np.isfinite(distance.min(axis=1)), balanced.value[nearest], np.nan)
 
 
 def _without_jumps(found):
