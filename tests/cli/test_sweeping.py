@@ -16,7 +16,7 @@ def test_json_and_csv_hold_every_design_in_full(tmp_path, capsys):
     assert main([*SWEEP, "--json", "--plot", str(figure)]) == 0
     found = json.loads(capsys.readouterr().out)
     assert main([*SWEEP, "--csv"]) == 0
-    table = pd.read_csv(io.StringIO(capsys.readouterr().out))
+    table = pd.read_csv(io.StringIO(capsys.readouterr().out), float_precision="round_trip")
     assert found["files"] == [str(figure)]
     assert found["failed"] == 0
     assert found["designs"] == table.assign(failed="").to_dict("records")
