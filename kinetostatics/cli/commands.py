@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..numbers import checks, files
 from . import machine
-from .printed import print_table, require_writable, say, tell
+from .printed import of_variants, print_table, require_writable, say, tell
 
 EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
 """What is written of an explanation, by the ending of its file."""
@@ -63,15 +63,6 @@ def run(options):
     if options.csv:
         table = of_variants({name: solution.frame() for name, solution in solutions.items()})
         machine.give_csv(options, table)
-
-
-def of_variants(frames):
-    """Tables by variant as one, the variant in the first column."""
-    import pandas as pd
-
-    table = pd.concat([frame.assign(variant=name) for name, frame in frames.items()])
-    table.insert(0, "variant", table.pop("variant"))
-    return table
 
 
 def _extremes(solution):

@@ -149,3 +149,12 @@ def _drawn(columns):
     rows = [[heading for heading, _ in columns], rules, *zip(*(cells for _, cells in columns), strict=True)]
     alignment = ["left" if at == 0 or _of_words(column) else "right" for at, column in enumerate(columns)]
     return tabulate(rows, tablefmt="plain", disable_numparse=True, colalign=alignment)
+
+
+def of_variants(frames):
+    """Tables by variant as one, the variant in the first column."""
+    import pandas as pd
+
+    table = pd.concat([frame.assign(variant=name) for name, frame in frames.items()])
+    table.insert(0, "variant", table.pop("variant"))
+    return table
