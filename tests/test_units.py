@@ -5,7 +5,6 @@ import math
 import warnings
 
 import numpy as np
-import pint
 import pytest
 
 import kinetostatics as ks
@@ -13,8 +12,8 @@ from kinetostatics.machine.loads import Load
 from kinetostatics.numbers import checks
 from kinetostatics.numbers.checks import Checked
 from support.every import every
+from support.units import UNITS
 
-UNITS = pint.UnitRegistry()
 TURN = np.linspace(0.0, 6.0, 12)
 PUMP = ks.crank_slider(0.05, 0.2, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(1.0))
 SCENE = ks.Scene(PUMP, 100.0, loads=[ks.ProcessForce(-200.0), ks.Spring(1e3, 0.2)])

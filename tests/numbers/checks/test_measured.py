@@ -13,8 +13,8 @@ import kinetostatics as ks
 from kinetostatics.numbers.checks import DimensionError, is_quantity, plain
 from kinetostatics.numbers.units import to_si
 from support.every import every
+from support.units import UNITS
 
-UNITS = pint.UnitRegistry()
 DECIMALS = pint.UnitRegistry(non_int_type=Decimal)
 OWN = pint.UnitRegistry()
 OWN.define("span = 0.25 * meter")
