@@ -583,7 +583,7 @@ def test_a_table_read_from_a_file_is_for_loads_of_its_unit(tmp_path):
         ks.solve(PUMP, TURN, crank_speed=1.0, loads=ks.Force(torque, at="B"))
 
 
-@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
 def test_what_functions_of_the_motion_return_is_converted(engine):
     if engine == "compiled":
         pytest.importorskip("numba")

@@ -18,7 +18,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
-pytestmark = pytest.mark.slow_start
+pytestmark = pytest.mark.slow
 CASE, OTHER = "sawframe_2r63", "cam-cosine"
 USABLE = 10.0
 """Seconds in which the page must be ready on a machine that is busy with other tests; alone it takes under one."""

@@ -13,6 +13,8 @@ from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
 from kinetostatics.cli.commands import STARTERS
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def broken(tmp_path):

@@ -9,6 +9,8 @@ from kinetostatics.cli import main
 from support.designs import FRONT, STIFFER, saw_with
 from support.held import held
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def saw(tmp_path):
@@ -102,7 +104,6 @@ def test_tables_stand_beside_what_is_found_and_take_no_other_file_s_place(tmp_pa
     assert "searching" not in told
 
 
-@pytest.mark.slow_start
 @pytest.mark.parametrize(
     ("sent", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
 )

@@ -15,6 +15,8 @@ from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import machine, main
 from support.every import every
 
+pytestmark = pytest.mark.slow
+
 
 def test_json_of_run_holds_the_true_extremes_of_the_library(capsys):
     assert main(["run", "sawframe_2r63_friction", "--json", "--angles", "72"]) == 0

@@ -73,6 +73,7 @@ def test_tables_without_rows_are_their_headings(capsys):
     assert capsys.readouterr().out.split() == ["index", "a", "b", "-----", "-", "-"]
 
 
+@pytest.mark.slow
 @every("name", ["sawframe_2r63", "mower_drive", "in_line_twin", "yoke_pump", "chain_unit"])
 def test_every_table_of_a_shipped_case_fits_80_letters_in_plain_text(name, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "80")

@@ -6,7 +6,7 @@ import pytest
 
 from support import drawn_pages as pages
 
-pytestmark = pages.needed
+pytestmark = [pages.needed, pytest.mark.slow]
 gallery, pictures = pages.script("draw_gallery"), pages.script("pictures")
 SNIPPETS = gallery.snippets() if gallery else {}
 

@@ -92,6 +92,7 @@ def _pendulum(windows):
         return mp.pi / 2 - (2 * sigma + mp.pi)
 
 
+@pytest.mark.slow
 def test_without_loss_energy_is_kept():
     scene = ks.Scene(
         SAW, 1.0, loads=(ks.Gravity(), ks.Spring(2e4, 2.0), ks.PointSpring(300.0, 0.1, between=("A", (0.1, 0.9))))

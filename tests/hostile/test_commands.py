@@ -397,7 +397,7 @@ def test_streams_that_are_closed_end_no_command_with_a_traceback(saw, stream, mo
 COMMAND = [sys.executable, "-m", "kinetostatics"]
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 def test_a_full_disk_is_told_in_a_line(saw):
     with open("/dev/full", "w") as full:  # noqa: PTH123
@@ -407,7 +407,7 @@ def test_a_full_disk_is_told_in_a_line(saw):
     assert done.stderr == "kinetostatics: [Errno 28] No space left on device\n"
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("how", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
 )

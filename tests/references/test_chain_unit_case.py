@@ -10,6 +10,8 @@ from support.case_files import case_file, problems
 from support.case_files import four_bar_table as table
 from support.machines import assert_close
 
+pytestmark = pytest.mark.slow
+
 FIGURES = ("coupler_velocity", "coupler_acceleration", "rocker_velocity", "rocker_acceleration", "mechanism")
 CURVES = [("coupler", 1, "w_AB", -1), ("coupler", 2, "e_AB", -1), ("rocker", 1, "w_h", 1), ("rocker", 2, "e_h", 1)]
 """Link, order of the derivative, column of the table, and its sign in the crank's sense of turning, clockwise."""

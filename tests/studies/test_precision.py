@@ -18,6 +18,8 @@ from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from kinetostatics.views import charts
 from support.curves import FEW, torque_study
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
 KINDS = [

@@ -17,6 +17,8 @@ from kinetostatics.studies.methods import METHODS, Method
 from kinetostatics.views import charts
 from support.every import every
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
 NEWTON, KANE, PAPERS = "Newton iteration, global system", "SymPy Kane, lambdified", "papers' formulas"

@@ -5,7 +5,7 @@ import sys
 from contextlib import contextmanager
 
 HELD = """
-import sys, time
+import signal, sys, time
 from pkgutil import resolve_name
 from kinetostatics.cli import main
 
@@ -17,6 +17,7 @@ def held(*given, **options):
     print("held", flush=True)
     time.sleep(60)
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's background ignores
 setattr(owner, name, held)
 sys.exit(main(sys.argv[3:]))
 """

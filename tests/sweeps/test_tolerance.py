@@ -118,6 +118,7 @@ def test_designs_of_one_parameter_that_fail_end_the_study_too():
         tolerances(ram, OUTPUT, {"mass": "-1..1 kg"}, count=16)
 
 
+@pytest.mark.slow
 def test_workers_give_the_same_study():
     expected = tolerances(ram, OUTPUT, {"mass": SPREADS["mass"]}, count=16)
     found = tolerances(ram, OUTPUT, {"mass": SPREADS["mass"]}, count=16, workers=1)

@@ -10,6 +10,8 @@ from kinetostatics.design.demands import demands
 from kinetostatics.design.optimisation import true_excess
 from support.shipped import shipped
 
+pytestmark = pytest.mark.slow
+
 RATIO = "ratio mean_absolute balancing_torque"
 CASES = "sawframe_2r63_optimal", "mower_drive_optimal"
 SEARCHED = [

@@ -130,7 +130,7 @@ def test_few_digits_are_converted_in_double_precision(kind):
         ks.Link(UNITS.Quantity(np.ma.array([[1]], mask=[[True]], dtype=kind), "g"))
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_plain_numbers_import_no_pint():
     code = (
         "import sys, kinetostatics as ks; s = ks.solve(ks.crank_slider(0.1, 0.3, slider=ks.Link(1.0)), [0.1, 0.2], "

@@ -13,6 +13,8 @@ from kinetostatics.studies.methods.method import NotGivenError
 from support.four_bars import FourBar
 from support.machines import ANGLES, CLOSE, Machine, largest
 
+pytestmark = pytest.mark.slow
+
 METHODS = [*kane.METHODS, *papers.METHODS]
 COSINE_LAW = Machine("cosine law")
 CAM = COSINE_LAW.mechanism.groups[0].cam
