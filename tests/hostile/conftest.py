@@ -1,4 +1,4 @@
-"""Hostile input ends at once: within two seconds and a gigabyte, whatever is handed in."""
+"""Hostile input ends at once: within two seconds of computing and a gigabyte, whatever is handed in."""
 
 import resource
 import sys

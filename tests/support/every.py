@@ -11,6 +11,10 @@ import pytest
 
 SHORT = reprlib.Repr()
 SHORT.maxother = SHORT.maxstring = 60
+CLOCKS = {signal.ITIMER_PROF: signal.SIGPROF, signal.ITIMER_REAL: signal.SIGALRM}
+"""Time that this process computes, and time on the wall; the signal of each."""
+WAITING = 10
+"""How many times as long a test may wait as it may compute."""
 _allowed = 0.0
 
 
@@ -66,25 +70,34 @@ def _of_all(function, axes):
 
 @contextmanager
 def limited(seconds):
-    """Stops a test, or an input of it, once, after so many seconds: with a `TimeoutError`."""
+    """Stops a test, or an input of it, once, after so many seconds of this process: with a `TimeoutError`.
+
+    What other processes take of a busy machine does not count; one that only waits is stopped after ten times as long.
+    """
     global _allowed
 
     def late(*_):
         raise TimeoutError(f"took more than {seconds} s")
 
-    before, _allowed = signal.signal(signal.SIGALRM, late), seconds
-    _begin_clock()
+    before, _allowed = {number: signal.signal(number, late) for number in CLOCKS.values()}, seconds
+    _set_clocks(seconds)
     try:
         yield
     finally:
         _allowed = 0.0
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        _set_clocks(0.0)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _begin_clock():
     if _allowed:
-        signal.setitimer(signal.ITIMER_REAL, _allowed)
+        _set_clocks(_allowed)
+
+
+def _set_clocks(seconds):
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_REAL, WAITING * seconds)
 
 
 def _label(value):

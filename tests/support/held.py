@@ -15,7 +15,7 @@ function = getattr(owner, name)
 def held(*given, **options):
     function(*given, **options)
     print("held", flush=True)
-    time.sleep(60)
+    time.sleep(600)
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's background ignores
 setattr(owner, name, held)
