@@ -53,6 +53,7 @@ def test_kind_and_turning_joints_are_those_a_sweep_of_every_inversion_finds(kind
     assert set(found.turning_joints) == joints_that_turn(EXAMPLES[kind])
 
 
+@pytest.mark.slow
 @settings(reproducible, max_examples=60)
 @given(lengths=st.tuples(*4 * [number(0.1, 3.0)]))
 def test_turning_joints_of_random_four_bars_are_those_a_sweep_finds(lengths):

@@ -23,6 +23,7 @@ def pair():
     return running("plain"), running("cam-cosine")
 
 
+@pytest.mark.slow
 def test_compare_takes_running_and_its_solution_alike(pair):
     compared, of_solutions = ks.compare(*pair), ks.compare(*(run.solution for run in pair))
     assert compared.frame().equals(of_solutions.frame())

@@ -160,6 +160,7 @@ def test_a_machine_in_periodic_running_stays_there_over_time():
 BALANCED = shipped("sawframe_2r63").variants["cam-cosine"].scene
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("angle", "words"), [(2.3, "it does not start"), (math.pi / 2, "it starts and stops after")])
 def test_the_balanced_saw_does_not_start_against_its_springs(angle, words):
     with pytest.raises(ks.DriveError, match=words) as caught:
