@@ -2,9 +2,9 @@
 
 import argparse
 
-from .. import __version__
 from ..numbers import checks
 from ..numbers.units import to_si
+from ..version import __version__
 from . import commands
 from .printed import STDOUT
 
