@@ -9,12 +9,10 @@ from itertools import product
 
 import pytest
 
+WAITING = 15
+"""How much longer a test may take that waits, for others on the machine or for something that never comes."""
 SHORT = reprlib.Repr()
 SHORT.maxother = SHORT.maxstring = 60
-CLOCKS = {signal.ITIMER_PROF: signal.SIGPROF, signal.ITIMER_REAL: signal.SIGALRM}
-"""Time that this process computes, and time on the wall; the signal of each."""
-WAITING = 10
-"""How many times as long a test may wait as it may compute."""
 _allowed = 0.0
 
 
@@ -70,34 +68,30 @@ def _of_all(function, axes):
 
 @contextmanager
 def limited(seconds):
-    """Stops a test, or an input of it, once, after so many seconds of this process: with a `TimeoutError`.
+    """Stops a test, or an input of it, once, with a `TimeoutError`.
 
-    What other processes take of a busy machine does not count; one that only waits is stopped after ten times as long.
+    After so many seconds of this process at work, or as much longer as `WAITING` on a busy machine.
     """
     global _allowed
 
     def late(*_):
         raise TimeoutError(f"took more than {seconds} s")
 
-    before, _allowed = {number: signal.signal(number, late) for number in CLOCKS.values()}, seconds
-    _set_clocks(seconds)
+    before = {alarm: signal.signal(alarm, late) for alarm in (signal.SIGPROF, signal.SIGALRM)}
+    _allowed = seconds
+    _begin_clock()
     try:
         yield
     finally:
         _allowed = 0.0
-        _set_clocks(0.0)
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        _begin_clock()
+        for alarm, handler in before.items():
+            signal.signal(alarm, handler)
 
 
 def _begin_clock():
-    if _allowed:
-        _set_clocks(_allowed)
-
-
-def _set_clocks(seconds):
-    signal.setitimer(signal.ITIMER_PROF, seconds)
-    signal.setitimer(signal.ITIMER_REAL, WAITING * seconds)
+    signal.setitimer(signal.ITIMER_PROF, _allowed)
+    signal.setitimer(signal.ITIMER_REAL, WAITING * _allowed)
 
 
 def _label(value):
