@@ -76,6 +76,7 @@ def test_solve_under_jax_jit_equals_numpy(double, name):
     assert_agree(found, results(solve(SCENES[name], ANGLES)))
 
 
+@pytest.mark.slow
 def test_jax_in_single_precision_is_warned_of(jax):
     before = jax.config.jax_enable_x64
     jax.config.update("jax_enable_x64", False)

@@ -31,6 +31,7 @@ def test_the_table_has_a_row_for_each_coefficient_with_its_unit():
     assert table.loc["power residual", ["reference", "balanced"]].max() < 1e-12
 
 
+@pytest.mark.slow
 def test_a_peak_that_no_extremum_of_the_reference_matches_has_a_row():
     """A press strikes where it idles without an extremum; the ratio of its peaks would be in no row."""
     press = ks.crank_slider(0.08, 0.4, slider=ks.Link(90.0))

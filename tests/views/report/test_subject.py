@@ -17,6 +17,7 @@ def test_machines_of_a_case_stand_in_its_order_with_the_reference_first():
     assert found.title == shipped("mower_drive").title
 
 
+@pytest.mark.slow
 def test_one_variant_stands_beside_the_reference_and_the_reference_alone():
     assert list(subject("mower_drive", "full").machines) == ["unbalanced", "full"]
     assert list(subject("mower_drive", "unbalanced").machines) == ["unbalanced"]
