@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import QuantityError
+from ..machine.loads import TURN
 from ..mechanics.quantities import label_of, magnitude, unit_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -14,6 +15,9 @@ from .losses import lose
 from .means import mean_absolute_torque, mean_absolute_torque_errors
 from .rounding import without_rounding
 from .turn import SAME
+
+APART = TURN / 3
+"""Crank angle from which on extrema do not belong together, rad; those of a reversed torque are a quarter turn apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,9 +44,9 @@ class Comparison:
     def torque_extremes(self):
         """Extrema of the balancing torque of the reference, and the matching ones of the balanced mechanism, N m.
 
-        To each extremum of the reference belongs the balanced one of the same kind (maximum or minimum) nearest in
-        crank angle; NaN if there is none. The two sides of a jump on a flank, as friction makes at dead centres, are
-        none of them.
+        To each extremum of the reference belongs one of the balanced mechanism of the same kind (maximum or minimum),
+        each to one at most, so that they lie as near in crank angle as they can; NaN where none is left within a third
+        of a turn. The two sides of a jump on a flank, as friction makes at dead centres, are none of them.
         """
         reference = _without_jumps(extremes(self.reference, "balancing_torque"))
         balanced = _without_jumps(extremes(self.balanced, "balancing_torque"))
@@ -141,10 +145,13 @@ class Comparison:
         return [float(without_rounding(solution, name, [value])[0]) for solution, value in both]
 
     def _hidden_peak(self, *shown):
-        """A row of the largest torques, where one of them is none of the extrema shown."""
+        """A row of the largest torques, where one of them is none of the extrema shown beside each other."""
         both = self.reference, self.balanced
+        paired = np.isfinite(shown).all(axis=0)
         peaks = [abs(extremes(solution, "balancing_torque").largest) for solution in both]
-        if any(not np.isclose(np.abs(some), peak, rtol=1e-9).any() for some, peak in zip(shown, peaks, strict=True)):
+        if any(
+            not np.isclose(np.abs(some[paired]), peak, rtol=1e-9).any() for some, peak in zip(shown, peaks, strict=True)
+        ):
             peaks = self._without_rounding("balancing_torque", peaks)
             yield "largest |balancing torque|", "N m", *peaks, _ratio(*peaks)
 
@@ -199,13 +206,21 @@ def _solution(given):
 
 
 def _matched(reference, balanced):
-    distance = np.abs(np.exp(1j * reference.angle)[:, None] - np.exp(1j * balanced.angle))
-    distance = distance + SAME * (_side(reference)[:, None] != _side(balanced))
-    distance = np.where(reference.maximum[:, None] == balanced.maximum, distance, np.inf)
-    if not distance.size:
-        return np.full(len(reference), np.nan)
-    nearest = np.argmin(distance, axis=1)
-    return np.where(np.isfinite(distance.min(axis=1)), balanced.value[nearest], np.nan)
+    """Value of the balanced extremum that belongs to each of the reference, NaN where there is none."""
+    from scipy.optimize import linear_sum_assignment
+
+    period, own = reference.solution.period, balanced.solution.period
+    times = max(1, round(period / own))
+    angle = np.ravel(balanced.angle + own * np.arange(times)[:, None])
+    value, maximum, side = (np.tile(part, times) for part in (balanced.value, balanced.maximum, _side(balanced)))
+    apart = np.abs((reference.angle[:, None] - angle + period / 2) % period - period / 2)
+    apart = apart + SAME * (_side(reference)[:, None] != side)
+    apart = np.where(reference.maximum[:, None] == maximum, np.minimum(apart, APART), APART)
+    rows, columns = linear_sum_assignment(apart)
+    near = apart[rows, columns] < APART
+    found = np.full(len(reference), np.nan)
+    found[rows[near]] = value[columns[near]]
+    return found
 
 
 def _without_jumps(found):
