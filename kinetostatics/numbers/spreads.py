@@ -1,7 +1,7 @@
 """Spreads as texts say them: "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m".
 
-Or quantities of pint: a grid's values, ``(low, high)``, ``("normal", mean, deviation)``, ``("triangular", low, likeliest,
-high)``.
+Or quantities of pint: the values of a grid; ``(low, high)``, ``("normal", mean, deviation)`` and ``("triangular", low,
+likeliest, high)``.
 """
 
 import re

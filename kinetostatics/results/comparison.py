@@ -17,7 +17,7 @@ from .rounding import without_rounding
 from .turn import SAME
 
 APART = TURN / 3
-"""Crank angle from which on extrema do not belong together, rad; those of a reversed torque are a quarter turn apart."""
+"""Crank angle from which on extrema are strangers, rad; those of a reversed torque are a quarter of a turn apart."""
 
 
 @dataclass(frozen=True, eq=False)
