@@ -6,10 +6,11 @@ import numpy as np
 
 from ...errors import DriveError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import label_of, of_scene, unit_of
+from ...numbers.shown import DIGITS, at_most
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
 from .tables import Table, digits_of, of_frame, times, with_published
-from .words import DIGITS, angle, at_most, number, pretty
+from .words import angle, number, pretty
 
 FIGURES = 15.95
 """Digits of a double number."""

@@ -7,7 +7,8 @@ import numpy as np
 
 from ...errors import CaseError
 from ...numbers import checks
-from .words import DIGITS, angle, number, pretty
+from ...numbers.shown import DIGITS
+from .words import angle, number, pretty
 
 DIGITS_OF = {"ratio": 4, "share [%]": 4, "power residual": 2}
 """Digits of what no reader takes so exactly, by column or row."""
