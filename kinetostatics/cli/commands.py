@@ -71,8 +71,8 @@ def _extremes(solution):
     from ..results.tables import SHOWN, extremes_by_name
 
     found = {
-        name: {"label": quantity.label, "unit": quantity.unit, **dict(zip(SHOWN, ends, strict=True))}
-        for name, (quantity, ends) in extremes_by_name(solution).items()
+        name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
+        for name, row in extremes_by_name(solution).items()
     }
     told = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual, "extremes": found}
     if lose(solution):
@@ -83,16 +83,17 @@ def _extremes(solution):
 
 
 def _print_extremes(case, solutions, options):
-    from ..mechanics.quantities import label_of
     from ..results.losses import lose
-    from ..results.tables import extremes_frame
+    from ..results.tables import extremes_by_name, frames
 
     say(case.title)
     for name, solution in solutions.items():
         print(f"\n{name}: {solution.mechanism.name}\n")
-        table = extremes_frame(solution).drop(index=label_of(solution, CHECKED))
+        found = extremes_by_name(solution)
+        del found[CHECKED]
+        table, bounds = frames(found)
         table.columns = [column.removeprefix("smallest ").removeprefix("largest ") for column in table.columns]
-        print_table(table)
+        print_table(table, bounds)
         say(
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"

@@ -85,6 +85,6 @@ def digits_of(row, column=""):
     return DIGITS_OF.get(row, DIGITS_OF.get(column, DIGITS))
 
 
-def times(ratio):
+def times(ratio, bound=0.0):
     """How many times, in words; "" for NaN."""
-    return "" if np.isnan(ratio) else f"{number(ratio, 4)} ×"
+    return "" if np.isnan(ratio) else f"{number(ratio, 4, bound)} ×"
