@@ -38,6 +38,14 @@ def parser():
     run = _command(group, "run", commands.run, "extremes of every force, with the power check")
     run.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
     run.add_argument("--angles", type=_angles, default=720, metavar="N", help="crank angles over the turn (720)")
+    run.add_argument(
+        "--uncertain",
+        action="append",
+        type=_text,
+        metavar="PATH=SIZE",
+        help='also how sure the largest values are: standard uncertainty of a number, "crank_length=0.01 mm", or '
+        '"tolerances" for those of the case file',
+    )
     _for_machines(run, "all results, a row for each crank angle")
 
     compare = _command(group, "compare", commands.compare, "dynamic coefficients against the reference variant")
