@@ -93,3 +93,21 @@ def test_a_load_of_two_turns_is_compared_turn_by_turn():
     assert np.isfinite(matched).all()
     assert (found.torque_extremum_ratios > 0.5).all()
     assert np.isfinite(ks.compare(plain, firing).torque_extremum_ratios).all()
+
+
+def test_bounds_stand_in_the_rows_and_columns_of_the_numbers():
+    case = ks.load_case("toggle_press")
+    found = case.compare("coining", "idle")
+    values, bounds = found.frame(), found.error_bounds()
+    assert (values.index.equals(bounds.index), list(values)) == (True, list(bounds))
+    for row, name in (("largest reaction O", "O"), ("largest shaking moment", "shaking_moment")):
+        for column, solution in (("coining", found.reference), ("idle", found.balanced)):
+            extremes = ks.extremes(solution, name)
+            wanted = extremes.error_bound[abs(extremes.value).argmax()]
+            assert bounds.loc[row, column] == pytest.approx(wanted, rel=1e-12)
+    row, errors = values.loc["largest reaction O"], bounds.loc["largest reaction O"]
+    relative = sum(errors[name] / row[name] for name in ("coining", "idle"))
+    assert errors["ratio"] == pytest.approx(relative * row["ratio"], rel=1e-12)
+    assert bounds.loc["torque extremum 1", "coining"] < 1e-9  # of its own side of the jump
+    assert np.isnan(bounds.loc["torque extremum 1", "idle"])
+    assert np.isnan(bounds.loc["mean |balancing torque|", "coining"])
