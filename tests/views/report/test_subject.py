@@ -51,7 +51,9 @@ def test_scenes_have_their_labels_and_units():
     assert found.machines["heavy"].given["slider.mass"] == (80.0, "kg")
     assert found.files == []
     assert found.text == ""
-    assert found.comparison(found.machines["heavy"]).loc["largest reaction B", "ratio"] < 1.0
+    table, bounds = found.comparison(found.machines["heavy"])
+    assert table.loc["largest reaction B", "ratio"] < 1.0
+    assert 0.0 < bounds.loc["largest reaction B", "ratio"] < 1e-13
 
 
 def test_files_are_told_with_what_tells_their_content():
