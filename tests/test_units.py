@@ -5,6 +5,7 @@ import math
 import warnings
 
 import numpy as np
+import pint
 import pytest
 
 import kinetostatics as ks
