@@ -10,6 +10,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     bars        the links that keep two joints at a distance
     guides      the guide of each link that slides along one, without turning
     slots       the links in which a joint slides, each a `Slot`
+    led         the joints that a cam leads, each a `Led`
     curves      the joints that run on a curve, with what drawings call it
     rollers     radii of rollers, by the joints that are their centres
     outlines    curves fixed to links, as cams are, points (2, K) by link, in its axes
@@ -117,17 +118,6 @@ class Bar(NamedTuple):
     end: str
     link: str
     length: Any
-
-
-class Slot(NamedTuple):
-    """A link along which `joint` slides in a straight line, in a slot; `rod` is the link that slides in it as a piston.
-
-    Without a rod what slides is a block at the joint.
-    """
-
-    link: str
-    joint: str
-    rod: str = ""
 
 
 class Output(NamedTuple):
@@ -246,6 +236,11 @@ class Group:
     @property
     def slots(self):
         """Links in which a joint slides, each a `Slot`."""
+        return ()
+
+    @property
+    def led(self):
+        """Joints that a cam leads, each a `Led`."""
         return ()
 
     @property

@@ -1,40 +1,42 @@
-"""Equations of each kind of mechanism in symbols, as SymPy's Kane method takes them (see `kane`)."""
+"""Equations of a mechanism in symbols by SymPy's Kane method, made of what its groups declare (see `kane`).
 
+The crank angle is the only coordinate. Angles of links and travels of sliders are functions of it: closed forms where
+the closed loop of a group is met by one angle, one travel, or two angles, rates and accelerations from its derivatives.
+"""
+
+from itertools import combinations
 from typing import Any
 
 import sympy as sp
 from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBody, dynamicsymbols, inertia
 
-PHI, SPEED = dynamicsymbols("phi speed")
-ANGLE, OMEGA, ALPHA, TORQUE = sp.symbols("crank_angle crank_speed crank_acceleration balancing_torque")
-N, CRANK = ReferenceFrame("N"), ReferenceFrame("crank")
-CRANK.orient_axis(N, N.z, PHI)
-CRANK.set_ang_vel(N, SPEED * N.z)
-ORIGIN = 0 * N.x
-LINK = "mass", "along", "across", "inertia"
+from ...machine.group import FRAME
+from .kane_cams import CURVES
+from .kane_symbols import ALPHA, ANGLE, N, OMEGA, PHI, SPEED, TORQUE, functions, left, planar, rate, slope
+from .method import NotGivenError
+from .structures import LINK
+
+LARGEST = 3
+"""Equations, at most, that are solved together."""
 
 
-def planar(x, y):
-    return x * N.x + y * N.y
+class Body:
+    """A link: reference joint, direction, its turning by the crank angle, and auxiliary speeds of both.
 
+    `ways` are the directions along which it is parted from its neighbours.
+    """
 
-def left(vector):
-    """Vector after a quarter turn counter-clockwise."""
-    return N.z ^ vector
+    def __init__(self, joint, frame, axis, turning, ways):
+        self.joint, self.frame, self.axis, self.turning, self.ways = joint, frame, axis, turning, ways
+        self.shift, self.spin = 0 * N.x, 0
 
-
-def functions(*names):
-    """Unknown functions of the crank angle."""
-    return [sp.Function(name)(PHI) for name in names]
-
-
-def slope(expression, order=1):
-    """Derivative by the crank angle."""
-    return sp.diff(expression, PHI, order) if order else expression
+    def at(self, position):
+        """Auxiliary velocity of its point at a position."""
+        return self.shift + self.spin * left(position - self.joint)
 
 
 class Equations:
-    """Equations of one kind of mechanism, begun with its crank.
+    """Equations of one structure of mechanism.
 
     Attributes
     ----------
@@ -44,201 +46,393 @@ class Equations:
         Results by name, in components.
     symbols : dict of expression to Symbol
         What stands for time and crank angle, functions of them and their derivatives in steps and results.
-    unknowns : dict of speed to Symbol
-        Unknown that the equation of each speed gives.
-    alone : set of speeds
-        Those in whose equations the other unknowns do no work, though SymPy does not see it.
+    sides : dict of str to link
+        Signs of roots, which belong to the assembly, and the links whose angles they choose. Of the two results of that
+        name and the link's direction, a sin(theta) - b cos(theta) has the sign.
     """
 
-    def __init__(self):
+    def __init__(self, structure):
+        self.structure = structure
         self.steps, self.motions = {}, {}
+        self.sides: dict[str, str] = {}
         self.forces: dict[str, tuple[Any, ...]] = {"balancing_torque": (TORQUE,)}
         self.symbols = {SPEED.diff(): ALPHA, SPEED: OMEGA, PHI.diff(): OMEGA, PHI: ANGLE}
-        self.unknowns, self.alone = {SPEED: TORQUE}, {SPEED}
-        self.bodies, self.loads = [], []
-        self.shift, reaction = self.parting("O")
-        crank = self.link("crank", CRANK.x, ORIGIN, 1, self.shift)
-        self.push(ORIGIN, self.shift, reaction)
-        self.loads.append((crank, TORQUE * N.z))
+        self.places: dict[str, Any] = {}
+        self.bodies: dict[str, Body] = {FRAME: Body(0 * N.x, N, N.x, 0, (N.x, N.y))}
+        self.owners = dict(item for part in structure.parts for item in part.joints)
+        self.bars = {(end, link): link for part in structure.parts for _, end, link in part.bars}
+        self.slid = {item.link: item for part in structure.parts for item in part.slid}
+        self.led = {cam.link: cam for part in structure.parts for cam in part.cams}
+        self.angles: dict[str, Any] = {}
+        self.rays: dict[Any, Any] = {}
+        self.travels: dict[str, Any] = {}
+        for part in structure.parts:
+            self._assemble(part)
+        self._report()
+        self._apply()
 
     @property
     def results(self):
         return self.motions | self.forces | {"balancing_torque_by_power": (TORQUE,)}
 
-    def define(self, function, value, rate=None):
-        """Give a function of the crank angle by its value and, if that is shorter, its derivative."""
-        first = slope(value) if rate is None else rate
-        for order, expression in enumerate((value, first, slope(first))):
-            self.symbols[slope(function, order)] = symbol = sp.Symbol(f"{function.func}_{order}")
-            self.steps[symbol] = expression
+    def number(self, name):
+        """Symbol of a length or angle; those that are zero are left out."""
+        return sp.S.Zero if name in self.structure.zeros else sp.Symbol(name)
 
-    def report(self, function, rate, acceleration):
-        """Make results of a function's derivatives by time."""
-        self.motions[rate] = (OMEGA * slope(function),)
-        self.motions[acceleration] = (OMEGA**2 * slope(function, 2) + ALPHA * slope(function),)
+    # Where everything is
 
-    def auxiliary(self, unknown, alone=False):
-        """Auxiliary speed, and the unknown that its equation gives."""
-        speed, symbol = dynamicsymbols(f"speed_{unknown}"), sp.Symbol(unknown)
-        self.unknowns[speed] = symbol
-        self.alone |= {speed} if alone else set()
-        return speed, symbol
+    def _assemble(self, part):
+        for link, _ in part.links:
+            self._point(link)
+        for joint, _ in part.joints:
+            self._place(joint)
+        for link, joint in part.links:
+            self.bodies[link].joint = self._place(joint)
+        loops = [(*self._gaps(item), item.joint) for item in part.pinned]
+        loops = [(gap, joint) for one, other, joint in loops if (gap := one - other) != 0]
+        lines = [gap for item in part.slid if (gap := self._off(item)) is not None]
+        self._close(part, loops, lines)
 
-    def parting(self, joint):
-        """Auxiliary velocity of one link alone, and the reaction on it at its joint."""
-        (to_x, x), (to_y, y) = self.auxiliary(f"{joint}_x"), self.auxiliary(f"{joint}_y")
-        self.forces[joint] = (x, y)
-        return planar(to_x, to_y), planar(x, y)
+    def _point(self, link):
+        """Direction of a link: of the crank, of what it slides along, or unknown."""
+        if link in self.bodies:
+            return self.bodies[link]
+        ways: Any = (N.x, N.y)
+        if link == "crank":
+            frame, turning = self._frame(link, PHI), sp.S.One
+        elif link in self.slid:
+            frame, turning = self._slot(self.slid[link])
+            if self.slid[link].other == FRAME:
+                ways = frame.x, frame.y
+        else:
+            (theta,) = functions(f"theta_{link}")
+            self.angles[link] = theta
+            frame, turning = self._frame(link, theta), slope(theta)
+            self.rays[theta] = frame.x
+        axis = -frame.x if link in self.slid and self.slid[link].rod else frame.x
+        self.bodies[link] = Body(None, frame, axis, turning, ways)
+        return self.bodies[link]
 
-    def push(self, position, shift, force):
-        """Force at a point that moves as its position does and, besides, with an auxiliary velocity."""
-        point = Point("P")
-        point.set_vel(N, position.dt(N).subs(PHI.diff(), SPEED) + shift)
-        self.loads.append((point, force))
-        return point
-
-    def join(self, position, force, on, by):
-        """Force on the link with one auxiliary velocity at a joint, and back on that with another."""
-        self.push(position, on, force)
-        self.push(position, by, -force)
-
-    def link(self, name, axis, joint, ratio, shift, spin=0):
-        """Body with its weight; its reference joint has the auxiliary velocity `shift`, itself the rate `spin`."""
+    def _frame(self, name, angle, base=N, turning=None):
         frame = ReferenceFrame(name)
-        frame.set_ang_vel(N, (ratio * SPEED + spin) * N.z)
-        mass, along, across, turning = sp.symbols([f"{name}_{part}" for part in LINK])
-        arm = along * axis + across * left(axis)
-        weight = mass * planar(*sp.symbols("gravity_x gravity_y"))
-        centre = self.push(joint + arm, shift + spin * left(arm), weight)
-        self.bodies.append(RigidBody(name, centre, frame, mass, (inertia(N, 0, 0, turning), centre)))
+        frame.orient_axis(base, base.z, angle)
+        frame.set_ang_vel(base, (slope(angle) if turning is None else turning) * PHI.diff() * N.z)
         return frame
 
+    def _slot(self, item):
+        """Frame along which a link slides, and its turning."""
+        if item.other == FRAME:
+            return self._frame(f"{item.link} guide", sp.Symbol(f"{item.link}_guide_angle"), turning=0), sp.S.Zero
+        body = self._point(item.other)
+        angle = self.number(f"{item.other}_{item.joint}_angle")
+        return (self._frame(f"{item.link} slot", angle, body.frame, 0) if angle else body.frame), body.turning
+
+    def _foot(self, item):
+        """Point of the line of a pair that is nearest to the reference joint of what is slid on, or to O."""
+        frame = self.bodies[item.link].frame
+        if item.other == FRAME:
+            return sp.Symbol(f"{item.link}_guide_offset") * frame.y
+        return self.bodies[item.other].joint + self.number(f"{item.other}_{item.joint}_offset") * frame.y
+
+    def _place(self, joint):
+        """Position of a joint."""
+        if joint not in self.places:
+            link = self.owners[joint]
+            body = self.bodies[link]
+            if body.joint is not None:
+                along, across = (self.number(f"{joint}_{part}") for part in ("along", "across"))
+                self.places[joint] = body.joint + along * body.axis + across * left(body.axis)
+            elif link in self.slid and self.slid[link].joint == joint:
+                (travel,) = functions(f"travel_{link}")
+                self.travels[link] = travel
+                self.places[joint] = self._foot(self.slid[link]) + travel * body.frame.x
+            else:
+                reference = next(name for part in self.structure.parts for of, name in part.links if of == link)
+                if reference == joint:
+                    raise NotGivenError(f"nothing that is declared says where joint {joint} of the {link} is")
+                body.joint = self._place(reference)
+                return self._place(joint)
+        return self.places[joint]
+
+    def _on(self, link, joint):
+        """Position of a joint as that of a point of a link."""
+        if self.owners[joint] == link or link == FRAME or (joint, link) not in self.bars:
+            return self.places[joint]
+        body = self.bodies[link]
+        return body.joint + self.number(f"{link}_length") * body.axis
+
+    def _gaps(self, item):
+        return self._on(item.link, item.joint), self._on(item.other, item.joint)
+
+    def _off(self, item):
+        """How far a joint is off the line that it slides along; None where it was placed on that."""
+        if item.link in self.travels:
+            return None
+        body = self.bodies[item.link]
+        return (self.places[item.joint] - self._foot(item)) & body.frame.y
+
+    # Loops
+
+    def _close(self, part, loops, lines):
+        """Closed forms of the unknown functions of a group from its loops, and their derivatives."""
+        links = [link for link, _ in part.links]
+        for link in links:
+            if link in self.led:
+                self._lead(self.led[link])
+        angles = [self.angles[link] for link in links if link in self.angles and link not in self.led]
+        travels = [link for link in links if link in self.travels and link not in self.led]
+        shape = len(angles), len(travels), len(loops), len(lines)
+        if shape == (0, 0, 0, 0):
+            return
+        if shape == (1, 1, 1, 0):
+            ((gap, _),), (link,) = loops, travels
+            frame = self.bodies[link].frame
+            self._turn(angles[0], gap & frame.y)
+            self._travel(link, gap & frame.x)
+        elif shape == (2, 0, 1, 0):
+            self._triangle(*angles, loops[0][0])
+        elif shape == (1, 0, 0, 1):
+            self._turn(angles[0], lines[0])
+        elif shape == (0, 1, 0, 1):
+            self._travel(travels[0], lines[0])
+        else:
+            raise NotGivenError(f"the loops of {part.kind} have no closed form that is known")
+
+    def _lead(self, cam):
+        """Function that a cam gives."""
+        curve, prefix = CURVES[cam.curve], f"{cam.link}_cam"
+        if cam.link in self.travels:
+            curve(self, self.travels[cam.link], prefix, cam.terms)
+            return
+        theta, (law,) = self.angles[cam.link], functions(f"law_{cam.link}")
+        curve(self, law, prefix, cam.terms)
+        start, sense = sp.symbols([f"{cam.link}_from", f"{cam.link}_sense"])
+        self._turned(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))
+        self.derivatives(theta, sense * slope(law), sense * slope(law, 2))
+
+    def _turned(self, theta, cosine, sine):
+        for function, value in ((sp.cos, cosine), (sp.sin, sine)):
+            self.symbols[function(theta)] = symbol = sp.Symbol(f"{function}_{theta.func}")
+            self.steps[symbol] = value
+
+    def _turn(self, theta, gap):
+        """Angle that meets an equation linear in its cosine and sine."""
+        self._meet(theta, gap)
+        for order in (1, 2):
+            self._derivative(theta, slope(gap, order), order)
+
+    def _meet(self, theta, gap):
+        a, b, rest = linear(gap, sp.cos(theta), sp.sin(theta))
+        square = a**2 + b**2
+        square = square if square.has(PHI) else sp.trigsimp(square)
+        side = sp.Symbol(f"side_{theta.func}")
+        root = side * sp.sqrt(square - rest**2)
+        self.sides[str(side)] = next(link for link, angle in self.angles.items() if angle == theta)
+        self.motions[str(side)] = (a, b)
+        self._turned(theta, (-rest * a - root * b) / square, (-rest * b + root * a) / square)
+
+    def _triangle(self, theta, psi, gap):
+        """Two angles that close a triangle: gap = d + p e(theta) + q e(psi) = 0."""
+        turned = [turn(angle) for angle in (theta, psi) for turn in (sp.cos, sp.sin)]
+        (p, aside, q, askew, x), (*_, y) = (linear(gap & way, *turned) for way in (N.x, N.y))
+        if aside != 0 or askew != 0:
+            raise NotGivenError("links of a loop of two angles must have their joints on their lines")
+        self._meet(theta, x * sp.cos(theta) + y * sp.sin(theta) + (x**2 + y**2 + p**2 - q**2) / (2 * p))
+        self._turned(psi, -(x + p * sp.cos(theta)) / q, -(y + p * sp.sin(theta)) / q)
+        moving = gap
+        for order in (1, 2):
+            moving = rate(moving)
+            for angle, other in ((theta, psi), (psi, theta)):
+                self._derivative(angle, moving & self.rays[other], order)
+
+    def _travel(self, link, gap):
+        """Travel that meets a linear equation."""
+        travel = self.travels[link]
+        steepness, rest = linear(gap, travel)
+        self.symbols[travel] = symbol = sp.Symbol(f"{travel.func}_0")
+        self.steps[symbol] = -rest / steepness
+        for order in (1, 2):
+            self._derivative(travel, slope(gap, order), order)
+
+    def _derivative(self, function, equation, order):
+        """Derivative of a function from an equation's derivative, which is linear in it."""
+        steepness, rest = linear(equation, slope(function, order))
+        self._name(function, order, -rest / steepness)
+
+    def _name(self, function, order, value):
+        self.symbols[slope(function, order)] = symbol = sp.Symbol(f"{function.func}_{order}")
+        self.steps[symbol] = value
+
+    def derivatives(self, function, first, second):
+        """Give both derivatives of a function."""
+        self._name(function, 1, first)
+        self._name(function, 2, second)
+
+    def define(self, function, value, first=None):
+        """Give a function of the crank angle by its value and, if that is shorter, its derivative."""
+        self.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
+        self.steps[symbol] = value
+        first = slope(value) if first is None else first
+        self.derivatives(function, first, slope(first))
+
+    # Results of motion
+
+    def _report(self):
+        for link, body in self.bodies.items():
+            if link == FRAME:
+                continue
+            turning = body.turning
+            self.motions[f"{link}_rate"] = (OMEGA * turning,)
+            self.motions[f"{link}_angular_acceleration"] = (OMEGA**2 * slope(turning) + ALPHA * turning,)
+            moving = OMEGA * rate(body.joint)
+            parts = [vector & way for vector in (body.joint, body.axis, moving) for way in (N.x, N.y)]
+            self.motions[f"{link} in motion"] = (*parts, OMEGA * turning)
+        for link, item in self.slid.items():
+            if item.other == FRAME:
+                travel = self.travels[link]
+                self.motions[f"{link}_position"] = (travel,)
+                self.motions[f"{link}_velocity"] = (OMEGA * slope(travel),)
+                self.motions[f"{link}_acceleration"] = (OMEGA**2 * slope(travel, 2) + ALPHA * slope(travel),)
+
+    # Forces
+
+    def _apply(self):
+        """Bodies with auxiliary speeds, and all that acts on them."""
+        self.speeds: list[Any] = []
+        self.found: set[Any] = set()
+        self.rigid: list[Any] = []
+        self.frames: dict[str, Any] = {}
+        self.loads: list[Any] = []
+        for link, body in self.bodies.items():
+            if link != FRAME:
+                self._part(link, body)
+        self.loads.append((self.frames["crank"], TORQUE * N.z))
+        for part in self.structure.parts:
+            for pinned in part.pinned:
+                self._pin(pinned)
+            for slid in part.slid:
+                self._slide(slid)
+            for cam in part.cams:
+                self._press(cam)
+
+    def _part(self, link, body):
+        """Give a link speeds of its own, its weight and what is applied to it."""
+        own = dynamicsymbols([f"{link}_{name}" for name in ("to_x", "to_y", "spin")])
+        body.shift = own[0] * body.ways[0] + own[1] * body.ways[1]
+        if link == "crank":
+            own.pop()
+        else:
+            body.spin = own[2]
+        self.speeds += own
+        mass, along, across, turning = sp.symbols([f"{link}_{part}" for part in LINK])
+        position = body.joint + along * body.axis + across * left(body.axis)
+        centre, frame = Point(link), ReferenceFrame(link)
+        centre.set_vel(N, position.dt(N).subs(PHI.diff(), SPEED) + body.at(position))
+        frame.set_ang_vel(N, (body.turning * SPEED + body.spin) * N.z)
+        self.frames[link] = frame
+        self.rigid.append(RigidBody(link, centre, frame, mass, (inertia(N, 0, 0, turning), centre)))
+        self.loads.append((centre, mass * planar(*sp.symbols("gravity_x gravity_y"))))
+        x, y, moment = sp.symbols([f"{link}_load_{part}" for part in ("x", "y", "moment")])
+        force = planar(x, y)
+        if link in self.slid and self.slid[link].other == FRAME:
+            push, stiffness, free, cubic = sp.symbols([f"{link}_{name}" for name in ("push", "stiffness", "free", "cubic")])
+            deflection = self.travels[link] - free
+            force += (push - stiffness * deflection - cubic * deflection**3) * body.frame.x
+        reference = Point(f"{link} reference")
+        reference.set_vel(N, body.joint.dt(N).subs(PHI.diff(), SPEED) + body.shift)
+        self.loads += [(reference, force), (frame, moment * N.z)]
+
+    def _unknown(self, name):
+        symbol = sp.Symbol(name)
+        self.found.add(symbol)
+        return symbol
+
+    def _push(self, link, position, force, couple=0):
+        """Force and couple of a joint: they move auxiliary speeds alone, for joints take no power."""
+        if link != FRAME:
+            point, frame = Point("P"), ReferenceFrame("F")
+            point.set_vel(N, self.bodies[link].at(position))
+            self.loads.append((point, force))
+            if couple != 0:
+                frame.set_ang_vel(N, self.bodies[link].spin * N.z)
+                self.loads.append((frame, couple * N.z))
+
+    def _act(self, link, other, position, force, couple=0):
+        self._push(link, position, force, couple)
+        self._push(other, position, -force, -couple)
+
+    def _pin(self, item):
+        guided = [self.bodies[link].ways for link in (item.link, item.other) if self.bodies[link].ways[0] != N.x]
+        ways = guided[0] if guided else (N.x, N.y)
+        x, y = self._unknown(f"{item.name}_x"), self._unknown(f"{item.name}_y")
+        force = x * ways[0] + y * ways[1]
+        self.forces[item.name] = (force & N.x, force & N.y)
+        self._push(item.link, self._on(item.link, item.joint), force)
+        self._push(item.other, self._on(item.other, item.joint), -force)
+
+    def _slide(self, item):
+        force, couple = self._unknown(item.force), self._unknown(item.couple)
+        across = self.bodies[item.link].frame.y
+        self.forces |= {item.force: (force,), item.couple: (couple,)}
+        if item.vector:
+            self.forces[item.vector] = (force * across & N.x, force * across & N.y)
+        self._act(item.link, item.other, self.places[item.about], force * across, couple)
+
+    def _press(self, cam):
+        """Contact of a cam, by its way along the curve as seen from what the curve is fixed to."""
+        body, base, force = self.bodies[cam.link], self.bodies[cam.body], self._unknown(cam.force)
+        joint = self.places[cam.joint]
+        passing = rate(joint) - base.turning * left(joint - base.joint)
+        self.forces[cam.force] = (force,)
+        if cam.flat:
+            at = joint - (passing & body.axis) / (base.turning - body.turning) * left(body.axis)
+            self._act(cam.link, cam.body, at, force * body.axis)
+            return
+        x, y = passing & body.frame.x, passing & body.frame.y
+        normal = left(x * body.frame.x + y * body.frame.y) / sp.sqrt(x**2 + y**2)
+        self._act(cam.link, cam.body, joint, force * normal)
+
     def solved(self):
-        """The same with the unknowns among the steps."""
-        speeds = list(self.unknowns)
-        method = KanesMethod(N, [PHI], speeds[:1], [PHI.diff() - SPEED], u_auxiliary=speeds[1:])
-        active, inertial = method.kanes_equations(self.bodies, self.loads)
-        for (speed, unknown), equation in zip(self.unknowns.items(), active + inertial, strict=True):
-            absent = self.unknowns.values() if speed in self.alone else [unknown]
-            self.steps[unknown] = -equation.xreplace(dict.fromkeys(absent, sp.S.Zero)) / equation.diff(unknown)
+        """The same with the unknown forces among the steps."""
+        method = KanesMethod(N, [PHI], [SPEED], [PHI.diff() - SPEED], u_auxiliary=self.speeds)
+        active, inertial = method.kanes_equations(self.rigid, self.loads)
+        power, *equations = active + inertial
+        self._solve([power], [TORQUE])
+        self._eliminate(equations)
         return self
 
+    def _eliminate(self, equations):
+        """Solve equations one by one where each holds one more unknown, else as few as possible together."""
+        left_over = [(equation, equation.free_symbols & self.found) for equation in equations]
+        known: set[Any] = set()
+        while known < self.found:
+            open_ones = [(equation, wanted - known) for equation, wanted in left_over if wanted - known]
+            chosen = next(
+                (
+                    (group, wanted)
+                    for size in range(1, LARGEST + 1)
+                    for group in combinations(open_ones, size)
+                    if len(wanted := set().union(*(names for _, names in group))) == size
+                ),
+                None,
+            )
+            if chosen is None:
+                raise NotGivenError("the reactions are not determined one group after another")
+            self._solve([equation for equation, _ in chosen[0]], sorted(chosen[1], key=str))
+            known |= chosen[1]
 
-def crank_pin():
-    """Position of A, along fixed axes, so that coupler and slider share its components."""
-    return (sp.Symbol("crank_length") * CRANK.x).express(N)
-
-
-def add_slider(equations, A, bearer):
-    """Coupler and slider on joint A of a link, which has there the auxiliary velocity `bearer`."""
-    length, offset, assembly, guide = sp.symbols("coupler_length guide_offset assembly guide_angle")
-    stiffness, free, process = sp.symbols("stiffness free_position process_force")
-    theta, travel = functions("theta", "travel")
-    along = planar(sp.cos(guide), sp.sin(guide))
-    across = left(along)
-    sine = (offset - (A & across)) / length
-    for function, value in (sp.sin, sine), (sp.cos, assembly * sp.sqrt(1 - sp.sin(theta) ** 2)):
-        equations.symbols[function(theta)] = symbol = sp.Symbol(f"{function}_theta")
-        equations.steps[symbol] = value
-    equations.define(theta, sp.asin(sine), slope(sine) / sp.cos(theta))
-    equations.define(travel, (A & along) + length * sp.cos(theta))
-    equations.report(theta, "coupler_rate", "coupler_angular_acceleration")
-    equations.report(travel, "slider_velocity", "slider_acceleration")
-    equations.motions["slider_position"] = (travel,)
-
-    axis, B = sp.cos(theta) * along + sp.sin(theta) * across, travel * along + offset * across
-    spin, normal = equations.auxiliary("guide_force", alone=True)
-    tilt, moment = equations.auxiliary("guide_moment")
-    coupler, at_A = equations.parting("A")
-    slider, at_B = equations.parting("B")
-    swept = spin * length * left(axis)  # coupler about A, with it the slider
-    equations.link("coupler", axis, A, slope(theta), coupler, spin)
-    frame = equations.link("slider", along, B, 0, slider + swept, tilt)
-    equations.join(A, at_A, coupler, bearer)
-    equations.join(B, at_B, slider + swept, coupler + swept)
-    equations.push(B, slider + swept, (process - stiffness * (travel - free)) * along + normal * across)
-    equations.loads.append((frame, moment * N.z))
-    equations.forces["guide"] = (normal * across & N.x, normal * across & N.y)
-    equations.forces |= {"guide_force": (normal,), "guide_moment": (moment,)}
-    return equations
+    def _solve(self, equations, wanted):
+        """By Cramer's rule."""
+        rows = [linear(equation, *wanted) for equation in equations]
+        matrix, right = sp.Matrix([row[:-1] for row in rows]), sp.Matrix([-row[-1] for row in rows])
+        for column, name in enumerate(wanted):
+            replaced = matrix.copy()
+            replaced[:, column] = right
+            self.steps[name] = replaced.det(method="berkowitz") / matrix.det(method="berkowitz")
 
 
-def crank_slider():
-    equations = Equations()
-    return add_slider(equations, crank_pin(), equations.shift)
-
-
-def cam_crank_slider(law):
-    equations = Equations()
-    (radius,) = functions("radius")
-    law(equations, radius)
-    (outward, cam), (sideways, slot) = equations.auxiliary("cam_force"), equations.auxiliary("slot_force")
-    block, A = outward * CRANK.x + sideways * CRANK.y, radius * CRANK.x
-    inward = left(slope(radius) * CRANK.x + radius * CRANK.y) / sp.sqrt(slope(radius) ** 2 + radius**2)
-    equations.link("block", CRANK.x, A, 1, block)
-    equations.push(A, block, cam * inward + slot * CRANK.y)
-    equations.push(ORIGIN, equations.shift, -slot * CRANK.y)  # its moment about O works in the crank's equation alone
-    equations.forces |= {"cam_force": (cam,), "slot_force": (slot,)}
-    return add_slider(equations, A.express(N), block)
-
-
-def circle(equations, radius):
-    """Radius of a pitch circle with any centre."""
-    (root,) = functions("root")
-    centre = planar(*sp.symbols("cam_x cam_y"))
-    square = sp.Symbol("cam_radius") ** 2 - (centre & CRANK.y) ** 2
-    equations.define(root, sp.sqrt(square), slope(square) / (2 * root))
-    equations.define(radius, (centre & CRANK.x) + root)
-
-
-def cosine_law(equations, radius):
-    """Radius by the cosine law as the sawframe study has it, with a root that changes sign at the singular angle."""
-    height, root = functions("height", "root")
-    mean, amplitude, guide, length, singular = sp.symbols("mean amplitude cam_angle law_length singular_cosine")
-    angle, side = PHI - guide, sp.Symbol("side")
-    travel = mean + amplitude * sp.cos(angle)
-    equations.steps[side] = sp.sign(sp.cos(angle) - singular)
-    equations.define(height, travel * sp.sin(angle))
-    equations.define(root, side * sp.sqrt(length**2 - height**2), -height * slope(height) / root)
-    equations.define(radius, travel * sp.cos(angle) - root)
-
-
-def four_bar():
-    """Angles of coupler and rocker by atan2 and acos, their rates by the closed loop."""
-    equations = Equations()
-    crank, coupler, rocker, assembly = sp.symbols("crank_length coupler_length rocker_length assembly")
-    theta, psi = functions("theta", "psi")
-    A, pivot = crank_pin(), planar(*sp.symbols("pivot_x pivot_y"))
-    q, p = (planar(sp.cos(angle), sp.sin(angle)) for angle in (theta, psi))
-    x, y = (pivot - A) & N.x, (pivot - A) & N.y
-    a = sp.sqrt(x**2 + y**2)
-
-    def corner(near, far):
-        return assembly * sp.acos((a**2 + near**2 - far**2) / (2 * a * near))
-
-    rise, sine = crank * CRANK.y, left(q) & p
-    equations.define(theta, sp.atan2(y, x) + corner(coupler, rocker), -(rise & p) / (coupler * sine))
-    equations.define(psi, sp.atan2(-y, -x) - corner(rocker, coupler), -(rise & q) / (rocker * sine))
-    equations.report(theta, "coupler_rate", "coupler_angular_acceleration")
-    equations.report(psi, "rocker_rate", "rocker_angular_acceleration")
-
-    spin, along_p = equations.auxiliary("B_along_rocker", alone=True)
-    swing, along_q = equations.auxiliary("B_along_coupler", alone=True)
-    of_coupler, at_A = equations.parting("A")
-    of_rocker, at_pivot = equations.parting("O2")
-    at_B = along_q * q + along_p * p
-    equations.link("coupler", q, A, slope(theta), of_coupler, spin)
-    equations.link("rocker", p, pivot, slope(psi), of_rocker, swing)
-    equations.join(A, at_A, of_coupler, equations.shift)
-    equations.join(A + coupler * q, at_B, of_rocker + swing * rocker * left(p), of_coupler + spin * coupler * left(q))
-    equations.push(pivot, of_rocker, at_pivot)
-    equations.forces["B"] = (at_B & N.x, at_B & N.y)
-    return equations
-
-
-KINDS = {
-    "crank-slider": crank_slider,
-    "circle": lambda: cam_crank_slider(circle),
-    "cosine law": lambda: cam_crank_slider(cosine_law),
-    "four-bar": four_bar,
-}
+def linear(expression, *unknowns):
+    """Coefficients of what an expression is linear in, and the rest."""
+    names = {unknown: sp.Dummy() for unknown in unknowns}
+    named = expression.xreplace(names)
+    return *(named.diff(name) for name in names.values()), named.xreplace(dict.fromkeys(names.values(), sp.S.Zero))
