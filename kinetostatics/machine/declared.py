@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 class Slot(NamedTuple):
     """A link along which `joint` slides in a straight line, in a slot; `rod` is the link that slides in it as a piston.
 
-    Without a rod what slides is a block at the joint. The line runs at `angle` from the link's direction, at `offset` to
-    the left of its reference joint.
+    Without a rod what slides is a block at the joint. The line runs at `angle` from the link's direction, at `offset`
+    to the left of its reference joint.
     """
 
     link: str

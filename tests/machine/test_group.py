@@ -13,7 +13,8 @@ import pytest
 from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
-from kinetostatics.machine.group import Group, Output, Point, Resolved, Slot
+from kinetostatics.machine.declared import Slot
+from kinetostatics.machine.group import Group, Output, Point, Resolved
 from kinetostatics.machine.links import Joint, LinkMotion, Wrench
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.numbers.elementary import cos, sin
@@ -45,7 +46,7 @@ class Yoke(Group):
     references = property(lambda self: {"block" + self.label: self.on, "slider" + self.label: self.pin})
     joints = property(lambda self: {self.pin: Point("slider" + self.label)})
     guides = property(lambda self: {"slider" + self.label: self.guide})
-    slots = property(lambda self: (Slot("slider" + self.label, self.on),))
+    slots = property(lambda self: (Slot("slider" + self.label, self.on, angle=self.slot_angle),))
     lengths = property(lambda self: (self.guide.guide_offset, *self.slider.centre, *self.block.centre))
 
     @property

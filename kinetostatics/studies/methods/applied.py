@@ -1,6 +1,7 @@
 """What loads put on links besides their weight, as arguments of equations that were made without them.
 
-Plain numbers, of springs too, are known once; tables, functions and loads at points are computed of the motion each time.
+Plain numbers, of springs too, are known once; tables, functions and loads at points are computed of the motion each
+time.
 """
 
 from typing import Any
@@ -17,8 +18,8 @@ PARTS = "x", "y", "moment"
 class Applied(Acting):
     """Loads of a solution. Called, it gives by name what depends on the motion; ``numbers`` are the others.
 
-    Under a link's name with "_load_x", "_load_y" and "_load_moment" there is force and moment about its reference joint,
-    under a slider's with "_push" the force along its guide, with "_stiffness", "_free" and "_cubic" a spring's numbers.
+    Under a link's name with "_load_x", "_load_y", "_load_moment" are force and moment about its reference joint, under
+    a slider's with "_push" the force along its guide, with "_stiffness", "_free" and "_cubic" the numbers of a spring.
 
     Parameters
     ----------
@@ -37,15 +38,16 @@ class Applied(Acting):
         pushes = [item for item in loads if hasattr(item, "push")]
         self.springs, self.pushes = [], []
         for item in pushes:
-            if isinstance(item, Spring) and not self.numbers[f"{item.on}_stiffness"] and not self.numbers[f"{item.on}_cubic"]:
-                parts = {"stiffness": item.stiffness, "free": item.free_position, "cubic": item.cubic}
-                self.numbers |= {f"{item.on}_{part}": value for part, value in parts.items()}
-            elif isinstance(item, Spring):
+            if isinstance(item, Spring):
                 self.springs.append(item)
             elif isinstance(item, ProcessForce) and isinstance(item.force, int | float):
                 self.numbers[f"{item.on}_push"] += item.force
             else:
                 self.pushes.append(item)
+        for item in {item.on: item for item in reversed(self.springs)}.values():
+            parts = {"stiffness": item.stiffness, "free": item.free_position, "cubic": item.cubic}
+            self.numbers |= {f"{item.on}_{part}": value for part, value in parts.items()}
+            self.springs.remove(item)
         self.others = [item for item in loads if not hasattr(item, "push") and not isinstance(item, Gravity)]
         self.travels = {item.on: result(f"{item.on}_position") for item in self.springs}
         self.motions = {link: result(f"{link} in motion") for link in links} if self.others else {}

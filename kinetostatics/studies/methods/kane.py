@@ -10,6 +10,7 @@ numbers, computed of the motion before.
 """
 
 from functools import cache
+
 import numpy as np
 import sympy as sp
 

@@ -30,3 +30,10 @@ def slope(expression, order=1):
 def rate(vector):
     """Derivative of a vector by the crank angle."""
     return vector.dt(N).subs(PHI.diff(), 1)
+
+
+def linear(expression, *unknowns):
+    """Coefficients of what an expression is linear in, and the rest."""
+    names = {unknown: sp.Dummy() for unknown in unknowns}
+    named = expression.xreplace(names)
+    return *(named.diff(name) for name in names.values()), named.xreplace(dict.fromkeys(names.values(), sp.S.Zero))

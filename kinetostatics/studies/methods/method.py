@@ -65,7 +65,7 @@ class Method:
 def require_frictionless(solution):
     """Raise `NotGivenError` for friction, whose forces depend on the reactions that they change."""
     if solution.friction:
-        raise NotGivenError(f"equations without friction are solved, but there is some in {', '.join(solution.friction)}")
+        raise NotGivenError(f"its equations know no friction, but there is some in {', '.join(solution.friction)}")
 
 
 def require_one_design(solution):

@@ -60,6 +60,7 @@ class Part(NamedTuple):
     """Crank or group: links with reference joints, joints with the links that own them, bars (start, end, link)."""
 
     kind: str
+    outputs: tuple[str, ...]
     links: tuple[tuple[str, str], ...]
     joints: tuple[tuple[str, str], ...]
     bars: tuple[tuple[str, str, str], ...]
@@ -117,6 +118,7 @@ def _part(part, owners):
         raise NotGivenError(f"{kind} does not declare in its pairs what equations of motion are made of: {what}")
     return Part(
         kind,
+        tuple(part.outputs),
         tuple(part.references.items()),
         tuple((name, point.link) for name, point in part.joints.items()),
         tuple((bar.start, bar.end, bar.link) for bar in part.bars),
