@@ -27,6 +27,7 @@ from ...mechanics.quantities import RATES
 from ...numbers import checks
 from .acting import Acting
 from .enclosures import library, on_arb, require_one_design
+from .method import require_frictionless
 from .postures import Posture, cross, dot, left, of_kind
 
 
@@ -53,12 +54,13 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
     Raises
     ------
     NotGivenError
-        There are no such formulas for a group or cam, or no such quantity.
+        There are no such formulas for a group or cam, or for friction, or no such quantity.
     MissingLibraryError
         mpmath is not installed.
     """
     mp = library("mpmath").mp
     require_one_design(solution)
+    require_frictionless(solution)
     with mp.workdps(working_digits(digits)):
         found = [Machine(mp, solution, index, digits).components(quantity) for index in indices]
     return tuple(np.array(part, dtype=object) for part in zip(*found, strict=True))
