@@ -45,7 +45,7 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
     """Time and error of every method for one quantity.
 
     The reference is certified, but with friction, which the independent path does not know: then it is the library's
-    kernels on intervals alone, and crank angles at which a link or slider turns back, where friction jumps, are no good.
+    kernels on intervals alone, and no crank angle may be one at which a link or slider turns back: it jumps there.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
 
 
 def _turn(case, name, angles):
-    """Solution over the turn; with friction half a step on, for it jumps at dead centres, which angles from 0 may hit."""
+    """Solution over the turn; with friction half a step on, off the dead centres, at which it jumps."""
     solution = case.solve(name, angles)
     return solution.at(solution.crank_angle + math.pi / angles) if solution.friction else solution
 
