@@ -99,7 +99,8 @@ def structure(mechanism):
 
 def _part(part, owners):
     kind = type(part).__name__
-    pinned, slid = [], []
+    pinned: list[Pinned] = []
+    slid: list[Slid] = []
     for name, pair in part.pairs.items():
         if isinstance(pair, Turning):
             pinned.append(Pinned(name, pair.link, pair.joint, pair.against or owners[pair.joint]))
@@ -112,7 +113,8 @@ def _part(part, owners):
     found = {*(item.name for item in pinned), *(cam.force for cam in cams)}
     found |= {name for item in slid for name in (item.force, item.couple, item.vector)}
     missing = part.outputs.keys() - found - {"balancing_torque"}
-    free = part.links.keys() - {item.link for item in (*pinned, *slid)} - {item.other for item in pinned}
+    held = {item.link for item in pinned} | {item.link for item in slid} | {item.other for item in pinned}
+    free = part.links.keys() - held
     if missing or free:
         what = ", ".join(sorted(missing)) or f"what holds {', '.join(sorted(free))}"
         raise NotGivenError(f"{kind} does not declare in its pairs what equations of motion are made of: {what}")
@@ -135,7 +137,7 @@ def _curve(cam):
 
 def _geometry(part):
     """Places of joints on links, lengths and slots."""
-    values = {}
+    values: dict[str, Any] = {}
     for name, point in part.joints.items():
         values |= {f"{name}_along": point.along, f"{name}_across": point.across}
     for bar in part.bars:
