@@ -70,7 +70,8 @@ forces and power; tests/machine/test_group.py has a whole example.
 may say in ``TERMS`` how an engineer writes a variable, and what it is: ``{"across": ("d", "from pin to guide")}``, of
 one kernel alone as ``"resolve.across"``, which may be an argument too; primes count derivatives, ``"r'"``.
 
-Nothing else in the library knows what a group looks like, nor the names of its links.
+Nothing else in the library knows what a group looks like, nor the names of its links. Methods under study make their
+equations of `joints`, `bars`, `guides`, `slots`, `led` and `pairs` alone.
 """
 
 import math

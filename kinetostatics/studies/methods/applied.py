@@ -1,7 +1,7 @@
 """What loads put on links besides their weight, as arguments of equations that were made without them.
 
-Plain numbers, of springs too, are known once; tables, functions and loads at points are computed of the motion each
-time.
+Plain numbers, of springs too, are known once; tables and functions, which read the library's motion as a user's own
+would read theirs, and loads at points are computed each time.
 """
 
 from typing import Any

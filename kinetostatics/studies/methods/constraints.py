@@ -124,7 +124,8 @@ class Model:
         self.guides[slider] = complex(*along)
         force = self._add(item.force, across @ pin - guide.guide_offset * self._one)
         self._add(item.couple, self._theta(slider) - guide.guide_angle * self._one)
-        self.readings[item.vector] = (FORCE, across[:, None] * force)
+        if item.vector:
+            self.readings[item.vector] = (FORCE, across[:, None] * force)
         for name, order in {"position": POSITION, "velocity": RATE, "acceleration": ACCELERATION}.items():
             self.readings[f"{slider}_{name}"] = (order, (along @ pin)[None, : 3 * self.size])
 
