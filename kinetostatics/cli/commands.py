@@ -167,8 +167,10 @@ def precision(options):
     shown = ["variant", "quantity", "method", "setting", "value", "time [ns/angle]", "error"]
     print_table(pd.concat(fronts)[shown].set_index("variant").astype(object).fillna(""))
     absent = table[table.groupby(["variant", "quantity", "method"])["error"].transform("count") == 0]
-    for method, why in dict.fromkeys(zip(absent["method"], absent["not given"], strict=True)):
-        say(f"left out: {method}: {why}")
+    if len(absent):
+        say("\nwhat does not apply:\n")
+        reasons = absent[["method", "variant", "not given"]].drop_duplicates(["method", "not given"])
+        print_table(reasons.rename(columns={"not given": "does not apply"}).set_index("method"))
     print(*paths, sep="\n")
 
 
