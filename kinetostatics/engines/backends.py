@@ -88,4 +88,3 @@ class Backend:
             bounds = BoundsElsewhere(recording.graph, recording.inputs, arithmetic.OF[self.precision])
             self._bounded[program] = Program(recording, (*program.outputs, *bounds.of(program.outputs)))
         return self._bounded[program]
-

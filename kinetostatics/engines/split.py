@@ -177,5 +177,3 @@ def _cut(outputs):
             nodes[node] = graph.node(node.operation, *map(copied, node.arguments))
     found = tuple(map(copied, outputs))
     return tuple(part for part, _ in parameters), found
-
-
