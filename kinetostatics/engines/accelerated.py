@@ -1,6 +1,8 @@
 """Programs compiled by JAX (extra `grad`), on the accelerator that it finds or on the processor."""
 
 from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 
@@ -83,10 +85,8 @@ class OnDevice:
 @contextmanager
 def _width(jax, dtype):
     """JAX with numbers in double precision if these are."""
-    enable = getattr(jax, "enable_x64", None)
-    if not callable(enable):
-        from jax.experimental import enable_x64 as enable
-    with enable(dtype == np.float64):
+    home: Any = jax if hasattr(jax, "enable_x64") else import_module("jax.experimental")
+    with home.enable_x64(dtype == np.float64):
         yield
 
 

@@ -20,8 +20,8 @@ HEADER = '''"""Written by kinetostatics; may be deleted at any time."""
 from math import atan, copysign as as_signed, cos, inf, nan, sin, sqrt
 
 import numpy as np
-from numba import float32, njit
-from numpy import uint64
+from numba import njit
+from numpy import float32, uint64
 
 options = dict(error_model="numpy", nogil=True)
 ROUNDING, NAN, ZERO, ONE = float32({rounding!r}), float32(nan), float32(0.0), float32(1.0)
@@ -96,8 +96,8 @@ class Split:
         with np.errstate(all="ignore"):
             parameters = _stacked(self._fixed_by(leaves.numbers), dtype)
             rows = _stacked(self._whole.rows(state, leaves), dtype)
-            turn = [part.astype(dtype) for part in (angle, *programs._turn(angle))]
-        return Given(*turn, parameters, rows, shape)
+            angle, sine, cosine = (part.astype(dtype) for part in (angle, *programs._turn(angle)))
+        return Given(angle, sine, cosine, parameters, rows, shape)
 
     def _fixed_by(self, numbers):
         try:
@@ -133,7 +133,8 @@ class Split:
         ]
         rows = loops.table_of_rows(list(given.rows), shape).astype(parameters.dtype)
         results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), parameters.dtype)
-        loops.run(self._loop, *turn, parameters, rows, results)
+        angle, sine, cosine = turn
+        loops.run(self._loop, angle, sine, cosine, parameters, rows, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
 
     @cached_property

@@ -131,7 +131,7 @@ class Program:
     def error_bound(self, angle, values=MappingProxyType({})):
         """Proven bounds on the rounding errors of the values that a call gives, computed in double.
 
-        Exact are the numbers and crank angles as they are given, in double; `Solution.error_bound` says what is bounded.
+        Exact are numbers and crank angles as they are given, in double; `Solution.error_bound` says what is bounded.
 
         Parameters
         ----------
