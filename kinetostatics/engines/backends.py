@@ -9,7 +9,6 @@ import numpy as np
 from . import accelerated, arithmetic
 from .arithmetic import BoundsElsewhere
 from .bounds import CAP
-from .compiled import available
 from .programs import Program
 from .split import Split
 
@@ -74,7 +73,7 @@ class Backend:
         if self.engine == "jax":
             accelerated.require_proven(accelerated.device_of(self.platform))
         count = len(program.outputs)
-        rows = self._with_bounds(program).run(state, leaves, self.engine == "compiled" or available())
+        rows = self._with_bounds(program).run(state, leaves, self.engine == "compiled")
         values, found = rows[:count], rows[count:]
         small = all(np.all(np.abs(leaf) <= CAP) for leaf in (*leaves.numbers, *leaves.tables))
         unknown = np.isnan(found) if small else True

@@ -123,8 +123,9 @@ class Split:
     def by_loop(self, given):
         """The same by a loop compiled for single precision."""
         shape, parameters = given.shape, given.parameters
-        if parameters.ndim > 1:
-            parameters = np.broadcast_to(parameters, (len(parameters), *shape[:-1], 1))
+        if parameters.ndim == 1:
+            parameters = parameters.reshape(-1, *(1 for _ in shape))
+        parameters = np.broadcast_to(parameters, (len(parameters), *shape[:-1], 1))
         parameters = np.ascontiguousarray(parameters.reshape(len(parameters), -1).T)
         own = given.angle.size > shape[-1]
         turn = [
