@@ -10,10 +10,14 @@ from ..errors import MissingLibraryError, NotGivenError, ParameterError
 from ..numbers.elementary import ROUNDING
 from . import programs, writing
 
-AS_WRITTEN = {"xla_disable_hlo_passes": "algsimp"}
-"""What keeps XLA from writing quotients and roots in another way, with other roundings; it may fuse still."""
 PROVEN = "cpu"
 """Platform whose functions keep to the errors that bounds take for granted, as a test shows."""
+AS_WRITTEN = {
+    "xla_disable_hlo_passes": "algsimp",
+    "xla_cpu_enable_fast_math": False,
+    "xla_cpu_enable_fast_min_max": False,
+}
+"""There, what keeps XLA from other quotients and roots, with other roundings; it may fuse products and sums still."""
 
 
 def _jax():
@@ -58,6 +62,7 @@ class OnDevice:
         jax = _jax()
         xp = jax.numpy
         self._device, self._compiled = device, {}
+        self._options = AS_WRITTEN if device.platform == PROVEN else None
         outputs = split.at_angles.outputs
         scope = {name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "abs", "copysign", "nan", "inf")}
         scope |= {"atan": xp.arctan, "divisor": xp.maximum, "fma": lambda one, other, more: one * other + more}
@@ -75,11 +80,17 @@ class OnDevice:
         """Outputs (outputs, *shape) of what is handed over."""
         jax = _jax()
         with _width(jax, given.angle.dtype):
+            given = given._replace(parameters=_stacked(given.parameters), rows=_stacked(given.rows))
             arrays = jax.device_put(tuple(given[:5]), self._device)
             key = given.shape, *(part.shape for part in given[:5])
             if key not in self._compiled:
-                self._compiled[key] = self._traced.lower(*arrays, given.shape).compile(compiler_options=AS_WRITTEN)
+                self._compiled[key] = self._traced.lower(*arrays, given.shape).compile(compiler_options=self._options)
             return np.stack([np.asarray(part) for part in self._compiled[key](*arrays)])
+
+
+def _stacked(parts):
+    """Numbers or arrays of shapes that fit as one array: a transfer for each would take longer than computing."""
+    return np.stack(np.broadcast_arrays(*parts)) if parts else np.empty(0)
 
 
 @contextmanager

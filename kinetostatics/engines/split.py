@@ -58,8 +58,8 @@ class Given(NamedTuple):
     Attributes
     ----------
     angle, sine, cosine : array (..., N)
-    parameters : array (P,) or (P, ..., 1)
-    rows : array (T, ..., N)
+    parameters : list of number or array (..., 1)
+    rows : list of number or array (..., N)
     shape : tuple of int
         Of results, without that of outputs.
     """
@@ -67,8 +67,8 @@ class Given(NamedTuple):
     angle: Any
     sine: Any
     cosine: Any
-    parameters: Any
-    rows: Any
+    parameters: list
+    rows: list
     shape: tuple
 
 
@@ -94,8 +94,8 @@ class Split:
         if angle.shape[-1:] != shape[-1:]:
             angle = np.broadcast_to(angle, angle.shape[:-1] + shape[-1:])
         with np.errstate(all="ignore"):
-            parameters = _stacked(self._fixed_by(leaves.numbers), dtype)
-            rows = _stacked(self._whole.rows(state, leaves), dtype)
+            parameters = [np.asarray(part, dtype) for part in self._fixed_by(leaves.numbers)]
+            rows = [np.asarray(row, dtype) for row in self._whole.rows(state, leaves)]
             angle, sine, cosine = (part.astype(dtype) for part in (angle, *programs._turn(angle)))
         return Given(angle, sine, cosine, parameters, rows, shape)
 
@@ -114,26 +114,23 @@ class Split:
             for start in range(0, given.shape[-1], step):
                 part = slice(start, start + step)
                 turn = [array[..., part] for array in given[:3]]
-                rows = given.rows[..., part] if given.rows.shape[-1:] != (1,) else given.rows
+                rows = [row[..., part] if row.size > 1 else row for row in given.rows]
                 own = results[..., part]
                 free = np.empty((count, *own.shape[1:]), own.dtype)
-                batch(*turn, list(given.parameters), rows, free, own)
+                batch(*turn, given.parameters, rows, free, own)
         return results
 
     def by_loop(self, given):
         """The same by a loop compiled for single precision."""
-        shape, parameters = given.shape, given.parameters
-        if parameters.ndim == 1:
-            parameters = parameters.reshape(-1, *(1 for _ in shape))
-        parameters = np.broadcast_to(parameters, (len(parameters), *shape[:-1], 1))
-        parameters = np.ascontiguousarray(parameters.reshape(len(parameters), -1).T)
+        shape, dtype = given.shape, given.angle.dtype
+        parameters = loops.table_of_parameters(given.parameters, shape[:-1]).astype(dtype)
         own = given.angle.size > shape[-1]
         turn = [
             np.ascontiguousarray((np.broadcast_to(array, shape) if own else array).reshape(-1, shape[-1]))
             for array in given[:3]
         ]
-        rows = loops.table_of_rows(list(given.rows), shape).astype(parameters.dtype)
-        results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), parameters.dtype)
+        rows = loops.table_of_rows(given.rows, shape).astype(dtype)
+        results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), dtype)
         angle, sine, cosine = turn
         loops.run(self._loop, angle, sine, cosine, parameters, rows, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
@@ -145,13 +142,6 @@ class Split:
         types = ", ".join([writing.GIVEN] * 5 + [writing.FILLED]).format(2, 2, 2, 2, 3, 3)
         header = HEADER.format(rounding=writing.ROUNDING, types=types.replace("float64", "float32"))
         return _loaded(header + source[source.index("def loop(") :]).loop
-
-
-def _stacked(parts, dtype):
-    """Numbers or arrays of one shape, or a broadcast one, as one array."""
-    if all(isinstance(part, float) for part in parts):
-        return np.array(parts, dtype)
-    return np.array(np.broadcast_arrays(*parts), dtype)
 
 
 def _cut(outputs):

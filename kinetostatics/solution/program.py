@@ -35,9 +35,6 @@ class Program:
     quantities : tuple of str
     parameters : mapping of path to value
         Every number that can be given another value, as in the scene.
-    engine, precision : str
-    device : str
-        What computes: "cpu", or as JAX calls it.
 
     Examples
     --------
@@ -118,14 +115,17 @@ class Program:
 
     @property
     def engine(self):
+        """What runs it: "compiled", "numpy" or "jax"."""
         return self._backend.engine
 
     @property
     def precision(self):
+        """Of its results: "double" or "single"."""
         return self._backend.precision
 
     @property
     def device(self):
+        """What computes: "cpu", or as JAX calls it, "gpu: NVIDIA H100" for instance."""
         return self._backend.device
 
     def error_bound(self, angle, values=MappingProxyType({})):

@@ -48,6 +48,30 @@ def test_jax_keeps_to_its_bounds_in_both_precisions(jax):
         assert found.wrong == [], backend
 
 
+def test_jax_gives_nan_where_the_mechanism_does_not_close_and_numbers_elsewhere(jax):
+    short = ks.Scene(ks.crank_slider(0.5, 0.3, slider=ks.Link(1.0)), 1.0, loads=ks.Gravity())
+    angles = np.linspace(0.01, 6.2, 40)
+    expected = ks.compile(short, ("B", "slider_acceleration"), engine="numpy")(angles)
+    for precision in ("single", "double"):
+        found = ks.compile(short, ("B", "slider_acceleration"), engine="jax", precision=precision)(angles)
+        for name, value in expected.items():
+            assert 0 < np.isnan(value).sum() < value.size
+            assert np.array_equal(np.isnan(found[name]), np.isnan(value))
+
+
+def test_xla_writes_quotients_and_roots_as_they_are_recorded(jax):
+    """Else (a / b) / c becomes a / (b c) and a / sqrt(b) a product, and bounds would be those of other arithmetic."""
+
+    def compute(a, b, c):
+        return (a / b) / c, a / (b / c), a / jax.numpy.sqrt(c)
+
+    a, b, c = (np.random.default_rng(seed).uniform(0.5, 2.0, 500).astype(np.float32) for seed in range(3))
+    with jax.default_device(jax.devices("cpu")[0]):
+        found = jax.jit(compute).lower(a, b, c).compile(compiler_options=accelerated.AS_WRITTEN)(a, b, c)
+    for own, exact in zip(found, ((a / b) / c, a / (b / c), a / np.sqrt(c)), strict=True):
+        assert np.array_equal(own, exact)
+
+
 def test_the_mode_of_jax_is_as_it_was(jax):
     before = jax.config.jax_enable_x64
     s = diverse()["plain"]
