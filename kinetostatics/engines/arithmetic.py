@@ -5,7 +5,8 @@ zero. Bounds are then computed beside the same values in double, which differ fr
 order of roundings the other takes, each result is within its unit of the exact one of what went into it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,8 +59,11 @@ def is_handed_over(node):
     return node.varies < BY_ANGLE or node.operation in INPUTS or of_angle
 
 
-class BoundsElsewhere(Bounds):
+class BoundsElsewhere:
     """Bounds for the nodes of a graph that another arithmetic computes; what is handed over to it is rounded once.
+
+    As in `Bounds` an exact value is within ``unit (k |v| + E)`` of the one computed, but v is the value in double, and
+    E, a node or a number, is never absent: in it is what may be lost as too small.
 
     Parameters
     ----------
@@ -70,72 +74,116 @@ class BoundsElsewhere(Bounds):
     """
 
     def __init__(self, graph, inputs, arithmetic):
-        super().__init__(graph)
-        self.unit, self.safe, self.least, self.ulp = arithmetic[1], arithmetic.safe, arithmetic.least, arithmetic.ulp
-        self._arithmetic, self._in_double = arithmetic, Bounds(graph, inputs)
-        self._rounded = 0.0 if arithmetic.unit == UNIT else 1.0
+        self._graph, self._arithmetic, self._in_double = graph, arithmetic, Bounds(graph, inputs)
+        self._errors: dict[Node, Error] = {}
         self._reaches: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
 
     def of(self, outputs):
-        found = super().of(outputs)
+        """A bound for each output, not negative; infinite or NaN where there is none."""
         for node in needed(outputs):
-            self._look_at(node)
-        return tuple(
-            plus(bound, 0.0 / self.above(self._arithmetic.limit, None, self._reaches[part]))
-            if isinstance(part, Node)
-            else bound
-            for part, bound in zip(outputs, found, strict=True)
-        )
+            if node not in self._errors:
+                self._errors[node] = self._handed_over(node) if is_handed_over(node) else self._found(node)
+                self._look_at(node)
+        return tuple(map(self._whole, outputs))
+
+    def _whole(self, part):
+        bound = (self._arithmetic.safe * self._arithmetic.unit) * self.total(part)
+        if not isinstance(part, Node):
+            return bound
+        return bound + 0.0 / self._positive(self._arithmetic.limit - self._reaches[part])
+
+    def _handed_over(self, node):
+        self._in_double.of([node])
+        relative, rest = self._in_double.error(node)
+        finer = UNIT / self._arithmetic.unit
+        rounded = 0.0 if finer == 1.0 else 1.0
+        return Error(rounded + finer * relative, plus(None if rest is None else finer * rest, self._arithmetic.least))
+
+    def _found(self, node):
+        kind, parts = node.operation, node.arguments
+        relative, carried = RULES[kind](self, node, *parts)
+        own = 0.0 if kind in EXACTLY or (len(parts) < 2 and kind == "-") else self._arithmetic.ulp.get(kind, 1.0)
+        is_sum = kind in ("+", "-") and all(isinstance(part, Node) for part in parts)
+        return Error(relative + own, carried if is_sum or kind in EXACTLY else carried + self._arithmetic.least)
 
     def _look_at(self, node):
         """How many operations one after the other lead to a node, and the largest number on the way."""
-        if node in self._depths:
-            return
         parts = [] if is_handed_over(node) else [part for part in node.arguments if isinstance(part, Node)]
         self._depths[node] = 1 + max((self._depths[part] for part in parts), default=0)
-        if self._depths[node] * (self.error(node).relative + SECOND_ORDER) * self.unit > (self.safe - 1.0) / 4.0:
+        unit, safe = self._arithmetic.unit, self._arithmetic.safe
+        if self._depths[node] * (self._errors[node].relative + SECOND_ORDER) * unit > (safe - 1.0) / 4.0:
             raise NotGivenError("no bound can be given in this precision: too many operations follow one another")
-        own = self.largest(node) if not parts or node.operation in ("+", "-", "*", "/", "divisor") else None
-        reaches = [self._reaches[part] for part in parts] + ([] if own is None else [own])
-        whole = reaches[0]
-        for other in reaches[1:]:
-            whole = self._graph.node("divisor", whole, other)
-        self._reaches[node] = whole
+        reaches = [self._reaches[part] for part in parts]
+        if not parts or node.operation in ("+", "-", "*", "/", "divisor"):
+            reaches.append(self.largest(node))
+        self._reaches[node] = reduce(partial(self._graph.node, "divisor"), reaches)
 
-    def _found(self, node):
-        if not is_handed_over(node):
-            return super()._found(node)
-        self._in_double.of([node])
-        relative, rest = self._in_double.error(node)
-        finer = UNIT / self.unit
-        return Error(self._rounded + finer * relative, plus(None if rest is None else finer * rest, self.least))
-
-    def own(self, node):
-        if node.operation == "divisor":
-            root, unit = node.arguments
-            return Error(0.0, 0.0 / self.above(root, self.total(root), 2.0 * self.largest(unit)))
-        relative, rest = super().own(node)
-        alone = all(isinstance(part, Node) for part in node.arguments) and node.operation in ("+", "-", "abs", "held")
-        return Error(relative, rest if alone else plus(rest, self.least))
-
-    def error(self, part):
+    def error(self, part) -> Error:
+        """Of a constant too, which may be no number of this arithmetic."""
         if isinstance(part, Node):
-            return super().error(part)
-        exact = part == 0.0 or (self._arithmetic.dtype(part) == part and abs(part) > self.unit * self.least)
-        return Error(0.0 if exact else 1.0, None if exact else self.least)
+            return self._errors[part]
+        least = self._arithmetic.least
+        with np.errstate(over="ignore"):
+            same = float(self._arithmetic.dtype(part)) == part
+        exact = part == 0.0 or (same and abs(part) > self._arithmetic.unit * least)
+        return Error(0.0, 0.0) if exact else Error(1.0, least)
 
     def total(self, part):
-        if isinstance(part, Node):
-            return super().total(part)
+        """The whole bound of a part of an operation, in units."""
         relative, rest = self.error(part)
-        return plus(relative * abs(part), rest) if relative else rest
+        return self._fused(relative, size(part), rest) if relative else rest
 
     def largest(self, part):
         """Bound on the magnitude of the computed value and of the exact one, but for relative errors."""
-        rest = self.error(part).rest
-        return size(part) if rest is None else self.fused(self.safe * self.unit, rest, size(part))
+        return self._fused(self._arithmetic.safe * self._arithmetic.unit, self.error(part).rest, size(part))
 
-    def cap(self, part):
-        """None of a node: what is lost as too small is weighed with the values themselves."""
-        return None if isinstance(part, Node) else abs(part)
+    def clear(self, value, part, floor=0.0):
+        """What is left of a value above a floor when the error of a part is taken off; 0 where nothing is."""
+        return self._positive(value - (self._arithmetic.safe * self._arithmetic.unit) * self.total(part) - floor)
+
+    def _positive(self, value):
+        return self._graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
+
+    def of_product(self, node, left, right):
+        (first, own), (second, other) = self.error(left), self.error(right)
+        return Error(first + second, self._fused(size(right), own, self.largest(left) * other))
+
+    def of_quotient(self, node, above, below):
+        (first, own), (second, other) = self.error(above), self.error(below)
+        return Error(first + second, self._fused(size(node), other, own) / self.clear(size(below), below))
+
+    def of_root(self, node, square, unit=None):
+        relative, rest = self.error(square)
+        return Error(0.5 * relative, 0.5 * rest * (node / self.clear(square, square)))
+
+    def of_divisor(self, node, root, unit):
+        """None is proven where the guard may act."""
+        relative, rest = self.error(root)
+        return Error(relative, rest + 0.0 / self.clear(root, root, 2.0 * self.largest(unit)))
+
+    def _fused(self, one, other, more):
+        """Product and sum, in one operation where the processor has it."""
+        plain = [part for part in (one, other) if not isinstance(part, Node)]
+        if len(plain) == 2 or 1.0 in plain:
+            return one * other + more
+        return self._graph.node("fma", one, other, more)
+
+
+EXACTLY = ("abs", "held", "divisor", "sign")
+"""Operations that round nothing."""
+RULES: dict[str, Callable[..., Error]] = {
+    "+": lambda bounds, node, left, right: Error(0.0, bounds.total(left) + bounds.total(right)),
+    "-": lambda bounds, node, *parts: (
+        Error(0.0, bounds.total(parts[0]) + bounds.total(parts[1])) if len(parts) == 2 else bounds.error(parts[0])
+    ),
+    "*": BoundsElsewhere.of_product,
+    "/": BoundsElsewhere.of_quotient,
+    "sqrt": BoundsElsewhere.of_root,
+    "root": BoundsElsewhere.of_root,
+    **dict.fromkeys(("sin", "cos", "atan"), lambda bounds, node, argument: Error(0.0, bounds.total(argument))),
+    **dict.fromkeys(("abs", "held"), lambda bounds, node, argument: bounds.error(argument)),
+    "divisor": BoundsElsewhere.of_divisor,
+    "sign": lambda bounds, node, value: Error(0.0, 0.0 / bounds.clear(size(value), value)),
+}
+"""What a result has of the errors of its arguments."""

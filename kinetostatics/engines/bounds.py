@@ -48,8 +48,6 @@ class Bounds:
         ``input(bounds) -> Error`` of inputs that are not exact.
     """
 
-    unit, safe, least, ulp = UNIT, SAFE, DUST, ULP
-
     def __init__(self, graph, inputs=None):
         self._graph, self._inputs = graph, inputs or {}
         self._errors: dict[Node, Error] = {}
@@ -63,7 +61,7 @@ class Bounds:
         for node in needed(outputs):
             if node not in self._errors:
                 self._errors[node] = self._found(node)
-        return tuple(self._whole(self.total(part)) for part in outputs)
+        return tuple(_whole(self.total(part)) for part in outputs)
 
     def tight(self, output):
         """A bound for one output, as `of` gives it, from what the error of each operation makes of the output.
@@ -74,12 +72,12 @@ class Bounds:
         unsure = {node for node in needed([output]) if self.total(node) is not None}
         slopes = adjoints(self._graph, output, unsure) if output in unsure else {}
         self.of(slopes.values())
-        total = self.least if slopes else None
+        total = DUST if slopes else None
         for node, slope in slopes.items():  # what derivatives hold comes with its whole error
             own = self.total(node) if node.operation in (*INPUTS, "held") else self._sum(self.own(node), node)
             if own is not None:
                 total = self.fused(self.largest(slope), own, total)
-        return self._whole(total)
+        return _whole(total)
 
     def _found(self, node):
         if node.operation in INPUTS:
@@ -92,7 +90,7 @@ class Bounds:
         """What an operation itself adds to the error of its result."""
         kind, arguments = node.operation, node.arguments
         if kind in ("*", "/"):
-            return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, self.least)
+            return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, DUST)
         if kind in ("+", "-"):
             return Error(1.0, None) if len(arguments) == 2 else EXACT
         if kind == "divisor":  # none is proven where the guard may act
@@ -100,7 +98,7 @@ class Bounds:
             return Error(0.0, 0.0 / self.above(root, self.total(root), unit))
         if kind == "sign" and self.total(arguments[0]) is not None:  # nor where it may be the other
             return Error(0.0, 0.0 / self.clear(arguments[0]))
-        return Error(self.ulp.get(kind, 0.0), None)
+        return Error(ULP.get(kind, 0.0), None)
 
     def error(self, part) -> Error:
         return self._errors[part] if isinstance(part, Node) else EXACT
@@ -117,7 +115,7 @@ class Bounds:
     def largest(self, part):
         """Bound on the magnitude of the exact value, but for relative errors."""
         rest = self.error(part).rest
-        return size(part) if rest is None else self.fused(self.unit, rest, size(part))
+        return size(part) if rest is None else self.fused(UNIT, rest, size(part))
 
     def clear(self, part):
         """What is left of a value's magnitude when its error is taken off; 0 where nothing is."""
@@ -128,7 +126,7 @@ class Bounds:
 
     def above(self, value, total, floor=0.0):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
-        taken = floor if total is None else (self.safe * self.unit) * total + floor
+        taken = floor if total is None else (SAFE * UNIT) * total + floor
         return self._graph.node("divisor", value - taken, 0.0)
 
     def over(self, part):
@@ -151,9 +149,6 @@ class Bounds:
             return plus(one * other, more)
         return self._graph.node("fma", one, other, more)
 
-    def _whole(self, total):
-        return 0.0 if total is None else (self.safe * self.unit) * total
-
     def cap(self, part):
         """Largest magnitude of a part for inputs up to `CAP`; None if only the computed value tells."""
         if not isinstance(part, Node):
@@ -173,6 +168,10 @@ def size(part):
     return part if square or part.operation in ("abs", "sqrt", "root", "divisor") else abs(part)
 
 
+def _whole(total):
+    return 0.0 if total is None else (SAFE * UNIT) * total
+
+
 def _is_scaling(part):
     """Whether a factor is a power of two near one: it loses no digit but of dust."""
     return not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
@@ -184,7 +183,7 @@ def _is_scaling(part):
 def _of_sum(bounds, more, node, *parts):
     if len(parts) == 1:
         return bounds.error(parts[0])
-    return Error(0.0, plus(plus(*(bounds.total(part) for part in parts)), more))
+    return Error(0.0, plus(*(bounds.total(part) for part in parts)))
 
 
 def _of_product(bounds, more, node, left, right):
@@ -194,7 +193,7 @@ def _of_product(bounds, more, node, left, right):
     if isinstance(own, Node):
         across = more if other is None else bounds.fused(bounds.largest(left), other, more)
         return Error(first + second, bounds.fused(size(right), own, across))
-    across = more if None in (own, other) else plus(bounds.unit * own * other, more)
+    across = more if None in (own, other) else plus(UNIT * own * other, more)
     return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), across))
 
 
@@ -210,13 +209,13 @@ def _of_root(bounds, more, node, square, unit=None):
         left = bounds.above(square, bounds.total(square))  # nothing, if it may be negative
         rest = bounds.fused(0.5 * rest, node / left, more)
     elif rest is not None:
-        rest = math.sqrt(rest / bounds.unit)
+        rest = math.sqrt(rest / UNIT)
     return Error(0.5 * relative, rest)
 
 
 def _of_function(bounds, more, node, argument):
     """Of one that changes no faster than its argument."""
-    return Error(0.0, plus(bounds.total(argument), more))
+    return Error(0.0, bounds.total(argument))
 
 
 def _as_of_argument(bounds, more, node, argument, unit=None):

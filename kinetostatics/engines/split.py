@@ -47,6 +47,11 @@ def empty(count):
     return np.empty(count, np.float32)
 
 
+@njit(**options)
+def fma(one, other, more):
+    return one * other + more
+
+
 @njit("void({types})", cache=KEEP, **options)
 '''
 """What a compiled loop in single precision has before it: functions without a number in double."""
