@@ -124,7 +124,7 @@ class Scene(Parameters):
         on_gap, engine
             As for `solve`.
         """
-        return _solved(self, self.turn(angles), on_gap, engine)
+        return checked(_begun(self, self.turn(angles), on_gap, engine), on_gap)
 
     def unsolved(self, angle):
         """Motion and forces at crank angles, an array, nothing checked."""
@@ -210,16 +210,16 @@ def solve(
     vars(scene).update(mechanism=mechanism, crank_speed=crank_speed, crank_acceleration=crank_acceleration, loads=loads)
     vars(scene).update(friction=friction)
     scene._admit("solve")
-    return _solved(scene, crank_angle, on_gap, engine)
+    return checked(_begun(scene, crank_angle, on_gap, engine), on_gap)
 
 
-def _solved(scene, crank_angle, on_gap, engine):
+def _begun(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded
-    return checked(solution, on_gap)
+    return solution
 
 
 def unchecked(scene, crank_angle, engine=None):
