@@ -79,10 +79,10 @@ class OnDevice:
     def run(self, given):
         """Outputs (outputs, *shape) of what is handed over."""
         jax = _jax()
-        with _width(jax, given.angle.dtype):
+        with jax.default_device(self._device), _width(jax, given.angle.dtype):
             given = given._replace(parameters=_stacked(given.parameters), rows=_stacked(given.rows))
-            arrays = jax.device_put(tuple(given[:5]), self._device)
-            key = given.shape, *(part.shape for part in given[:5])
+            arrays = given[:5]
+            key = given.shape, *(part.shape for part in arrays)
             if key not in self._compiled:
                 self._compiled[key] = self._traced.lower(*arrays, given.shape).compile(compiler_options=self._options)
             return np.stack([np.asarray(part) for part in self._compiled[key](*arrays)])
@@ -90,7 +90,7 @@ class OnDevice:
 
 def _stacked(parts):
     """Numbers or arrays of shapes that fit as one array: a transfer for each would take longer than computing."""
-    return np.stack(np.broadcast_arrays(*parts)) if parts else np.empty(0)
+    return np.stack(np.broadcast_arrays(*parts)) if parts else np.empty(0, np.float32)
 
 
 @contextmanager

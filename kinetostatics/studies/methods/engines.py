@@ -58,6 +58,7 @@ def proven(solution, quantity):
 def _elsewhere(engine, precision):
     """The recorded program in a precision, or by JAX on the device that it finds, with the bounds that are proven."""
     backend = Backend(engine, precision)
+    bounding = backend if engine == "jax" else Backend("numpy", precision)
 
     def prepare(solution, quantity, setting):
         if engine == "compiled":
@@ -69,7 +70,7 @@ def _elsewhere(engine, precision):
 
     def bound(solution, quantity):
         made, leaves = programs.of(solution.dynamics, (quantity,))
-        return np.linalg.norm(backend.bounds(made, solution.dynamics, leaves), axis=0)
+        return np.linalg.norm(bounding.bounds(made, solution.dynamics, leaves), axis=0)
 
     name = {"numpy": "NumPy", "jax": "JAX"}.get(engine, engine)
     title = f"ours, {name}" + (", single precision" if precision == "single" else "")
