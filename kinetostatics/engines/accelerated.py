@@ -80,17 +80,17 @@ class OnDevice:
         """Outputs (outputs, *shape) of what is handed over."""
         jax = _jax()
         with jax.default_device(self._device), _width(jax, given.angle.dtype):
-            given = given._replace(parameters=_stacked(given.parameters), rows=_stacked(given.rows))
-            arrays = given[:5]
+            dtype = given.angle.dtype
+            arrays = *given[:3], _stacked(given.parameters, dtype), _stacked(given.rows, dtype)
             key = given.shape, *(part.shape for part in arrays)
             if key not in self._compiled:
                 self._compiled[key] = self._traced.lower(*arrays, given.shape).compile(compiler_options=self._options)
             return np.stack([np.asarray(part) for part in self._compiled[key](*arrays)])
 
 
-def _stacked(parts):
+def _stacked(parts, dtype):
     """Numbers or arrays of shapes that fit as one array: a transfer for each would take longer than computing."""
-    return np.stack(np.broadcast_arrays(*parts)) if parts else np.empty(0, np.float32)
+    return np.array(np.broadcast_arrays(*parts), dtype)
 
 
 @contextmanager

@@ -58,7 +58,7 @@ def fma(one, other, more):
 
 
 class Given(NamedTuple):
-    """What is handed over, all of one dtype.
+    """What is handed over: arrays of one dtype, and numbers that NumPy takes to be of the same.
 
     Attributes
     ----------
@@ -99,8 +99,8 @@ class Split:
         if angle.shape[-1:] != shape[-1:]:
             angle = np.broadcast_to(angle, angle.shape[:-1] + shape[-1:])
         with np.errstate(all="ignore"):
-            parameters = [np.asarray(part, dtype) for part in self._fixed_by(leaves.numbers)]
-            rows = [np.asarray(row, dtype) for row in self._whole.rows(state, leaves)]
+            parameters = [_of_type(part, dtype) for part in self._fixed_by(leaves.numbers)]
+            rows = [_of_type(row, dtype) for row in self._whole.rows(state, leaves)]
             angle, sine, cosine = (part.astype(dtype) for part in (angle, *programs._turn(angle)))
         return Given(angle, sine, cosine, parameters, rows, shape)
 
@@ -119,7 +119,7 @@ class Split:
             for start in range(0, given.shape[-1], step):
                 part = slice(start, start + step)
                 turn = [array[..., part] for array in given[:3]]
-                rows = [row[..., part] if row.size > 1 else row for row in given.rows]
+                rows = [row[..., part] if np.size(row) > 1 else row for row in given.rows]
                 own = results[..., part]
                 free = np.empty((count, *own.shape[1:]), own.dtype)
                 batch(*turn, given.parameters, rows, free, own)
@@ -147,6 +147,10 @@ class Split:
         types = ", ".join([writing.GIVEN] * 5 + [writing.FILLED]).format(2, 2, 2, 2, 3, 3)
         header = HEADER.format(rounding=writing.ROUNDING, types=types.replace("float64", "float32"))
         return _loaded(header + source[source.index("def loop(") :]).loop
+
+
+def _of_type(part, dtype):
+    return float(part) if isinstance(part, float) else np.asarray(part, dtype)
 
 
 def _cut(outputs):
