@@ -102,5 +102,5 @@ METHODS = (
     _elsewhere("jax", "double"),
     *(_elsewhere(engine, "single") for engine in ("numpy", "compiled", "jax")),
     Method("ours, torque by powers", _by_power, ours=True),
-    Method("crank angles in single precision", _single_angles),
+    Method("float32 crank angles", _single_angles),
 )
