@@ -9,10 +9,8 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import accelerated, programs
 from kinetostatics.engines.backends import Backend
-from support.elsewhere import errors, exact_values
+from support.elsewhere import diverse, errors, exact_values
 from support.every import every
-
-from .test_split import diverse
 
 
 @pytest.fixture

@@ -7,13 +7,11 @@ import kinetostatics as ks
 from kinetostatics.engines import loops, programs
 from kinetostatics.engines.backends import Backend
 from kinetostatics.engines.split import Split
+from support.elsewhere import ANGLES, PUMP, diverse
 from support.every import every
-from support.scenes import SCENES, SIZES, solve
+from support.scenes import SCENES, solve
 
 NUMPY, COMPILED = Backend("numpy", "single"), Backend("compiled", "single")
-ANGLES = np.linspace(0.0, 6.2, 70)
-PUMP = ks.crank_slider(0.05, 0.2, coupler=ks.Link(0.4, 0.1, 0.001), slider=ks.Link(1.0))
-DIAGRAM = ks.Table([0.15, 0.21, 0.25], [-900.0, -400.0, -100.0], over="travel", back=[-1500.0, -700.0, -800.0])
 
 
 def made(solution, names):
@@ -23,21 +21,6 @@ def made(solution, names):
 def rows(backend, solution, names=("balancing_torque", "O", "A", "slider_acceleration")):
     program, leaves, state = made(solution, names)
     return backend.run(program, state, leaves)
-
-
-def diverse():
-    pumped = ks.Scene(PUMP, 100.0, loads=[ks.ProcessForce(DIAGRAM), ks.Gravity()])
-    rubbed = ks.Scene(PUMP, 100.0, friction={"O": ks.PinFriction(0.1, 0.01)})
-    return {
-        "plain": solve(SCENES["plain"], ANGLES),
-        "designs": solve(SCENES["plain"], ANGLES + SIZES),
-        "one angle": solve(SCENES["plain"], np.array(0.7)),
-        "one angle of a table": pumped.solve(0.7),
-        "table over travel": pumped.solve(ANGLES),
-        "designs under a table": pumped.varied({"slider.mass": np.array([[1.0], [2.0]])}).solve(ANGLES),
-        "friction": rubbed.solve(ANGLES),
-        "speeds": ks.Scene(PUMP, np.linspace(90.0, 110.0, ANGLES.size)).solve(ANGLES),
-    }
 
 
 @every("name", diverse())

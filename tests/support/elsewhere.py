@@ -4,12 +4,34 @@ from typing import NamedTuple
 
 import numpy as np
 
+import kinetostatics as ks
 from kinetostatics.engines import programs
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.numbers.leaves import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
 
+from .scenes import SCENES, SIZES, solve
+
 BITS = 200
+ANGLES = np.linspace(0.0, 6.2, 70)
+PUMP = ks.crank_slider(0.05, 0.2, coupler=ks.Link(0.4, 0.1, 0.001), slider=ks.Link(1.0))
+DIAGRAM = ks.Table([0.15, 0.21, 0.25], [-900.0, -400.0, -100.0], over="travel", back=[-1500.0, -700.0, -800.0])
+
+
+def diverse():
+    """Solutions of every shape, with tables and friction, by name."""
+    pumped = ks.Scene(PUMP, 100.0, loads=[ks.ProcessForce(DIAGRAM), ks.Gravity()])
+    rubbed = ks.Scene(PUMP, 100.0, friction={"O": ks.PinFriction(0.1, 0.01)})
+    return {
+        "plain": solve(SCENES["plain"], ANGLES),
+        "designs": solve(SCENES["plain"], ANGLES + SIZES),
+        "one angle": solve(SCENES["plain"], np.array(0.7)),
+        "one angle of a table": pumped.solve(0.7),
+        "table over travel": pumped.solve(ANGLES),
+        "designs under a table": pumped.varied({"slider.mass": np.array([[1.0], [2.0]])}).solve(ANGLES),
+        "friction": rubbed.solve(ANGLES),
+        "speeds": ks.Scene(PUMP, np.linspace(90.0, 110.0, ANGLES.size)).solve(ANGLES),
+    }
 
 
 class Found(NamedTuple):
