@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..engines import programs
+from ..engines.backends import Backend
 from ..engines.bounds import of_magnitude
 from ..errors import QuantityError
 from ..mechanics import quantities
@@ -169,7 +170,8 @@ class Certainty(Parameters):
         state = kept.dynamics
         program, leaves = programs.of(state, (name,))
         found = leaves_of(self.places, state)
-        return slopes(program, {path: found[path] for path in by}, state, leaves, self.engine.compiled)[name]
+        backend = Backend("compiled" if self.engine.compiled else "numpy")
+        return slopes(program, {path: found[path] for path in by}, state, leaves, backend)[name]
 
     def _with_bounds(self, name, tight=False):
         """Values of a quantity, and bounds on their errors."""

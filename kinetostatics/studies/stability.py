@@ -30,7 +30,7 @@ METHOD_SETTINGS = {
     "ours, NumPy": None,
     "ours, compiled": None,
     "ours, torque by powers": None,
-    "single precision": None,
+    "float32 crank angles": None,
     "papers' formulas": None,
     "SymPy Kane, lambdified": None,
     "Newton iteration, global system": 6,

@@ -74,6 +74,8 @@ def work_precision(table, ax=None, like=None):
         if len(rows):
             setting = rows["setting"].iloc[0]
             text = f"{name} ({setting})" if setting else name
+            device = rows["device"].iloc[0] if "device" in rows else "cpu"
+            text += "" if device == "cpu" else f", on {device}"
             ax.plot(rows[time], np.maximum(rows["error"], EXACT), label=text, **style)
             proven = rows.dropna(subset=["bound"]) if "bound" in rows else rows.assign(bound=np.nan)[:0]
             ax.vlines(proven[time], np.maximum(proven["error"], EXACT), proven["bound"], color=style["color"], lw=1.0)

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
 NEWTON, KANE, PAPERS = "Newton iteration, global system", "SymPy Kane, lambdified", "papers' formulas"
-SINGLE, SERIES, MASSES = "single precision", "harmonic series", "two-mass coupler"
+SINGLE, SERIES, MASSES = "float32 crank angles", "harmonic series", "two-mass coupler"
 SECOND, FOURTH = "differences, 2nd order", "differences, 4th order"
 COARSE = {SINGLE: ["lost"], SECOND: ["lost"], FOURTH: ["lost"], SERIES: ["lost"], MASSES: ["lost"]}
 """What never has all digits of a force."""
