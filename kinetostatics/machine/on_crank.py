@@ -17,12 +17,19 @@ with the upper signs for the coupler, the lower ones for the rocker, and their s
     a d / (2 b h sine^3) (((d-a)^2 - (b-h)^2) C far - ((b+h)^2 - (d+a)^2) S near) / (2 b h)
 """
 
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, total
-from ..numbers.planar import cross, dot, length, unturned
+from ..numbers.planar import cross, dot, length, number, turned, unturned
 from .links import present
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less."""
+CLOSE = 2.0**-5
+"""Share of the longest length up to which a length differs little from what others leave it."""
 UNSEEN = 2.0**-400
 """Distance, m, that gives nothing a direction, and changes no digit of another."""
 TERMS = {
@@ -44,24 +51,55 @@ TERMS = {
 """What hand calculations call lines of the kernels, and what they are."""
 
 
-def place(placement, on, coupler_length, rocker_length, pivot, assembly):
-    """Direction, ratio and slope of coupler and of rocker, and what follows in `RockerMotion`, for a pin (kernel)."""
+class Seen(NamedTuple):
+    """The line from a pin of the crank to a pivot.
+
+    Attributes
+    ----------
+    ground : float or array
+        From O to the pivot.
+    turn : array
+        Sine of the crank angle from that direction.
+    near_by, far_off : array
+        Squared distances of the crank ray from that direction and from its opposite.
+    d : vector
+        From the pin to the pivot.
+    square : array
+        Square of that distance.
+    """
+
+    ground: Any
+    turn: Any
+    near_by: Any
+    far_off: Any
+    d: Any
+    square: Any
+
+
+def seen(placement, on, pivot):
+    """The pivot as a pin of the crank sees it (kernel)."""
     a, ahead = placement.throws[on].polar
-    b, h, (x, y) = coupler_length, rocker_length, pivot
-    gap, both, product = b - h, b + h, 2.0 * b * h
+    (x, y), ray = pivot, placement.ray
     if present(y) is None and ahead is None:
         ground, way = abs(x), (x + UNSEEN) / abs(x + UNSEEN)
-        turn, near_by, far_off = _seen(placement.ray, (way, None))
+        turn, square = way * ray[1], ray[1] * ray[1]
+        near, far = ray[0] - way, ray[0] + way
+        near_by, far_off = near * near + square, far * far + square
         along, across = apart(ground - a + 0.5 * a * near_by, 2.0**90 * UNSEEN), a * turn
-        square = along * along + across * across
-        d = (way * along, -way * across)
-    else:
-        ground, start = length(pivot), unturned((x + UNSEEN, y), ahead)
-        turn, near_by, far_off = _seen(placement.ray, (start[0] / ground, start[1] / ground))
-        inner = placement.joints[on].position
-        d = (apart(x - inner[0], both), y - inner[1])
-        square = dot(d, d)
+        return Seen(ground, turn, near_by, far_off, (way * along, -way * across), along * along + across * across)
+    ground, start = length(pivot), unturned((x + UNSEEN, y), ahead)
+    start = (start[0] / ground, start[1] / ground)
+    near, far = (ray[0] - start[0], ray[1] - start[1]), (ray[0] + start[0], ray[1] + start[1])
+    inner = placement.joints[on].position
+    d = (apart(x - inner[0], ground + a), y - inner[1])
+    return Seen(ground, cross(start, ray), dot(near, near), dot(far, far), d, dot(d, d))
 
+
+def place(placement, on, coupler_length, rocker_length, pivot, assembly):
+    """Direction, ratio and slope of coupler and of rocker, and what follows in `RockerMotion`, for a pin (kernel)."""
+    a, b, h = placement.throws[on].polar[0], coupler_length, rocker_length
+    gap, both, product = b - h, b + h, 2.0 * b * h
+    ground, turn, near_by, far_off, d, square = seen(placement, on, pivot)
     unit = 4.0 * product
     near_c = total(ground, h, -a, -b) * total(ground, b, -a, -h) / unit
     near_s = total(ground, a, h, -b) * total(ground, a, b, -h) / unit
@@ -90,12 +128,56 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly):
     return coupler, rocker, sine, (b * b + h * h - square) / product, divided, closure
 
 
-def _seen(ray, start):
-    """Sine of the crank angle from a direction, and squared distances of the ray from that and from its opposite."""
-    x, y = ray
-    if start[1] is None:
-        square = y * y
-        near, far = x - start[0], x + start[0]
-        return start[0] * y, near * near + square, far * far + square
-    near, far = (x - start[0], y - start[1]), (x + start[0], y + start[1])
-    return cross(start, ray), dot(near, near), dot(far, far)
+def slid(placement, on, coupler_length, guide, assembly):
+    """Reach of a coupler along the guide, its rate and the slope of that, what to divide by, and closure (kernel)."""
+    r, ahead = placement.throws[on].polar
+    length, offset = coupler_length, number(guide.offset)
+    ray = placement.ray if ahead is None else turned(placement.ray, ahead)
+    x, y = unturned(ray, guide.direction)
+    square, low, high = x * x, 1.0 + y, 1.0 - y
+    below, above = low * low + square, high * high + square
+    unit = 4.0 * length
+    low, less = total(length, -offset, r) / unit * below, total(length, -offset, -r) / unit * above
+    high, more = total(length, offset, r) / unit * above, total(length, offset, -r) / unit * below
+    low, high = low + less, high + more
+    closure = low * high
+    size = root(closure, 1.0)
+    divided = assembly * divisor(size, SMALLEST)
+    inverse, turning = 1.0 / divided, r / length
+    ratio = -turning * x * inverse
+    slope = turning * (more * low - less * high) * (inverse * inverse * inverse)
+    return assembly * length * size, ratio, slope, divided, closure
+
+
+def slotted(placement, on, pivot, offset, assembly):
+    """Direction of a slotted lever, its ratio and the slope of that, reach, what to divide by, and closure (kernel)."""
+    a = placement.throws[on].polar[0]
+    ground, turn, near_by, far_off, d, square = seen(placement, on, pivot)
+    o, over, swept = number(offset), 1.0 / square, a * ground * turn
+    near_c = 0.25 * total(ground, -a, -o) * total(ground, -a, o)
+    near_s = 0.25 * total(ground, a, -o) * total(ground, a, o)
+    near = near_c * far_off + near_s * near_by
+    size = root(near, square)
+    reach, divided = assembly * size, assembly * divisor(size, SMALLEST * ground)
+    along, across = reach * over, o * over
+    direction = (-along * d[0] - across * d[1], across * d[0] - along * d[1])
+    inverse = 1.0 / divided
+    rate = swept * inverse
+    bend = a * ground * (near_c * far_off - 0.25 * near_by * near) * (inverse * inverse * inverse)
+    turning, change = 0.5 * (ground - a) * (ground + a) * over, 2.0 * swept * over
+    ratio = 0.5 - turning + across * rate
+    slope = change * (turning - across * rate) + across * bend
+    return direction, ratio, slope, reach, divided, near / (square + a * a)
+
+
+def is_small(throw, offset, length):
+    """Whether the difference of a length, more or less an offset, and the radius of a pin is small, in any design."""
+    radius = throw.at[0] if throw.ahead else None
+    if not type(radius) is type(offset) is type(length) is float:
+        if not all(map(checks.known, (*throw.at, offset, length))):
+            return False
+        radius, offset, length = map(np.asarray, (throw.polar[0], offset, length))
+    far, near = abs(length + offset) - radius, abs(length - offset) - radius
+    unit = CLOSE * (length + radius)
+    found = (abs(far) < unit) | (abs(near) < unit)
+    return found if type(found) is bool else bool(np.any(found))
