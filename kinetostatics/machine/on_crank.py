@@ -26,27 +26,31 @@ from ..numbers.elementary import apart, divisor, root, total
 from ..numbers.planar import cross, dot, length, number, turned, unturned
 from .links import present
 
-SMALLEST = 2.0**-53
-"""Sine of the transmission angle that is not divided by less."""
+SMALLEST = 2.0**-100
+"""Roots of closure, sines and cosines, that are not divided by less."""
 CLOSE = 2.0**-5
 """Share of the longest length up to which a length differs little from what others leave it."""
 UNSEEN = 2.0**-400
 """Distance, m, that gives nothing a direction, and changes no digit of another."""
 TERMS = {
-    "near_by": ("s", "square of the distance of the crank ray from the direction of the pivot"),
-    "far_off": ("c", "square of the distance of the crank ray from the opposite of that"),
-    "turn": ("sin psi", "sine of the crank angle from that direction"),
-    "near": ("N", "part of the squared sine that vanishes where A is nearest to the pivot"),
-    "far": ("F", "part of the squared sine that vanishes where A is farthest from the pivot"),
+    "ground": ("g", "from O to the pivot"),
+    "turn": ("s", "sine of the crank angle from the direction of the pivot"),
+    "near_by": ("m", "square of the distance of the crank ray from that direction"),
+    "far_off": ("n", "square of the distance of the crank ray from the opposite of that"),
     "d": ("d", "from the inner joint to the pivot"),
     "square": ("D", "square of that distance"),
-    "share": ("xi", "by which the pin lies along it beyond its middle"),
-    "size": ("sigma", "sine of the transmission angle, not below zero"),
-    "divided": ("sigma", "sine of the transmission angle"),
-    "cosine": ("kappa", "cosine of the transmission angle"),
-    "rate": ("z", "rate at which the triangle of both links opens"),
+    "near": ("N", "factor that is smallest where the crank points to the pivot"),
+    "far": ("F", "factor that is smallest where the crank points away from the pivot"),
+    "sine": ("sigma", "sine of the transmission angle"),
+    "place.share": ("xi", "share of d by which the pin lies along it beyond the middle"),
+    "slid.near_by": ("m", "square of the distance of the crank ray from the left normal of the guide"),
+    "slid.near": ("N", "factor that is smallest where the crank points along the right normal of the guide"),
+    "slid.far": ("F", "factor that is smallest where the crank points along the left normal of the guide"),
+    "slid.far_off": ("n", "square of the distance of the crank ray from the right normal of the guide"),
+    "inverse": ("i", "one over what rates and forces are divided by"),
+    "rate": ("z", "rate at which the links turn besides d"),
     "bend": ("z'", "derivative by phi of that"),
-    "turning": ("q", "rate of the line from the joint to the pivot, less a half"),
+    "turning": ("q", "half less the rate of d"),
 }
 """What hand calculations call lines of the kernels, and what they are."""
 
@@ -82,17 +86,17 @@ def seen(placement, on, pivot):
     (x, y), ray = pivot, placement.ray
     if present(y) is None and ahead is None:
         ground, way = abs(x), (x + UNSEEN) / abs(x + UNSEEN)
-        turn, square = way * ray[1], ray[1] * ray[1]
-        near, far = ray[0] - way, ray[0] + way
-        near_by, far_off = near * near + square, far * far + square
+        turn, aside = way * ray[1], ray[1] * ray[1]
+        less, more = ray[0] - way, ray[0] + way
+        near_by, far_off = less * less + aside, more * more + aside
         along, across = apart(ground - a + 0.5 * a * near_by, 2.0**90 * UNSEEN), a * turn
         return Seen(ground, turn, near_by, far_off, (way * along, -way * across), along * along + across * across)
-    ground, start = length(pivot), unturned((x + UNSEEN, y), ahead)
+    ground, start = length(pivot) if present(x) is not None else abs(y), unturned((x + UNSEEN, y), ahead)
     start = (start[0] / ground, start[1] / ground)
-    near, far = (ray[0] - start[0], ray[1] - start[1]), (ray[0] + start[0], ray[1] + start[1])
+    less, more = (ray[0] - start[0], ray[1] - start[1]), (ray[0] + start[0], ray[1] + start[1])
     inner = placement.joints[on].position
     d = (apart(x - inner[0], ground + a), y - inner[1])
-    return Seen(ground, cross(start, ray), dot(near, near), dot(far, far), d, dot(d, d))
+    return Seen(ground, cross(start, ray), dot(less, less), dot(more, more), d, dot(d, d))
 
 
 def place(placement, on, coupler_length, rocker_length, pivot, assembly):
@@ -129,24 +133,26 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly):
 
 
 def slid(placement, on, coupler_length, guide, assembly):
-    """Reach of a coupler along the guide, its rate and the slope of that, what to divide by, and closure (kernel)."""
+    """Reach of a coupler along the guide, its rate and the slope of that, what to divide by, and closure (kernel).
+
+    With y the sine of the crank angle from the guide, an offset e and a coupler l on a crank r the factors of closure
+    are l - e + r y and l + e - r y over l, parted by (1 + y) / 2 and (1 - y) / 2.
+    """
     r, ahead = placement.throws[on].polar
     length, offset = coupler_length, number(guide.offset)
-    ray = placement.ray if ahead is None else turned(placement.ray, ahead)
-    x, y = unturned(ray, guide.direction)
-    square, low, high = x * x, 1.0 + y, 1.0 - y
-    below, above = low * low + square, high * high + square
+    x, y = unturned(placement.ray if ahead is None else turned(placement.ray, ahead), guide.direction)
+    aside, less, more = x * x, 1.0 - y, 1.0 + y
+    near_by, far_off = less * less + aside, more * more + aside
     unit = 4.0 * length
-    low, less = total(length, -offset, r) / unit * below, total(length, -offset, -r) / unit * above
-    high, more = total(length, offset, r) / unit * above, total(length, offset, -r) / unit * below
-    low, high = low + less, high + more
-    closure = low * high
+    low, high = total(length, -offset, -r) / unit * near_by, total(length, offset, -r) / unit * far_off
+    near = low + total(length, -offset, r) / unit * far_off
+    far = high + total(length, offset, r) / unit * near_by
+    closure = near * far
     size = root(closure, 1.0)
     divided = assembly * divisor(size, SMALLEST)
-    inverse, turning = 1.0 / divided, r / length
-    ratio = -turning * x * inverse
-    slope = turning * (more * low - less * high) * (inverse * inverse * inverse)
-    return assembly * length * size, ratio, slope, divided, closure
+    inverse, share = 1.0 / divided, r / length
+    bend = share * (high * near - low * far) * (inverse * inverse * inverse)
+    return assembly * length * size, -share * x * inverse, bend, divided, closure
 
 
 def slotted(placement, on, pivot, offset, assembly):

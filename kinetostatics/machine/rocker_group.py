@@ -97,7 +97,7 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
 
 
-def _on_crank(placement, on, coupler_length, rocker_length, pivot, assembly):
+def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly):
     """The same for a pin of the crank (kernel)."""
     coupler, rocker, *rest = on_crank.place(placement, on, coupler_length, rocker_length, pivot, assembly)
     pin, fixed = tip(pivot, rocker_length, *rocker), Joint(pivot, None, None)
@@ -252,7 +252,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         if self.passage:
             motion = passing.place(placement, self.on, *given, self.passage, self.side)
         elif self.on in placement.throws:
-            motion = _on_crank(placement, self.on, *given, self.side)
+            motion = turned_by_crank(placement, self.on, *given, self.side)
         else:
             motion = place(placement.joints[self.on], *given, self.side)
         self._set(placement, motion)

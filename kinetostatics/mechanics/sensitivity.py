@@ -302,17 +302,21 @@ def _terms(solution):
     gravity = 0.0 if solution.gravity is None else _Sized(solution.gravity).size
     found = {}
     for part in (solution.mechanism.crank, *solution.mechanism.groups):
-        joints = [placement.joints[name] for bar in part.bars for name in (bar.start, bar.end)]
+        of_bars = [placement.joints[name] for bar in part.bars for name in (bar.start, bar.end)]
+        of_all = [placement.joints[name] for name in (*part.hangs_on, *part.joints)]
         lengths = {bar.link: _number(bar.length).value for bar in part.bars}
         for name in part.links:
             link, body = placement.links[name], bodies[name]
+            joints = of_bars
+            if name not in lengths and link.ratio is not None:  # a lever is as long as its block is far
+                joints, lengths[name] = of_all, _farthest(link.joint.position, of_all)
             to_centre = arm(link.direction, body.along, body.across)
             firsts = [first_at(link, to_centre), *(joint.first for joint in joints)]
             seconds = [second_at(link, to_centre), *(joint.second for joint in joints)]
             speed, acceleration = (
                 reduce(np.maximum, (_Sized(vector(one)).certain for one in ones)) for ones in (firsts, seconds)
             )
-            length = lengths.get(name, np.inf)
+            length = lengths.get(name, np.inf)  # what does not turn has none
             rate = np.maximum(_Sized(link.ratio).certain, speed / length)
             rate_change = np.maximum(rate * rate, acceleration / length)
             mass, inertia = _number(body.mass).value, _number(body.inertia).value
@@ -320,6 +324,13 @@ def _terms(solution):
             moment = inertia * (square * rate_change + alpha * rate)
             found[name] = _Terms(speed, acceleration, rate, rate_change, force, moment, length)
     return found
+
+
+def _farthest(place, joints):
+    """Distance of the farthest of joints from a place; infinite if there is no other."""
+    gaps = ([_number(one - other).value for one, other in zip(joint.position, place, strict=True)] for joint in joints)
+    found = reduce(np.maximum, (np.hypot(*gap) for gap in gaps), 0.0)
+    return np.where(found > 0.0, found, np.inf)
 
 
 def _of_forces(solution, links, largest_pushes, reactions):
