@@ -105,7 +105,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly):
     gap, both, product = b - h, b + h, 2.0 * b * h
     ground, turn, near_by, far_off, d, square = seen(placement, on, pivot)
     unit = 4.0 * product
-    near_c = total(ground, h, -a, -b) * total(ground, b, -a, -h) / unit
+    near_c = total(ground, h, -a, -b) * total(ground, b, -a, -h) / unit + UNSEEN * UNSEEN / unit
     near_s = total(ground, a, h, -b) * total(ground, a, b, -h) / unit
     far_c = total(a, b, h, -ground) * total(ground, b, h, -a) / unit
     far_s = total(b, h, -ground, -a) * (both + ground + a) / unit

@@ -110,10 +110,13 @@ def total(*terms):
     """Sum of up to four numbers, rounded as if once: what cancels leaves the digits that the numbers have.
 
     What each sum loses is found exactly, twice (Ogita, Rump and Oishi 2005, *Accurate sum and dot product*, SumK).
+    Enclosures and others of any precision need no help from rounding.
     """
     recorded = next((term for term in terms if hasattr(term, "total_with")), None)
     if recorded is not None:
         return recorded.total_with(terms)
+    if not all(isinstance(term, float) or getattr(term, "dtype", _OBJECT) != _OBJECT for term in terms):
+        return sum(terms)
     *lost, whole = _summed(_summed(terms))
     return whole + sum(lost)
 
