@@ -228,7 +228,7 @@ class Passer:
         return with_fields(self, passage=passage, is_close=is_close)
 
     def comes_close(self, throw):
-        """Whether its lengths make it pass so close by a limit position that digits are saved there by other formulas."""
+        """Whether it only just clears a limit position, where other formulas save digits."""
         return False
 
     def kink(self, throws):

@@ -95,7 +95,7 @@ def seen(placement, on, pivot):
     start = (start[0] / ground, start[1] / ground)
     less, more = (ray[0] - start[0], ray[1] - start[1]), (ray[0] + start[0], ray[1] + start[1])
     inner = placement.joints[on].position
-    d = (apart(x - inner[0], ground + a), y - inner[1])
+    d = (apart(x - inner[0], 2.0**90 * UNSEEN), y - inner[1])
     return Seen(ground, cross(start, ray), dot(less, less), dot(more, more), d, dot(d, d))
 
 
@@ -105,11 +105,12 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly):
     gap, both, product = b - h, b + h, 2.0 * b * h
     ground, turn, near_by, far_off, d, square = seen(placement, on, pivot)
     unit = 4.0 * product
-    near_c = total(ground, h, -a, -b) * total(ground, b, -a, -h) / unit + UNSEEN * UNSEEN / unit
+    near_c = total(ground, h, -a, -b) * total(ground, b, -a, -h) / unit
     near_s = total(ground, a, h, -b) * total(ground, a, b, -h) / unit
     far_c = total(a, b, h, -ground) * total(ground, b, h, -a) / unit
     far_s = total(b, h, -ground, -a) * (both + ground + a) / unit
-    near, far = near_c * far_off + near_s * near_by, far_c * far_off + far_s * near_by
+    near = apart(near_c * far_off + near_s * near_by, 2.0**90 * UNSEEN * UNSEEN / product)  # where A meets the pivot
+    far = far_c * far_off + far_s * near_by
     closure = far * near
     size = root(closure, 1.0)
     sine, divided = assembly * size, assembly * divisor(size, SMALLEST)

@@ -10,8 +10,8 @@ from kinetostatics import ConditionWarning
 from kinetostatics.engines.record import record
 from kinetostatics.engines.trace import BY_ANGLE, needed
 from kinetostatics.machine import lever_group, on_crank, rocker_group, slider_group
-from kinetostatics.machine.guide import Line
 from kinetostatics.machine.group import Throw
+from kinetostatics.machine.guide import Line
 from support.every import every
 
 TURN = np.linspace(-7.0, 7.0, 41)
@@ -35,7 +35,9 @@ def same(one, other, closure):
     good = closure > 1e-3
     assert good.any() or not (closure > 0).any()
     for a, b in zip(one, other, strict=True):
-        np.testing.assert_allclose(np.broadcast_to(a, TURN.shape)[good], np.broadcast_to(b, TURN.shape)[good], atol=1e-9)
+        np.testing.assert_allclose(
+            np.broadcast_to(a, TURN.shape)[good], np.broadcast_to(b, TURN.shape)[good], atol=1e-9
+        )
 
 
 def link(motion):
@@ -85,7 +87,7 @@ def test_a_slider_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
         same((*found.travel, *found[2:6]), (*wanted.travel, *wanted[2:6]), wanted.closure)
 
 
-def test_a_pivot_at_O_and_a_pin_that_meets_its_pivot_have_finite_motions():
+def test_a_pivot_at_the_crank_centre_and_a_pin_that_meets_its_pivot_have_finite_motions():
     together = ks.solve(ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=(0.0, 0.0)), TURN, crank_speed=1.0)
     np.testing.assert_allclose(together.rate("rocker"), 1.0, rtol=1e-14)
     with pytest.warns(ConditionWarning):
@@ -128,7 +130,8 @@ def counted(structure):
 
 
 def test_a_four_bar_on_the_crank_takes_few_more_operations_and_fewer_divisions(monkeypatch):
-    scene = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(3.0, 0.1, 0.1)), 9.0)
+    links = {name: ks.Link(3.0, 0.1, 0.1) for name in ("coupler", "rocker")}
+    scene = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), **links), 9.0)
     structure, _ = scene.solve(3).apart
     whole, slow = counted(structure)
 
@@ -137,5 +140,5 @@ def test_a_four_bar_on_the_crank_takes_few_more_operations_and_fewer_divisions(m
 
     monkeypatch.setattr(rocker_group, "turned_by_crank", general)
     whole_before, slow_before = counted(structure)
-    assert whole <= 1.1 * whole_before
+    assert whole <= 1.06 * whole_before
     assert slow < slow_before
