@@ -8,6 +8,8 @@ inputs gives a number within ``UNIT (k |v| + E)`` of v. Products, quotients and 
 
 import math
 from collections.abc import Callable
+from functools import reduce
+from operator import add
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -93,6 +95,8 @@ class Bounds:
         kind, arguments = node.operation, node.arguments
         if kind in ("*", "/"):
             return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, DUST)
+        if kind == "total":
+            return Error(1.0, (216.0 * UNIT * UNIT) * reduce(add, map(size, arguments)))
         if kind in ("+", "-"):
             return Error(1.0, None) if len(arguments) == 2 else EXACT
         if kind == "divisor":  # none is proven where the guard may act
@@ -190,7 +194,7 @@ def _is_scaling(part):
 def _of_sum(bounds, more, node, *parts):
     if len(parts) == 1:
         return bounds.error(parts[0])
-    return Error(0.0, plus(*(bounds.total(part) for part in parts)))
+    return Error(0.0, reduce(plus, (bounds.total(part) for part in parts), more))
 
 
 def _of_product(bounds, more, node, left, right):
@@ -231,6 +235,7 @@ def _as_of_argument(bounds, more, node, argument, unit=None):
 
 
 _CARRIED: dict[str, Callable[..., Error]] = {
+    "total": _of_sum,
     "+": _of_sum,
     "-": _of_sum,
     "*": _of_product,
@@ -248,6 +253,7 @@ _CARRIED: dict[str, Callable[..., Error]] = {
 _CAPS: dict[str, Callable[..., float]] = {
     "parameter": lambda: CAP,
     "table": lambda: CAP,
+    "total": lambda *parts: sum(parts),
     "+": lambda left, right: left + right,
     "-": lambda *parts: sum(parts),
     "*": lambda left, right: left * right,

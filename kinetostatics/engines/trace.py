@@ -91,6 +91,10 @@ class Node:
     def moved_apart(self, unit):
         return self + APART * unit
 
+    def total_with(self, terms):
+        """Called by `elementary.total`."""
+        return self.graph.node("total", *terms, *[0.0] * (4 - len(terms)))
+
     def _unknown(self, other=None):
         raise TypeError("the value of a recorded number is not known yet: kernels must not branch on values")
 

@@ -287,6 +287,9 @@ class Group:
     passage = ""
     """How it passes change points, which belongs to its structure; "" where there are none."""
 
+    may_pass = False
+    """Whether there may be change points on a crank, or limit positions that it only just clears."""
+
     @property
     def passes(self):
         """Whether it passes change points: motion is smooth there, but forces grow without bound."""

@@ -1,5 +1,7 @@
 """Bounds on rounding errors: never less than the true error, and not much more."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from kinetostatics import ConditionWarning
 from kinetostatics.engines import bounds, loops, programs
 from kinetostatics.engines.compiled import available
 from kinetostatics.engines.trace import Graph
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.elementary import UNIT, total
 from kinetostatics.studies.methods.enclosures import enclosure
 from support.bounded import FAMILIES, errors, solution
 from support.every import every
@@ -137,3 +139,14 @@ def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(f
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
         error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
     assert max(error) <= bounds.ULP.get(function, bounds.ULP["atan"]) * UNIT
+
+
+def test_a_total_of_given_numbers_is_bounded_by_one_rounding_of_itself():
+    graph = Graph()
+    parts = [graph.parameter(place) for place in range(4)]
+    values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
+    whole = math.fsum(values)
+    bound, carried = bounds_of(graph, (total(*parts), total(parts[0] * parts[1], parts[2], parts[3])), values)
+    assert 1e-17 < abs(whole) < 1e-16
+    assert abs(whole) * UNIT <= bound < 1.001 * abs(whole) * UNIT
+    assert carried == pytest.approx(0.18 * UNIT + abs(0.18 - 0.9) * UNIT, rel=1e-8)
