@@ -52,6 +52,14 @@ def _run(group):
     command = _command(group, "run", commands.run, "extremes of every force, with the power check")
     command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
     command.add_argument("--angles", type=_angles, default=720, metavar="N", help="crank angles over the turn (720)")
+    command.add_argument(
+        "--uncertain",
+        action="append",
+        type=_text,
+        metavar="PATH=SIZE",
+        help='also how sure the largest values are: standard uncertainty of a number, "crank_length=0.01 mm", or '
+        '"tolerances" for those of the case file',
+    )
     _for_machines(command, "all results, a row for each crank angle")
 
 

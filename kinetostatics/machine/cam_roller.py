@@ -15,8 +15,9 @@ from ..numbers import checks
 from ..numbers.elementary import atan, sqrt
 from ..numbers.planar import cross, dot, minus, polar_curvature, vector
 from .crank import ray
+from .declared import Led, Slot
 from .friction import Rolling, Slide, Sliding
-from .group import Group, Output, Point, Resolved, Slot
+from .group import FRAME, Group, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench
 from .roller import Roller, Touch
 
@@ -156,6 +157,10 @@ class CamRoller(checks.Checked, Group):
     @property
     def slots(self):
         return (Slot("crank", "A"),)
+
+    @property
+    def led(self):
+        return (Led("block", "A", FRAME, "cam_force"),)
 
     @property
     def curves(self):

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from ..engines import programs
-from ..engines.bounds import SAFE
+from ..engines.bounds import of_magnitude
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..numbers import checks
-from ..numbers.elementary import UNIT, read_only
+from ..numbers.elementary import read_only
 from .parameters import Parameters, fixed, is_zero, leaves_of, require_free, with_kept
 from .slopes import slopes
 
@@ -110,8 +110,7 @@ class Certainty(Parameters):
         if tight:
             bounds = np.fmin(bounds, self._with_bounds(name, tight)[1])
         if name != quantity:
-            values = np.hypot(*values)
-            bounds = np.hypot(*bounds) * SAFE + 4 * UNIT * values
+            values, bounds = np.hypot(*values), of_magnitude(values, bounds)
         return read_only(np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds)))[()]
 
     def uncertainty(self, quantity, inputs):

@@ -73,6 +73,7 @@ def test_mechanism_is_drawn_where_the_solution_puts_it(saw, axes):
     assert any(np.allclose(line.get_xydata()[-1], ends[:, 0]) for line in axes.lines if len(line.get_xdata()) == 2)
 
 
+@pytest.mark.slow
 def test_animation_moves_bars_and_force_arrows_and_saves_as_gif(saw, axes, tmp_path):
     film = ks.plots.animation(saw["cam-circle"], joints=("O", "A", "guide"), frames=4, ax=axes)
     assert isinstance(film, FuncAnimation)

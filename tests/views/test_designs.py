@@ -18,6 +18,7 @@ def found(case):
     return {name: item.find() for name, item in case.designs.items()}
 
 
+@pytest.mark.slow
 def test_every_design_has_its_page(case, found, tmp_path):
     paths = designs.draw_designs(case, found, tmp_path / "new", "svg")
     assert [path.name for path in paths] == ["saw_stiffer.svg", "saw_trade.svg"]
