@@ -209,8 +209,7 @@ class Passer:
     assembly: Any
     passage: Any
     on: str
-    may_pass = True
-    is_close = False
+    is_close = may_come_close = False
     through: bool
     found_on: Any
     start: Any
@@ -222,7 +221,7 @@ class Passer:
 
     def on_crank(self, throws):
         passage = self.found_on(throws) if self.through else ""
-        is_close = not passage and self.on in throws and self.comes_close(throws[self.on])
+        is_close = not passage and self.may_come_close and self.on in throws and self.comes_close(throws[self.on])
         if (passage, is_close) == (self.passage, self.is_close):
             return self
         return with_fields(self, passage=passage, is_close=is_close)

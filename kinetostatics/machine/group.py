@@ -287,8 +287,8 @@ class Group:
     passage = ""
     """How it passes change points, which belongs to its structure; "" where there are none."""
 
-    may_pass = False
-    """Whether there may be change points on a crank, or limit positions that it only just clears."""
+    may_come_close = False
+    """Whether its kind has other formulas where it only just clears a limit position."""
 
     @property
     def passes(self):

@@ -91,8 +91,9 @@ def seen(placement, on, pivot):
         near_by, far_off = less * less + aside, more * more + aside
         along, across = apart(ground - a + 0.5 * a * near_by, 2.0**90 * UNSEEN), a * turn
         return Seen(ground, turn, near_by, far_off, (way * along, -way * across), along * along + across * across)
-    ground, start = length(pivot) if present(x) is not None else abs(y), unturned((x + UNSEEN, y), ahead)
-    start = (start[0] / ground, start[1] / ground)
+    ground, start = length(pivot) if present(x) is not None else abs(y), (x + UNSEEN, y)
+    size = length(start)
+    start = unturned((start[0] / size, start[1] / size), ahead)
     less, more = (ray[0] - start[0], ray[1] - start[1]), (ray[0] + start[0], ray[1] + start[1])
     inner = placement.joints[on].position
     d = (apart(x - inner[0], 2.0**90 * UNSEEN), y - inner[1])

@@ -90,6 +90,8 @@ def test_a_slider_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
 def test_a_pivot_at_the_crank_centre_and_a_pin_that_meets_its_pivot_have_finite_motions():
     together = ks.solve(ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=(0.0, 0.0)), TURN, crank_speed=1.0)
     np.testing.assert_allclose(together.rate("rocker"), 1.0, rtol=1e-14)
+    many = ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=(np.array([[0.0], [0.2]]), np.array([[0.0], [0.1]])))
+    np.testing.assert_allclose(ks.solve(many, TURN, crank_speed=1.0, on_gap="nan").rate("rocker")[0], 1.0, rtol=1e-14)
     with pytest.warns(ConditionWarning):
         met = ks.solve(ks.four_bar(0.5, 0.4, 0.4, rocker_pivot=(0.5, 0.0)), [0.0, 1e-30, 0.1], crank_speed=1.0)
     assert np.isfinite(met.position("B")).all()
