@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .derivatives import adjoints
 from .trace import INPUTS, Node, needed
 
 SAFE = 1.0 + 1e-9
@@ -46,14 +45,17 @@ class Bounds:
     graph : Graph
     inputs : mapping of Node to function
         ``input(bounds) -> Error`` of inputs that are not exact.
+    stretch : float
+        How many times larger than proven terms of second order are taken, see `tight`.
     """
 
-    def __init__(self, graph, inputs=None):
-        self._graph, self._inputs = graph, inputs or {}
+    def __init__(self, graph, inputs=None, stretch=1.0):
+        self._graph, self._inputs, self.second = graph, inputs or {}, stretch * UNIT
         self._errors: dict[Node, Error] = {}
         self._totals: dict[Node, Any] = {}
         self._clear: dict[Node, Any] = {}
         self._over: dict[Node, Any] = {}
+        self._steepest: dict[Node, Any] = {}
         self._caps: dict[Node, float | None] = {}
 
     def of(self, outputs):
@@ -61,23 +63,7 @@ class Bounds:
         for node in needed(outputs):
             if node not in self._errors:
                 self._errors[node] = self._found(node)
-        return tuple(_whole(self.total(part)) for part in outputs)
-
-    def tight(self, output):
-        """A bound for one output, as `of` gives it, from what the error of each operation makes of the output.
-
-        Derivatives of the output say so, bounded for all values within the bounds of `of`.
-        """
-        self.of([output])
-        unsure = {node for node in needed([output]) if self.total(node) is not None}
-        slopes = adjoints(self._graph, output, unsure) if output in unsure else {}
-        self.of(slopes.values())
-        total = DUST if slopes else None
-        for node, slope in slopes.items():  # what derivatives hold comes with its whole error
-            own = self.total(node) if node.operation in (*INPUTS, "held") else self._sum(self.own(node), node)
-            if own is not None:
-                total = self.fused(self.largest(slope), own, total)
-        return _whole(total)
+        return tuple(whole(self.total(part)) for part in outputs)
 
     def _found(self, node):
         if node.operation in INPUTS:
@@ -96,7 +82,8 @@ class Bounds:
         if kind == "divisor":  # none is proven where the guard may act
             root, unit = arguments
             return Error(0.0, 0.0 / self.above(root, self.total(root), unit))
-        if kind == "sign" and self.total(arguments[0]) is not None:  # nor where it may be the other
+        turns = kind == "sign" or (kind == "abs" and self.second > UNIT)
+        if turns and self.total(arguments[0]) is not None:  # nor where it may be the other
             return Error(0.0, 0.0 / self.clear(arguments[0]))
         return Error(ULP.get(kind, 0.0), None)
 
@@ -115,7 +102,7 @@ class Bounds:
     def largest(self, part):
         """Bound on the magnitude of the exact value, but for relative errors."""
         rest = self.error(part).rest
-        return size(part) if rest is None else self.fused(UNIT, rest, size(part))
+        return size(part) if rest is None else self.fused(self.second, rest, size(part))
 
     def clear(self, part):
         """What is left of a value's magnitude when its error is taken off; 0 where nothing is."""
@@ -126,7 +113,7 @@ class Bounds:
 
     def above(self, value, total, floor=0.0):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
-        taken = floor if total is None else (SAFE * UNIT) * total + floor
+        taken = floor if total is None else (SAFE * self.second) * total + floor
         return self._graph.node("divisor", value - taken, 0.0)
 
     def over(self, part):
@@ -134,6 +121,16 @@ class Bounds:
         if part not in self._over:
             self._over[part] = 1.0 / self.clear(part) if isinstance(part, Node) else 1.0 / abs(part)
         return self._over[part]
+
+    def is_dust(self, part):
+        """Whether the rest of the bound of a part is dust, or none."""
+        return not isinstance(self.error(part).rest, Node)
+
+    def steepest(self, root, square):
+        """Bound on the slope of a root between the square and the exact one; infinite if that may be negative."""
+        if root not in self._steepest:
+            self._steepest[root] = (0.5 * root) / self.above(square, self.total(square))
+        return self._steepest[root]
 
     def dust(self, rest, part):
         """A rest that is dust times the magnitude of a part: a number still where the part's cap is known."""
@@ -168,7 +165,8 @@ def size(part):
     return part if square or part.operation in ("abs", "sqrt", "root", "divisor") else abs(part)
 
 
-def _whole(total):
+def whole(total):
+    """A bound from one in `UNIT`."""
     return 0.0 if total is None else (SAFE * UNIT) * total
 
 
@@ -193,7 +191,7 @@ def _of_product(bounds, more, node, left, right):
     if isinstance(own, Node):
         across = more if other is None else bounds.fused(bounds.largest(left), other, more)
         return Error(first + second, bounds.fused(size(right), own, across))
-    across = more if None in (own, other) else plus(UNIT * own * other, more)
+    across = more if None in (own, other) else plus(bounds.second * own * other, more)
     return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), across))
 
 
@@ -205,17 +203,19 @@ def _of_quotient(bounds, more, node, above, below):
 
 def _of_root(bounds, more, node, square, unit=None):
     relative, rest = bounds.error(square)
-    if isinstance(rest, Node):
-        left = bounds.above(square, bounds.total(square))  # nothing, if it may be negative
-        rest = bounds.fused(0.5 * rest, node / left, more)
+    if not bounds.is_dust(square):
+        rest = more if rest is None else bounds.fused(bounds.steepest(node, square), rest, more)
     elif rest is not None:
         rest = math.sqrt(rest / UNIT)
     return Error(0.5 * relative, rest)
 
 
 def _of_function(bounds, more, node, argument):
-    """Of one that changes no faster than its argument."""
-    return Error(0.0, bounds.total(argument))
+    """Of one that changes no faster than its argument, and its slope no faster either."""
+    total = bounds.total(argument)
+    if total is None or bounds.second == UNIT:
+        return Error(0.0, total)
+    return Error(0.0, bounds.fused(0.5 * bounds.second * total, total, total))
 
 
 def _as_of_argument(bounds, more, node, argument, unit=None):

@@ -20,6 +20,7 @@ from .derivatives import gradients
 from .operations import ARRAYS, BY_DESIGN, PLAIN
 from .recent import kept_for_same_angles
 from .record import record
+from .tight import tight_bound
 from .trace import needed, operations
 
 FEW = 12
@@ -68,14 +69,16 @@ class Program:
     def bounded(self, tight=False):
         """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
 
+        Tight ones may be so where the others are finite.
+
         Raises
         ------
         NotGivenError
             Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
         """
         if tight not in self._bounded:
-            bounds = Bounds(self.recording.graph, self.recording.inputs)
-            found = map(bounds.tight, self.outputs) if tight else bounds.of(self.outputs)
+            given = self.recording.graph, self.recording.inputs
+            found = [tight_bound(*given, part) for part in self.outputs] if tight else Bounds(*given).of(self.outputs)
             self._bounded[tight] = Program(self.recording, (*self.outputs, *found))
         return self._bounded[tight]
 

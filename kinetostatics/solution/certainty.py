@@ -80,7 +80,7 @@ class Certainty:
         quantity : str
             "balancing_torque", a joint (its reaction), "slider_velocity" ...; ``"|O|"`` for the magnitude of a vector.
         tight : bool
-            Whether it may take some ten times as long, and be up to ten times smaller.
+            Whether it may take twice as long, and be up to ten times smaller.
 
         Returns
         -------
@@ -108,9 +108,7 @@ class Certainty:
         True
         """
         name = self._inner(quantity)
-        values, bounds = self._with_bounds(name)
-        if tight:
-            bounds = np.fmin(bounds, self._with_bounds(name, tight)[1])
+        values, bounds = self._with_bounds(name, tight)
         if name != quantity:
             values = np.hypot(*values)
             bounds = np.hypot(*bounds) * SAFE + 4 * UNIT * values

@@ -7,6 +7,7 @@ import kinetostatics as ks
 from kinetostatics import ConditionWarning
 from kinetostatics.engines import bounds, loops, programs
 from kinetostatics.engines.compiled import available
+from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.methods.enclosures import enclosure
@@ -57,8 +58,7 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, va
 
 def bounds_of(graph, outputs, values, tight=False):
     """Bounds of outputs at some values of the parameters of a graph."""
-    own = bounds.Bounds(graph)
-    found = tuple(map(own.tight, outputs)) if tight else own.of(outputs)
+    found = [tight_bound(graph, {}, part) for part in outputs] if tight else bounds.Bounds(graph).of(outputs)
     return programs.Program(None, found)._by_numbers(np.zeros(1), values, (1,))[:, 0]
 
 

@@ -24,7 +24,7 @@ SETS = 4
 """Sets of numbers that a structure runs with at a time."""
 COMPILED = 4
 """Structures of a family that are compiled."""
-TIGHT = "balancing_torque", "shaking_moment"
+TIGHT = "balancing_torque", "shaking_moment", "O"
 """What tight bounds are asked for."""
 
 
