@@ -47,10 +47,14 @@ class Bounds:
         ``input(bounds) -> Error`` of inputs that are not exact.
     stretch : float
         How many times larger than proven terms of second order are taken, see `tight`.
+    dust : float or None
+        What a product or quotient may lose if it is too small for a double; None if none is.
     """
 
-    def __init__(self, graph, inputs=None, stretch=1.0):
-        self._graph, self._inputs, self.second = graph, inputs or {}, stretch * UNIT
+    def __init__(self, graph, inputs=None, stretch=1.0, dust=DUST):
+        self._graph, self._inputs, self.second, self._dust = graph, inputs or {}, stretch * UNIT, dust
+        self._uses: dict[Node, list[str]] = {}
+        self._parts: dict[Node, tuple[Any, ...]] = {}
         self._errors: dict[Node, Error] = {}
         self._totals: dict[Node, Any] = {}
         self._clear: dict[Node, Any] = {}
@@ -60,10 +64,17 @@ class Bounds:
 
     def of(self, outputs):
         """A bound for each output, not negative; infinite or NaN where there is none."""
-        for node in needed(outputs):
-            if node not in self._errors:
-                self._errors[node] = self._found(node)
+        nodes = [node for node in needed(outputs) if node not in self._errors]
+        self.tell_uses(nodes)
+        for node in nodes:
+            self._errors[node] = self._found(node)
         return tuple(whole(self.total(part)) for part in outputs)
+
+    def tell_uses(self, nodes):
+        """Take note of what nodes are used for: it decides in which of two ways a bound is found."""
+        for node in nodes:
+            for part in node.arguments:
+                self._uses.setdefault(part, []).append(node.operation)
 
     def _found(self, node):
         if node.operation in INPUTS:
@@ -75,8 +86,10 @@ class Bounds:
     def own(self, node) -> Error:
         """What an operation itself adds to the error of its result."""
         kind, arguments = node.operation, node.arguments
+        if any(map(_is_zero, (node, *arguments))) and kind in "+-*":
+            return EXACT
         if kind in ("*", "/"):
-            return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, DUST)
+            return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, self._dust)
         if kind in ("+", "-"):
             return Error(1.0, None) if len(arguments) == 2 else EXACT
         if kind == "divisor":  # none is proven where the guard may act
@@ -93,11 +106,25 @@ class Bounds:
     def total(self, part):
         """The whole bound of a part of an operation; None where it is exact."""
         if isinstance(part, Node) and part not in self._totals:
-            self._totals[part] = self._sum(self._errors[part], part)
+            self._totals[part] = self._total(part, *self._errors[part])
         return self._totals[part] if isinstance(part, Node) else None
 
-    def _sum(self, error, part):
-        return self.fused(error.relative, size(part), error.rest) if error.relative else error.rest
+    def _total(self, part, relative, rest):
+        if not relative:
+            return rest
+        if part in self._parts and set(self._uses.get(part, ())) <= {"+", "-"}:  # of a product, none of it by itself
+            left, own, right, across = self._parts[part]
+            return self.fused(size(right), self.fused(relative, size(left), own), across)
+        return self.fused(relative, size(part), rest)
+
+    def of_product(self, node, left, own, right, across):
+        """Rest of a product whose left factor has a rest that is a node, beside what else it has."""
+        self._parts[node] = left, own, right, across
+        return self.fused(size(right), own, across)
+
+    def uses(self, part):
+        """How often a part is used."""
+        return len(self._uses.get(part, ()))
 
     def largest(self, part):
         """Bound on the magnitude of the exact value, but for relative errors."""
@@ -113,8 +140,9 @@ class Bounds:
 
     def above(self, value, total, floor=0.0):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
-        taken = floor if total is None else (SAFE * self.second) * total + floor
-        return self._graph.node("divisor", value - taken, 0.0)
+        if total is not None:
+            value = value - (SAFE * self.second) * total
+        return self._graph.node("divisor", value if isinstance(floor, float) else value - floor, 0.0)
 
     def over(self, part):
         """Bound on one over the magnitude of the exact value."""
@@ -161,6 +189,8 @@ def size(part):
     """Magnitude of a part of an operation."""
     if not isinstance(part, Node):
         return abs(part)
+    if part.operation == "-" and len(part.arguments) == 1:
+        return size(part.arguments[0])
     square = part.operation == "*" and part.arguments[0] is part.arguments[1]
     return part if square or part.operation in ("abs", "sqrt", "root", "divisor") else abs(part)
 
@@ -168,6 +198,11 @@ def size(part):
 def whole(total):
     """A bound from one in `UNIT`."""
     return 0.0 if total is None else (SAFE * UNIT) * total
+
+
+def _is_zero(part):
+    """Whether a part of an operation is a product with the number 0."""
+    return isinstance(part, Node) and part.operation == "*" and 0.0 in [x for x in part.arguments if not isinstance(x, Node)]
 
 
 def _is_scaling(part):
@@ -179,20 +214,27 @@ def _is_scaling(part):
 
 
 def _of_sum(bounds, more, node, *parts):
-    if len(parts) == 1:
-        return bounds.error(parts[0])
+    parts = [part for part in parts if not _is_zero(part)]
+    if len(parts) < 2:
+        return bounds.error(parts[0]) if parts else EXACT
     return Error(0.0, plus(*(bounds.total(part) for part in parts)))
 
 
 def _of_product(bounds, more, node, left, right):
-    if isinstance(bounds.error(right).rest, Node):
+    if _is_zero(node):
+        return EXACT
+    first, second = bounds.error(left).rest, bounds.error(right).rest
+    if isinstance(second, Node) and not (isinstance(first, Node) and bounds.uses(left) > bounds.uses(right)):
         left, right = right, left
     (first, own), (second, other) = bounds.error(left), bounds.error(right)
-    if isinstance(own, Node):
-        across = more if other is None else bounds.fused(bounds.largest(left), other, more)
-        return Error(first + second, bounds.fused(size(right), own, across))
-    across = more if None in (own, other) else plus(bounds.second * own * other, more)
-    return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), across))
+    if not isinstance(own, Node):
+        across = more if None in (own, other) else plus(bounds.second * own * other, more)
+        return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), across))
+    if isinstance(other, Node) or (other is not None and bounds.cap(left) is None):
+        across = bounds.fused(bounds.largest(left), other, more)
+    else:
+        across = plus(bounds.dust(other, left), more)
+    return Error(first + second, bounds.of_product(node, left, own, right, across))
 
 
 def _of_quotient(bounds, more, node, above, below):

@@ -55,6 +55,7 @@ class _Local(Bounds):
         self.coarse, self.cut = coarse, {}
         behind: set[Node] = set()
         nodes = needed([output])
+        self.tell_uses(nodes)
         uses = Counter(part for node in nodes if node.varies == BY_ANGLE for part in node.arguments if isinstance(part, Node))
         for node in nodes:
             after = not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
@@ -62,6 +63,8 @@ class _Local(Bounds):
             self._errors[node] = error
             if after:
                 behind.add(node)
+            else:
+                self._totals[node] = coarse.total(node)
             if uses[node] > 1 and node is not output and isinstance(error.rest, Node):
                 self.cut[node] = self.total(node)
                 self._errors[node], self._totals[node] = EXACT, None
