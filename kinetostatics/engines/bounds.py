@@ -19,7 +19,7 @@ SAFE = 1.0 + 1e-9
 DUST = 2.0**-960
 """In `UNIT`: more than what is lost where a product or quotient, of bounds too, is too small for a double."""
 CAP = 2.0**100
-"""Largest input, in SI, for which dust stays dust."""
+"""Largest number of a scene, in SI, for which dust stays dust; of tables each value counts."""
 ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
 """Largest relative error of a function of any backend, in `UNIT`; a test holds NumPy and compiled loops to it."""
 
@@ -247,8 +247,10 @@ def _of_root(bounds, more, node, square, unit=None):
     relative, rest = bounds.error(square)
     if not bounds.is_dust(square):
         rest = more if rest is None else bounds.fused(bounds.steepest(node, square), rest, more)
-    elif rest is not None:
-        rest = math.sqrt(rest / UNIT)
+    else:
+        rest = None if rest is None else math.sqrt(rest / UNIT)
+        if node.operation == "root" and size(square) is not square:  # none where it is negative for sure
+            rest = plus(0.0 * square.sqrt(), rest)
     return Error(0.5 * relative, rest)
 
 
@@ -282,7 +284,6 @@ _CARRIED: dict[str, Callable[..., Error]] = {
 }
 _CAPS: dict[str, Callable[..., float]] = {
     "parameter": lambda: CAP,
-    "table": lambda: CAP,
     "+": lambda left, right: left + right,
     "-": lambda *parts: sum(parts),
     "*": lambda left, right: left * right,

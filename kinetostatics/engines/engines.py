@@ -87,7 +87,7 @@ class Recorded:
         if tight and not np.isfinite(rows[count:]).all():
             rows[count:] = np.fmin(rows[count:], program.bounded().run(state, leaves, self.compiled)[count:])
         named = program.recording.named
-        small = all(map(_is_small, (*leaves.numbers, *leaves.tables)))
+        small = all(map(_is_small, leaves.numbers))
         return named(rows[:count]), named(rows[count:] if small else np.full_like(rows[count:], np.inf))
 
 
