@@ -138,11 +138,11 @@ class Bounds:
             self._clear[part] = size(part) if total is None else self.above(size(part), total)
         return self._clear[part]
 
-    def above(self, value, total, floor=0.0):
+    def above(self, value, total, floor=None):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
         if total is not None:
             value = value - (SAFE * self.second) * total
-        return self._graph.node("divisor", value if isinstance(floor, float) else value - floor, 0.0)
+        return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
 
     def over(self, part):
         """Bound on one over the magnitude of the exact value."""
@@ -202,7 +202,8 @@ def whole(total):
 
 def _is_zero(part):
     """Whether a part of an operation is a product with the number 0."""
-    return isinstance(part, Node) and part.operation == "*" and 0.0 in [x for x in part.arguments if not isinstance(x, Node)]
+    factors = part.arguments if isinstance(part, Node) and part.operation == "*" else ()
+    return any(not isinstance(factor, Node) and factor == 0.0 for factor in factors)
 
 
 def _is_scaling(part):
@@ -214,10 +215,10 @@ def _is_scaling(part):
 
 
 def _of_sum(bounds, more, node, *parts):
-    parts = [part for part in parts if not _is_zero(part)]
-    if len(parts) < 2:
-        return bounds.error(parts[0]) if parts else EXACT
-    return Error(0.0, plus(*(bounds.total(part) for part in parts)))
+    others = [part for part in parts if not _is_zero(part)]
+    if len(others) < 2:
+        return bounds.error(others[0]) if others else EXACT
+    return Error(0.0, plus(*map(bounds.total, others)))
 
 
 def _of_product(bounds, more, node, left, right):

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..numbers.planar import plus
-from .bounds import EXACT, Bounds, Error, size, whole
+from .bounds import EXACT, Bounds, size, whole
 from .trace import BY_ANGLE, Node, needed
 
 STRETCH = 2.0**16
@@ -30,7 +30,7 @@ def tight_bound(graph, inputs, output):
     local = _Local(graph, coarse, output)
     total = None
     slopes = _adjoints(graph, output, local.cut)
-    for node, (sign, slope) in slopes.items():
+    for node, (_, slope) in slopes.items():
         if node in local.cut:
             total = local.fused(abs(slope), local.cut[node], total)
     first = plus(None if total is None else total * (1.0 / SEED), local.total(output))
@@ -56,7 +56,9 @@ class _Local(Bounds):
         behind: set[Node] = set()
         nodes = needed([output])
         self.tell_uses(nodes)
-        uses = Counter(part for node in nodes if node.varies == BY_ANGLE for part in node.arguments if isinstance(part, Node))
+        uses = Counter(
+            part for node in nodes if node.varies == BY_ANGLE for part in node.arguments if isinstance(part, Node)
+        )
         for node in nodes:
             after = not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
             error = self._found(node) if after else coarse.error(node)
@@ -87,7 +89,7 @@ class _Local(Bounds):
 
 
 def _adjoints(graph, output, cut):
-    """Signs and magnitudes, but for those signs, of `SEED` times the adjoints of nodes that lead from cuts to an output."""
+    """By node that leads from cuts to an output: a sign and a number, `SEED` times the adjoint but for the sign."""
     wanted = set()
     nodes = needed([output])
     for node in nodes:

@@ -15,9 +15,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from support.bounded import FAMILIES, errors, other_numbers, solution
-
 from kinetostatics.errors import KinetostaticsError
+from support.bounded import FAMILIES, errors, other_numbers, solution
 
 ANGLES = 40
 SETS = 4
