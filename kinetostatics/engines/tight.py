@@ -1,11 +1,11 @@
 """Tight bounds on rounding errors, by what the error of each operation makes of one output: a sweep in reverse.
 
 By coefficients c of the computed values the error of a node is, exactly, the sum of c e over its arguments, what the
-operation itself adds, and q, of second order (-e e' of a product). The error of an output is thus the sum of a (own + q)
-over all nodes, with adjoints a by the same coefficients (Linnainmaa 1976, *BIT* 16, 146; Langlois 2001, *BIT* 41, 606).
-Own errors count, inside a part of the graph whose values are used once, as forward: only what is used more than once
-and made of sums, where errors may cancel, is a `_Cut` with an adjoint. Forward bounds whose q are taken ``STRETCH``
-times as large hold ``STRETCH`` times the sum of all |a| q, and more than that times what rounds adjoints.
+operation itself adds, and q, of second order (-e e' of a product). The error of an output is thus the sum of
+a (own + q) over all nodes, with adjoints a by the same coefficients (Linnainmaa 1976, *BIT* 16, 146; Langlois 2001,
+*BIT* 41, 606). Where values are used once their own errors add up as forward; only what is used more than once and made
+of sums, where errors may cancel, is cut off and has an adjoint. Forward bounds with q taken ``STRETCH`` times as large
+hold ``STRETCH`` times the sum of all |a| q, and far more than what the rounding of the adjoints makes.
 """
 
 from collections import Counter
