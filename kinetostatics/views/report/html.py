@@ -8,8 +8,8 @@ from importlib import resources
 
 import numpy as np
 
-from ... import __version__
 from ...results.losses import lose
+from ...version import __version__
 from ..canvas import display
 from . import figures, sections
 from .movement import movements
