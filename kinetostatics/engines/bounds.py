@@ -20,6 +20,8 @@ DUST = 2.0**-960
 """In `UNIT`: more than what is lost where a product or quotient, of bounds too, is too small for a double."""
 CAP = 2.0**100
 """Largest number of a scene, in SI, for which dust stays dust; of tables each value counts."""
+LARGEST = 2.0**1000
+"""Less than what has a reciprocal too small for a double."""
 ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
 """Largest relative error of a function of any backend, in `UNIT`; a test holds NumPy and compiled loops to it."""
 
@@ -88,6 +90,8 @@ class Bounds:
         kind, arguments = node.operation, node.arguments
         if any(map(_is_zero, (node, *arguments))) and kind in "+-*":
             return EXACT
+        if self.is_reciprocal(node):
+            return Error(1.0, None)
         if kind in ("*", "/"):
             return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, self._dust)
         if kind in ("+", "-"):
@@ -153,6 +157,13 @@ class Bounds:
     def is_dust(self, part):
         """Whether the rest of the bound of a part is dust, or none."""
         return not isinstance(self.error(part).rest, Node)
+
+    def is_reciprocal(self, part):
+        """Whether a part is one over a number that is not so large that the quotient is too small for a double."""
+        if not isinstance(part, Node) or part.operation != "/":
+            return False
+        above, below = part.arguments
+        return not isinstance(above, Node) and abs(above) == 1.0 and (self.cap(below) or math.inf) < LARGEST
 
     def steepest(self, root, square):
         """Bound on the slope of a root between the square and the exact one; infinite if that may be negative."""
@@ -224,6 +235,10 @@ def _of_sum(bounds, more, node, *parts):
 def _of_product(bounds, more, node, left, right):
     if _is_zero(node):
         return EXACT
+    for factor, above in ((left, right), (right, left)):
+        if bounds.is_reciprocal(factor) and not bounds.is_dust(factor):  # as of a quotient
+            rest = _of_quotient(bounds, more, node, above, factor.arguments[1]).rest
+            return Error(bounds.error(above).relative + bounds.error(factor).relative, rest)
     first, second = bounds.error(left).rest, bounds.error(right).rest
     if isinstance(second, Node) and not (isinstance(first, Node) and bounds.uses(left) > bounds.uses(right)):
         left, right = right, left
@@ -293,4 +308,6 @@ _CAPS: dict[str, Callable[..., float]] = {
     "abs": lambda value: value,
     "held": lambda value: value,
     "sqrt": math.sqrt,
+    "root": lambda square, unit: math.sqrt(square),
+    "divisor": max,
 }

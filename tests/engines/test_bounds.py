@@ -100,6 +100,18 @@ def test_a_root_of_what_is_negative_for_sure_has_no_bound():
     assert positive > 0.0
 
 
+def test_a_product_with_a_reciprocal_is_bounded_as_the_quotient():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    below = one + other - 1.9999
+    outputs = one * (1.0 / below), one / below
+    product, quotient = bounds_of(graph, outputs, [1.0, 1.0])
+    assert quotient < product < 1.001 * quotient  # one rounding more
+    huge = 1.0 / (1e30 * one * 1e30) / 1e250  # loses digits as too small for a double
+    (bound,) = bounds_of(graph, [huge * other], [1.0, 1.0])
+    assert bound >= 5e-324
+
+
 def test_rows_of_tables_may_be_of_any_size():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
