@@ -123,7 +123,7 @@ def loop(outputs) -> str:
         ends = [f"row_{place}[i] = {_name(part)}" for place, part in enumerate(outputs)]
         inner = ["        for i in range(angle.shape[1]):", *(f"            {each}" for each in by_angle + ends)]
         return header + "\n".join([LOOP, *by_design, *rows, *inner]) + "\n"
-    ends = [f"block[{place * AT_ONCE} + k] = {_name(part)}" for place, part in enumerate(outputs)]
+    ends = [f"block[uint64({place * AT_ONCE} + k)] = {_name(part)}" for place, part in enumerate(outputs)]
     memory = f"    block = empty({len(outputs) * AT_ONCE})"
     inner = [BLOCKS, *(f"                {each}" for each in by_angle + ends), SPREAD]
     return header + "\n".join([memory, LOOP, *by_design, *inner]) + "\n"

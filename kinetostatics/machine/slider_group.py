@@ -110,7 +110,7 @@ def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, rat
     travel = Joint(
         position[0] + along,
         first[0] - ratio * across,
-        minus(second[0], product(ratio_slope, across)) - lag * along,
+        second[0] - plus(product(ratio_slope, across), lag * along),
     )
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = slid(joint.position, (along, across), travel, guide)
@@ -313,7 +313,7 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
             return motion.travel.position - free_position
         along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
         shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
-        return along + (self.side * self.coupler_length - free_position) - self.side * shortfall
+        return along + (self.side * self.coupler_length - free_position - self.side * shortfall)
 
     def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)

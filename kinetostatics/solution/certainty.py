@@ -79,7 +79,7 @@ class Certainty(Parameters):
         quantity : str
             "balancing_torque", a joint (its reaction), "slider_velocity" ...; ``"|O|"`` for the magnitude of a vector.
         tight : bool
-            Whether it may take some ten times as long, and be up to ten times smaller.
+            Whether it may take twice as long, and be up to ten times smaller.
 
         Returns
         -------
@@ -107,9 +107,7 @@ class Certainty(Parameters):
         True
         """
         name = self._inner(quantity)
-        values, bounds = self._with_bounds(name)
-        if tight:
-            bounds = np.fmin(bounds, self._with_bounds(name, tight)[1])
+        values, bounds = self._with_bounds(name, tight)
         if name != quantity:
             values, bounds = np.hypot(*values), of_magnitude(values, bounds)
         return read_only(np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds)))[()]
