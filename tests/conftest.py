@@ -5,7 +5,7 @@ import os
 import sys
 from functools import cache
 from importlib.machinery import ModuleSpec
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import pytest
 
@@ -41,8 +41,13 @@ def interpreted(monkeypatch):
 
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function
+    numba.types = SimpleNamespace(float64=lambda *types: None)
     numba.__spec__ = ModuleSpec("numba", None)
+    numba.extending = ModuleType("numba.extending")
+    numba.extending.intrinsic = lambda function: function
+    numba.extending.overload = lambda function: lambda written: written
     monkeypatch.setitem(sys.modules, "numba", numba)
+    monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
     loaded = cache(machine_code.load)
     for module in (compiled, loops, programs):
         monkeypatch.setattr(module, "_loaded", loaded)

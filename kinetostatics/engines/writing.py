@@ -60,14 +60,15 @@ SPREAD = f"""            for place in range(results.shape[1]):
                     row[k] = block[{AT_ONCE} * place + k]"""
 
 
-FUSED = """from llvmlite.ir import FunctionType
-from numba.core import types
+FUSED = """from numba import types
 from numba.extending import intrinsic, overload
 
 
 @intrinsic
 def fused(typing, one, other, more):
     def written(context, builder, signature, arguments):
+        from llvmlite.ir import FunctionType
+
         kind = arguments[0].type
         function = builder.module.declare_intrinsic("llvm.fmuladd", [kind], FunctionType(kind, [kind] * 3))
         return builder.call(function, arguments)
