@@ -176,7 +176,7 @@ def program(solution, names, sizes=False):
     return made, lambda compiled=False: made.run(solution.dynamics, leaves, compiled)
 
 
-def assert_program_equals(solution, tables=0):
+def assert_program_equals(solution, tables=0, rounded=ROUNDED):
     """A program gives what the kernels give, by NumPy and by the loop: the same NaN, and the same but for rounding."""
     names = everything(solution)
     made, run = program(solution, names)
@@ -189,7 +189,7 @@ def assert_program_equals(solution, tables=0):
             assert found[name].shape == expected[name].shape, name
             assert np.array_equal(np.isnan(found[name]), np.isnan(expected[name])), name
             error, size = (np.nanmax(np.abs(part)) for part in (found[name] - expected[name], expected[name]))
-            assert error <= ROUNDED * size, name
+            assert error <= rounded * size, name
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -266,7 +266,7 @@ def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
         groups = (first, replace(second, coupler_length=length))
         s = solve(scene._replace(mechanism=replace(scene.mechanism, groups=groups)), ANGLES, on_gap="nan")
         assert np.array_equal(np.isnan(s.balancing_torque), np.abs(pin) > length)
-        assert_program_equals(s)
+        assert_program_equals(s, rounded=1e-12)  # near its limit rounding counts for more
     assert s.condition[pin.argmax()] == np.inf
 
 
