@@ -5,7 +5,7 @@ import os
 import sys
 from functools import cache
 from importlib.machinery import ModuleSpec
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 
 import pytest
 
@@ -41,11 +41,10 @@ def interpreted(monkeypatch):
 
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function
-    numba.types = SimpleNamespace(float64=lambda *types: None)
+    numba.types = None
     numba.__spec__ = ModuleSpec("numba", None)
     numba.extending = ModuleType("numba.extending")
-    numba.extending.intrinsic = lambda function: function
-    numba.extending.overload = lambda function: lambda written: written
+    numba.extending.intrinsic = lambda function: lambda one, other, more: one * other + more  # there is one: fma
     monkeypatch.setitem(sys.modules, "numba", numba)
     monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
     loaded = cache(machine_code.load)

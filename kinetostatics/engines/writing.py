@@ -61,11 +61,11 @@ SPREAD = f"""            for place in range(results.shape[1]):
 
 
 FUSED = """from numba import types
-from numba.extending import intrinsic, overload
+from numba.extending import intrinsic
 
 
 @intrinsic
-def fused(typing, one, other, more):
+def fma(typing, one, other, more):
     def written(context, builder, signature, arguments):
         from llvmlite.ir import FunctionType
 
@@ -74,15 +74,6 @@ def fused(typing, one, other, more):
         return builder.call(function, arguments)
 
     return types.float64(types.float64, types.float64, types.float64), written
-
-
-def fma(one, other, more):
-    return one * other + more
-
-
-@overload(fma)
-def compiled_fma(one, other, more):
-    return lambda one, other, more: fused(one, other, more)
 
 
 """
