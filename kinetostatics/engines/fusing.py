@@ -48,7 +48,7 @@ def fused(nodes) -> dict[Node, Fused]:
         if is_sum and len(node.arguments) == 2:
             left, right = node.arguments
             choices = [
-                (depths[part], Fused(own * sign, *product.arguments, others, rest))
+                (depths[part], Fused(own * sign, product.arguments[0], product.arguments[1], others, rest))
                 for part, own, others, rest in ((left, 1, minus, right), (right, minus, 1, left))
                 for sign, product in (_product(part),)
                 if product is not None and ways[product] not in held.get(rest, NONE)

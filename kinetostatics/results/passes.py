@@ -12,16 +12,8 @@ from .peaks import INNER, REACH, THROUGH, TINY
 from .reductions import MEAN, PEAK
 from .turn import NEAR
 
-KINDS = (
-    "largest",
-    "largest_at",
-    "smallest",
-    "smallest_at",
-    "largest_absolute",
-    "range",
-    "mean",
-    "mean_absolute",
-    "rms",
+KINDS = tuple(
+    ["largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range", "mean", "mean_absolute", "rms"]
 )
 """Reductions that are there, by their number; harmonics and the swing are not."""
 
@@ -341,13 +333,8 @@ class Passes:
     def __init__(self, outputs, rows, first, angle, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
         self._passes, self._turns = compiled._loaded(SOURCE).passes, turns
-        self._given = (
-            np.array(rows, dtype=np.int64),
-            np.array(kinds, dtype=np.int64),
-            int(first),
-            np.array(angle),
-            turns,
-        )
+        places, numbers = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64)
+        self._given = places, numbers, int(first), np.array(angle), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
     def __call__(self, results, start, numbers, rough, gaps, nearest):
