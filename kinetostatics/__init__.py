@@ -70,6 +70,7 @@ from .errors import (
     ParameterError,
     QuantityError,
 )
+from .version import __version__ as __version__
 
 if TYPE_CHECKING:
     from . import design, drive
@@ -129,8 +130,6 @@ if TYPE_CHECKING:
     from .sweeps.tolerance import Tolerances, tolerances
     from .views import plots
     from .views.report.making import report
-
-__version__ = "0.2.0"
 
 __all__ = [
     "AssemblyError",

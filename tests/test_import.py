@@ -9,6 +9,8 @@ import pytest
 
 import kinetostatics as ks
 
+pytestmark = pytest.mark.slow
+
 HEAVY = ("matplotlib", "numba", "pandas", "pint", "pydantic", "scipy.optimize", "sympy")
 FEW = 3
 """Modules that importing the package may load, the standard library's aside."""

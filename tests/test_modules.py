@@ -12,7 +12,7 @@ PROVEN_IN = (
         f"studies/methods/{module}.py": f"studies/methods/test_{test}.py"
         for test, modules in {
             "certified": ("acting", "enclosures", "independent", "postures"),
-            "kane": ("kane_equations",),
+            "kane": ("applied", "kane_cams", "kane_equations", "kane_motion", "kane_symbols", "structures"),
             "newton": ("configurations", "constraints"),
         }.items()
         for module in modules

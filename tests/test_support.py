@@ -48,23 +48,31 @@ def test_decorators_give_all_combinations_beside_fixtures_and_keep_their_names()
     assert seen == [(a, b, "given") for a in "xy" for b in (1, 2, 3)]
 
 
+def work(seconds):
+    """Keep this process busy."""
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+
+
 def test_each_input_has_the_time_of_a_test():
     @every("seconds", [0.3, 0.0, 0.06, 0.06, 0.06])
     def test(seconds):
-        time.sleep(seconds)
+        work(seconds)
 
     with limited(0.15):
         assert failure(test)[1:] == ["0.3: TimeoutError: took more than 0.15 s"]
 
 
-def test_a_test_is_stopped_once_so_that_its_failure_can_be_told():
+@pytest.mark.parametrize("spend", [work, time.sleep])
+def test_a_test_is_stopped_once_at_work_or_waiting_so_that_its_failure_can_be_told(spend):
     def stopped():
-        with limited(0.05):
-            time.sleep(1.0)
+        with limited(0.02):
+            spend(1.0)
 
-    with pytest.raises(TimeoutError, match=r"more than 0\.05 s"):
+    with pytest.raises(TimeoutError, match=r"more than 0\.02 s"):
         stopped()
-    time.sleep(0.1)
+    spend(0.05)
 
 
 def test_an_input_that_would_skip_the_others_fails():

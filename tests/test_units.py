@@ -13,8 +13,8 @@ from kinetostatics.machine.loads import Load
 from kinetostatics.numbers import checks
 from kinetostatics.numbers.checks import Checked
 from support.every import every
+from support.units import UNITS
 
-UNITS = pint.UnitRegistry()
 TURN = np.linspace(0.0, 6.0, 12)
 PUMP = ks.crank_slider(0.05, 0.2, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(1.0))
 SCENE = ks.Scene(PUMP, 100.0, loads=[ks.ProcessForce(-200.0), ks.Spring(1e3, 0.2)])
@@ -566,6 +566,71 @@ def test_bounds_and_begins_of_a_search_are_converted():
     assert found.values["slider.mass"] >= 0.5
 
 
+MASS = {unit: tuple(UNITS.Quantity(value, unit) for value in (0.5, 1.0, 2.0)) for unit in ("kg", "lb")}
+
+
+def test_grids_take_quantities_one_or_an_array_or_several_in_units_that_convert():
+    table = ks.designs.grid(
+        {
+            "spring.stiffness": UNITS.Quantity(np.array([600.0, 900.0]), "kN/m"),
+            "crank_length": [UNITS.Quantity(0.0625, "m"), UNITS.Quantity(50.0, "mm")],
+            "crank_speed": UNITS.Quantity(320.0, "rpm"),
+        }
+    )
+    assert list(table.columns) == ["spring.stiffness [kN/m]", "crank_length [m]", "crank_speed [rpm]"]
+    assert table.to_numpy().tolist() == [[k, r, 320.0] for k in (600.0, 900.0) for r in (0.0625, 0.05)]
+    swept = ks.sweep(SCENE, table.iloc[:1, 1:], "largest O", angles=36, progress=False)
+    plain = SCENE.varied({"crank_length": 0.0625, "crank_speed": 320.0 * math.pi / 30.0})
+    assert swept["largest O [N]"][0] == pytest.approx(ks.extremes(plain.solve(36), "O").largest, rel=1e-6)
+
+
+@pytest.mark.parametrize(("given", "text"), [
+    (MASS["kg"][:2], "0.5..1 kg"),
+    (("uniform", *MASS["kg"][:2]), "0.5..1 kg"),
+    (("normal", UNITS.Quantity(1.0, "kg"), UNITS.Quantity(10.0, "g")), "normal 1 kg +- 10 g"),
+    (("triangular", *MASS["lb"]), "triangular 0.5..1..2 lb"),
+])  # fmt: skip
+def test_samples_of_quantities_are_those_of_the_text_that_says_the_same(given, text):
+    for sample in (ks.designs.sobol, ks.designs.random, ks.designs.latin_hypercube):
+        found, wanted = (sample({"slider.mass": spread}, 8) for spread in (given, text))
+        assert found.equals(wanted)
+
+
+def test_tolerances_take_quantities():
+    options = {"count": 8, "angles": 36, "progress": False}
+    given, text = ((MASS["kg"][0], MASS["kg"][2]), "0.5..2 kg")
+    found, wanted = (
+        ks.tolerances(SCENE, ["largest O"], {"slider.mass": spread}, **options) for spread in (given, text)
+    )
+    assert found.table.equals(wanted.table)
+
+
+FOREIGN = pint.UnitRegistry()
+FOREIGN.define("inch = 3 * cm = in")
+NO_SPREADS = [
+    (UNITS.kg, "quantities of pint"), ([], "quantities of pint"), ((MASS["kg"][0], 2.0), "each with its unit"),
+    ((MASS["kg"][0], UNITS.Quantity(2.0, "m")), r"must measure \[mass\], in kg, got 2.0 meter"),
+    (UNITS.Quantity(math.nan, "kg"), "must be finite"), (UNITS.Quantity(np.ones((2, 2)), "kg"), "row"),
+    (UNITS.Quantity(np.array([]), "kg"), "row"), (UNITS.Quantity(1j, "kg"), "real"),
+    (UNITS.Quantity(1.0, "degC"), "not known"),
+    (FOREIGN.Quantity(1.0, "inch"), "is another in the registry"),
+]  # fmt: skip
+NO_DISTRIBUTIONS = [
+    (MASS["kg"], "uniform takes 2 quantities, got 3"), (MASS["kg"][1::-1], "must rise"),
+    (("norml", *MASS["kg"][:2]), "did you mean 'normal'"), (("normal", MASS["kg"][0]), "takes 2 quantities, got 1"),
+    (("normal", MASS["kg"][0], -MASS["kg"][1]), "must be greater than 0"),
+    (("triangular", *MASS["kg"][:2]), "takes 3 quantities, got 2"),
+]  # fmt: skip
+
+
+@every(("read", "given", "message"), [
+    (read, *wrong) for read in (ks.designs.grid, ks.designs.distributions) for wrong in NO_SPREADS
+] + [(ks.designs.distributions, *wrong) for wrong in NO_DISTRIBUTIONS])  # fmt: skip
+def test_what_is_no_spread_of_quantities_is_refused_by_the_name_of_its_parameter(read, given, message):
+    with pytest.raises(ks.ParameterError, match=f"slider.mass: .*{message}"):
+        read({"slider.mass": given})
+
+
 def test_tables_know_whether_they_are_forces_or_torques():
     torque = ks.Table(ANGLES, UNITS.Quantity(np.cos(ANGLES), "N*m"))
     assert torque.unit == "N*m"
@@ -584,7 +649,7 @@ def test_a_table_read_from_a_file_is_for_loads_of_its_unit(tmp_path):
         ks.solve(PUMP, TURN, crank_speed=1.0, loads=ks.Force(torque, at="B"))
 
 
-@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
 def test_what_functions_of_the_motion_return_is_converted(engine):
     if engine == "compiled":
         pytest.importorskip("numba")

@@ -106,7 +106,18 @@ class Case:
         >>> table.loc["mean |balancing torque|", "published"]
         '6.77 (ratio)'
         """
-        table = self.compare(reference or self.reference, balanced).frame()
+        return self.with_published(self.compare(reference or self.reference, balanced).frame())
+
+    def with_published(self, table):
+        """A table of `Comparison.frame`, the published figures in a column behind it if there are any.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> case = ks.load_case("sawframe_2r63")
+        >>> list(case.with_published(case.compare("plain", "cam-cosine").frame()))
+        ['unit', 'plain', 'cam-cosine', 'ratio', 'published']
+        """
         printed = {
             quantity: f"{text} ({column})"
             for column in ("ratio", "value")

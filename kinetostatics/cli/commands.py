@@ -50,49 +50,56 @@ def new(options):
 
 def run(options):
     from ..casefile.case import load_case
+    from . import uncertain
 
     case = load_case(options.case)
     require_writable(case, "--csv", options.csv, (".csv",))
     names = list(case.variants) if options.variant is None else [options.variant]
+    given = uncertain.inputs(case, names, options.uncertain or ())
     solutions = {name: case.solve(name, options.angles) for name in machine.progress(options, names, "solving")}
     if machine.wants_json(options):
-        found = {name: _extremes(solution) for name, solution in solutions.items()}
+        found = {name: _extremes(solution, given[name]) for name, solution in solutions.items()}
         machine.print_json("run", case=machine.of_case(case), angles=options.angles, variants=found)
     elif not machine.quiet(options):
-        _print_extremes(case, solutions, options)
+        _print_extremes(case, solutions, given, options)
     if options.csv:
         table = of_variants({name: solution.frame() for name, solution in solutions.items()})
         machine.give_csv(options, table)
 
 
-def _extremes(solution):
+def _extremes(solution, given):
     """What ``run`` tells of a variant, by the names that quantities have in Python."""
     from ..results.losses import lose
     from ..results.tables import SHOWN, extremes_by_name
+    from ..solution.tolerated import largest_with_uncertainty
 
     found = {
-        name: {"label": quantity.label, "unit": quantity.unit, **dict(zip(SHOWN, ends, strict=True))}
-        for name, (quantity, ends) in extremes_by_name(solution).items()
+        name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
+        for name, row in extremes_by_name(solution).items()
     }
     told = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual, "extremes": found}
     if lose(solution):
         lost = solution.losses
         powers = {"taken [W]": lost.taken, "lost [W]": lost.total, "efficiency": lost.efficiency}
         told["losses"] = powers | {"at": machine.rows(lost.frame())}
+    if given:
+        told["uncertainty"] = {"inputs": given, "largest": machine.rows(largest_with_uncertainty(solution, given))}
     return told
 
 
-def _print_extremes(case, solutions, options):
-    from ..mechanics.quantities import label_of
+def _print_extremes(case, solutions, given, options):
     from ..results.losses import lose
-    from ..results.tables import extremes_frame
+    from ..results.tables import extremes_by_name, frames
+    from . import uncertain
 
     say(case.title)
     for name, solution in solutions.items():
         print(f"\n{name}: {solution.mechanism.name}\n")
-        table = extremes_frame(solution).drop(index=label_of(solution, CHECKED))
+        found = extremes_by_name(solution)
+        del found[CHECKED]
+        table, bounds = frames(found)
         table.columns = [column.removeprefix("smallest ").removeprefix("largest ") for column in table.columns]
-        print_table(table)
+        print_table(table, bounds)
         say(
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"
@@ -101,6 +108,8 @@ def _print_extremes(case, solutions, options):
             print("\npower lost by friction, exact means over the turn\n")
             print_table(solution.losses.frame())
             say(f"\n{solution.losses}")
+        if options.uncertain:
+            uncertain.tell(solution, given[name])
 
 
 def explain(options):
@@ -158,8 +167,10 @@ def precision(options):
     shown = ["variant", "quantity", "method", "setting", "value", "time [ns/angle]", "error"]
     print_table(pd.concat(fronts)[shown].set_index("variant").astype(object).fillna(""))
     absent = table[table.groupby(["variant", "quantity", "method"])["error"].transform("count") == 0]
-    for method, why in dict.fromkeys(zip(absent["method"], absent["not given"], strict=True)):
-        say(f"left out: {method}: {why}")
+    if len(absent):
+        say("\nwhat does not apply:\n")
+        reasons = absent[["method", "variant", "not given"]].drop_duplicates(["method", "not given"])
+        print_table(reasons.rename(columns={"not given": "does not apply"}).set_index("method"))
     print(*paths, sep="\n")
 
 

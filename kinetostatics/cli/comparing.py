@@ -11,6 +11,7 @@ def compare(options):
     import pandas as pd
 
     from ..casefile.case import load_case
+    from ..results.comparison import Comparison
 
     case = load_case(options.case)
     require_writable(case, "--csv", options.csv, (".csv",))
@@ -20,7 +21,12 @@ def compare(options):
         raise CaseError(case.path, [f"has one variant only, {case.reference}: nothing to compare; use run"])
     for name in names:
         case.variant(name)
-    tables = {name: case.comparison_table(name) for name in machine.progress(options, names, "comparing")}
+    reference = case.solve(case.reference)
+    found = {
+        name: Comparison(reference, case.solve(name), (case.reference, name))
+        for name in machine.progress(options, names, "comparing")
+    }
+    tables = {name: case.with_published(comparison.frame()) for name, comparison in found.items()}
     special = {
         "balancing": ("counterweights and shaking force", case.balancing_table(), case.published.balancing),
         "linkage": ("swing and transmission", case.linkage_table(), case.published.linkage),
@@ -29,7 +35,7 @@ def compare(options):
     if machine.wants_json(options):
         _print_json(case, tables, special)
     elif not machine.quiet(options):
-        _print(case, tables, special)
+        _print(case, tables, {name: comparison.error_bounds() for name, comparison in found.items()}, special)
     if options.csv:
         rows = [_with_roles(case, name, table).reset_index() for name, table in tables.items()]
         machine.give_csv(options, pd.concat(rows))
@@ -56,7 +62,7 @@ def _print_json(case, tables, special):
     )
 
 
-def _print(case, tables, special):
+def _print(case, tables, bounds, special):
     say(case.title)
     if case.published.note:
         say("\n" + " ".join(case.published.note.split()))
@@ -66,15 +72,19 @@ def _print(case, tables, special):
     if len(tables) == 1:
         ((name, table),) = tables.items()
         say(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
-        print_table(table.drop(index=RESIDUAL))
+        _print_known(table.drop(index=RESIDUAL), bounds[name])
     else:
-        values, ratios = _values(case, tables), _ratios(case, tables)
         say(f"\nvalues of {case.reference} and of what it is compared with\n")
-        print_table(values)
+        _print_known(_values(case, tables), _values(case, bounds))
         say(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
-        print_table(ratios)
+        _print_known(_ratios(case, tables), _ratios(case, bounds))
     residual = max(float(table.loc[RESIDUAL, list(table.columns[1:3])].max()) for table in tables.values())
     say(f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power")
+
+
+def _print_known(table, bounds):
+    """A table with the digits that bounds on its numbers leave, which some rows and columns have not."""
+    print_table(table, bounds.reindex(index=table.index, columns=table.columns))
 
 
 def _values(case, tables):

@@ -9,8 +9,8 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from .. import __version__
 from ..numbers import checks
+from ..version import __version__
 from .printed import STDOUT, write_table
 
 

@@ -2,9 +2,9 @@
 
 import argparse
 
-from .. import __version__
 from ..numbers import checks
 from ..numbers.units import to_si
+from ..version import __version__
 from . import commands
 from .printed import STDOUT
 
@@ -28,64 +28,96 @@ def parser():
     main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")
     group = main.add_subparsers(required=True, metavar="COMMAND")
 
-    listing = _command(group, "list", commands.list_cases, "the shipped cases, with title and variants", False)
-    _for_machines(listing, "one row for each case", file=False)
+    for add in COMMANDS:
+        add(group)
+    return main
 
-    new = _command(group, "new", commands.new, "write a commented case file to start from", False)
-    new.add_argument("name", type=_text, metavar="NAME", help="of the case: NAME.toml is written, never over another")
-    new.add_argument("--kind", choices=commands.STARTERS, default=commands.STARTERS[0], help="mechanism (%(default)s)")
 
-    run = _command(group, "run", commands.run, "extremes of every force, with the power check")
-    run.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
-    run.add_argument("--angles", type=_angles, default=720, metavar="N", help="crank angles over the turn (720)")
-    _for_machines(run, "all results, a row for each crank angle")
+def _list(group):
+    command = _command(group, "list", commands.list_cases, "the shipped cases, with title and variants", False)
+    _for_machines(command, "one row for each case", file=False)
 
-    compare = _command(group, "compare", commands.compare, "dynamic coefficients against the reference variant")
-    compare.add_argument("--variant", type=_text, metavar="NAME", help="only this variant against the reference")
-    _for_machines(compare, "the coefficients, a row for each")
 
-    explain = _command(group, "explain", commands.explain, "the hand calculation of a quantity at one crank angle")
-    explain.add_argument("--angle", type=_angle, required=True, metavar="ANGLE", help='crank angle, "39.3 deg"')
-    explain.add_argument(
+def _new(group):
+    command = _command(group, "new", commands.new, "write a commented case file to start from", False)
+    command.add_argument(
+        "name", type=_text, metavar="NAME", help="of the case: NAME.toml is written, never over another"
+    )
+    command.add_argument(
+        "--kind", choices=commands.STARTERS, default=commands.STARTERS[0], help="mechanism (%(default)s)"
+    )
+
+
+def _run(group):
+    command = _command(group, "run", commands.run, "extremes of every force, with the power check")
+    command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
+    command.add_argument("--angles", type=_angles, default=720, metavar="N", help="crank angles over the turn (720)")
+    command.add_argument(
+        "--uncertain",
+        action="append",
+        type=_text,
+        metavar="PATH=SIZE",
+        help='also how sure the largest values are: standard uncertainty of a number, "crank_length=0.01 mm", or '
+        '"tolerances" for those of the case file',
+    )
+    _for_machines(command, "all results, a row for each crank angle")
+
+
+def _compare(group):
+    command = _command(group, "compare", commands.compare, "dynamic coefficients against the reference variant")
+    command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant against the reference")
+    _for_machines(command, "the coefficients, a row for each")
+
+
+def _explain(group):
+    command = _command(group, "explain", commands.explain, "the hand calculation of a quantity at one crank angle")
+    command.add_argument("--angle", type=_angle, required=True, metavar="ANGLE", help='crank angle, "39.3 deg"')
+    command.add_argument(
         "--quantity", type=_text, default="balancing_torque", metavar="NAME", help="or a joint's reaction (%(default)s)"
     )
-    explain.add_argument("--variant", type=_text, metavar="NAME", help="of this variant (the reference)")
-    explain.add_argument("--out", type=_text, metavar="FILE", help="write it, as .html, .tex or .txt")
+    command.add_argument("--variant", type=_text, metavar="NAME", help="of this variant (the reference)")
+    command.add_argument("--out", type=_text, metavar="FILE", help="write it, as .html, .tex or .txt")
 
-    drive = _command(group, "drive", commands.drive, "speed, power and start-up under the motor of the case")
-    drive.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
-    drive.add_argument(
+
+def _drive(group):
+    command = _command(group, "drive", commands.drive, "speed, power and start-up under the motor of the case")
+    command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
+    command.add_argument(
         "--start", type=_angle, default=0.0, metavar="ANGLE", help='crank angle to start from, "90 deg" (0 deg)'
     )
-    drive.add_argument("--out", type=_text, metavar="DIR", help="folder for a CSV over the turn and the figures")
-    _for_machines(drive, "the tables, a row for each quantity")
+    command.add_argument("--out", type=_text, metavar="DIR", help="folder for a CSV over the turn and the figures")
+    _for_machines(command, "the tables, a row for each quantity")
 
-    plot = _command(group, "plot", commands.plot, "draw the figures of the case")
-    plot.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the figures")
-    plot.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")
-    plot.add_argument("--only", type=_text, metavar="FIGURE", help="draw this figure only")
-    _for_machines(plot)
 
-    report = _command(group, "report", commands.report, "one page with the moving mechanism, figures and tables")
-    report.add_argument("--out", required=True, type=_text, metavar="FILE", help="page to write, .html")
-    report.add_argument("--variant", type=_text, metavar="NAME", help="only this variant beside the reference")
-    report.add_argument("--pdf", type=_text, metavar="FILE", help="print it to a PDF too, by a browser that is there")
+def _plot(group):
+    command = _command(group, "plot", commands.plot, "draw the figures of the case")
+    command.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the figures")
+    command.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")
+    command.add_argument("--only", type=_text, metavar="FIGURE", help="draw this figure only")
+    _for_machines(command)
 
-    precision = _command(
+
+def _report(group):
+    command = _command(group, "report", commands.report, "one page with the moving mechanism, figures and tables")
+    command.add_argument("--out", required=True, type=_text, metavar="FILE", help="page to write, .html")
+    command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant beside the reference")
+    command.add_argument("--pdf", type=_text, metavar="FILE", help="print it to a PDF too, by a browser that is there")
+
+
+def _precision(group):
+    command = _command(
         group, "precision", commands.precision, "every method's time and error against a certified reference"
     )
-    precision.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the CSV and the chart")
-    precision.add_argument(
-        "--variant", action="append", type=_text, metavar="NAME", help="only these (one of each kind)"
-    )
-    precision.add_argument(
-        "--quantity", action="append", type=_text, metavar="NAME", help="of these (balancing_torque)"
-    )
-    precision.add_argument("--angles", type=_angles, default=360, metavar="N", help="crank angles over the turn (360)")
-    _for_machines(precision)
+    command.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the CSV and the chart")
+    command.add_argument("--variant", action="append", type=_text, metavar="NAME", help="only these (one of each kind)")
+    command.add_argument("--quantity", action="append", type=_text, metavar="NAME", help="of these (balancing_torque)")
+    command.add_argument("--angles", type=_angles, default=360, metavar="N", help="crank angles over the turn (360)")
+    _for_machines(command)
 
-    sweep = _command(group, "sweep", commands.sweep, "outputs of many designs, a row for each")
-    sweep.add_argument(
+
+def _sweep(group):
+    command = _command(group, "sweep", commands.sweep, "outputs of many designs, a row for each")
+    command.add_argument(
         "--vary",
         action="append",
         required=True,
@@ -93,36 +125,46 @@ def parser():
         help='a parameter and its spread, "spring.stiffness=600..900 kN/m:40"; with --sample also '
         '"spring.stiffness=normal 712 kN/m +- 5 kN/m"',
     )
-    sweep.add_argument(
+    command.add_argument(
         "--output", action="append", type=_text, metavar="OUTPUT", help='"largest O", "ratio mean_absolute ..."'
     )
-    sweep.add_argument("--variant", type=_text, metavar="NAME", help="variant whose parameters vary")
-    sweep.add_argument("--reference", type=_text, metavar="NAME", help="variant that ratios refer to")
-    sweep.add_argument("--sample", type=_designs, metavar="N", help="N designs of a Latin hypercube in place of a grid")
-    sweep.add_argument(
+    command.add_argument("--variant", type=_text, metavar="NAME", help="variant whose parameters vary")
+    command.add_argument("--reference", type=_text, metavar="NAME", help="variant that ratios refer to")
+    command.add_argument(
+        "--sample", type=_designs, metavar="N", help="N designs of a Latin hypercube in place of a grid"
+    )
+    command.add_argument(
         "--angles", type=_angles, default=360, metavar="N", help="crank angles over the period, 12 at least (360)"
     )
-    sweep.add_argument("--workers", type=_count, metavar="N", help="processes (this one, on all its cores)")
-    sweep.add_argument(
+    command.add_argument("--workers", type=_count, metavar="N", help="processes (this one, on all its cores)")
+    command.add_argument(
         "--out", type=_text, metavar="PATH", help="table to write, .csv or .parquet; or a folder to resume from"
     )
-    sweep.add_argument("--plot", type=_text, metavar="FILE", help="figure to write, .png or .svg")
-    _for_machines(sweep, "the designs, a row for each")
+    command.add_argument("--plot", type=_text, metavar="FILE", help="figure to write, .png or .svg")
+    _for_machines(command, "the designs, a row for each")
 
-    design = _command(group, "design", commands.design, "find the machines that the case asks for: its [design] tables")
-    design.add_argument("--design", action="append", type=_text, metavar="NAME", help="only these (all)")
-    design.add_argument("--starts", type=_count, metavar="N", help="searches for each (as the case says)")
-    design.add_argument("--out", type=_text, metavar="FILE", help="case file to write with what is found, .toml")
-    design.add_argument("--plot", type=_text, metavar="DIR", help="folder for the figures")
-    design.add_argument("--format", choices=("png", "svg"), default="png", help="of the figures (png)")
-    _for_machines(design, "what was found, a row for each number")
 
-    stability = _command(
+def _design(group):
+    command = _command(
+        group, "design", commands.design, "find the machines that the case asks for: its [design] tables"
+    )
+    command.add_argument("--design", action="append", type=_text, metavar="NAME", help="only these (all)")
+    command.add_argument("--starts", type=_count, metavar="N", help="searches for each (as the case says)")
+    command.add_argument("--out", type=_text, metavar="FILE", help="case file to write with what is found, .toml")
+    command.add_argument("--plot", type=_text, metavar="DIR", help="folder for the figures")
+    command.add_argument("--format", choices=("png", "svg"), default="png", help="of the figures (png)")
+    _for_machines(command, "what was found, a row for each number")
+
+
+def _stability(group):
+    command = _command(
         group, "stability", commands.stability, "every method's error near the places where it hurts", False
     )
-    stability.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the CSVs and the chart")
-    _for_machines(stability)
-    return main
+    command.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the CSVs and the chart")
+    _for_machines(command)
+
+
+COMMANDS = (_list, _new, _run, _compare, _explain, _drive, _plot, _report, _precision, _sweep, _design, _stability)
 
 
 def _command(group, name, function, text, of_case=True):

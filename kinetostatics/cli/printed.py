@@ -6,6 +6,7 @@ import textwrap
 
 from ..numbers import checks, files
 from ..numbers.headings import parted
+from ..numbers.shown import number
 from ..views.report.tables import require_places
 
 STDOUT = "-"
@@ -18,8 +19,6 @@ WORDS = ("unit", "published", "limit")
 """Headings of columns of words that may look like numbers."""
 SHORTEST = 24
 """Letters to which a column of words is folded at most."""
-PLAIN = 1e9
-"""Numbers from which on they are written with a power of ten."""
 
 
 def require_writable(case, option, path, endings):
@@ -56,15 +55,20 @@ def say(text, indent=0):
         )
 
 
-def print_table(table):
+def print_table(table, bounds=None):
     """Print a pandas DataFrame: as it is if it fits, else with headings and words folded, else in parts.
 
-    Parts stand below each other, each with the first columns again.
+    Parts stand below each other, each with the first columns again. `bounds`, a table of the same rows and columns,
+    tells by how much numbers may be wrong, if that is known.
     """
-    table = table.reset_index()
-    columns = [(str(name), [_cell(value, str(name)) for value in table.iloc[:, at]]) for at, name in enumerate(table)]
-    for number, part in enumerate(_parts(columns, width())):
-        print(("\n" if number else "") + _drawn(part))
+    index = table.index.to_frame(index=False, name=table.index.name or "index")
+    columns = [(str(name), [_cell(value) for value in index.iloc[:, at]]) for at, name in enumerate(index)]
+    for at, name in enumerate(table):
+        errors = [0.0] * len(table) if bounds is None else bounds.iloc[:, at]
+        cells = map(_cell, table.iloc[:, at], errors, [str(name)] * len(table))
+        columns.append((str(name), list(cells)))
+    for place, part in enumerate(_parts(columns, width())):
+        print(("\n" if place else "") + _drawn(part))
 
 
 def with_published(table, published, path):
@@ -77,16 +81,10 @@ def with_published(table, published, path):
     return cells
 
 
-def _cell(value, heading=""):
-    """A number with six digits, an angle with those that six digits of a turn have; NaN as nothing."""
-    if isinstance(value, str):
-        return value
-    if value != value:
-        return ""
-    value = value + 0.0  # a zero has no sign
-    if parted(heading)[1] == "deg":
-        return f"{round(value, 3) + 0.0:.6g}"
-    return f"{value:.0f}" if 1e6 <= abs(value) < PLAIN else f"{value:.6g}"
+def _cell(value, bound=0.0, heading=""):
+    """A number as all tables show it, an angle with the digits that six digits of a turn have."""
+    angle = parted(heading)[1] == "deg" and not isinstance(value, str)
+    return number(round(value, 3) if angle else value, bound=0.0 if isinstance(bound, str) else bound)
 
 
 def _parts(columns, room):

@@ -250,20 +250,33 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
         require_known(driven, speeds)
     energy = 0.5 * driven.inertia(angles) * speeds * speeds
     drift = float(np.abs(energy - energy[0] - work).max())
-    last = ("end", "standstill" if until == "standstill" else "reversal", "end")[_which(found)]
-    named = [Event("start", 0.0, angle)]
-    named += [
-        Event("reversal", float(t), float(y[0]))
-        for t, y in zip(found.t_events[0], found.y_events[0], strict=True)
-        if 0.0 < t < time[-1]
-    ]
-    named.append(Event(last, float(time[-1]), float(angles[-1])))
     for array in (time, angles, speeds):
         read_only(array)
     alpha = read_only(driven.acceleration_along(angles, speeds))
     return Trajectory(
-        scene, driven.motor, driven.flywheel, time, angles, speeds, alpha, tuple(named), drift, driven, found.sol
+        scene,
+        driven.motor,
+        driven.flywheel,
+        time,
+        angles,
+        speeds,
+        alpha,
+        tuple(_events(found, until)),
+        drift,
+        driven,
+        found.sol,
     )
+
+
+def _events(found, until):
+    """Start, reversals and end of a motion that was integrated."""
+    time, angles = found.t, found.y[0]
+    yield Event("start", 0.0, float(angles[0]))
+    for when, state in zip(found.t_events[0], found.y_events[0], strict=True):
+        if 0.0 < when < time[-1]:
+            yield Event("reversal", float(when), float(state[0]))
+    last = ("end", "standstill" if until == "standstill" else "reversal", "end")[_which(found)]
+    yield Event(last, float(time[-1]), float(angles[-1]))
 
 
 def _rubbing(driven, scene, angle, speed, until, target, one_way):

@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .derivatives import adjoints
@@ -166,6 +168,11 @@ def size(part):
         return abs(part)
     square = part.operation == "*" and part.arguments[0] is part.arguments[1]
     return part if square or part.operation in ("abs", "sqrt", "root", "divisor") else abs(part)
+
+
+def of_magnitude(vector, bounds):
+    """Bound on the error of a vector's magnitude, from the vector's values and those of its components."""
+    return np.hypot(*bounds) * SAFE + 4 * UNIT * np.hypot(*vector)
 
 
 def _whole(total):

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from html import escape
 from typing import NamedTuple
 
+from ..numbers.shown import number
 from .formulas import CALLS
 from .symbols import Symbol
 
@@ -75,7 +76,7 @@ def shown(value, exactly=False):
     """A number to 6 digits, or as short as tells it exactly."""
     if exactly:
         return repr(value).removesuffix(".0")
-    return f"{value:.6g}" if value else "0"
+    return number(value) or "nan"
 
 
 GREEK = {

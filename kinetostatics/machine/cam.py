@@ -4,7 +4,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import atan
-from ..numbers.planar import curvature
+from ..numbers.planar import polar_curvature
 from .crank import ray as ray_at
 
 
@@ -51,7 +51,7 @@ class Cam:
 
     def curvature_radius(self, phi):
         """Signed radius of curvature of the pitch curve, m; negative where it is hollow."""
-        return 1.0 / bend(*self.radius(phi))
+        return 1.0 / polar_curvature(*self.radius(phi))
 
     def profile(self, roller_radius, angle, side="disk"):
         """Working curve for a roller.
@@ -147,14 +147,6 @@ class Cam:
         from .workshop import export
 
         export(self, path, roller_radius, cutter_radius, points, units, side, clockwise)
-
-
-def bend(radius, slope, second):
-    """Curvature of a pitch curve from r, r', r'', 1/m, positive where it is convex seen from outside.
-
-    (r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^(3/2): of its place as seen from the ray, where r turns with it.
-    """
-    return curvature((slope, radius), (second - radius, 2.0 * slope))
 
 
 def _array(phi):

@@ -13,11 +13,11 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import atan, sqrt
-from ..numbers.planar import cross, dot, minus, vector
-from .cam import bend
+from ..numbers.planar import cross, dot, minus, polar_curvature, vector
 from .crank import ray
+from .declared import Led, Slot
 from .friction import Rolling, Slide, Sliding
-from .group import Group, Output, Point, Resolved, Slot
+from .group import FRAME, Group, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench
 from .roller import Roller, Touch
 
@@ -143,7 +143,7 @@ class CamRoller(checks.Checked, Group):
     def tightest(self):
         """Smallest radius of curvature of the pitch curve, on a grid, m; None where the curve is not plain numbers."""
         with np.errstate(divide="ignore"):
-            curved = abs(1.0 / bend(*self.cam.polar(FINE, ray(FINE))))
+            curved = abs(1.0 / polar_curvature(*self.cam.polar(FINE, ray(FINE))))
         return curved.min(axis=-1, keepdims=True) if isinstance(curved, np.ndarray) else None
 
     @property
@@ -157,6 +157,10 @@ class CamRoller(checks.Checked, Group):
     @property
     def slots(self):
         return (Slot("crank", "A"),)
+
+    @property
+    def led(self):
+        return (Led("block", "A", FRAME, "cam_force"),)
 
     @property
     def curves(self):
@@ -183,7 +187,7 @@ class CamRoller(checks.Checked, Group):
         return {} if self.roller is None else {"contact_pressure": Touch(self.roller, "cam_force")}
 
     def relative_radius(self, name, placement, side):
-        return self.contacts[name].body.relative_radius(bend(*placement.details["cam"]), side)
+        return self.contacts[name].body.relative_radius(polar_curvature(*placement.details["cam"]), side)
 
     def sliding(self, name, placement):
         return Slide(placement.ray, placement.details["cam"][1])

@@ -85,6 +85,7 @@ class Crank(checks.Checked):
     curves: ClassVar[dict] = {}
     pairs: ClassVar = {"O": Turning("crank", "O")}
     slots = ()
+    led = ()
     hangs_on = ()
     trusted = True
     """Whether the library's own: a class derived from it may do otherwise."""

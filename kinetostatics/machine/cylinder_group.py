@@ -10,8 +10,9 @@ from typing import Any, ClassVar
 from ..numbers import checks
 from ..numbers.planar import number, stretched
 from . import lever_group
+from .declared import Slot
 from .friction import Slide, Sliding, Turning
-from .group import FRAME, Group, Output, Point, Resolved, Slot, joint_reaction, separation
+from .group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
 from .links import Link, Wrench
 
 
@@ -103,12 +104,12 @@ class CylinderGroup(checks.Checked, Group):
     @property
     def outputs(self):
         label, rod, cylinder = self.label, self._rod, self._cylinder
-        across = f"{cylinder} on {rod} along the left normal of the {cylinder}"
+        on, pivot = f"{cylinder} on {rod}", self.pivot_name
         return {
             self.on + label: joint_reaction(rod, self.on),
-            self.pivot_name: Output("N", True, f"ground on {cylinder}"),
-            "cylinder_force" + label: Output("N", False, across),
-            "cylinder_moment" + label: Output("N m", False, f"{cylinder} on {rod} about {self.pivot_name}"),
+            pivot: Output("N", True, f"ground on {cylinder}"),
+            "cylinder_force" + label: Output("N", False, f"{on} along the left normal of the {cylinder}"),
+            "cylinder_moment" + label: Output("N m", False, f"{on} about {pivot}", pivot),
         }
 
     @property

@@ -96,6 +96,10 @@ class FlatFollower(GuidedFollower):
         """What the cam presses on: its `Face`, or None."""
         return self.face
 
+    @property
+    def led(self):
+        return tuple(led._replace(flat=True) for led in super().led)
+
     def relative_radius(self, name, placement, side):
         """That of the cam; NaN where nothing touches."""
         travel = placement.travels[self.moved]

@@ -4,6 +4,7 @@ from typing import Any
 
 from ..numbers import checks
 from ..numbers.planar import curvature, left, stretched, subtracted
+from .declared import Led
 from .disk_cam import DiskCam
 from .follower_law import Lawful
 from .group import Group, Output
@@ -33,6 +34,10 @@ class Follower(checks.Checked, Group):
     @property
     def outlines(self):
         return {"crank": self.disk.outline}
+
+    @property
+    def led(self):
+        return (Led(self.moved, self.pin, "crank", "contact_force" + self.label),)
 
     @property
     def contact_force(self):

@@ -10,6 +10,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     bars        the links that keep two joints at a distance
     guides      the guide of each link that slides along one, without turning
     slots       the links in which a joint slides, each a `Slot`
+    led         the joints that a cam leads, each a `Led`
     curves      the joints that run on a curve, with what drawings call it
     rollers     radii of rollers, by the joints that are their centres
     outlines    curves fixed to links, as cams are, points (2, K) by link, in its axes
@@ -69,7 +70,8 @@ forces and power; tests/machine/test_group.py has a whole example.
 may say in ``TERMS`` how an engineer writes a variable, and what it is: ``{"across": ("d", "from pin to guide")}``, of
 one kernel alone as ``"resolve.across"``, which may be an argument too; primes count derivatives, ``"r'"``.
 
-Nothing else in the library knows what a group looks like, nor the names of its links.
+Nothing else in the library knows what a group looks like, nor the names of its links. Methods under study make their
+equations of `joints`, `bars`, `guides`, `slots`, `led` and `pairs` alone.
 """
 
 import math
@@ -117,17 +119,6 @@ class Bar(NamedTuple):
     end: str
     link: str
     length: Any
-
-
-class Slot(NamedTuple):
-    """A link along which `joint` slides in a straight line, in a slot; `rod` is the link that slides in it as a piston.
-
-    Without a rod what slides is a block at the joint.
-    """
-
-    link: str
-    joint: str
-    rod: str = ""
 
 
 class Output(NamedTuple):
@@ -246,6 +237,11 @@ class Group:
     @property
     def slots(self):
         """Links in which a joint slides, each a `Slot`."""
+        return ()
+
+    @property
+    def led(self):
+        """Joints that a cam leads, each a `Led`."""
         return ()
 
     @property

@@ -17,8 +17,9 @@ from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
 from . import change_points, passing
+from .declared import Slot
 from .friction import Slide, Sliding, Turning
-from .group import FRAME, Group, Output, Point, Resolved, Slot, joint_reaction, separation
+from .group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
 from .links import Joint, Link, LinkMotion, Wrench, present
 
 SMALLEST = 2.0**-53
@@ -214,7 +215,7 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
 
     @property
     def slots(self):
-        return (Slot(self._lever, self.on),)
+        return (Slot(self._lever, self.on, offset=self.offset),)
 
     @property
     def lengths(self):

@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
-from .cam import bend
+from ..numbers.planar import polar_curvature
 from .crank import ray as ray_at
 from .law import TURN
 
@@ -194,7 +194,7 @@ class Profile:
 
 def curvature(cam, angle):
     """Curvature of the pitch curve at crank angles, 1/m, positive where it is convex seen from outside."""
-    return bend(*cam.radius(angle))
+    return polar_curvature(*cam.radius(angle))
 
 
 def surface_curvature(bend, roller_radius, side):

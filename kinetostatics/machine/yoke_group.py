@@ -12,8 +12,9 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.planar import minus, number, plus, stretched, subtracted, turned, unturned, vector
+from .declared import Slot
 from .friction import Slide, Sliding, Turning
-from .group import FRAME, Group, Output, Point, Resolved, Slot, joint_reaction
+from .group import FRAME, Group, Output, Point, Resolved, joint_reaction
 from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench
 
@@ -169,7 +170,7 @@ class YokeGroup(checks.Checked, Group):
 
     @property
     def slots(self):
-        return (Slot(self._slider, self.on),)
+        return (Slot(self._slider, self.on, angle=self.slot_angle),)
 
     @property
     def lengths(self):

@@ -26,6 +26,14 @@ def curvature(first, second):
     return cross(first, second) / (square * sqrt(square))
 
 
+def polar_curvature(radius, slope, second):
+    """Curvature of a curve from r, r', r'', 1/m, positive where it is convex seen from outside.
+
+    (r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^(3/2): of its place as seen from the ray, where r turns with it.
+    """
+    return curvature((slope, radius), (second - radius, 2.0 * slope))
+
+
 def left(a):
     """Vector a after a quarter turn counter-clockwise."""
     return (-a[1], a[0])

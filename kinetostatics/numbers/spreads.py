@@ -1,11 +1,15 @@
-"""Spreads as texts say them: "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m"."""
+"""Spreads as texts say them: "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m".
+
+Or quantities of pint: the values of a grid; ``(low, high)``, ``("normal", mean, deviation)`` and ``("triangular", low,
+likeliest, high)``.
+"""
 
 import re
 
 import numpy as np
 
 from . import checks
-from .units import LONGEST, NUMBER, base_factor, factor, respelled, shown
+from .units import LONGEST, NUMBER, base_factor, factor, of_quantity, respelled, shown
 
 LARGEST = 50_000_000
 """Values that a table of designs may hold."""
@@ -18,6 +22,8 @@ _FORMS = {
     "triangular": re.compile(rf"triangular\s+{_NUMBER}{_TO}{_NUMBER}{_TO}{_NUMBER}{_UNIT}"),
     "normal": re.compile(rf"normal\s+{_NUMBER}{_UNIT}\s*(?:\+-|±)\s*{_NUMBER}{_UNIT}"),
 }
+_COUNTS = {"uniform": 2, "triangular": 3, "normal": 2}
+"""Numbers that each kind of distribution takes."""
 _OTHER = "it has another form"
 _HELP = (
     '"600..900 kN/m:40" for a grid; "600..900 kN/m", "normal 712 kN/m +- 5 kN/m" or "triangular 690..710..740 kN/m" '
@@ -30,7 +36,7 @@ def distributions(spreads):
 
     Parameters
     ----------
-    spreads : dict of parameter to text
+    spreads : dict of parameter to text or quantities
         As for `designs.sample`.
 
     Returns
@@ -41,7 +47,7 @@ def distributions(spreads):
     Raises
     ------
     ParameterError
-        A text is of another form, or its unit not known; all of them at once.
+        A spread is of another form, or its unit not known; all of them at once.
 
     Examples
     --------
@@ -54,13 +60,13 @@ def distributions(spreads):
 
 
 def read(spreads, reader):
-    """What the reader, which raises `ValueError`, makes of the text of each parameter."""
+    """What the reader, which raises `ValueError`, makes of the spread of each parameter."""
     found, problems = {}, [] if spreads else ["there are no parameters"]
-    for name, text in spreads.items():
+    for name, given in spreads.items():
         try:
-            found[name] = reader(_text(text))
+            found[name] = reader(given)
         except ValueError as error:
-            problems.append(f"cannot read {shown(text)} for {name}: {error}")
+            problems.append(f"cannot read {shown(given)} for {name}: {error}")
     if any(_OTHER in problem for problem in problems):
         problems.append(f"write {_HELP}")
     checks.require("designs", *problems)
@@ -68,15 +74,36 @@ def read(spreads, reader):
 
 
 def _text(text):
-    if not isinstance(text, str) or len(text) > LONGEST:
-        raise ValueError("it must be text of numbers with a unit")
+    if len(text) > LONGEST:
+        raise ValueError(f"it is longer than {LONGEST} letters")
     if "..." in text:  # 0...1 may mean 0 to 1 or 0 to 0.1
         raise ValueError(f"{_OTHER}; write two dots between numbers, and a 0 before a decimal point")
     return text.strip()
 
 
-def axis(text):
-    """Evenly spaced values, and their unit."""
+def _measured(given):
+    """Numbers of quantities of pint, of one or several, and their unit: that of the first."""
+    parts = given if isinstance(given, list | tuple) else [given]
+    if not parts or not all(map(checks.is_quantity, parts)):
+        raise ValueError("it must be text of numbers with a unit, or quantities of pint, each with its unit")
+    unit = of_quantity(parts[0])
+    try:
+        numbers = np.asarray(checks.plain(given, unit))
+    except checks.DimensionError as fault:
+        raise ValueError(f"it {fault}") from None
+    if numbers.dtype.kind not in "iuf":
+        raise ValueError("the values must be real numbers")
+    if numbers.ndim > 1 or not numbers.size:
+        raise ValueError(f"values must stand in a row, got an array of shape {numbers.shape}")
+    return _finite(np.ravel(numbers).astype(float).tolist()), unit
+
+
+def axis(given):
+    """Evenly spaced values as a text says, or those given as quantities, and their unit."""
+    if not isinstance(given, str):
+        values, unit = _measured(given)
+        return np.array(values), unit
+    text = _text(given)
     match = _FORMS["grid"].fullmatch(text)
     if not match or not int(match[4]):
         raise ValueError(_other(text))
@@ -86,25 +113,44 @@ def axis(text):
     return np.linspace(low, high, int(match[4])), _known(match[3])
 
 
-def _distribution(text):
+def _distribution(given):
     """Distribution of the values, and their unit."""
-    forms = ((name, _FORMS[name].fullmatch(text)) for name in ("uniform", "triangular", "normal"))
+    from scipy import stats
+
+    name, numbers, unit = _spread(given)
+    if name == "uniform":
+        low, high = _rising(numbers)
+        return stats.uniform(low, high - low), unit
+    if name == "triangular":
+        low, likeliest, high = _rising(numbers)
+        return stats.triang((likeliest - low) / (high - low), low, high - low), unit
+    mean, deviation = numbers
+    if deviation <= 0:
+        raise ValueError("the standard deviation must be greater than 0")
+    return stats.norm(mean, deviation), unit
+
+
+def _spread(given):
+    """Kind of the distribution, its numbers, and their unit."""
+    if not isinstance(given, str):
+        named = isinstance(given, list | tuple) and len(given) > 1 and isinstance(given[0], str)
+        name, quantities = (given[0], given[1:]) if named else ("uniform", given)
+        if name not in _COUNTS:
+            raise ValueError(checks.choice("its kind", name, tuple(_COUNTS)))
+        numbers, unit = _measured(quantities)
+        if len(numbers) != _COUNTS[name]:
+            raise ValueError(f"{name} takes {_COUNTS[name]} quantities, got {len(numbers)}")
+        return name, numbers, unit
+    text = _text(given)
+    forms = ((name, _FORMS[name].fullmatch(text)) for name in _COUNTS)
     name, match = next(((name, match) for name, match in forms if match), ("", None))
     if match is None:
         raise ValueError(_other(text))
-    from scipy import stats
-
-    if name == "uniform":
-        low, high = _rising(match[1], match[2])
-        return stats.uniform(low, high - low), _known(match[3])
-    if name == "triangular":
-        low, likeliest, high = _rising(match[1], match[2], match[3])
-        return stats.triang((likeliest - low) / (high - low), low, high - low), _known(match[4])
+    if name != "normal":
+        *texts, unit = match.groups()
+        return name, _numbers(*texts), _known(unit)
     mean, deviation = _numbers(match[1], match[3])
-    deviation *= factor(match[4], _known(match[2])) / base_factor(match[2])
-    if deviation <= 0:
-        raise ValueError("the standard deviation must be greater than 0")
-    return stats.norm(mean, deviation), match[2]
+    return name, [mean, deviation * factor(match[4], _known(match[2])) / base_factor(match[2])], match[2]
 
 
 def _other(text):
@@ -120,15 +166,17 @@ def _known(unit):
     return unit
 
 
-def _rising(*texts):
-    values = _numbers(*texts)
+def _rising(values):
     if values[0] >= values[-1] or sorted(values) != values:
         raise ValueError("the values must rise")
     return values
 
 
 def _numbers(*texts):
-    values = [float(text) for text in texts]
+    return _finite([float(text) for text in texts])
+
+
+def _finite(values):
     if not np.all(np.isfinite(values)):
         raise ValueError("the values must be finite")
     return values

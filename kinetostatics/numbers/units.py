@@ -77,6 +77,17 @@ def factor(given, unit):
     return scale
 
 
+def of_quantity(quantity):
+    """Unit of a quantity of pint as texts spell it; `ValueError` if in its registry it is another than here."""
+    unit = f"{quantity.units:~C}" or "1"
+    base_factor(unit)
+    theirs = quantity._REGISTRY.Quantity(1.0, quantity.units).to_root_units()
+    ours = _registry().Quantity(1.0, _spelled_for_pint(unit)).to_root_units()
+    if str(theirs.units) != str(ours.units) or not math.isclose(theirs.magnitude, ours.magnitude, rel_tol=1e-12):
+        raise ValueError(f'unit "{unit}" is another in the registry of the quantity than here; give it in one of SI')
+    return unit
+
+
 def base_factor(given):
     """What a number in a given unit is multiplied by to be in SI base units."""
     return factor(given, given)

@@ -1,19 +1,22 @@
 """Dynamic coefficients: how much one mechanism's torque and forces exceed another's."""
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import QuantityError
-from ..mechanics.quantities import label_of, magnitude, unit_of
+from ..mechanics.quantities import label_of, magnitude, of_scene, unit_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .extremes import extremes
 from .losses import lose
 from .means import mean_absolute_torque, mean_absolute_torque_errors
-from .rounding import without_rounding
-from .turn import SAME
+from .pairing import chosen, counted, of_partners, partners
+from .rounding import Known, without_rounding
+
+TORQUE = "balancing_torque"
+ENDS = {"smallest": np.argmin, "largest": np.argmax}
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +43,12 @@ class Comparison:
     def torque_extremes(self):
         """Extrema of the balancing torque of the reference, and the matching ones of the balanced mechanism, N m.
 
-        To each extremum of the reference belongs the balanced one of the same kind (maximum or minimum) nearest in
-        crank angle; NaN if there is none. The two sides of a jump on a flank, as friction makes at dead centres, are
-        none of them.
+        To each extremum of the reference belongs one of the balanced mechanism of the same kind (maximum or minimum),
+        each to one at most, so that they lie as near in crank angle as they can; NaN where none is left within a third
+        of a turn. The two sides of a jump on a flank, as friction makes at dead centres, are none of them.
         """
-        reference = _without_jumps(extremes(self.reference, "balancing_torque"))
-        balanced = _without_jumps(extremes(self.balanced, "balancing_torque"))
-        return reference, _matched(reference, balanced)
+        reference, balanced = self._between_jumps
+        return reference, of_partners(partners(reference, balanced), balanced.value)
 
     @cached_property
     def torque_extremum_ratios(self):
@@ -72,7 +74,7 @@ class Comparison:
 
     def peak_reactions(self, joint):
         """Largest reaction at a joint in reference and balanced mechanism, N."""
-        return _peak(self.reference, joint), _peak(self.balanced, joint)
+        return tuple(extremes(solution, joint).range[1] for solution in self._both)
 
     def peak_reaction_ratio(self, joint):
         """Ratio of the largest reactions at a joint."""
@@ -90,7 +92,7 @@ class Comparison:
 
     def cam_force_range(self):
         """Smallest and largest cam force of reference and balanced mechanism, N; NaN for one without a cam."""
-        return tuple(_range(solution, "cam_force") for solution in (self.reference, self.balanced))
+        return tuple(_range(solution, "cam_force") for solution in self._both)
 
     def inertia_force_range(self, link="coupler"):
         """Smallest and largest inertia force of a link in reference and balanced mechanism, N."""
@@ -98,66 +100,134 @@ class Comparison:
         def force(solution):
             return magnitude(solution.inertia_force(link))
 
-        return tuple(_range(solution, force) for solution in (self.reference, self.balanced))
+        return tuple(_range(solution, force) for solution in self._both)
 
     def frame(self):
         """All coefficients as a pandas DataFrame: quantity, unit, its value in each mechanism, and the ratio.
 
-        What is rounding, beside the largest force or torque of its mechanism, stands as 0.
+        What is rounding, within its proven bound or beside the largest force or torque of its mechanism, stands as 0.
         """
+        return self._as_frame((row.label, row.unit, *row.values, row.ratio) for row in self._rows)
+
+    def error_bounds(self):
+        """By how much the numbers of `frame` may be wrong by rounding, a pandas DataFrame of the same rows and columns.
+
+        NaN where nothing is proven: of means, of what is no quantity of the solution, and where there is no
+        `Solution.error_bound`.
+        """
+        return self._as_frame((row.label, row.unit, *row.bounds, row.bound_of_ratio) for row in self._rows)
+
+    def _as_frame(self, rows):
         import pandas as pd
 
-        torques = self._without_rounding("balancing_torque", self.mean_torques)
-        rows = [("mean |balancing torque|", "N m", *torques, _ratio(*torques))]
+        kept = [row for known, row in zip(self._rows, rows, strict=True) if not np.isnan(known.values).all()]
+        return pd.DataFrame(kept, columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
+
+    @cached_property
+    def _rows(self):
+        """All rows of the table."""
+        return list(self._made_rows())
+
+    def _made_rows(self):
+        yield self._row("mean |balancing torque|", TORQUE, self.mean_torques)
+        yield from self._torque_extrema()
+        yield from self._lost()
+        for name in (*self._shared, "shaking_force", "shaking_moment"):
+            yield self._largest(f"largest {label_of(self.reference, name)}", name)
+        for bar in self.reference.mechanism.couplers:
+            for which, pair in zip(ENDS, zip(*self.inertia_force_range(bar.link), strict=True), strict=True):
+                yield _Row(f"{which} {bar.link} inertia force", "N", pair, np.nan)
+        for which, find in ENDS.items():
+            pair, errors = self._ends("cam_force", find)
+            yield _Row(f"{which} cam force", "N", pair, np.nan, errors)
+        yield _Row("power residual", "1", tuple(solution.power_residual for solution in self._both), np.nan)
+
+    @property
+    def _both(self):
+        return self.reference, self.balanced
+
+    @property
+    def _shared(self):
+        """Joints that both mechanisms have."""
+        return [joint for joint in self.reference.reactions if joint in self.balanced.reactions]
+
+    @cached_property
+    def _torques(self):
+        """Extremes of the torque of both mechanisms."""
+        return [extremes(solution, TORQUE) for solution in self._both]
+
+    @cached_property
+    def _between_jumps(self):
+        """The same but for those that are sides of a jump."""
+        return [chosen(found, counted(found)) for found in self._torques]
+
+    @cached_property
+    def _known(self):
+        """What is known of the extremes that rows tell of both mechanisms."""
+        names = *self._shared, "shaking_force", "shaking_moment", "cam_force"
+        both = zip(self._both, self._torques, strict=True)
+        return [
+            Known(at, {TORQUE: torque} | {name: extremes(at, name) for name in names if name in of_scene(at)})
+            for at, torque in both
+        ]
+
+    def _ends(self, name, find):
+        """The value that a function finds among the extremes of each mechanism, and bounds on their errors."""
+        ends = [known.end(name, find) if name in known.found else (np.nan,) * 3 for known in self._known]
+        values, _, errors = zip(*ends, strict=True)
+        return values, errors
+
+    def _row(self, label, name, values, errors=(np.nan, np.nan)):
+        """A row of a quantity of both mechanisms, 0 where it is rounding."""
+        each = zip(self._both, values, errors, strict=True)
+        pair = tuple(float(without_rounding(solution, name, [value], error)[0]) for solution, value, error in each)
+        return _Row(label, unit_of(self.reference, name), pair, _ratio(*pair), errors)
+
+    def _largest(self, label, name):
+        """A row of the largest magnitudes of a quantity."""
+        values, errors = self._ends(name, lambda values: np.argmax(np.abs(values)))
+        return self._row(label, name, tuple(map(abs, values)), errors)
+
+    def _torque_extrema(self):
+        """Rows of the torque's extrema, and of the largest torques where one is none of those beside each other."""
         reference, matched = self.torque_extremes
-        for number, row in enumerate(zip(reference.value, matched, self.torque_extremum_ratios, strict=True), 1):
-            rows.append((f"torque extremum {number}", "N m", *row))
-        rows += self._hidden_peak(reference.value, matched)
-        rows += self._lost()
-        for joint in self.reference.reactions:
-            if joint in self.balanced.reactions:
-                peaks = self._without_rounding(joint, self.peak_reactions(joint))
-                rows.append((f"largest {label_of(self.reference, joint)}", "N", *peaks, _ratio(*peaks)))
-        for name in ("shaking_force", "shaking_moment"):
-            peaks = self._without_rounding(
-                name, [abs(extremes(solution, name).largest) for solution in (self.reference, self.balanced)]
-            )
-            label, unit = label_of(self.reference, name), unit_of(self.reference, name)
-            rows.append((f"largest {label}", unit, *peaks, _ratio(*peaks)))
-        couplers = (bar.link for bar in self.reference.mechanism.couplers)
-        for name, ranges in (
-            *((f"{link} inertia force", self.inertia_force_range(link)) for link in couplers),
-            ("cam force", self.cam_force_range()),
-        ):
-            for which, of_each in zip(("smallest", "largest"), zip(*ranges, strict=True), strict=True):
-                rows.append((f"{which} {name}", "N", *of_each, np.nan))
-        rows.append(("power residual", "1", self.reference.power_residual, self.balanced.power_residual, np.nan))
-        table = pd.DataFrame(rows, columns=["quantity", "unit", *self.names, "ratio"]).set_index("quantity")
-        return table.dropna(how="all", subset=list(self.names))
-
-    def _without_rounding(self, name, pair):
-        """A quantity of both mechanisms, 0 where it is rounding."""
-        both = zip((self.reference, self.balanced), pair, strict=True)
-        return [float(without_rounding(solution, name, [value])[0]) for solution, value in both]
-
-    def _hidden_peak(self, *shown):
-        """A row of the largest torques, where one of them is none of the extrema shown."""
-        both = self.reference, self.balanced
-        peaks = [abs(extremes(solution, "balancing_torque").largest) for solution in both]
-        if any(not np.isclose(np.abs(some), peak, rtol=1e-9).any() for some, peak in zip(shown, peaks, strict=True)):
-            peaks = self._without_rounding("balancing_torque", peaks)
-            yield "largest |balancing torque|", "N m", *peaks, _ratio(*peaks)
+        own, other = (known.errors(TORQUE)[counted(known.found[TORQUE])] for known in self._known)
+        errors = zip(own, of_partners(partners(*self._between_jumps), other), strict=True)
+        rows = zip(zip(reference.value, matched, strict=True), self.torque_extremum_ratios, errors, strict=True)
+        for number, (pair, ratio, error) in enumerate(rows, 1):
+            yield _Row(f"torque extremum {number}", "N m", pair, ratio, error)
+        paired = np.isfinite(matched)
+        peaks = self._largest("largest |balancing torque|", TORQUE)
+        for shown, peak in zip((reference.value, matched), peaks.values, strict=True):
+            if not np.isclose(np.abs(shown[paired]), peak, rtol=1e-9).any():
+                yield peaks
+                return
 
     def _lost(self):
         """Rows of the power lost by joint, all together, and of the efficiency; none where no power is lost."""
-        if not lose(self.reference, self.balanced):
+        if not lose(*self._both):
             return
-        both = self.reference.losses, self.balanced.losses
+        both = [solution.losses for solution in self._both]
         for name in dict.fromkeys(name for losses in both for name in losses.lost):
-            powers = [losses.lost.get(name, np.nan) for losses in both]
-            yield f"mean power lost, {name}", "W", *powers, _ratio(*powers)
-        yield "mean power lost", "W", *self.lost_powers, self.lost_power_ratio
-        yield "efficiency", "1", *(losses.efficiency for losses in both), np.nan
+            powers = tuple(losses.lost.get(name, np.nan) for losses in both)
+            yield _Row(f"mean power lost, {name}", "W", powers, _ratio(*powers))
+        yield _Row("mean power lost", "W", self.lost_powers, self.lost_power_ratio)
+        yield _Row("efficiency", "1", tuple(losses.efficiency for losses in both), np.nan)
+
+
+class _Row(NamedTuple):
+    """A row of the table: values in both mechanisms, bounds on their errors."""
+
+    label: str
+    unit: str
+    values: tuple[float, ...]
+    ratio: float
+    bounds: tuple[float, ...] = (np.nan, np.nan)
+
+    @property
+    def bound_of_ratio(self):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return float(np.abs(self.ratio) * np.sum(np.divide(self.bounds, np.abs(self.values))))
 
 
 def compare(reference, balanced):
@@ -198,41 +268,11 @@ def _solution(given):
     return given.solution if hasattr(given, "energy_flow") else given
 
 
-def _matched(reference, balanced):
-    distance = np.abs(np.exp(1j * reference.angle)[:, None] - np.exp(1j * balanced.angle))
-    distance = distance + SAME * (_side(reference)[:, None] != _side(balanced))
-    distance = np.where(reference.maximum[:, None] == balanced.maximum, distance, np.inf)
-    if not distance.size:
-        return np.full(len(reference), np.nan)
-    nearest = np.argmin(distance, axis=1)
-    return np.where(np.isfinite(distance.min(axis=1)), balanced.value[nearest], np.nan)
-
-
-def _without_jumps(found):
-    """Extrema but those that are the two sides of a jump between the extrema before and behind it."""
-    keep = np.ones(len(found), dtype=bool)
-    for second in np.flatnonzero(_side(found)) if len(found) > 2 else ():
-        sides = slice(second - 1, second + 1)
-        low, high = sorted((found.value[second - 2], found.value[(second + 1) % len(found)]))
-        if ((low < found.value[sides]) & (found.value[sides] < high)).all():
-            keep[sides] = False
-    return replace(found, angle=found.angle[keep], value=found.value[keep], maximum=found.maximum[keep])
-
-
-def _side(found):
-    """Whether each extremum stands behind another at its crank angle: what a limit position is left with."""
-    return np.diff(found.angle, prepend=-1.0) <= SAME
-
-
 def _ratio(reference, balanced):
     """Ratio of two peaks; infinite where the balanced one is zero but for rounding, NaN if neither has a value."""
     if abs(balanced) > 1e-12 * abs(reference):
         return reference / balanced
     return np.inf if abs(reference) > 0 and np.isfinite(balanced) else np.nan
-
-
-def _peak(solution, joint):
-    return extremes(solution, joint).range[1]
 
 
 def _range(solution, quantity):

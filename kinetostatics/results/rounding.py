@@ -1,22 +1,102 @@
-"""What of a table is rounding: values small beside the largest term they are the sum of, and angles beside a turn."""
+"""What of a table is rounding: values within their proven bounds, or small beside the largest term of their sum."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..engines.bounds import of_magnitude
+from ..engines.engines import NUMPY
+from ..errors import NotGivenError
 from ..mechanics.quantities import of_scene, scale
-from .extremes import FLOOR
+from ..numbers.lazy import cached_property
+from .extremes import FLOOR, Extremes
 
 PLACED = 1e-7
 """Crank angle, rad, below which the place of an extremum is 0: values about it agree to all digits."""
+AT_JUMP = 1e-6
+"""Distance from a jump, rad, within which a bound may be of what stands beyond it."""
+BESIDE = 1e-4
+"""Distance from a jump, rad, at which bounds are those of one side."""
 
 
-def without_rounding(solution, name, values):
-    """Values of a quantity, 0 where they are rounding of what it is a sum of."""
+class End(NamedTuple):
+    """A value at an end of a quantity's range, its crank angle, and by how much it may be wrong; NaN if unknown."""
+
+    value: float
+    angle: float
+    error: float
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """Extremes of several quantities of a solution, and what is known of their rounding.
+
+    Attributes
+    ----------
+    solution : Solution
+    found : mapping of name to Extremes
+    """
+
+    solution: Any
+    found: Mapping[str, Extremes]
+
+    def errors(self, name):
+        """Proven bounds on the rounding errors of a quantity's extrema, (K,); NaN where nothing is proven."""
+        errors = self._bounds.get(name, np.full(len(self.found[name]), np.nan))
+        return np.where(np.isfinite(errors), errors, np.nan)
+
+    def end(self, name, find):
+        """The extremum whose place a function finds among the values; of a constant that."""
+        item = self.found[name]
+        if not len(item):
+            return End(float(item.constant), np.nan, np.nan)
+        place = find(item.value)
+        return End(*(float(part[place]) for part in (item.value, item.angle, self.errors(name))))
+
+    @cached_property
+    def _bounds(self):
+        """By name, all computed together; none where none can be given.
+
+        Of a value that is told from one side of a jump, the bound is that of the values beside.
+        """
+        found = {name: item for name, item in self.found.items() if len(item)}
+        if not found:
+            return {}
+        angle = np.unique(np.concatenate([item.angle for item in found.values()]))
+        jumps = np.flatnonzero((np.abs(angle[:, None] - self.solution.sampled.kinks) < AT_JUMP).any(axis=1))
+        at = self.solution.at(np.concatenate([angle, angle[jumps] - BESIDE, angle[jumps] + BESIDE]))
+        engine = NUMPY if getattr(at.engine, "compiled", False) else at.engine  # no loop is compiled for a table
+        try:
+            values, errors = engine.with_bounds(at.dynamics, tuple(found))
+        except NotGivenError:
+            return {}
+        vectors = [name for name in found if of_scene(self.solution)[name].vector]
+        errors = errors | {name: of_magnitude(values[name], errors[name]) for name in vectors}
+        places = {name: np.searchsorted(angle, item.angle) for name, item in found.items()}
+        return {name: _of_a_side(errors[name], angle.size, jumps)[place] for name, place in places.items()}
+
+
+def _of_a_side(errors, count, jumps):
+    """Bounds at so many crank angles; at jumps the larger of those beside, which stand behind the others."""
+    own, sides = np.array(errors[:count]), errors[count:].reshape(2, -1)
+    own[jumps] = np.fmax(*sides)
+    return own
+
+
+def without_rounding(solution, name, values, bound=0.0):
+    """Values of a quantity, 0 where they are within a bound on their errors, or rounding of what it is a sum of.
+
+    Numbers by which a machine is balanced are rounded themselves, so what is 0 by them may be more than its bound.
+    """
     terms = [scale(solution, name), *np.abs(values)]
     # a pressure is a root of a force
     floor = np.sqrt(FLOOR) if of_scene(solution)[name].kind == "contact" else FLOOR
-    return zeroed(values, floor * max((float(term) for term in terms if np.isfinite(term)), default=0.0))
+    floor = floor * max((float(term) for term in terms if np.isfinite(term)), default=0.0)
+    return zeroed(values, np.where(np.isfinite(bound), np.fmax(floor, bound), floor))
 
 
 def zeroed(values, floor):
-    """Values, 0 where they are smaller than a floor."""
-    return np.where(np.abs(values) < floor, 0.0, values)
+    """Values, 0 where they are no larger than a floor."""
+    return np.where(np.abs(values) <= floor, 0.0, values)

@@ -6,11 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.bounds import SAFE
+from ..engines import programs
+from ..engines.bounds import of_magnitude
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..numbers import checks
-from ..numbers.elementary import UNIT, read_only
+from ..numbers.elementary import read_only
+from .parameters import Parameters, fixed, is_zero, leaves_of, require_free, with_kept
+from .slopes import slopes
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,17 +59,12 @@ class Uncertainty:
             return "\n".join(f"{np.nanmax(values, initial=0.0):12.3g}  {name}" for name, values in rows.items())
 
 
-class Certainty:
+class Certainty(Parameters):
     """Bounds and uncertainties of a solution's values."""
 
     dynamics: Any
     engine: Any
-    crank_angle: Any
     mechanism: Any
-    crank_speed: Any
-    crank_acceleration: Any
-    loads: Any
-    friction: Any
 
     def error_bound(self, quantity, tight=False):
         """Proven bound on the rounding error of each value of a quantity, by running error analysis.
@@ -112,8 +110,7 @@ class Certainty:
         if tight:
             bounds = np.fmin(bounds, self._with_bounds(name, tight)[1])
         if name != quantity:
-            values = np.hypot(*values)
-            bounds = np.hypot(*bounds) * SAFE + 4 * UNIT * values
+            values, bounds = np.hypot(*values), of_magnitude(values, bounds)
         return read_only(np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds)))[()]
 
     def uncertainty(self, quantity, inputs):
@@ -149,25 +146,30 @@ class Certainty:
         >>> s.uncertainty("balancing_torque", {"crank_length": 1e-5, "slider.mass": 0.01}).tolerance.round(4)
         array([0.1489, 0.1048])
         """
-        from .compile import compile as compiled
-        from .scene import Scene
-
-        scene = Scene(self.mechanism, self.crank_speed, self.crank_acceleration, self.loads, self.friction)
-        units = scene.units
         named = isinstance(inputs, Mapping) and all(isinstance(path, str) for path in inputs)
         checks.require("uncertainty", None if named else f"inputs must map paths to numbers, got {inputs!r}")
-        given = {path: (value, units.get(path, ""), {"low": 0.0}) for path, value in inputs.items()}
+        checks.require("uncertainty", *(checks.choice("parameter", path, tuple(self.places)) for path in inputs))
+        require_free("uncertainty", self.mechanism, inputs, fixed(self.places, self.mechanism))
+        given = {path: (value, self.places[path].rule.unit, {"low": 0.0}) for path, value in inputs.items()}
         inputs = checks.singles("uncertainty", **given)
         name = self._inner(quantity)
         rounding = self.error_bound(quantity)
-        if not inputs:
-            return Uncertainty({}, rounding)
-        program = compiled(scene, name, tuple(inputs), engine="compiled" if self.engine.compiled else "numpy")
-        slopes = program.derivatives(self.crank_angle, tuple(inputs))[name]
+        found = self._slopes(name, inputs) if inputs else {}
         if name != quantity:
             vector = quantities.components(self, name)
-            slopes = {path: _of_magnitude(vector, slope) for path, slope in slopes.items()}
-        return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in slopes.items()}, rounding)
+            found = {path: _of_magnitude(vector, slope) for path, slope in found.items()}
+        return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in found.items()}, rounding)
+
+    def _slopes(self, name, by):
+        """Derivatives of a quantity by numbers of the scene, by path."""
+        kept = self
+        for path in by:
+            if is_zero(self.places[path].value(self)):
+                kept = with_kept(kept, self.places[path].steps)
+        state = kept.dynamics
+        program, leaves = programs.of(state, (name,))
+        found = leaves_of(self.places, state)
+        return slopes(program, {path: found[path] for path in by}, state, leaves, self.engine.compiled)[name]
 
     def _with_bounds(self, name, tight=False):
         """Values of a quantity, and bounds on their errors."""

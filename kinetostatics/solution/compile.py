@@ -15,13 +15,13 @@ from ..machine.loads import may_refuse, refusals
 from ..mechanics import jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.quantities import CHECKS
-from ..numbers import checks, paths
+from ..numbers import checks
 from ..numbers.elementary import read_only
-from ..numbers.kinds import Numbered
 from ..numbers.leaves import with_fields
 from .angles import crank_angles, problems
-from .parameters import is_judged_together, is_zero, shaping, with_kept
+from .parameters import fixed, is_judged_together, is_zero, leaves_of, require_free, shaping, with_kept
 from .scene import Scene, unchecked
+from .slopes import slopes
 
 FEW = 180
 """Crank angles around the turn at which friction is looked at."""
@@ -103,7 +103,7 @@ class Program:
 
     def __init__(self, scene, quantities, kept, compiled):
         self.scene, self.quantities, self._compiled, self._kept = scene, quantities, compiled, kept
-        places = paths.places(scene)
+        places = scene.places
         checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
         if scene.friction.acting:
             scene = _with_enough_passes(scene)
@@ -114,17 +114,13 @@ class Program:
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)
         self._friction: Any = programs.of(state, CHECKS)[0] if scene.friction.acting else None
-        numbered = programs.numbered(state)
-        found = {path: place.value(numbered) for path, place in places.items()}
-        self._numbers = {
-            path: (number, places[path].rule) for path, number in found.items() if isinstance(number, Numbered)
-        }
+        self._numbers = {path: (number, places[path].rule) for path, number in leaves_of(places, state).items()}
         self._absent = tuple(path for path in places if path not in self._numbers)
         self._doors = {path for path in self._numbers if is_judged_together(scene, places[path].steps)}
         self._passages = scene.mechanism.passages
         groups = scene.mechanism.groups
         self._lengths = shaping(places, scene.mechanism, [group for group in groups if group.through])
-        self._fixed = shaping(places, scene.mechanism, [group for group in groups if group.passes])
+        self._fixed = fixed(places, scene.mechanism)
         values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
         self.parameters: Mapping[str, Any] = MappingProxyType(values)
 
@@ -204,20 +200,10 @@ class Program:
         names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
         checks.require("program", None if names else "by names no parameter to derive by")
         self._require_known(names)
-        name = self.scene.mechanism.name
-        checks.require("program", *(_FIXED.format(name, path) for path in names if path in self._fixed))
+        require_free("program", self.scene.mechanism, names, self._fixed)
         state, leaves = self._at(angle, values)
-        places = tuple(self._numbers[name][0] for name in names)
-        rows = self._program.by_parameters(places).run(state, leaves, self._compiled)
-        count = len(self._program.outputs)
-        gaps, slopes = np.isnan(rows[:count]), rows[count:].reshape(count, len(names), *state.shape)
-        if gaps.any():
-            slopes = np.where(gaps[:, None], np.nan, slopes)
-        rows = read_only(slopes)
-        return {
-            quantity: dict(zip(names, np.moveaxis(found, -1 - len(state.shape), 0), strict=True))
-            for quantity, found in self._program.recording.named(rows).items()
-        }
+        by = {path: self._numbers[path][0] for path in names}
+        return slopes(self._program, by, state, leaves, self._compiled)
 
     def _look_at_friction(self, state, leaves, values):
         """Refuse a crank at rest, and warn where friction takes more passes than the scene's own numbers do."""
@@ -311,11 +297,6 @@ def _with_enough_passes(scene):
 
 def _drive(scene):
     return scene.crank_speed, scene.crank_acceleration, scene.loads, scene.friction
-
-
-_FIXED = (
-    "there is no derivative by {1}: {0} passes change points, and with any other length it would be of another kind"
-)
 
 
 def _shape(angle, leaves):

@@ -3,32 +3,33 @@
 The steps are the kernels' own arithmetic, recorded with names (engines `told`, `lines`): none is written down twice.
 """
 
-import warnings
+from dataclasses import replace
 
 import numpy as np
 
-from ..engines import programs
+from ..engines.engines import NUMPY
 from ..engines.lines import lines
 from ..engines.naming import node_of
 from ..engines.styles import LATEX, MATHML, TEXT, written
 from ..engines.told import result, told
-from ..errors import HintWarning, ParameterError, QuantityError
+from ..errors import ParameterError, QuantityError
 from ..mechanics import quantities
-from ..numbers import checks, paths
-from ..numbers.kinds import Numbered
+from ..numbers import checks
 from ..numbers.leaves import mapped
 from .angles import crank_angles
+from .checked import checked
 from .drive_and_loads import over_the_angles
 from .explanation import Explanation, Step
-from .scene import Scene
+from .parameters import leaves_of
 
 
 def explain(solution, quantity, angle, design=None):
     """Hand calculation of a quantity of a solution; see `Solution.explain`."""
     found = _quantity(solution, quantity)
     state = _alone(solution, angle, design)
-    scene = Scene(state.mechanism, state.crank_speed, state.crank_acceleration, state.loads, state.friction)
-    made, recorder = told(state.dynamics, _numbered(scene, state.dynamics), scene.units)
+    numbered = {int(number): path for path, number in leaves_of(state.places, state.dynamics).items()}
+    units = {path: place.rule.unit for path, place in state.places.items()}
+    made, recorder = told(state.dynamics, numbered, units)
     nodes = [part for part in map(node_of, result(made, quantity, found)) if part is not None]
     steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics)) if nodes else {}
     results, angle = tuple(steps[node] for node in nodes), float(state.crank_angle)
@@ -66,13 +67,6 @@ def _steps(names, found):
     return steps
 
 
-def _numbered(scene, state):
-    """Path of each number among the leaves of a scene."""
-    numbered = programs.numbered(state)
-    found = ((path, place.value(numbered)) for path, place in paths.places(scene).items())
-    return {int(number): path for path, number in found if isinstance(number, Numbered)}
-
-
 def _alone(solution, angle, design):
     """The solution of one design at one crank angle, checked as `solve` does."""
     asked = crank_angles(angle, "explain")
@@ -90,12 +84,9 @@ def _alone(solution, angle, design):
         fits = index is not None and np.shape(leaf)[-1] == solution.shape[-1]
         return float(np.broadcast_to(leaf, solution.shape)[place][index]) if fits else leaf
 
-    speed, acceleration = map(number, (solution.crank_speed, solution.crank_acceleration))
-    mechanism, loads = (mapped(part, number) for part in (solution.mechanism, solution.loads))
-    scene = Scene(mechanism, speed, acceleration, loads, mapped(solution.friction, number))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", HintWarning)  # told when it was solved
-        return scene.solve(asked, engine="numpy")
+    given = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction")
+    parts = {name: mapped(getattr(solution, name), number) for name in given}
+    return checked(replace(solution, **parts, crank_angle=np.array(asked), engine=NUMPY))
 
 
 def _design(batch, design):

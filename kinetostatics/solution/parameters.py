@@ -1,6 +1,42 @@
-"""What the numbers of a scene are to a program: left out where zero, of no other kind, judged together with others."""
+"""The numbers of a scene by path, and what they are to a program: absent where zero, judged together with others."""
 
+from typing import ClassVar
+
+from ..engines import programs
+from ..machine.mechanism import Mechanism
+from ..numbers import checks, paths
+from ..numbers.kinds import Numbered
+from ..numbers.lazy import cached_property
 from ..numbers.leaves import Kept, with_fields
+
+DRIVE = checks.Rules(
+    "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)
+)
+
+
+class Parameters:
+    """Numbers of a mechanism, its drive and its loads, named as in case files."""
+
+    PATHS: ClassVar = {"mechanism": "", "loads": "", "friction": ""}
+    RULES = checks.Rules(
+        "scene",
+        mechanism=checks.Made(Mechanism, "a Mechanism"),
+        **DRIVE.rules,
+        loads=checks.Own((), "loads"),
+        friction=checks.Own((), "friction"),
+    )
+
+    @cached_property
+    def places(self):
+        """Where each number stands, by path, with its unit and rule."""
+        return paths.places(self)
+
+
+def leaves_of(places, state):
+    """Which leaf of a `Dynamics` each number is, by path; of what is zero, and so absent, none."""
+    numbered = programs.numbered(state)
+    found = {path: place.value(numbered) for path, place in places.items()}
+    return {path: number for path, number in found.items() if isinstance(number, Numbered)}
 
 
 def is_zero(value):
@@ -26,6 +62,24 @@ def is_judged_together(item, steps):
             return True
         item = item[step] if isinstance(step, int) else getattr(item, step)
     return False
+
+
+def fixed(places, mechanism):
+    """Paths of lengths by which there is no derivative, as any other makes another kind of mechanism."""
+    return shaping(places, mechanism, [group for group in mechanism.groups if group.passes])
+
+
+def require_free(owner, mechanism, paths, fixed):
+    """Refuse to derive by a length that decides which change points are passed."""
+    checks.require(
+        owner,
+        *(
+            f"there is no derivative by {path}: {mechanism.name} passes change points, and with any other length it "
+            "would be of another kind"
+            for path in paths
+            if path in fixed
+        ),
+    )
 
 
 def shaping(places, mechanism, groups):

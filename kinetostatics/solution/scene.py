@@ -3,7 +3,7 @@
 import math
 import warnings
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -13,25 +13,22 @@ from ..engines.engines import COMPILED, FASTEST, NUMPY, is_plain
 from ..errors import HintWarning, ParameterError
 from ..machine import friction as rubbing
 from ..machine import hints
-from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, refusals, value_of
+from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
-from ..mechanics import contact, jamming
 from ..numbers import checks, paths
-from ..numbers.lazy import cached_property
 from .angles import crank_angles, problems
+from .checked import checked
 from .drive_and_loads import in_a_line
+from .parameters import DRIVE, Parameters
 from .solution import Solution
 
-DRIVE = checks.Rules(
-    "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)
-)
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(Parameters):
     """A mechanism with its drive and loads: all that a solution needs but the crank angles.
 
     Parameters
@@ -67,15 +64,6 @@ class Scene:
     loads: Any = ()
     friction: Any = None
 
-    PATHS: ClassVar = {"mechanism": "", "loads": "", "friction": ""}
-    RULES = checks.Rules(
-        "scene",
-        mechanism=checks.Made(Mechanism, "a Mechanism"),
-        **DRIVE.rules,
-        loads=checks.Own((), "loads"),
-        friction=checks.Own((), "friction"),
-    )
-
     def __post_init__(self):
         self._admit("scene")
 
@@ -100,19 +88,15 @@ class Scene:
         """Crank angle after which motion and loads repeat, rad."""
         return period_of(self.loads, self.mechanism.turns)
 
-    @cached_property
-    def _places(self):
-        return paths.places(self)
-
     @property
     def parameters(self):
         """Every number of the scene by path, zeros too, as in case files: "crank_length", "slider.mass" ..."""
-        return {path: place.value(self) for path, place in self._places.items()}
+        return {path: place.value(self) for path, place in self.places.items()}
 
     @property
     def units(self):
         """SI unit of every number by path."""
-        return {path: place.rule.unit for path, place in self._places.items()}
+        return {path: place.rule.unit for path, place in self.places.items()}
 
     def varied(self, values):
         """The scene with other values at some paths, in SI, checked as when it was made; all others stay.
@@ -126,7 +110,7 @@ class Scene:
         ParameterError
             There is no such path, or no machine has such a value.
         """
-        known = self._places
+        known = self.places
         checks.require("scene", *(checks.choice("parameter", path, tuple(known)) for path in values))
         return paths.with_values(self, {known[path].steps: value for path, value in values.items()})
 
@@ -140,7 +124,7 @@ class Scene:
         on_gap, engine
             As for `solve`.
         """
-        return _solved(self, self.turn(angles), on_gap, engine)
+        return checked(_begun(self, self.turn(angles), on_gap, engine), on_gap)
 
     def unsolved(self, angle):
         """Motion and forces at crank angles, an array, nothing checked."""
@@ -226,21 +210,15 @@ def solve(
     vars(scene).update(mechanism=mechanism, crank_speed=crank_speed, crank_acceleration=crank_acceleration, loads=loads)
     vars(scene).update(friction=friction)
     scene._admit("solve")
-    return _solved(scene, crank_angle, on_gap, engine)
+    return checked(_begun(scene, crank_angle, on_gap, engine), on_gap)
 
 
-def _solved(scene, crank_angle, on_gap, engine):
+def _begun(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded
-    (solution.check if on_gap == "raise" else solution.warn)()
-    if solution.friction.acting:
-        checks.require("solve", jamming.standing(solution))
-        solution = jamming.settled(solution)
-        jamming.check(solution, on_gap)
-    checks.require("solve", *refusals(solution), *(contact.refusals(solution) if on_gap == "raise" else ()))
     return solution
 
 

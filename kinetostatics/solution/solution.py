@@ -25,7 +25,7 @@ from .certainty import Certainty
 from .contacts import Contacts
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
-from .explanation import Explained
+from .explained import Explained
 
 SHARE = 100_000
 """Values over designs and angles up to which all forces are computed together."""

@@ -2,7 +2,8 @@
 
 A spread is a text: "600..900 kN/m" (evenly between, with ":40" behind it how many values of a grid), or for samples
 also "normal 712 kN/m +- 5 kN/m" (mean and standard deviation) and "triangular 690..710..740 kN/m" (low, likeliest,
-high). The unit of a plain number is 1.
+high). The unit of a plain number is 1. Quantities of pint will do too: the values of a grid, and for samples
+``(low, high)``, ``("normal", mean, deviation)`` and ``("triangular", low, likeliest, high)``.
 """
 
 import math
@@ -29,8 +30,9 @@ def grid(spreads) -> pd.DataFrame:
 
     Parameters
     ----------
-    spreads : dict of parameter to text
-        Such as ``{"spring.stiffness": "600..900 kN/m:40", "cam.centre.x": "-30..-10 mm:20"}``.
+    spreads : dict of parameter to text or quantities
+        Such as ``{"spring.stiffness": "600..900 kN/m:40", "cam.centre.x": "-30..-10 mm:20"}``; of quantities of pint
+        all values.
 
     Returns
     -------
@@ -40,7 +42,7 @@ def grid(spreads) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A text is of another form, or its unit not known; all of them at once.
+        A spread is of another form, or its unit not known; all of them at once.
 
     Examples
     --------
@@ -59,7 +61,7 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
 
     Parameters
     ----------
-    spreads : dict of parameter to text
+    spreads : dict of parameter to text or quantities
         As for `sample`.
     count : int
         Designs; one in each of as many equal parts of every parameter.
@@ -74,7 +76,7 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A text is of another form, its unit not known, or more designs than a table can hold.
+        A spread is of another form, its unit not known, or more designs than a table can hold.
 
     Examples
     --------
@@ -94,7 +96,7 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
 
     Parameters
     ----------
-    spreads : dict of parameter to text
+    spreads : dict of parameter to text or quantities
         As for `sample`.
     count : int
         Designs, best a power of two.
@@ -109,7 +111,7 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A text is of another form, its unit not known, or more designs than a table can hold.
+        A spread is of another form, its unit not known, or more designs than a table can hold.
 
     Examples
     --------
@@ -129,7 +131,7 @@ def random(spreads, count, seed=0) -> pd.DataFrame:
 
     Parameters
     ----------
-    spreads : dict of parameter to text
+    spreads : dict of parameter to text or quantities
         As for `sample`.
     count : int
         Designs.
@@ -144,7 +146,7 @@ def random(spreads, count, seed=0) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A text is of another form, its unit not known, or more designs than a table can hold.
+        A spread is of another form, its unit not known, or more designs than a table can hold.
 
     Examples
     --------
@@ -162,8 +164,9 @@ def sample(spreads, uniform) -> pd.DataFrame:
 
     Parameters
     ----------
-    spreads : dict of parameter to text
-        "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m".
+    spreads : dict of parameter to text or quantities
+        "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m"; of quantities of pint
+        ``(low, high)``, ``("normal", mean, deviation)``, ``("triangular", low, likeliest, high)``.
     uniform : array (designs, parameters) or function
         The numbers, a column for each parameter; a function gives them for a number of parameters.
 
@@ -175,7 +178,7 @@ def sample(spreads, uniform) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A text is of another form, or its unit not known; all of them at once.
+        A spread is of another form, or its unit not known; all of them at once.
 
     Examples
     --------

@@ -15,7 +15,7 @@ from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, Modul
 import numpy as np
 import pandas as pd
 
-from .. import __version__
+from ..version import __version__
 
 CODE = (
     "co_code",

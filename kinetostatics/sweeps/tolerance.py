@@ -48,7 +48,7 @@ class Tolerances:
     table: pd.DataFrame
     outputs: tuple[str, ...]
     sensitivity: pd.DataFrame
-    spreads: dict[str, str] = field(repr=False)
+    spreads: dict[str, Any] = field(repr=False)
 
     def quantiles(self, levels=LEVELS):
         """Quantiles of every output over the designs, a pandas DataFrame."""
@@ -75,9 +75,9 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         As for `sweep`.
     outputs : sequence of str
         As for `sweep`: "ratio mean_absolute balancing_torque" ...
-    spreads : dict of parameter to text, optional
-        "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m"; unless given those of
-        the case file's [tolerances] that the variant has.
+    spreads : dict of parameter to text or quantities, optional
+        "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m", or quantities of pint
+        as for `designs.sample`; unless given those of the case file's [tolerances] that the variant has.
     count : int
         Designs, a power of two; the Sobol indices take as many again for every parameter, and twice more.
     seed : int
@@ -125,7 +125,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         else 'no spreads are given, such as {"slider.mass": "normal 25 kg +- 1 kg"}',
         None
         if spreads is None or isinstance(spreads, Mapping)
-        else f"spreads must be a dict of parameter to text, got {spreads!r}",
+        else f"spreads must be a dict of parameter to text or quantities, got {checks.shown(spreads)}",
         None if power else f"count must be a power of two, got {count!r}",
     )
     found = designs.distributions(spreads)

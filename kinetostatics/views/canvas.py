@@ -148,11 +148,36 @@ def readable(column):
     return f"{words} [{unit or 'SI'}]"
 
 
+MOST = 0.9
+"""Share of values that are ordinary where a few grow without bound."""
+BEYOND = 1e4
+"""Times the ordinary values from which on others grow without bound."""
+SIGHT = 3.0
+"""Times the ordinary values up to which those that grow without bound are drawn."""
+
+
+def ordinary(arrays):
+    """Largest size of all values; if some are far beyond most others, as forces near change points, of most of them."""
+    sizes = np.abs(np.concatenate([np.ravel(np.asarray(array, dtype=float)) for array in arrays]))
+    finite = sizes[np.isfinite(sizes)]
+    if not finite.size:
+        return 0.0
+    usual, largest = float(np.quantile(finite, MOST)), float(np.nanmax(sizes))
+    return usual if 0.0 < BEYOND * usual < largest else float(finite.max())
+
+
+def in_sight(arrays):
+    """Size up to which values are drawn, so that a few far beyond all others do not flatten these; infinite if none."""
+    most = ordinary(arrays)
+    beyond = any(np.any(np.abs(array) > most) for array in arrays)
+    return SIGHT * most if beyond else np.inf
+
+
 def display(name, arrays):
     """Factor and unit in which numbers of this size read well."""
     if name == "rad":
         return 180 / np.pi, "deg"
-    largest = max(float(np.nanmax(np.abs(array))) for array in arrays)
+    largest = ordinary(list(arrays))
     if name == "Pa" and largest >= 1e5:
         return 1e-6, "MPa"
     return (1e-3, f"k{name}") if name in ("N", "N m", "W") and largest >= 1e4 else (1.0, name)

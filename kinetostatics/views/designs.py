@@ -11,9 +11,11 @@ from ..design.fronts import Front
 from ..machine.cam_roller import CamRoller
 from ..numbers import checks
 from ..numbers.files import unwritable
-from . import plots
 from .canvas import axes, closed, finished, styled
+from .curves import hodograph, torque
+from .drawings import mechanism
 from .figures import saved
+from .fronts import front
 
 POINTS = 720
 
@@ -22,12 +24,32 @@ def draw_designs(case, found, folder, file_format="png"):
     """Draw what designs of a case found, by name, into a folder, a page for each; returns the paths."""
     paths = {name: Path(folder) / f"{case.path.stem}_{name}.{file_format}" for name in found}
     checks.require("figures", *dict.fromkeys(unwritable(path, inputs=case.files) for path in paths.values()))
-    pages = {name: partial(front_page if isinstance(item, Front) else page, item) for name, item in found.items()}
+    pages = {
+        name: partial(front_page if isinstance(item, Front) else before_and_after, item) for name, item in found.items()
+    }
     return [saved(lambda _, draw=pages[name]: draw(), {}, path, case, file_format) for name, path in paths.items()]
 
 
-def page(found):
-    """Before and after a search: cam, torque, support reaction; returns the figure."""
+def before_and_after(found):
+    """Before and after a search: cam, torque, support reaction.
+
+    Parameters
+    ----------
+    found : Found
+        As `ks.design.torque_free_cam` and `ks.design.optimise` return it.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> found = ks.design.torque_free_cam(ks.load_case("sawframe_2r63"), cosine=2, gravity=False)
+    >>> figure = ks.plots.before_and_after(found)
+    >>> len(figure.axes)
+    6
+    """
     scenes = {"before": found.before, "after": found.scene}
     solutions = {name: scene.solve(POINTS) for name, scene in scenes.items()}
     cams = {name: cam for name, scene in scenes.items() if (cam := cam_of(scene)) is not None}
@@ -40,21 +62,21 @@ def page(found):
         cam_radius(cams, ax=parts["radius"])
         parts["radius"].set_title("its distance from O, over the turn")
     else:
-        plots.mechanism(solutions["after"], ax=parts["mechanism"])
+        mechanism(solutions["after"], ax=parts["mechanism"])
         parts["mechanism"].set_title("after")
-    plots.torque(solutions, ax=parts["torque"])
-    plots.torque({"after": solutions["after"]}, ax=parts["torque after"])
+    torque(solutions, ax=parts["torque"])
+    torque({"after": solutions["after"]}, ax=parts["torque after"])
     parts["torque"].set_title("torque the drive must give")
     parts["torque after"].set_title("after alone")
     for name, solution in solutions.items():
-        plots.hodograph(solution, ax=parts[name], marks=45)
+        hodograph(solution, ax=parts[name], marks=45)
         parts[name].set_title(f"support reaction, {name}")
     return figure
 
 
 def front_page(found):
     figure, ax = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
-    plots.front(found, ax=ax)
+    front(found, ax=ax)
     return figure
 
 

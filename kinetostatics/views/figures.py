@@ -14,7 +14,7 @@ from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
 from ..results.losses import lose
-from . import drives, plots
+from . import curves, drawings, drives, lost_power, studies
 from .alike import moves_alike
 from .canvas import FROM_X, FROM_Y_CLOCKWISE, distinct
 
@@ -140,7 +140,7 @@ def _single(plot, width=6.4, height=4.0, **axes):
 def _over_turn(quantity):
     def draw(solutions, counted) -> Figure:
         figure, ax = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-        plots.over_turn(_that_have(quantity, solutions), quantity, ax=ax, counted=counted)
+        curves.over_turn(_that_have(quantity, solutions), quantity, ax=ax, counted=counted)
         return figure
 
     return draw
@@ -148,9 +148,9 @@ def _over_turn(quantity):
 
 def _hodographs(solutions, counted=FROM_X) -> Figure:
     """Hodographs of the support reaction, those that cover each other in one panel."""
-    curves = {name: solution.reaction("O") for name, solution in solutions.items()}
-    shown = {text: solutions[name] for text, name in distinct(curves, apart=True).items()}
-    return _one_each(partial(plots.hodograph, counted=counted), shown, 5.2, 4.6, 2)
+    reactions = {name: solution.reaction("O") for name, solution in solutions.items()}
+    shown = {text: solutions[name] for text, name in distinct(reactions, apart=True).items()}
+    return _one_each(partial(curves.hodograph, counted=counted), shown, 5.2, 4.6, 2)
 
 
 def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
@@ -170,7 +170,7 @@ def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
 
 def _proportion(solution):
     """Width of the drawing of a mechanism over its height."""
-    size = plots.mechanism(solution, ax=Figure().subplots()).dataLim
+    size = drawings.mechanism(solution, ax=Figure().subplots()).dataLim
     return float(np.clip(size.width / size.height, 0.4, 4.0)) if size.height > 0 else 4.0
 
 
@@ -186,7 +186,7 @@ def _mechanisms(solutions, counted=FROM_X) -> Figure:
     shown = {", ".join(group): group for group in alike}
     wide = max(map(_proportion, solutions.values()))
     width = 8.0 if wide > WIDE else max(3.2, min(5.2, 5.5 * wide))
-    plot = partial(plots.mechanism, angles=counted.from_x(POSES), counted=counted)
+    plot = partial(drawings.mechanism, angles=counted.from_x(POSES), counted=counted)
     return _one_each(plot, shown, width, width / wide + LETTERING, 1 if wide > WIDE else 2)
 
 
@@ -218,12 +218,12 @@ def _overview(solutions, counted=FROM_X) -> Figure:
     figure, axes = plt.subplot_mosaic(
         rows, figsize=(11, 6.4), layout="constrained", width_ratios=widths, height_ratios=heights
     )
-    plots.mechanism(last, angles=counted.from_x(POSES), ax=axes["mechanism"], counted=counted)
+    drawings.mechanism(last, angles=counted.from_x(POSES), ax=axes["mechanism"], counted=counted)
     axes["mechanism"].set_title(f"{shown[-1]}: {last.mechanism.name}")
-    plots.torque(solutions, ax=axes["torque"], counted=counted)
+    curves.torque(solutions, ax=axes["torque"], counted=counted)
     axes["torque"].set_title("torque the drive must give")
     for name in shown:
-        plots.hodograph(solutions[name], ax=axes[name], marks=45, counted=counted)
+        curves.hodograph(solutions[name], ax=axes[name], marks=45, counted=counted)
         axes[name].set_title(f"support reaction, {name}")
     return figure
 
@@ -232,20 +232,20 @@ FIGURES = {
     "overview": (_overview, _always),
     "mechanism": (_mechanisms, _always),
     "torque": (_over_turn("balancing_torque"), _always),
-    "acceleration_error": (_single(plots.acceleration_error), _law_is_meant),
+    "acceleration_error": (_single(curves.acceleration_error), _law_is_meant),
     "hodograph": (_hodographs, _always),
     "pressure_angle": (_over_turn("pressure_angle"), _has("pressure_angle")),
     "cam_force": (_over_turn("cam_force"), _has("cam_force")),
-    "losses": (lambda solutions, _: _single(plots.losses)(_that_rub(solutions)), _rubs),
-    "lost_power": (lambda solutions, _: _one_each(plots.lost_power, _that_rub(solutions), 6.4, 3.2, 1), _rubs),
-    "mass_centres": (_single(plots.mass_centres, 9.0, 3.6), _is_balanced),
-    "shaking_by_direction": (_single(plots.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
+    "losses": (lambda solutions, _: _single(lost_power.losses)(_that_rub(solutions)), _rubs),
+    "lost_power": (lambda solutions, _: _one_each(lost_power.lost_power, _that_rub(solutions), 6.4, 3.2, 1), _rubs),
+    "mass_centres": (_single(drawings.mass_centres, 9.0, 3.6), _is_balanced),
+    "shaking_by_direction": (_single(studies.shaking_force, 6.4, 4.8, projection="polar"), _is_balanced),
     "shaking_by_crank_angle": (
-        _single(partial(plots.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
+        _single(partial(studies.shaking_force, by="crank angle"), 6.4, 4.8, projection="polar"),
         _is_balanced,
     ),
     **{
-        f"{link}_{kind}": (_single(partial(plots.chain_unit_motion, link=link, order=order)), _is_chain_unit)
+        f"{link}_{kind}": (_single(partial(studies.chain_unit_motion, link=link, order=order)), _is_chain_unit)
         for link in ("coupler", "rocker")
         for order, kind in enumerate(("velocity", "acceleration"), 1)
     },

@@ -52,9 +52,9 @@ class Shape:
 
     @cached_property
     def slots(self):
-        """By slot: both ends of the way of its joint, (2, 2), in the axes of its link, the nearer end first."""
-        found = {slot: _ends(self._seen(slot.link, self.turn.position(slot.joint))) for slot in self.made.slots}
-        return {slot: ends if slot.rod else _longer(ends, self.unit) for slot, ends in found.items()}
+        """Slots, each with both ends of the way of its joint, (2, 2), in the axes of its link, the nearer end first."""
+        found = [(slot, _ends(self._seen(slot.link, self.turn.position(slot.joint)))) for slot in self.made.slots]
+        return [(slot, ends if slot.rod else _longer(ends, self.unit)) for slot, ends in found]
 
     @cached_property
     def ways(self):
@@ -75,7 +75,7 @@ class Shape:
                 found[point.link].append((point.along, point.across))
         for bar in self.made.bars:
             found[bar.link].append((bar.length, 0.0))
-        for slot, ends in self.slots.items():
+        for slot, ends in self.slots:
             found[slot.link] += [] if slot.rod else [tuple(end) for end in ends.T]
         return {link: self._different(points) for link, points in found.items()}
 
@@ -108,7 +108,7 @@ class Shape:
                 kind = "plate" if order is None else "bar"
                 order = _around(corners) if order is None else order[[0, -1]]
                 yield Stroke(kind, _on(pose, link, corners[:, order]))
-        for slot, ends in self.slots.items():
+        for slot, ends in self.slots:
             yield from self._piston(pose, slot, ends) if slot.rod else self._slot(pose, slot, ends)
         for link, corners in self.corners.items():
             if link in self.made.guides or (corners.shape[1] == 1 and link not in self.rods):

@@ -20,6 +20,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import compiled, loops, programs
 from kinetostatics.studies.methods import kane
+from support.shipped import shipped
 from support.speed import (
     CENTRE,
     COUPLER,
@@ -35,7 +36,7 @@ from support.speed import (
     turn,
 )
 
-SAW = ks.load_case("sawframe_2r63")
+SAW = shipped("sawframe_2r63")
 FORCES = ("O", "A", "B", "guide_force", "guide_moment", "balancing_torque")
 CAM_FORCES = (*FORCES, "cam_force", "slot_force")
 NONE = np.empty((0, 1, 360))

@@ -17,9 +17,12 @@ def missing():
     return f"a browser is needed for these tests; not installed: {', '.join(lacking)}" if lacking else ""
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def driver():
-    """Chromium, driven by Selenium, that keeps a log of its console and of all that it asks for."""
+    """Chromium, driven by Selenium, that keeps a log of its console and of all that it asks for.
+
+    It ends with its tests, and does not draw turning mechanisms beside all others.
+    """
     if missing():
         pytest.skip(missing())
     from selenium import webdriver

@@ -3,9 +3,12 @@
 import json
 import re
 import time
+import warnings
+from io import BytesIO
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components, of_scene
@@ -18,7 +21,9 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
-pytestmark = pytest.mark.slow_start
+from support.reports import near_change_points
+
+pytestmark = pytest.mark.slow
 CASE, OTHER = "sawframe_2r63", "cam-cosine"
 USABLE = 10.0
 """Seconds in which the page must be ready on a machine that is busy with other tests; alone it takes under one."""
@@ -258,6 +263,41 @@ def test_it_is_as_wide_as_a_phone(page):
         assert driver.execute_script("return report.drawings[0].svg.viewBox.baseVal.width") < 400
     finally:
         driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_a_wide_table_on_a_phone_has_a_shadow_at_the_side_where_it_goes_on(page):
+    driver, _ = page
+    size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        time.sleep(0.3)
+        wide = driver.find_element(By.CSS_SELECTOR, "#glance .scroll")
+        driver.execute_script("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", wide)
+        assert driver.execute_script("return arguments[0].scrollWidth > arguments[0].clientWidth", wide)
+
+        def shades(place):
+            driver.execute_script("arguments[0].scrollLeft = arguments[1]", wide, place)
+            time.sleep(0.2)
+            rows = imread(BytesIO(wide.screenshot_as_png))[..., 0]
+            return [float(np.median(rows[:, column])) for column in (0, -1)]
+
+        (left, right), (left_at_end, right_at_end) = shades(0), shades(10_000)
+        assert left == right_at_end == 1.0
+        assert max(right, left_at_end) < 0.9
+    finally:
+        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_a_hodograph_near_a_change_point_shows_what_is_ordinary(driver, tmp_path):
+    with warnings.catch_warnings(action="ignore"):
+        opened(driver, ks.report({"a": near_change_points()}, tmp_path / "change.html"))
+    scales = """const [x, y] = [report.figures.hodograph.model.x_range, report.figures.hodograph.model.y_range];
+        return [x.start, x.end, y.start, y.end]"""
+    assert np.abs(driver.execute_script(scales)).max() < 1e3
+    choose(driver, 77)
+    texts = driver.execute_script("return [...document.querySelectorAll('td.num')].map((cell) => cell.textContent)")
+    assert any(re.match(r"\d\.\d{5}e\+\d+ ∠", text) for text in texts)
+    assert severe(driver) == []
 
 
 def test_on_paper_every_figure_stands_as_lines(page):

@@ -29,6 +29,7 @@ def test_run_prints_extremes_and_the_power_check(capsys):
     assert "cam" not in printed.split("plain: crank-slider")[1]
 
 
+@pytest.mark.slow
 def test_run_prints_0_for_what_is_rounding_and_groups_in_the_order_of_the_chain(capsys):
     assert main(["run", "in_line_twin", "--variant", "throws-opposed"]) == 0
     printed = capsys.readouterr().out.split("\n\npower balance")[0]
@@ -41,6 +42,7 @@ def test_run_prints_0_for_what_is_rounding_and_groups_in_the_order_of_the_chain(
     assert names.index("reaction guide1") < names.index("reaction C2") < names.index("reaction O")
 
 
+@pytest.mark.slow
 def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):
     path = tmp_path / "new" / "saw.csv"
     assert main(["run", "sawframe_2r63", "--angles", "36", "--csv", str(path)]) == 0
@@ -51,6 +53,7 @@ def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):
     assert f"wrote {path}: 108 rows" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_plot_writes_each_figure_of_the_case(tmp_path, capsys):
     assert main(["plot", "sawframe_2r63", "--out", str(tmp_path)]) == 0
     written = sorted(path.name for path in tmp_path.iterdir())
@@ -60,6 +63,7 @@ def test_plot_writes_each_figure_of_the_case(tmp_path, capsys):
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_same_figure_is_written_as_svg_byte_for_byte_again(tmp_path):
     for folder in ("a", "b"):
         arguments = ["--out", str(tmp_path / folder), "--format", "svg", "--only", "torque"]
@@ -108,6 +112,7 @@ def test_a_file_that_cannot_be_written_leaves_the_old_one_whole(tmp_path, monkey
     assert "disk full" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_module_and_shell_agree_and_show_no_traceback(broken):
     command = [sys.executable, "-m", "kinetostatics", "compare", str(broken)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -122,6 +127,7 @@ def test_run_puts_each_extremum_beside_its_own_angle(capsys):
     assert row.split()[-4:] == ["-40237.5", "320.632", "40578.9", "39.289"]
 
 
+@pytest.mark.slow
 def test_a_case_of_one_variant_is_run_and_plotted_and_has_nothing_to_compare(tmp_path, capsys):
     case = tmp_path / "one.toml"
     case.write_text(
@@ -161,6 +167,7 @@ def test_list_has_a_line_for_each_shipped_case_with_title_and_variants(capsys):
     assert "mower_drive Mower drive: static balancing of an offset crank-slider (unbalanced, full, partial-1" in words
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", STARTERS)
 def test_a_new_case_compares_its_variants_and_finds_its_design_as_it_is_written(tmp_path, monkeypatch, capsys, kind):
     monkeypatch.chdir(tmp_path)
@@ -189,6 +196,7 @@ def test_a_new_case_never_takes_the_place_of_a_file(tmp_path, capsys):
     assert path.read_text(encoding="utf-8") == "old"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["new\nline", 'say "when"', "b\\c", "\N{GREEK SMALL LETTER OMEGA}.toml"])
 def test_a_new_case_of_an_odd_name_is_read_again(tmp_path, name):
     assert main(["new", str(tmp_path / name)]) == 0
@@ -196,6 +204,7 @@ def test_a_new_case_of_an_odd_name_is_read_again(tmp_path, name):
     assert ks.load_case(path).title == path.stem
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("own", "turns"),
     [
@@ -232,6 +241,7 @@ def test_a_start_angle_without_unit_is_refused(angle, message, capsys):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_run_prints_what_friction_takes_at_each_joint_and_the_efficiency(capsys):
     assert main(["run", "sawframe_2r63_friction", "--variant", "cam-cosine", "--angles", "8"]) == 0
     text = capsys.readouterr().out.split("power lost by friction, exact means over the turn\n\n")[1]
@@ -242,12 +252,14 @@ def test_run_prints_what_friction_takes_at_each_joint_and_the_efficiency(capsys)
     assert "of 11733 W put in, 0 W are taken and 11733 W lost: efficiency 0" in text
 
 
+@pytest.mark.slow
 def test_run_and_compare_say_nothing_of_losses_without_friction(capsys):
     for command in (["run", "mower_drive", "--variant", "full"], ["compare", "mower_drive", "--variant", "full"]):
         assert main(command) == 0
         assert not re.search("lost|efficiency", capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_run_and_compare_of_a_saw_that_starts_from_rest_have_no_losses(tmp_path, capsys):
     text = shipped_cases()["sawframe_2r63_friction"].read_text(encoding="utf-8")
     text = text.replace('crank_speed = "320 rpm"', 'crank_speed = "0 rpm"\ncrank_acceleration = "2 rad/s^2"')

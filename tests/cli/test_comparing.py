@@ -9,6 +9,8 @@ import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
 
+pytestmark = pytest.mark.slow
+
 
 def test_variants_stand_side_by_side_and_the_published_figures_beside_what_they_belong_to(capsys):
     assert main(["compare", "sawframe_2r63"]) == 0

@@ -1,15 +1,15 @@
 """The command ``design``: tables, figures and the new case file, and errors as of the other commands."""
 
 import signal
-import subprocess
-import sys
-import time
 
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
 from support.designs import FRONT, STIFFER, saw_with
+from support.held import held
+
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture
@@ -104,22 +104,17 @@ def test_tables_stand_beside_what_is_found_and_take_no_other_file_s_place(tmp_pa
     assert "searching" not in told
 
 
-@pytest.mark.slow_start
 @pytest.mark.parametrize(
-    ("sent", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "term")]
+    ("sent", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
 )
 def test_a_search_ends_in_order_with_nothing_half_written(tmp_path, sent, status, word):
-    saw = saw_with(STIFFER.replace("angles = 72", "angles = 20000\nstarts = 1000"), tmp_path)
-    command = [sys.executable, "-m", "kinetostatics", "design", str(saw), "--out", str(tmp_path / "found.toml")]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
-    assert process.stderr is not None
-    assert process.stderr.readline() == "searching for stiffer\n"
-    time.sleep(1.5)  # the libraries are loaded, and the search goes on for minutes
-    process.send_signal(sent)
-    told = process.communicate(timeout=30)[1]
+    saw = saw_with(STIFFER.replace("angles = 72", "angles = 72\nstarts = 2"), tmp_path)
+    arguments = ["design", saw, "--out", tmp_path / "found.toml"]
+    with held("kinetostatics.design.optimisation", "searched", arguments) as process:
+        process.send_signal(sent)
+        told = process.communicate()[1]
     assert process.returncode == status
-    assert told.startswith(f"kinetostatics: {word}")
-    assert len(told.splitlines()) == 1
+    assert told == f"searching for stiffer\nkinetostatics: {word}\n"
     assert list(tmp_path.iterdir()) == [saw]
 
 

@@ -9,6 +9,8 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.cli import main
 
+pytestmark = pytest.mark.slow
+
 PUMP = """
 title = "Pump"
 reference = "pump"

@@ -73,6 +73,7 @@ def test_tables_without_rows_are_their_headings(capsys):
     assert capsys.readouterr().out.split() == ["index", "a", "b", "-----", "-", "-"]
 
 
+@pytest.mark.slow
 @every("name", ["sawframe_2r63", "mower_drive", "in_line_twin", "yoke_pump", "chain_unit"])
 def test_every_table_of_a_shipped_case_fits_80_letters_in_plain_text(name, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "80")
@@ -82,3 +83,11 @@ def test_every_table_of_a_shipped_case_fits_80_letters_in_plain_text(name, monke
     assert max(map(len, printed.splitlines())) <= 80
     assert not re.search(r"\x1b|[\u2500-\u257f]", printed)
     assert not re.search(r"\de-1[2-9]", re.sub(r"differ by\s+\S+", "", printed))
+
+
+def test_digits_that_are_not_known_are_not_printed(capsys):
+    table = pd.DataFrame({"unit": ["N"] * 4, "largest": [40578.93, 40578.93, 1.5e-10, 40578.93]}, index=list("abcd"))
+    bounds = pd.DataFrame({"unit": ["N"] * 4, "largest": [3.0, math.nan, 2e-10, math.inf]}, index=list("abcd"))
+    print_table(table, bounds)
+    cells = [line.split()[-1] for line in capsys.readouterr().out.splitlines()[2:]]
+    assert cells == ["40579", "40578.9", "0", "40578.9"]

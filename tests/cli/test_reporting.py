@@ -8,10 +8,11 @@ from kinetostatics.cli import main
 from kinetostatics.views.report import printing
 from support.reports import words
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("bokeh")
 
 
-@pytest.mark.slow_start
 def test_the_command_writes_the_page_and_tells_of_it(tmp_path, capsys):
     path = tmp_path / "pump.html"
     assert main(["report", "yoke_pump", "--variant", "idle", "--out", str(path)]) == 0
@@ -19,7 +20,6 @@ def test_the_command_writes_the_page_and_tells_of_it(tmp_path, capsys):
     assert f"kinetostatics report yoke_pump --out {path} --variant idle" in words(path.read_text(encoding="utf-8"))
 
 
-@pytest.mark.slow_start
 def test_the_command_prints_to_a_pdf_and_tells_of_both(tmp_path, capsys, monkeypatch):
     browser = tmp_path / "browser"
     place = "--print-to-pdf="

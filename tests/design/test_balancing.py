@@ -139,6 +139,7 @@ def scan(mechanism, norm, *, largest_unbalance=np.inf, phase=False):
     return min(np.min(NORMS[norm](bare + by_along + part * (units[1] - bare))) for part in across)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mechanism", "norm"), [(mower(), norm) for norm in NORMS] + [(STRAIGHT, "largest"), (STRAIGHT, "along")]
 )
@@ -155,6 +156,7 @@ def test_optimum_is_no_worse_than_the_classical_cases_and_a_scan_and_the_phase_h
     assert turned <= min(plain, scan(mechanism, norm, phase=True)) + hidden
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("norm", ["largest", "weighted"])
 def test_optimum_of_a_centred_mower_has_no_phase(norm):
     """By symmetry about the guide, and as the norms are convex."""
@@ -190,6 +192,7 @@ def test_keep_out_radius_does_not_stand_in_the_way_of_an_optimum_outside_it():
         optimal(mower(), crank=Counterweight(arm=0.035, keep_out=0.04))
 
 
+@pytest.mark.slow
 def test_two_counterweights_with_phase_reach_the_optimum_of_a_linear_programme():
     """Least largest force along the guide of a cam mechanism, by four unbalances at given masses."""
     ready = counterweight(counterweight(CAM, "crank", 0.0, HEAVY).mechanism, "coupler", 0.0, HEAVY).mechanism
@@ -260,6 +263,7 @@ def test_what_cannot_be_balanced_is_refused_with_the_reason(balance, message):
         balance()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("norm", ["largest", "along"])
 def test_optimum_is_that_of_the_true_extreme_not_of_a_grid(norm):
     """A finer grid to begin with changes nothing, and no classical ratio is better."""

@@ -89,6 +89,7 @@ def test_report_tells_masses_arms_and_unbalances_with_units():
         assert row["modulus h [m]"] == pytest.approx(0.0, abs=1e-15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("found", [partial(SKEW, crank=HEAVY), full(FOUR_BAR, crank=HEAVY, rocker=HEAVY)])
 def test_effect_gives_true_extremes_of_forces_moments_and_torque_before_and_after(found):
     drive = {"crank_speed": 10.0, "crank_acceleration": 20.0, "loads": ks.Gravity()}

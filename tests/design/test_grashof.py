@@ -53,6 +53,7 @@ def test_kind_and_turning_joints_are_those_a_sweep_of_every_inversion_finds(kind
     assert set(found.turning_joints) == joints_that_turn(EXAMPLES[kind])
 
 
+@pytest.mark.slow
 @settings(reproducible, max_examples=60)
 @given(lengths=st.tuples(*4 * [number(0.1, 3.0)]))
 def test_turning_joints_of_random_four_bars_are_those_a_sweep_finds(lengths):
@@ -142,6 +143,7 @@ def test_closed_intervals_complement_those_of_the_assembly_error(kind, frame_ang
     assert_intervals_complement(four_bar(EXAMPLES[kind], frame_angle))
 
 
+@pytest.mark.slow
 @settings(reproducible, max_examples=40)
 @given(lengths=st.tuples(*4 * [number(0.1, 3.0)]), frame_angle=number(-3.1, 3.1))
 def test_closed_intervals_of_random_four_bars_complement_the_gaps(lengths, frame_angle):

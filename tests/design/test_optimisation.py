@@ -1,6 +1,7 @@
 """Optimisation under limits: optima known otherwise, limits at true extremes, any machine and output."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
@@ -96,6 +97,7 @@ ROLLED = ks.Scene(
 )
 
 
+@pytest.mark.slow
 def test_the_sawframe_with_least_swing_keeps_to_a_contact_pressure():
     """A flywheel 14 times lighter, and no roller pressed harder than it may be; by the true running of each."""
     vary = {

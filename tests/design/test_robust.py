@@ -1,6 +1,7 @@
 """Quantiles over spreads: what designs are worth as they are made and run."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
@@ -8,6 +9,8 @@ from kinetostatics.design.demands import wanted
 from kinetostatics.design.problem import Problem
 from kinetostatics.design.robust import Sampled
 from support.shipped import shipped
+
+pytestmark = pytest.mark.slow
 
 SAW = shipped("sawframe_2r63")
 RATIO = "ratio mean_absolute balancing_torque"

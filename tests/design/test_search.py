@@ -6,6 +6,8 @@ from numpy.testing import assert_allclose
 import kinetostatics as ks
 from support.improved_saws import RATIO, SAW, SPRING, TORQUE
 
+pytestmark = pytest.mark.slow
+
 
 def test_several_starts_reach_the_same_design_and_the_seed_repeats_them():
     one, other = (

@@ -10,6 +10,8 @@ from kinetostatics.design.problem import Problem
 from kinetostatics.design.torque_free import least_squares
 from support.shipped import shipped
 
+pytestmark = pytest.mark.slow
+
 SAW, MOWER = shipped("sawframe_2r63"), shipped("mower_drive")
 RATIO = "ratio mean_absolute balancing_torque"
 PEAK, SQUARES = "largest_absolute balancing_torque", "rms balancing_torque"

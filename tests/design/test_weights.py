@@ -1,7 +1,11 @@
 """What carries the weight that a symmetric cam cannot."""
 
+import pytest
+
 import kinetostatics as ks
 from support.shipped import shipped
+
+pytestmark = pytest.mark.slow
 
 SAW, MOWER = shipped("sawframe_2r63"), shipped("mower_drive")
 RATIO = "ratio mean_absolute balancing_torque"

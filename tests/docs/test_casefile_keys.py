@@ -10,11 +10,11 @@ from support.pages import script
 
 KEYS = script("casefile_keys")
 PARTS = KEYS.parts_of_the_reference()
-MODELS = {title: model for title, model, _ in KEYS.sections()}
+MODELS = {title: model for title, model, _ in KEYS.sections.sections()}
 
 
 def test_every_table_of_a_case_file_has_a_section():
-    whole = KEYS.reached([schema.CaseTable, *schema.VARIANTS.values(), *KEYS.designs.KINDS.values()])
+    whole = KEYS.sections.reached([schema.CaseTable, *schema.VARIANTS.values(), *schema.designs.KINDS.values()])
     told = set(MODELS.values()) - {MechanismVariant}
     assert {model.__name__ for model in whole} == {model.__name__ for model in told}
 

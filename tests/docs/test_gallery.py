@@ -30,6 +30,7 @@ def test_a_picture_takes_six_lines_and_less_than_100_kb_and_bears_no_date(name):
     assert "<dc:date>" not in committed(name)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:Animation was deleted")
 @pytest.mark.parametrize("name", SNIPPETS)
 def test_a_picture_comes_out_as_it_is_shown(name):

@@ -40,6 +40,7 @@ def test_a_formula_with_a_wrong_sign_is_found():
         exec(code.replace("slope = (ratio**2 * d - dot", "slope = (ratio**2 * d + dot"), names)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_a_drawing_comes_out_as_it_is_shown(name):
     shown = (theory.FOLDER / f"{name}.svg").read_text(encoding="utf-8")

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.shipped import shipped
 
 TURN = 2 * np.pi
 MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875, inertia=0.4)
-SAW = ks.load_case("sawframe_2r63").variants
+SAW = shipped("sawframe_2r63").variants
 CUT = ks.ProcessForce(lambda motion: np.where(motion.slider_velocity < 0.0, 8e3, 0.0))
 DAMPER = ks.PointDamper(300.0, between=("B", (0.0, 0.3)))
 

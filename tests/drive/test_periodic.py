@@ -27,7 +27,7 @@ def reference():
     return json.loads((DATA / "driven_sawframe.json").read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
+@pytest.mark.parametrize("engine", ["numpy", "compiled"])
 def test_the_plain_sawframe_runs_as_30_digits_say(reference, engine):
     if engine == "compiled":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")

@@ -88,7 +88,7 @@ def test_friction_that_vanishes_changes_nothing():
     assert ks.drive.steady(slight, MOTOR, 1000.0).speed == pytest.approx(one.speed, rel=1e-11)
 
 
-@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
+@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow)])
 def test_the_rubbing_saw_runs_as_many_digits_say(engine):
     if engine == "compiled":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")

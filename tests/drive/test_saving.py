@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.shipped import shipped
 
 MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875, inertia=0.4)
-SAW = ks.load_case("sawframe_2r63").variants
+SAW = shipped("sawframe_2r63").variants
 
 
 def running(variant, motor=MOTOR):
@@ -22,6 +23,7 @@ def pair():
     return running("plain"), running("cam-cosine")
 
 
+@pytest.mark.slow
 def test_compare_takes_running_and_its_solution_alike(pair):
     compared, of_solutions = ks.compare(*pair), ks.compare(*(run.solution for run in pair))
     assert compared.frame().equals(of_solutions.frame())

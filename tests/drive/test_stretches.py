@@ -63,6 +63,7 @@ def test_the_rubbing_saw_coasts_to_a_standstill_as_many_digits_say():
     assert motion.time[-1] == pytest.approx(float(given["time"]), rel=1e-14)
 
 
+@pytest.mark.slow
 def test_a_saw_that_coasts_gives_its_energy_to_friction():
     motion = ks.drive.coast(RUBBING, 20.0, 1.0, 8.0, "standstill")
     s = motion.solution

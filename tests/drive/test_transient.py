@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.shipped import shipped
 
 MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
@@ -91,6 +92,7 @@ def _pendulum(windows):
         return mp.pi / 2 - (2 * sigma + mp.pi)
 
 
+@pytest.mark.slow
 def test_without_loss_energy_is_kept():
     scene = ks.Scene(
         SAW, 1.0, loads=(ks.Gravity(), ks.Spring(2e4, 2.0), ks.PointSpring(300.0, 0.1, between=("A", (0.1, 0.9))))
@@ -155,9 +157,10 @@ def test_a_machine_in_periodic_running_stays_there_over_time():
     assert motion.acceleration == pytest.approx(acceleration, abs=1e-10 * np.abs(acceleration).max())
 
 
-BALANCED = ks.load_case("sawframe_2r63").variants["cam-cosine"].scene
+BALANCED = shipped("sawframe_2r63").variants["cam-cosine"].scene
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("angle", "words"), [(2.3, "it does not start"), (math.pi / 2, "it starts and stops after")])
 def test_the_balanced_saw_does_not_start_against_its_springs(angle, words):
     with pytest.raises(ks.DriveError, match=words) as caught:

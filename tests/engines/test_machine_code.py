@@ -126,6 +126,7 @@ def test_an_entry_that_is_not_finished_leaves_nothing(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_processes_that_start_together_share_the_folder(numba, folder):
     code = f"from kinetostatics.engines.machine_code import load; print(load({TEXT!r}, keep=True).twice(2.1))"
     command = [sys.executable, "-W", "error::kinetostatics.errors.CacheWarning", "-c", code]

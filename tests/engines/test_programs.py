@@ -68,6 +68,7 @@ def double(jax):
     jax.config.update("jax_enable_x64", before)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DIVERSE)
 def test_solve_under_jax_jit_equals_numpy(double, name):
     found = double.jit(lambda angles: results(solve(SCENES[name], angles, on_gap="nan")))(ANGLES)
@@ -75,6 +76,7 @@ def test_solve_under_jax_jit_equals_numpy(double, name):
     assert_agree(found, results(solve(SCENES[name], ANGLES)))
 
 
+@pytest.mark.slow
 def test_jax_in_single_precision_is_warned_of(jax):
     before = jax.config.jax_enable_x64
     jax.config.update("jax_enable_x64", False)
@@ -197,6 +199,7 @@ def test_recorded_program_equals_solve(interpreted, name):
     assert_program_equals(solve(SCENES[name], ANGLES))
 
 
+@pytest.mark.slow
 def test_compiled_program_equals_solve_and_its_own_sines_are_right(numba):
     assert_program_equals(solve(SCENES["circle cam, everything"], ANGLES))
     sine, cosine = loops.turn(ANGLES[None])
@@ -256,6 +259,7 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
         assert np.all(np.abs(found - expected) <= 1e-12 * np.maximum(size, 1e-3 * size.max(axis=1, keepdims=True)))
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
 def test_compiled_program_keeps_gaps_and_is_finite_at_limit_positions(numba):
     """The six-bar with a second coupler that is too short over a part of the turn, and one that just reaches."""
@@ -337,6 +341,7 @@ def test_designs_of_one_structure_share_a_program_and_others_do_not():
     assert len({found(), *(found(**changes) for changes in others)}) == 5
 
 
+@pytest.mark.slow
 def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monkeypatch, capsys):
     """Nothing is compiled anew, neither there nor here for crank angles that are locked against writing."""
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path))
@@ -389,7 +394,6 @@ RUBBING = ks.Scene(
 )
 
 
-@pytest.mark.slow_start
 def test_few_angles_over_and_over_are_computed_by_the_loop_to_the_same_bits(monkeypatch):
     pytest.importorskip("numba")
     program = ks.compile(RUBBING, "friction_torque", engine="compiled")

@@ -50,7 +50,7 @@ def test_many_outputs_are_computed_in_one_loop_over_the_angles(recorded):
     assert sum(line.startswith("for k in range") for line in lines) == 2  # that, and one that copies rows
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 @pytest.mark.parametrize("angles", [1, writing.AT_ONCE, 2 * writing.AT_ONCE + 3])
 def test_many_outputs_are_those_of_few_to_the_last_bit(recorded, angles):
     pytest.importorskip("numba")

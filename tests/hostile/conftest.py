@@ -1,4 +1,4 @@
-"""Hostile input ends at once: within two seconds and a gigabyte, whatever is handed in."""
+"""Hostile input ends at once: within two seconds of computing and a gigabyte, whatever is handed in."""
 
 import resource
 import sys
@@ -20,9 +20,10 @@ def _memory():
 def soon_and_small(request):
     """Stops a test, or an input of it, after two seconds, and fails it for taking a gigabyte.
 
-    One that is marked `slow_start` has a minute.
+    One that is marked `slow` or `slow_start` has a minute.
     """
     held = _memory()
-    with limited(60 if request.node.get_closest_marker("slow_start") else SECONDS):
+    patient = any(map(request.node.get_closest_marker, ("slow", "slow_start")))
+    with limited(60 if patient else SECONDS):
         yield
     assert _memory() - held < BYTES

@@ -21,6 +21,8 @@ from kinetostatics.cli import main
 from kinetostatics.numbers import files
 from kinetostatics.views.figures import draw_case
 from support.every import every
+from support.held import held
+from support.shipped import shipped
 
 mpl.use("agg")
 TEXT = """
@@ -38,8 +40,8 @@ mechanism = "cam-crank-slider"
 cam = { kind = "sampled", table = "saw_precision.csv" }
 """
 CAM = "\n".join(["angle [deg], radius [m]", *(f"{a}, {0.3 + 0.01 * math.cos(math.radians(a))}" for a in range(360))])
-SAW = ks.load_case("sawframe_2r63")
-PLAIN, FOUR_BAR = SAW.solve("plain", 36), ks.load_case("chain_unit").solve("rho-0.5", 36)
+SAW = shipped("sawframe_2r63")
+PLAIN, FOUR_BAR = SAW.solve("plain", 36), shipped("chain_unit").solve("rho-0.5", 36)
 STILL = ks.solve(FOUR_BAR.mechanism, FOUR_BAR.crank_angle, crank_speed=0.0)
 TABLE = pd.DataFrame({"a": [1.0, 2.0], "b": [3.0, 4.0], "c": [1.0, 1.0]})
 VARY = ["--vary", "slider.mass=600..700 kg:2"]
@@ -395,7 +397,7 @@ def test_streams_that_are_closed_end_no_command_with_a_traceback(saw, stream, mo
 COMMAND = [sys.executable, "-m", "kinetostatics"]
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 def test_a_full_disk_is_told_in_a_line(saw):
     with open("/dev/full", "w") as full:  # noqa: PTH123
@@ -405,25 +407,19 @@ def test_a_full_disk_is_told_in_a_line(saw):
     assert done.stderr == "kinetostatics: [Errno 28] No space left on device\n"
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("how", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
 )
 def test_a_sweep_that_is_stopped_says_so_in_a_line_and_leaves_no_process(saw, how, status, word):
-    """The signal goes to all its processes, as from a terminal."""
-    out = saw.parent / "out"
-    vary = "slider.mass=600..700 kg:400000"
-    command = [*COMMAND, "sweep", saw, "--vary", vary, "--variant", "plain", "--angles", "48", "--workers", "1"]
-    process = subprocess.Popen(
-        [*command, "--output", "rms O", "--out", out], stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
-    while not list(out.glob("part-*")):  # as long as it takes, and the fixture `soon_and_small` allows
-        assert process.poll() is None, process.communicate()
-        time.sleep(0.05)
-    os.killpg(process.pid, how)
-    assert process.communicate()[1] == f"kinetostatics: {word}\n"
-    assert process.returncode == status
-    assert_gone(process.pid)
+    """The signal goes to all its processes, as from a terminal, when one part is written and others wait."""
+    vary = ["--vary", "slider.mass=600..700 kg:60000", "--variant", "plain", "--angles", "48", "--output", "rms O"]
+    arguments = ["sweep", saw, *vary, "--workers", "1", "--out", saw.parent / "out"]
+    with held("kinetostatics.sweeps.dataset:Dataset", "keep", arguments, start_new_session=True) as process:
+        os.killpg(process.pid, how)
+        assert process.communicate()[1] == f"kinetostatics: {word}\n"
+        assert process.returncode == status
+        assert_gone(process.pid)
 
 
 def assert_gone(group):

@@ -114,6 +114,7 @@ DAMAGE = {
 }
 
 
+@pytest.mark.slow
 @every("name", DAMAGE)
 def test_a_part_that_is_not_as_it_was_written_is_made_anew(folder, expected, name):
     DAMAGE[name](part(folder))

@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 import pandas as pd
-import pint
 import pytest
 
 import kinetostatics as ks
@@ -16,7 +15,6 @@ from kinetostatics.results.reductions import FOUND, parsed
 from support.every import every
 
 TURN = 2 * np.pi * np.arange(72) / 72
-UNITS = pint.UnitRegistry()
 BODIES = {"coupler": ks.Link(3.0, 1.5, 2.0), "rocker": ks.Link(2.0, 1.0, 1.0)}
 
 

@@ -17,7 +17,7 @@ CHOSEN = {method.name: method for method in METHODS if not method.ours and not m
 BY_TURN = ("spectral differentiation", "harmonic series")
 OTHER_MOTION = ("differences, 2nd order", "differences, 4th order", *BY_TURN)
 OF_ONE_DESIGN = [name for name in CHOSEN if name not in ("single precision", "two-mass coupler")]
-OF_KNOWN_GROUPS = ["papers' formulas", "SymPy Kane, lambdified", *OTHER_MOTION]
+OF_KNOWN_GROUPS = ["papers' formulas", *OTHER_MOTION]
 
 
 class OwnSlider(ks.SliderGroup):
@@ -95,16 +95,14 @@ FOREIGN = {
 }
 PRINTED = "sawframe study as printed, wrong sign"
 PAPERS, KANE, NEWTON = "papers' formulas", "SymPy Kane, lambdified", "Newton iteration, global system"
+RUBBING = {"O": ks.PinFriction(mu=0.1, radius=0.02)}
 MIXED = [
     (PAPERS, solved(cam(OwnCam())), "O", "this cam"),
     (PAPERS, solved(SIX_BAR), "O", "no study has formulas for the groups"),
     (PAPERS, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "no study has formulas for the groups"),
-    (KANE, solved(cam(OwnCam())), "O", "OwnCam has not"),
-    (KANE, solved(SIX_BAR), "O", "not for six-bar"),
-    (KANE, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "not for fan"),
-    (KANE, solved(PLAIN, loads=[ks.Spring(1.0, 0.3), ks.Spring(2.0, 0.4)]), "O", "one spring"),
-    (KANE, solved(PLAIN, loads=[ks.ProcessForce(np.cos(TURN))]), "O", "process forces that are numbers"),
-    (KANE, solved(PLAIN, loads=[ks.ProcessForce(lambda motion: -motion.slider_velocity)]), "O", "that are numbers"),
+    (KANE, solved(ks.Mechanism("own", ks.Crank(0.1), (Wheel(),))), "O", "Wheel does not declare in its pairs"),
+    (KANE, solved(PLAIN), "nonsense", "not set up to give nonsense"),
+    *((name, solved(PLAIN, friction=RUBBING), "O", "no friction, but there is some in O") for name in (KANE, NEWTON)),
     (NEWTON, solved(PLAIN), "nonsense", "give no nonsense"),
     (NEWTON, solved(PLAIN), "cam_force", "give no cam_force"),
     (PRINTED, solved(PLAIN), "O", "circular cam; crank-slider has none"),

@@ -153,6 +153,7 @@ def misses(kind, reach, count=10):
     return np.array(theirs), np.array(ours)
 
 
+@pytest.mark.slow
 def test_function_of_the_study_fails_near_dead_centres_of_inclined_guides_and_ours_never():
     """It lands two coupler lengths away on the wrong side, or square off the guide where the sign is 0.
 

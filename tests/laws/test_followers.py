@@ -37,6 +37,7 @@ def test_the_torque_from_forces_is_that_of_the_powers(kind):
     assert_allclose(s.balancing_torque, s.balancing_torque_by_power, rtol=0, atol=1e-13 * size)
 
 
+@pytest.mark.slow
 def test_the_compiled_engine_agrees():
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     drive = scene(KINDS["roller, offset"]())

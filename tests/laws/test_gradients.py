@@ -7,6 +7,8 @@ import pytest
 
 import kinetostatics as ks
 
+pytestmark = pytest.mark.slow
+
 ANGLES = np.linspace(0.0, 2 * math.pi, 360, endpoint=False)
 SPEED = 320 * 2 * math.pi / 60
 STIFFNESS = 600.0 * SPEED**2

@@ -77,6 +77,7 @@ def by_newton_euler(s, names):
     return {name: np.array(configurations.components(model, s, name, q)) for name in names}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", [*CHAINS, "cam"])
 def test_reactions_and_torque_under_any_load_are_those_of_the_full_system(name, kind):

@@ -407,6 +407,7 @@ def hung(kind, assembly, on):
     return ks.RockerGroup(b, h, (-0.8 * d, 0.6 * d), assembly, LINKS["coupler"], LINKS["rocker"], on=on)
 
 
+@pytest.mark.slow
 @every("assembly", SIDES)
 @every("ahead", [(0.0, 0.5), (-0.5, 0.0), (0.3, 0.4), (-0.4, -0.3), (0.5, 0.0)])
 @every("kind", [*LINKAGES, "slider", "lever"])

@@ -13,14 +13,18 @@ import pytest
 from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
-from kinetostatics.machine.group import Group, Output, Point, Resolved, Slot
+from kinetostatics.machine.declared import Slot
+from kinetostatics.machine.friction import Sliding, Turning
+from kinetostatics.machine.group import FRAME, Group, Output, Point, Resolved
 from kinetostatics.machine.links import Joint, LinkMotion, Wrench
 from kinetostatics.mechanics.principal_points import principal_points
+from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.elementary import cos, sin
 from kinetostatics.numbers.planar import dot, minus, number, plus, stretched, subtracted, turned, unturned, vector
 from kinetostatics.results.tables import extremes_frame
 from kinetostatics.solution.compile import compile as compiled
 from kinetostatics.solution.scene import Scene
+from kinetostatics.studies.methods import kane, newton
 from kinetostatics.studies.methods.enclosures import enclosure
 
 
@@ -45,7 +49,7 @@ class Yoke(Group):
     references = property(lambda self: {"block" + self.label: self.on, "slider" + self.label: self.pin})
     joints = property(lambda self: {self.pin: Point("slider" + self.label)})
     guides = property(lambda self: {"slider" + self.label: self.guide})
-    slots = property(lambda self: (Slot("slider" + self.label, self.on),))
+    slots = property(lambda self: (Slot("slider" + self.label, self.on, angle=self.slot_angle),))
     lengths = property(lambda self: (self.guide.guide_offset, *self.slider.centre, *self.block.centre))
 
     @property
@@ -296,3 +300,26 @@ def test_its_kernels_run_on_intervals_and_are_enclosed(solution):
     found = enclosure(solution, "guide_moment")
     error = np.abs(solution.scalar("guide_moment") - found.middle)
     assert np.max(error) < 1e-13 * np.max(np.abs(found.middle))
+
+
+class Paired(Yoke):
+    """The same, telling by `pairs` what holds its links."""
+
+    @property
+    def pairs(self):
+        """Pin, slot and guide."""
+        slot = Sliding("block", self.on, "slider", "slot_force", "slot_moment")
+        guide = Sliding("slider", self.pin, FRAME, "guide_force", "guide_moment")
+        return {self.on: Turning("block", self.on), "slot": slot, "guide": guide}
+
+
+def test_methods_under_study_know_it_once_it_declares_its_pairs(solution):
+    own = vars(mechanism().groups[0])
+    paired = replace(solution, mechanism=replace(mechanism(), groups=(Paired(**own),)))
+    for name in QUANTITIES:
+        for method in (*kane.METHODS, *newton.METHODS):
+            with pytest.raises(ks.errors.NotGivenError, match="Yoke does not declare in its pairs"):
+                method.prepare(solution, name, method.settings[-1])
+            found = method.prepare(paired, name, method.settings[-1])()
+            expected = components(solution, name)
+            assert np.max(np.abs(np.subtract(found, expected))) < 1e-13 * np.max(np.abs(expected)), (name, method.name)

@@ -80,6 +80,7 @@ def test_a_harmonic_that_is_zero_costs_nothing_and_can_be_asked_for():
     assert_allclose(asked(ANGLES, values)["balancing_torque"], expected, rtol=1e-12, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_batches_of_coefficients_solve_as_each_design_does():
     third = np.array([[0.0], [0.003], [-0.002]])
     found = scene(ks.cams.Harmonic((0.3, 0.01, 0.002, third))).solve(24).balancing_torque
@@ -88,7 +89,7 @@ def test_batches_of_coefficients_solve_as_each_design_does():
         assert_allclose(row, alone, rtol=1e-11, atol=1e-8)
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_compiled_loop_jax_and_enclosures_agree():
     numba, jax, flint = (pytest.importorskip(name) for name in ("numba", "jax", "flint"))
     assert numba

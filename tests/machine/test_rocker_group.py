@@ -54,6 +54,7 @@ def wrong(errors):
 every_kind = pytest.mark.parametrize("kind", ["crank-rocker", "double-crank", "non-Grashof"])
 
 
+@pytest.mark.slow
 @every_kind
 @reproducible
 @given(data=st.data())

@@ -103,6 +103,7 @@ def rounded(cam, count, step):
     return angle, np.round(cam.radius(angle)[0] / step) * step
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:sampled cam")
 @every("step", [1e-7, 1e-6, 1e-5])
 @every("count", [90, 360, 3600])

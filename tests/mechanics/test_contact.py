@@ -21,7 +21,7 @@ def by_radii(force, width, one, other):
     return 2.0 * np.abs(force) / (np.pi * half * width)
 
 
-@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow_start)])
+@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow)])
 def test_the_quantity_is_what_the_report_of_a_contact_says(engine):
     """Sides change at 25 rad/s; at 33.5 the ring carries the roller all the way."""
     if engine == "compiled":

@@ -190,6 +190,7 @@ def test_what_is_not_found_to_rounding_is_said():
 # Engines and derivatives
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_programs_agree():
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     scene = ks.Scene(HEAVY, friction={name: ALL[name] for name in ("B", "guide")}, **DRIVE)

@@ -162,6 +162,7 @@ def everything(s):
     return [*vectors, *rates, *forces, s.balancing_torque_by_power]
 
 
+@pytest.mark.slow
 def test_all_results_at_exact_limit_positions_are_finite_and_warned_of():
     for mechanism, angle in at_limits():
         with pytest.warns(ks.ConditionWarning, match="near a limit position"):

@@ -60,6 +60,7 @@ def test_variant_equals_the_chain_unit_built_in_python(case, name, crank, pivot_
     assert_close(found.rate("rocker"), by_hand.rate("rocker"))
 
 
+@pytest.mark.slow
 def test_compare_prints_the_published_figures_in_brackets_behind_ours(capsys):
     assert main(["compare", "chain_unit"]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -76,6 +77,7 @@ def test_run_lists_reactions_and_rates_of_a_four_bar(capsys):
     assert "guide" not in printed
 
 
+@pytest.mark.slow
 def test_plot_draws_the_studys_figures_and_the_mechanism(tmp_path, capsys):
     assert main(["plot", "chain_unit", "--out", str(tmp_path), "--format", "svg"]) == 0
     written = {path.name for path in tmp_path.iterdir()}

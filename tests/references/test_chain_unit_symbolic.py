@@ -18,6 +18,8 @@ from kinetostatics.machine import rocker_group
 from kinetostatics.machine.links import Joint
 from kinetostatics.studies.methods import printed
 
+pytestmark = pytest.mark.slow
+
 FIELD, S, a, s, k, r, c, h, b = field("S, a, s, k, r, c, h, b", QQ, lex)
 HERON = (a + c + h) * (a + c - h) * (a - c + h) * (c + h - a)
 RELATIONS = [

@@ -14,6 +14,8 @@ from support.case_files import case_file, problems
 from support.every import every
 from support.shipped import shipped
 
+pytestmark = pytest.mark.slow
+
 BARE = """
 title = "test"
 reference = "bare"

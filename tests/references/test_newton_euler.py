@@ -11,7 +11,7 @@ import kinetostatics as ks
 from support.newton_euler import solve
 from support.strategies import cases, columns, errors, planar, reproducible
 
-pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")]
 """Bodies drawn at random have any inertia."""
 
 CLOSE = 1e-13

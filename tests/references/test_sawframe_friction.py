@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.shipped import shipped
 
-CASE = ks.load_case("sawframe_2r63_friction")
+CASE = shipped("sawframe_2r63_friction")
 LOST = {"plain": 43, "cam-circle": 12, "cam-cosine": 12, "plain-rolling": 10.5, "cam-cosine-rolling": 7.3}
 """kW, as the project's plan states them: pins and needles of 60 mm radius, under a roller of 100 mm radius."""
 
@@ -22,7 +23,7 @@ def test_power_lost_is_the_figure_stated(saws, name):
 
 
 def test_k_d_hardly_moves(saws):
-    without = ks.load_case("sawframe_2r63").compare("plain", "cam-cosine").mean_torque_ratio
+    without = shipped("sawframe_2r63").compare("plain", "cam-cosine").mean_torque_ratio
     assert round(without, 2) == 6.78
     assert round(ks.compare(saws["plain"], saws["cam-cosine"]).mean_torque_ratio, 2) == 6.76
 
@@ -42,7 +43,7 @@ def test_an_idling_machine_loses_all_that_it_is_given(saws):
 
 
 def test_without_its_friction_it_is_the_machine_of_the_study():
-    study = ks.load_case("sawframe_2r63")
+    study = shipped("sawframe_2r63")
     for name in study.variants:
         own, other = CASE.variant(name).scene, study.variant(name).scene
         bare = ks.solve(own.mechanism, [0.3, 2.0], crank_speed=own.crank_speed, loads=own.loads)

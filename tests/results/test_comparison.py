@@ -31,6 +31,7 @@ def test_the_table_has_a_row_for_each_coefficient_with_its_unit():
     assert table.loc["power residual", ["reference", "balanced"]].max() < 1e-12
 
 
+@pytest.mark.slow
 def test_a_peak_that_no_extremum_of_the_reference_matches_has_a_row():
     """A press strikes where it idles without an extremum; the ratio of its peaks would be in no row."""
     press = ks.crank_slider(0.08, 0.4, slider=ks.Link(90.0))
@@ -52,3 +53,62 @@ def test_the_two_sides_of_a_jump_on_a_flank_are_no_extremum_to_match():
     np.testing.assert_allclose(np.degrees(reference.angle), [39.025, 125.585, 233.765, 320.438], atol=1e-3)
     assert (reference.value * matched > 0).all()
     assert (found.torque_extremum_ratios > 6.0).all()
+
+
+def test_an_extremum_that_only_the_reference_has_is_compared_with_none():
+    """The toggle press turns 1640 N m into force where it idles with no extremum; both its minima are none of one."""
+    case = ks.load_case("toggle_press")
+    found = case.compare("coining", "idle")
+    reference, matched = found.torque_extremes
+    assert np.isnan(matched).tolist() == [True, False, False, True]
+    np.testing.assert_allclose(matched[1:3], reference.value[1:3], rtol=1e-9)
+    table = found.frame()
+    assert table.loc["torque extremum 1"].isna().tolist() == [False, False, True, True]
+    assert table.loc["largest |balancing torque|", "idle"] == pytest.approx(192.07, abs=0.01)
+
+
+def test_no_extremum_is_compared_with_two():
+    case = ks.load_case("toggle_press")
+    for names in (("coining", "idle"), ("idle", "coining")):
+        _, matched = case.compare(*names).torque_extremes
+        known = matched[np.isfinite(matched)]
+        assert known.size == np.unique(known).size == 2
+
+
+def test_the_only_extrema_of_a_kind_are_strangers_half_a_turn_apart():
+    """A torque of sin phi, and the same reversed: its maximum stands where the other has its minimum."""
+    level = ks.scotch_yoke(0.1, slider=ks.Link(1.0))
+    pushed, pulled = (ks.solve(level, 0.0, crank_speed=1e-3, loads=ks.ProcessForce(f)) for f in (100.0, -100.0))
+    assert np.isnan(ks.compare(pushed, pulled).torque_extremum_ratios).all()
+    assert ks.compare(pushed, pushed).torque_extremum_ratios.tolist() == [1.0, 1.0]
+
+
+def test_a_load_of_two_turns_is_compared_turn_by_turn():
+    """Twice in its period the machine of one turn has the extrema that the other is compared with."""
+    mass = ks.crank_slider(0.08, 0.4, slider=ks.Link(90.0))
+    fires = ks.ProcessForce(lambda at: 40.0 * np.cos(at.crank_angle / 2), period=4 * np.pi)
+    firing, plain = (ks.solve(mass, 0.0, crank_speed=6.0, loads=loads) for loads in (fires, ()))
+    found = ks.compare(firing, plain)
+    reference, matched = found.torque_extremes
+    assert reference.angle.max() > 2 * np.pi
+    assert np.isfinite(matched).all()
+    assert (found.torque_extremum_ratios > 0.5).all()
+    assert np.isfinite(ks.compare(plain, firing).torque_extremum_ratios).all()
+
+
+def test_bounds_stand_in_the_rows_and_columns_of_the_numbers():
+    case = ks.load_case("toggle_press")
+    found = case.compare("coining", "idle")
+    values, bounds = found.frame(), found.error_bounds()
+    assert (values.index.equals(bounds.index), list(values)) == (True, list(bounds))
+    for row, name in (("largest reaction O", "O"), ("largest shaking moment", "shaking_moment")):
+        for column, solution in (("coining", found.reference), ("idle", found.balanced)):
+            extremes = ks.extremes(solution, name)
+            wanted = extremes.error_bound[abs(extremes.value).argmax()]
+            assert bounds.loc[row, column] == pytest.approx(wanted, rel=1e-12)
+    row, errors = values.loc["largest reaction O"], bounds.loc["largest reaction O"]
+    relative = sum(errors[name] / row[name] for name in ("coining", "idle"))
+    assert errors["ratio"] == pytest.approx(relative * row["ratio"], rel=1e-12)
+    assert bounds.loc["torque extremum 1", "coining"] < 1e-9  # of its own side of the jump
+    assert np.isnan(bounds.loc["torque extremum 1", "idle"])
+    assert np.isnan(bounds.loc["mean |balancing torque|", "coining"])

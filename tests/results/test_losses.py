@@ -154,6 +154,7 @@ def test_the_table_has_a_row_for_each_joint_and_all():
     assert np.allclose(table["per turn [J]"], table["mean [W]"] * 2 * np.pi / 30.0)
 
 
+@pytest.mark.slow
 def test_comparison_tells_what_is_lost_where_and_how_much_less():
     loads = (ks.Gravity(), ks.ProcessForce(200.0))
     one, other = (

@@ -1,10 +1,23 @@
 """Means over the turn of any functions of the crank angle: smooth, with corners, with jumps, several at once."""
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.means import energy_per_turn, mean_absolute_torque, mean_absolute_torque_errors, means
+from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.results.means import (
+    NODES,
+    WEIGHTS,
+    _mean_of_absolute_torque,
+    closed_turn,
+    energy_per_turn,
+    mean_absolute_torque,
+    mean_absolute_torque_errors,
+    means,
+)
 
 TURN = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0)), 0.0, crank_speed=3.0).sampled
 WHOLE = 2 * np.pi
@@ -67,3 +80,50 @@ def test_errors_of_a_mean_are_rounding_and_quadrature():
     assert 0 < rounding < 1e-13 * mean
     assert 0 <= quadrature < 1e-12 * mean
     assert ks.compare(s, s).mean_torque_errors[0] == (rounding, quadrature)
+
+
+def _exact_rule():
+    """Nodes and weights of Gauss's quadrature on the unit panel, by Legendre's polynomial in 40 digits."""
+    mp = pytest.importorskip("mpmath")
+    with mp.workdps(40):
+        legendre = partial(mp.legendre, NODES.size)
+        roots = sorted(mp.polyroots(mp.taylor(legendre, 0, NODES.size)[::-1], maxsteps=200, extraprec=200))
+        slopes = [mp.diff(legendre, x) for x in roots]
+        return [(1 + x) / 2 for x in roots], [
+            1 / ((1 - x * x) * slope**2) for x, slope in zip(roots, slopes, strict=True)
+        ]
+
+
+def test_nodes_and_weights_are_those_of_gauss_to_the_last_digit():
+    nodes, weights = _exact_rule()
+    assert all(abs(own - node) <= UNIT for own, node in zip(NODES, nodes, strict=True))
+    assert all(abs(own - weight) <= UNIT * weight for own, weight in zip(WEIGHTS, weights, strict=True))
+
+
+def test_the_rounding_of_a_mean_is_a_bound_on_that_of_its_own_sum_and_near_it():
+    """The torque of a Scotch yoke is m r^2 omega^2 sin 2 phi / 2; the sum of its nodes is taken in 40 digits."""
+    mp = pytest.importorskip("mpmath")
+    s = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=7.0)
+    mean, _, _, (start, width) = _mean_of_absolute_torque(closed_turn(s, "mean torque"))
+    _, weights = _exact_rule()
+    angle = start[:, None] + width[:, None] * NODES
+    with mp.workdps(40):
+        size = mp.mpf(0.1) ** 2 * 3 * 49 / 2
+        total = mp.mpf(0)
+        for row, breadth in zip(angle.tolist(), width.tolist(), strict=True):
+            parts = (weight * abs(mp.sin(2 * mp.mpf(x))) for x, weight in zip(row, weights, strict=True))
+            total += mp.mpf(breadth) * mp.fsum(parts)
+        error = abs(mp.mpf(mean) - size * total / mp.mpf(s.period))
+    rounding = mean_absolute_torque_errors(s).rounding
+    assert mean == mean_absolute_torque(s)
+    assert 0 < error <= rounding < 4e-15 * mean
+
+
+def test_where_the_torque_grows_without_bound_the_mean_and_its_errors_are_infinite(monkeypatch):
+    s = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=7.0)
+    found = ks.extremes(s, "balancing_torque")
+    growing = replace(found, value=np.where(found.maximum, np.inf, found.value))
+    monkeypatch.setattr("kinetostatics.results.means.extrema", lambda *_: growing)
+    with pytest.warns(ks.ConditionWarning, match="grows without bound"):
+        assert mean_absolute_torque(s) == np.inf
+    assert mean_absolute_torque_errors(s) == (np.inf, np.inf)

@@ -9,7 +9,10 @@ from kinetostatics.engines import compiled
 from kinetostatics.results.passes import KINDS, Passes
 from kinetostatics.results.reductions import parsed
 
-pytestmark = pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)")
+pytestmark = [
+    pytest.mark.slow,  # all reductions as one compiled loop
+    pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)"),
+]
 OUTPUTS = [parsed(f"{kind} O") for kind in (*KINDS, "harmonic_2", "swing")]
 
 

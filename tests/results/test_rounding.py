@@ -1,12 +1,17 @@
-"""What of a table is rounding: relative to the terms of each machine, never by a size of its own."""
+"""What of a table is rounding: within proven bounds, or by the terms of each machine, never by a size of its own."""
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.rounding import without_rounding, zeroed
+from kinetostatics.results.rounding import Known, without_rounding, zeroed
 
 YOKE = ks.scotch_yoke(0.1, slider=ks.Link(3.0))
+SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+
+
+def known(solution, *names):
+    return Known(solution, {name: ks.extremes(solution, name) for name in names})
 
 
 @pytest.mark.parametrize("speed", [10.0, 1e-6])
@@ -17,6 +22,55 @@ def test_small_values_are_0_beside_the_terms_of_their_machine_only(speed):
     values = [1e-10 * force, 1e-15 * force, -1e-15 * force]
     assert without_rounding(solution, "guide_force", values).tolist() == [1e-10 * force, 0.0, 0.0]
     assert ks.extremes(solution, "O").largest == pytest.approx(force)
+
+
+def test_values_within_their_bound_are_0_and_a_bound_that_is_not_proven_says_nothing():
+    solution = ks.solve(YOKE, np.linspace(0, 6, 24), crank_speed=10.0)
+    values, bounds = [2e-6, -2e-6, 2e-6, 2e-6], [1e-6, 2e-6, np.nan, np.inf]
+    assert without_rounding(solution, "guide_force", values, bounds).tolist() == [2e-6, 0.0, 2e-6, 2e-6]
+
+
+def test_bounds_of_several_quantities_together_are_those_of_each():
+    solution = ks.solve(SAW, 0.0, crank_speed=33.5, loads=[ks.Gravity()])
+    several = known(solution, "balancing_torque", "O", "slider_velocity", "shaking_force")
+    for name, found in several.found.items():
+        np.testing.assert_allclose(several.errors(name), found.error_bound, rtol=1e-12)
+        assert (several.errors(name) < 1e-12 * np.abs(found.value).max()).all()
+
+
+def test_the_compiled_engine_is_not_waited_for():
+    solution = ks.solve(SAW, 0.0, crank_speed=33.5)
+    wanted = known(solution, "O").errors("O")
+    pytest.importorskip("numba")
+    fast = ks.solve(SAW, 0.0, crank_speed=33.5, engine="compiled")
+    np.testing.assert_allclose(known(fast, "O").errors("O"), wanted, rtol=1e-6)
+
+
+def test_where_no_bound_can_be_given_the_error_is_not_known():
+    pressed = ks.ProcessForce(lambda motion: np.interp(np.cos(motion.crank_angle), [-1, 1], [0, 7]))
+    found = known(ks.solve(SAW, 0.0, crank_speed=1.0, loads=[pressed]), "O")
+    assert np.isnan(found.errors("O")).all()
+    assert np.isnan(found.end("O", np.argmax).error)
+
+
+def test_a_value_told_from_one_side_of_a_jump_has_the_bound_of_that_side():
+    """At the dead centre of the knuckle the force jumps by 400 kN; on which side a crank angle lies is not sure."""
+    solution = ks.load_case("toggle_press").solve("coining")
+    several = known(solution, "balancing_torque", "B2")
+    at_jump = np.isclose(np.degrees(several.found["balancing_torque"].angle), 4.80845, atol=1e-4)
+    assert at_jump.any()
+    bounds = several.found["balancing_torque"].error_bound[at_jump]
+    assert (bounds > 10.0).all()
+    assert (several.errors("balancing_torque")[at_jump] < 1e-9).all()
+
+
+def test_an_end_is_the_value_with_its_place_and_error_of_a_constant_that():
+    solution = ks.solve(YOKE, 0.0, crank_speed=10.0)
+    found = known(solution, "slider_acceleration", "guide_force")
+    value, angle, error = found.end("slider_acceleration", np.argmax)
+    assert (value, angle) == (pytest.approx(10.0), pytest.approx(np.pi))
+    assert 0.0 < error < 1e-13
+    assert np.isnan(found.end("guide_force", np.argmax)[1:]).all()
 
 
 def test_nan_stays():

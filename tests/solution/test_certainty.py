@@ -111,3 +111,14 @@ def test_the_magnitude_of_a_vector_that_vanishes_is_as_uncertain_as_the_vector()
     parts = s.uncertainty("O", {"slider.mass": 2.0}).tolerance
     np.testing.assert_allclose(found.tolerance, np.hypot(*parts), rtol=1e-14)
     assert np.all(found.tolerance > 1.0)
+
+
+def test_a_number_that_is_zero_may_be_uncertain_and_a_length_that_makes_change_points_not():
+    s = solved()
+    found = s.uncertainty("balancing_torque", {"guide_offset": 1e-3, "coupler.mass": 1.0})
+    assert np.all(found.inputs["coupler.mass"] >= 0.0)
+    assert found.inputs["guide_offset"].max() > 0.0
+    parallelogram = ks.four_bar(0.3, 0.8, 0.3, rocker_pivot=(0.8, 0.0), assembly="open", rocker=ks.Link(20.0, 0.1, 2.0))
+    turning = ks.solve(parallelogram, TURN, crank_speed=10.0)
+    with pytest.raises(ParameterError, match="change points"):
+        turning.uncertainty("balancing_torque", {"crank_length": 1e-5})

@@ -56,6 +56,7 @@ def some(solution, seed, count=2):
     return ["balancing_torque", *np.random.default_rng(seed).choice(names, count, replace=False).tolist()]
 
 
+@pytest.mark.slow
 @every("name", shipped_cases())
 def test_shipped_cases(name):
     case = ks.load_case(name)
@@ -78,6 +79,7 @@ def test_followers(kind):
     ask(with_follower(FOLLOWERS[kind]()).solve(3), "O", 0.7)
 
 
+@pytest.mark.slow
 @every("kind", RUBBING)
 def test_friction_is_told_by_the_law_that_it_satisfies(kind):
     told = ask(Drawn(kind, 1).scene.solve(0.3), "balancing_torque", 0.3)

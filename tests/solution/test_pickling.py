@@ -108,6 +108,7 @@ HELD = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @every("way", WAYS)
 @every("name", HELD)
 def test_what_users_hold_comes_back(name, way):

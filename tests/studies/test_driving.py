@@ -9,6 +9,8 @@ from kinetostatics.studies import driving
 from kinetostatics.views import charts
 from support.driven_saws import BY_NAME, IDLE, MOTOR, SAW
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_study_of_running_is_a_chart_with_units(tmp_path):
     pytest.importorskip("flint")

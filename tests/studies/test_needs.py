@@ -13,6 +13,8 @@ from kinetostatics.studies import simplifications
 from support.needed import MECHANISMS, SPEED, TURN, alone, change, cranked, solved
 from support.shipped import shipped
 
+pytestmark = pytest.mark.slow
+
 
 def operations(solution, quantity):
     """Number of operations of a quantity at each crank angle, as recorded."""

@@ -12,11 +12,14 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import cli
+from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.studies import precision
-from kinetostatics.studies.methods import METHODS
+from kinetostatics.studies.methods import METHODS, kane, newton, structures
 from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from kinetostatics.views import charts
 from support.curves import FEW, torque_study
+
+pytestmark = pytest.mark.slow
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
@@ -113,6 +116,42 @@ def test_no_method_is_nearer_to_the_certified_reference_than_ours_by_more_than_r
     others = errors(method for method in OTHERS if not method.name.endswith("compiled"))
     assert len(others) > 20
     assert {key: error for key, error in others.items() if error < best / 4 and error < best - 1e-15} == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "variant"),
+    [("shaper", "cutting"), ("pumpjack", "weights"), ("yoke_pump", "pumping"), ("v_twin", "firing")],
+)
+def test_kane_and_the_full_system_chart_chains_with_tables_and_loads_at_points(name, variant):
+    s = ks.load_case(name).solve(variant, 8)
+    for quantity in ("balancing_torque", "O"):
+        reference = enclosure(s, quantity)
+        for method in (*kane.METHODS, *newton.METHODS):
+            found = method.prepare(s, quantity, method.settings[-1])()
+            assert relative_errors(found, reference).max() < 1e-13, (method.name, quantity)
+
+
+def test_every_shipped_mechanism_is_one_that_kanes_equations_are_made_of():
+    for name in shipped_cases():
+        for variant in ks.load_case(name).variants.values():
+            made, numbers = structures.structure(variant.mechanism)
+            assert len(made.parts) == 1 + len(variant.mechanism.groups)
+            assert numbers["crank_mass"] == variant.mechanism.links["crank"].mass
+
+
+def test_scene_with_friction_is_charted_off_its_jumps_and_what_knows_no_friction_says_so():
+    names = ("ours, NumPy", "papers' formulas", "SymPy Kane, lambdified", "Newton iteration, global system")
+    methods = [method for method in METHODS if method.name in names]
+    case = ks.load_case("sawframe_2r63_friction")
+    table = precision.study(precision._turn(case, "plain", 12), methods=methods, repeats=1).set_index("method")
+    assert table.loc["ours, NumPy", "error"] < 5e-15
+    assert table.loc[list(names[1:]), "not given"].str.contains("know no friction, but there is some in O").all()
+
+
+def test_motion_too_coarse_for_a_table_is_a_reason_not_an_error():
+    (series,) = (method for method in METHODS if method.name == "harmonic series")
+    table = precision.study(ks.load_case("shaper").solve("cutting", 24), methods=[series], repeats=1)
+    assert table["not given"].str.contains("table over travel").any()
 
 
 # Files and charts

@@ -3,8 +3,9 @@
 from functools import cache
 
 import kinetostatics as ks
+from support.shipped import shipped
 
-SAW = ks.load_case("sawframe_2r63")
+SAW = shipped("sawframe_2r63")
 CIRCLE = SAW.variant("cam-circle")
 ENDS = ("smallest slider_position = 1.7 m", "largest slider_position = 2.3 m")
 SPRING = {"spring.stiffness": ("500 kN/m", "900 kN/m")}

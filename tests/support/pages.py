@@ -1,7 +1,8 @@
 """The pages of the documentation: their text, code and links, and the scripts beside them."""
 
-import importlib.util
+import importlib
 import re
+import sys
 from pathlib import Path
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -38,9 +39,8 @@ def links(text):
 
 
 def script(name):
-    """A module of docs/ or docs/_extensions, which no package holds."""
-    path = next(path for path in (DOCS / f"{name}.py", DOCS / "_extensions" / f"{name}.py") if path.exists())
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    """A module of docs/ or docs/_extensions."""
+    for folder in (DOCS, DOCS / "_extensions"):
+        if str(folder) not in sys.path:
+            sys.path.append(str(folder))
+    return importlib.import_module(name)

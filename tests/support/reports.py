@@ -5,6 +5,8 @@ import re
 from functools import cache
 from html import unescape
 
+import numpy as np
+
 import kinetostatics as ks
 from kinetostatics.views.report import html
 from kinetostatics.views.report.movement import unpacked
@@ -49,3 +51,11 @@ def plain(**options):
 def table_of(found, row):
     """Cells of the row of a table that begins with some words."""
     return next(cells for cells in found.rows if cells[0] == row)
+
+
+def near_change_points():
+    """A parallelogram one of whose angles meets a change point but for rounding: reactions of 1e17 N there."""
+    pivot = 0.3 * np.cos(np.radians(77.0)), 0.3 * np.sin(np.radians(77.0))
+    bar = ks.Link(1.0, 0.15, 0.01)
+    made = ks.four_bar(0.1, 0.3, 0.1, rocker_pivot=pivot, assembly="open", coupler=bar, rocker=ks.Link(1.0, 0.05, 0.01))
+    return ks.Scene(made, 10.0, loads=[ks.Gravity()])

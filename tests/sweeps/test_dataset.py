@@ -84,6 +84,7 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(tmp_path, expected, monke
     assert_equal(pd.read_parquet(tmp_path), expected)
 
 
+@pytest.mark.slow
 def test_a_killed_process_leaves_a_folder_that_goes_on(tmp_path, expected):
     code = (
         "import sys; sys.path.insert(0, sys.argv[1]); from support import factories as f; import kinetostatics as ks;"

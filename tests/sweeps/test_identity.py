@@ -7,6 +7,7 @@ import types
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import kinetostatics as ks
 from kinetostatics.sweeps.identity import digest
@@ -176,6 +177,7 @@ def test_each_is_another():
     assert len(set(told)) == len(told)
 
 
+@pytest.mark.slow
 def test_the_same_function_is_the_same_in_every_session(tmp_path):
     (tmp_path / "users_own.py").write_text(BASE, encoding="utf-8")
     code = (

@@ -242,6 +242,7 @@ def test_what_cannot_be_compiled_is_left_to_numpy_unless_told(interpreted, monke
 # Memory and progress
 
 
+@pytest.mark.slow
 def test_memory_is_that_of_a_chunk(monkeypatch):
     """Four times the designs take no more, but for the table itself."""
     monkeypatch.setattr(together, "VALUES", 2000)
@@ -287,6 +288,7 @@ print(hashlib.sha256(table.iloc[:, :-1].to_numpy(float).tobytes()).hexdigest())
 """
 
 
+@pytest.mark.slow
 def test_machine_code_just_made_and_taken_from_disk_gives_the_same_bits(tmp_path):
     pytest.importorskip("numba")
     environment = {**os.environ, "KINETOSTATICS_CACHE": str(tmp_path)}

@@ -21,6 +21,7 @@ def test_a_batch_of_another_shape_is_refused():
     assert found[FAILED].str.contains("arrays must have the shape (designs, 1)", regex=False).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
 def test_it_does_not_matter_which_designs_come_together(interpreted, engine):
     outputs = ["harmonic_2 O", "mean O", "rms O", "largest_at O", "smallest balancing_torque"]

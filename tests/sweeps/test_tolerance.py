@@ -4,12 +4,12 @@ from functools import partial
 
 import numpy as np
 import pandas as pd
-import pint
 import pytest
 from scipy import stats
 
 import kinetostatics as ks
 from support.case_files import written
+from support.units import UNITS
 
 SPREADS = {"mass": "normal 1 kg +- 0.1 kg", "push": "100..300 N"}
 OUTPUT = "largest B"
@@ -44,8 +44,7 @@ def test_quantiles_of_a_linear_output_are_those_of_the_distribution():
     assert found.share(OUTPUT, below=ACCELERATION * 1.1) == pytest.approx(stats.norm.cdf(1.0), abs=0.003)
     assert found.share(OUTPUT, above=ACCELERATION * 0.9, below=ACCELERATION * 1.1) == pytest.approx(0.683, abs=0.005)
     assert found.sensitivity.to_numpy().tolist() == [[1.0, 1.0]] * 2
-    unit = pint.UnitRegistry()
-    assert found.share(OUTPUT, above=unit.Quantity(ACCELERATION * 1.1e-3, "kN")) == found.share(
+    assert found.share(OUTPUT, above=UNITS.Quantity(ACCELERATION * 1.1e-3, "kN")) == found.share(
         OUTPUT, above=ACCELERATION * 1.1
     )
 
@@ -119,6 +118,7 @@ def test_designs_of_one_parameter_that_fail_end_the_study_too():
         tolerances(ram, OUTPUT, {"mass": "-1..1 kg"}, count=16)
 
 
+@pytest.mark.slow
 def test_workers_give_the_same_study():
     expected = tolerances(ram, OUTPUT, {"mass": SPREADS["mass"]}, count=16)
     found = tolerances(ram, OUTPUT, {"mass": SPREADS["mass"]}, count=16, workers=1)

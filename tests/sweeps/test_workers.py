@@ -26,6 +26,8 @@ from support import factories
 from support.factories import DESIGNS, OUTPUTS
 from support.sweeping import SAW, assert_equal, rising, sweep
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def cluster():

@@ -8,9 +8,12 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.design.demands import demands
 from kinetostatics.design.optimisation import true_excess
+from support.shipped import shipped
+
+pytestmark = pytest.mark.slow
 
 RATIO = "ratio mean_absolute balancing_torque"
-CASES = {name: ks.load_case(name) for name in ("sawframe_2r63_optimal", "mower_drive_optimal")}
+CASES = "sawframe_2r63_optimal", "mower_drive_optimal"
 SEARCHED = [
     ("sawframe_2r63_optimal", "cam-optimal"),
     ("mower_drive_optimal", "cam-optimal"),
@@ -31,10 +34,10 @@ def gain(case, name):
 @pytest.mark.parametrize(("name", "variant"), SEARCHED)
 def test_its_search_finds_the_shipped_machine_again(name, variant):
     """Within 10 micrometres and 1e-5 of the spring's rate: processors round differently."""
-    case = CASES[name]
-    shipped = case.variant(variant).scene
+    case = shipped(name)
+    kept = case.variant(variant).scene
     found = case.designs[variant].find().scene.parameters
-    for path, value in shipped.parameters.items():
+    for path, value in kept.parameters.items():
         tolerance = 1e-5 * max(abs(value), 1.0)
         assert found[path] == pytest.approx(value, abs=tolerance), path
 
@@ -42,27 +45,27 @@ def test_its_search_finds_the_shipped_machine_again(name, variant):
 @pytest.mark.parametrize("name", CASES)
 def test_a_search_with_fewer_machines_finds_the_robust_one_nearly_again(name):
     """With a quarter of the machines: spring within 2 %, lengths within 0.3 mm, the gain that 95 % keep within 1."""
-    case = CASES[name]
+    case = shipped(name)
     design = case.designs["cam-robust"]
     few = design.table.robust.model_copy(update={"samples": 16})
     design = replace(design, table=design.table.model_copy(update={"robust": few}))
-    found, shipped = design.find(), case.variant("cam-robust").scene.parameters
-    assert found.values["spring.cubic"] == pytest.approx(shipped["spring.cubic"], rel=0.02)
+    found, kept = design.find(), case.variant("cam-robust").scene.parameters
+    assert found.values["spring.cubic"] == pytest.approx(kept["spring.cubic"], rel=0.02)
     for path in ("coupler_length", "spring.free_position", "cam.cosine.0"):
-        assert found.values[path] == pytest.approx(shipped[path], abs=3e-4), path
+        assert found.values[path] == pytest.approx(kept[path], abs=3e-4), path
     again = ks.design.over_spread(found.scene, RATIO, design.spread, reference=found.reference, samples=512)
     assert np.quantile(again, 0.05) == pytest.approx(quantile(case, "cam-robust"), abs=1.0)
 
 
 def test_saws_gain_what_their_file_says():
-    case = CASES["sawframe_2r63_optimal"]
+    case = shipped("sawframe_2r63_optimal")
     assert gain(case, "cam-optimal") == pytest.approx(411.4, abs=0.1)
     assert quantile(case, "cam-optimal") == pytest.approx(23, abs=0.5)
     assert quantile(case, "cam-robust") == pytest.approx(34, abs=1.0)
 
 
 def test_mowers_gain_what_their_file_says():
-    case = CASES["mower_drive_optimal"]
+    case = shipped("mower_drive_optimal")
     assert gain(case, "cam-in-line") > 1e5
     assert gain(case, "cam-optimal") > 400
     assert quantile(case, "cam-optimal") == pytest.approx(23, abs=0.5)
@@ -71,7 +74,7 @@ def test_mowers_gain_what_their_file_says():
 
 @pytest.mark.parametrize("name", CASES)
 def test_shipped_machines_keep_their_limits_and_the_ends_of_the_stroke(name):
-    case = CASES[name]
+    case = shipped(name)
     for design in case.designs.values():
         scene, source = case.variant(design.name).scene, case.variant(design.source).scene
         before, after = (ks.extremes(item.solve(90), "slider_position").range for item in (source, scene))

@@ -99,3 +99,27 @@ def test_curves_drawn_apart_are_compared_by_their_own_extent():
     curves = {"large": 100.0 * np.sin(turn), "small": np.sin(turn), "smaller": 0.9 * np.sin(turn)}
     assert list(canvas.distinct(curves)) == ["large", "small, smaller"]
     assert list(canvas.distinct(curves, apart=True)) == ["large", "small", "smaller"]
+
+
+@pytest.mark.parametrize(
+    ("values", "largest", "seen"),
+    [
+        ([1.0, -3.0, 2.0], 3.0, np.inf),
+        ([*np.linspace(1.0, 2.0, 101), 8e16], 1.91, 5.73),  # near a change point
+        ([*np.linspace(1.0, 2.0, 101), np.inf], 1.9, 5.7),
+        ([*np.linspace(1.0, 2.0, 101), 400.0], 400.0, np.inf),  # a press strikes
+        ([0.0] * 50 + [5.0], 5.0, np.inf),
+        ([np.nan, 2.0], 2.0, np.inf),
+        ([], 0.0, np.inf),
+    ],
+)
+def test_a_few_values_that_grow_without_bound_set_no_unit_and_flatten_no_curve(values, largest, seen):
+    arrays = [np.array(values, dtype=float)]
+    assert canvas.ordinary(arrays) == pytest.approx(largest, rel=1e-3)
+    assert canvas.in_sight(arrays) == pytest.approx(seen, rel=1e-3)
+
+
+def test_a_unit_is_chosen_by_ordinary_values():
+    reaction = np.append(np.linspace(10.0, 20.0, 99), 8e16)
+    assert canvas.display("N", [reaction]) == (1.0, "N")
+    assert canvas.display("N", [1e4 * reaction]) == (1e-3, "kN")

@@ -18,6 +18,7 @@ def found(case):
     return {name: item.find() for name, item in case.designs.items()}
 
 
+@pytest.mark.slow
 def test_every_design_has_its_page(case, found, tmp_path):
     paths = designs.draw_designs(case, found, tmp_path / "new", "svg")
     assert [path.name for path in paths] == ["saw_stiffer.svg", "saw_trade.svg"]
@@ -25,7 +26,7 @@ def test_every_design_has_its_page(case, found, tmp_path):
 
 
 def test_page_shows_cam_torque_and_reaction_before_and_after(found):
-    figure = designs.page(found["stiffer"])
+    figure = designs.before_and_after(found["stiffer"])
     titles = [ax.get_title() for ax in figure.axes]
     assert {"pitch curve of the cam", "support reaction, before", "support reaction, after"} <= set(titles)
     for ax in figure.axes:
@@ -37,7 +38,7 @@ def test_page_shows_cam_torque_and_reaction_before_and_after(found):
 def test_page_of_a_machine_without_cam_shows_the_machine():
     vary = {"coupler_length": ("1.9 m", "2.1 m")}
     found = ks.design.optimise(ks.load_case("sawframe_2r63"), vary, "largest O", angles=36, variant="plain")
-    figure = designs.page(found)
+    figure = designs.before_and_after(found)
     assert [ax.get_title() for ax in figure.axes].count("after") == 1
     assert designs.cam_of(found.scene) is None
     plt.close(figure)

@@ -13,6 +13,8 @@ from kinetostatics.views.figures import draw_case
 from support.every import every
 from support.shipped import shipped
 
+pytestmark = pytest.mark.slow
+
 CASE = shipped("sawframe_2r63")
 
 

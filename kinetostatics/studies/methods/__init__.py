@@ -6,7 +6,9 @@ joints      other ways to the motion: differences, spectra, harmonic series; two
 papers      the published studies' own formulas, and the one with a wrong sign as printed
 newton      Newton iteration on the loop equations, and all forces from one system
 integration constrained multibody integration at constant speed
-kane        SymPy's Kane method, lambdified
+structures  what groups declare of a mechanism, from which newton, integration, kane and independent are made
+kane        SymPy's Kane method, lambdified: loops in kane_motion, curves in kane_cams, forces in kane_equations
+applied     loads besides weight, for equations made without them
 enclosures  the library's kernels on arb numbers
 independent other formulas by mpmath
 certified   both in agreement: what all are measured against

@@ -9,24 +9,14 @@ Analysis of Mechanical Systems*; Haug, *Computer Aided Kinematics and Dynamics o
 Each equation is written so that its multiplier in lambda is a reaction, signed as in the library, or the drive torque.
 """
 
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...machine.cam_roller import CamRoller
-from ...machine.cylinder_group import CylinderGroup
-from ...machine.dyad import Dyad
 from ...machine.group import FRAME
-from ...machine.guided_follower import GuidedFollower
-from ...machine.lever_group import LeverGroup
-from ...machine.pin import Pin
-from ...machine.rocker_group import RockerGroup
-from ...machine.slider_group import SliderGroup
-from ...machine.swinging_follower import SwingingFollower
-from ...machine.yoke_group import YokeGroup
 from ...numbers.planar import left
 from .followers import Following
-from .method import NotGivenError
+from .structures import structure
 
 POSITION, RATE, ACCELERATION, FORCE = range(4)
 
@@ -83,89 +73,19 @@ class Model:
     def _write(self):
         self._add("O", *self._point("crank"))
         self._add("balancing_torque", self._theta("crank") - self._phi)
-        for group in self.mechanism.groups:
-            kinds = [kind for kind in type(group).__mro__ if kind in self._writers]
-            if not kinds:
-                raise NotGivenError(f"no constraint equations are written for {type(group).__name__}")
-            self._writers[kinds[0]](self, group)
+        made, self.numbers = structure(self.mechanism)
+        bars = {(end, link) for part in made.parts for _, end, link in part.bars}
+        for part, group in zip(made.parts[1:], self.mechanism.groups, strict=True):
+            for pinned in part.pinned:
+                one, other = (self._on(link, pinned.joint, bars) for link in (pinned.link, pinned.other))
+                self._add(pinned.name, *(one - other))
+            for slid in part.slid:
+                self._slide(slid)
+            for cam in part.cams:
+                self._follow(cam, group)
         for name in self.names:
             turning = self._theta(name)[None, : 3 * self.size]
             self.readings |= {f"{name}_rate": (RATE, turning), f"{name}_angular_acceleration": (ACCELERATION, turning)}
-
-    def _write_roller(self, group):
-        self.cam, self.block = group.cam, self.names.index("block")
-        self._slide("slot_force", "crank", "block")
-        self.contact = len(self.equations)
-        self._add("cam_force", 0.0 * self._one)
-        self._turn("slot_moment", "block", "crank")
-
-    def _write_slider(self, group):
-        coupler, slider = group.links
-        self._pin(group.on + group.label, coupler, group.on)
-        self._add(group.pin, *(self._joint(group.pin) - self._point(coupler, group.coupler_length)))
-        self._add_guide(group, slider)
-
-    def _write_rocker(self, group):
-        coupler, rocker = group.links
-        self._pin(group.on + group.label, coupler, group.on)
-        self._add(group.pin, *(self._joint(group.pin) - self._point(coupler, group.coupler_length)))
-        self._pin(group.pivot_name, rocker, group.pivot_name)
-
-    def _write_dyad(self, group):
-        first, second = group.links
-        for link, joint in zip(group.links, group.on, strict=True):
-            self._pin(f"{link}_{joint}", link, joint)
-        self._add(group.pin, *(self._point(second, group.length2) - self._point(first, group.length1)))
-
-    def _write_lever(self, group):
-        lever, block = group.links
-        self._pin(group.on + group.label, block, group.on)
-        self._pin(group.pivot_name, lever, group.pivot_name)
-        self._slide("slot_force" + group.label, lever, block, offset=group.offset)
-        self._turn("slot_moment" + group.label, block, lever)
-
-    def _write_cylinder(self, group):
-        rod, cylinder = group.links
-        self._pin(group.on + group.label, rod, group.on)
-        self._pin(group.pivot_name, cylinder, group.pivot_name)
-        self._slide("cylinder_force" + group.label, rod, cylinder)
-        self._turn("cylinder_moment" + group.label, rod, cylinder, np.pi)
-
-    def _write_yoke(self, group):
-        block, slider = group.links
-        self._add_guide(group, slider)
-        self._pin(group.on + group.label, block, group.on)
-        self._slide("slot_force" + group.label, slider, block, np.exp(1j * group.slot_angle))
-        self._turn("slot_moment" + group.label, block, slider, group.slot_angle)
-
-    def _write_guided(self, group):
-        (follower,) = group.links
-        self._add_guide(group, follower)
-        self._follow(group, follower, 0.0)
-
-    def _write_swinging(self, group):
-        (arm,) = group.links
-        self._pin(group.pivot_name, arm, group.pivot_name)
-        self._follow(group, arm, group.arm_length)
-
-    def _follow(self, group, link, along):
-        """Keep a point of a link on the cam of a group."""
-        places = self.names.index("crank"), self.names.index(link)
-        self.followings.append(Following(len(self.equations), *places, along, group))
-        self._add("contact_force" + group.label, 0.0 * self._one)
-
-    _writers: ClassVar[dict[type, Any]] = {
-        CamRoller: _write_roller,
-        SliderGroup: _write_slider,
-        RockerGroup: _write_rocker,
-        Dyad: _write_dyad,
-        LeverGroup: _write_lever,
-        CylinderGroup: _write_cylinder,
-        YokeGroup: _write_yoke,
-        GuidedFollower: _write_guided,
-        SwingingFollower: _write_swinging,
-        Pin: lambda self, group: None,
-    }
 
     def _joint(self, name):
         """Joint by name, (2, terms)."""
@@ -174,31 +94,50 @@ class Model:
             return np.multiply.outer((point.along, point.across), self._one)
         return self._point(point.link, point.along, point.across)
 
-    def _pin(self, name, link, joint):
-        """Hold the reference joint of a link at a joint."""
-        self._add(name, *(self._point(link) - self._joint(joint)))
+    def _on(self, link, joint, bars):
+        """Joint as a point of a link, (2, terms)."""
+        point = self.mechanism.joints[joint]
+        if point.link == link or (joint, link) not in bars:
+            return self._joint(joint) if self.mechanism.references.get(link) != joint else self._point(link)
+        return self._point(link, self.numbers[f"{link}_length"])
 
-    def _turn(self, name, link, other, ahead=0.0):
-        """Keep a link at an angle from another."""
-        self._held.append((link, other, ahead))
-        self._add(name, self._theta(link) - self._theta(other) - ahead * self._one)
+    def _slide(self, item):
+        """Keep a link on a guide; or on a slot of another, a rod the other way round, and at an angle to it."""
+        if item.other == FRAME:
+            self._guide(item)
+            return
+        place = f"{item.other}_{item.joint}"
+        offset, angle = self.numbers[f"{place}_offset"], self.numbers[f"{place}_angle"]
+        ends = (item.link, item.other) if item.rod else (item.other, item.link)
+        slotted, block = (self.names.index(name) for name in ends)
+        self.slidings.append(Sliding(len(self.equations), slotted, block, np.exp(1j * angle), offset))
+        self._add(item.force, 0.0 * self._one)
+        ahead = angle + (np.pi if item.rod else 0.0)
+        self._held.append((item.link, item.other, ahead))
+        self._add(item.couple, self._theta(item.link) - self._theta(item.other) - ahead * self._one)
 
-    def _slide(self, name, slotted, block, way=1.0, offset=0.0):
-        """Keep the reference joint of a link on a slot of another."""
-        places = self.names.index(slotted), self.names.index(block)
-        self.slidings.append(Sliding(len(self.equations), *places, way, offset))
-        self._add(name, 0.0 * self._one)
-
-    def _add_guide(self, group, slider):
-        guide, pin = group.guide, self._joint(group.pin)
+    def _guide(self, item):
+        slider = item.link
+        guide, pin = self.mechanism.guides[slider], self._joint(item.joint)
         self._held.append((slider, None, guide.guide_angle))
         along, across = np.array(guide.direction), np.array(left(guide.direction))
         self.guides[slider] = complex(*along)
-        force = self._add("guide_force" + group.label, across @ pin - guide.guide_offset * self._one)
-        self._add("guide_moment" + group.label, self._theta(slider) - guide.guide_angle * self._one)
-        self.readings["guide" + group.label] = (FORCE, across[:, None] * force)
+        force = self._add(item.force, across @ pin - guide.guide_offset * self._one)
+        self._add(item.couple, self._theta(slider) - guide.guide_angle * self._one)
+        if item.vector:
+            self.readings[item.vector] = (FORCE, across[:, None] * force)
         for name, order in {"position": POSITION, "velocity": RATE, "acceleration": ACCELERATION}.items():
             self.readings[f"{slider}_{name}"] = (order, (along @ pin)[None, : 3 * self.size])
+
+    def _follow(self, led, group):
+        """Keep a joint on the cam of a group, which is fixed to the frame or to the crank."""
+        if led.body == FRAME:
+            self.cam, self.block, self.contact = group.cam, self.names.index(led.link), len(self.equations)
+        else:
+            places = self.names.index(led.body), self.names.index(led.link)
+            along = self.numbers[f"{led.joint}_along"]
+            self.followings.append(Following(len(self.equations), *places, along, group))
+        self._add(led.force, 0.0 * self._one)
 
     def _add(self, name, *equations):
         """Add equations; their multipliers are the components of the force or moment `name`."""

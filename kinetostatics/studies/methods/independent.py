@@ -10,24 +10,15 @@ from typing import Any
 import numpy as np
 
 from ...errors import NotGivenError
-from ...machine.cam_roller import CamRoller
-from ...machine.cylinder_group import CylinderGroup
-from ...machine.dyad import Dyad
-from ...machine.flat_follower import FlatFollower
 from ...machine.group import FRAME, TRAVELS
-from ...machine.guided_follower import GuidedFollower
-from ...machine.lever_group import LeverGroup
 from ...machine.loads import Gravity, Load, ProcessForce, Spring
-from ...machine.pin import Pin
-from ...machine.rocker_group import RockerGroup
-from ...machine.slider_group import SliderGroup
-from ...machine.swinging_follower import SwingingFollower
-from ...machine.yoke_group import YokeGroup
 from ...mechanics.quantities import RATES
 from ...numbers import checks
 from .acting import Acting
 from .enclosures import library, on_arb, require_one_design
-from .postures import Posture, cross, dot, left, of_kind
+from .method import require_frictionless
+from .postures import Posture, cross, dot, left
+from .structures import structure
 
 
 def independent(solution, quantity, indices: Iterable[int], digits=30):
@@ -53,12 +44,13 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
     Raises
     ------
     NotGivenError
-        There are no such formulas for a group or cam, or no such quantity.
+        There are no such formulas for a group or cam, or for friction, or no such quantity.
     MissingLibraryError
         mpmath is not installed.
     """
     mp = library("mpmath").mp
     require_one_design(solution)
+    require_frictionless(solution)
     with mp.workdps(working_digits(digits)):
         found = [Machine(mp, solution, index, digits).components(quantity) for index in indices]
     return tuple(np.array(part, dtype=object) for part in zip(*found, strict=True))
@@ -158,87 +150,30 @@ class Machine(Posture, Acting):
         """Unit wrenches: name, force, moment, point, link it acts on, link it comes from (None: ground)."""
         none = self.mp.mpc(0)
         at = {name: place for (kind, name), place in self.position.items() if kind == "joint"}
-        found: list[tuple[Any, ...]] = [("O", part, 0, at["O"], "crank", None) for part in self.parts]
-        found.append(("balancing_torque", none, 1, at["O"], "crank", None))
-        for group in self.mechanism.groups:
-            found += of_kind(UNKNOWN, group)(self, group, at)
+        found: list[tuple[Any, ...]] = [("balancing_torque", none, 1, at["O"], "crank", None)]
+        made, numbers = structure(self.mechanism)
+        for part in made.parts:
+            for pin in part.pinned:
+                found += [(pin.name, way, 0, at[pin.joint], pin.link, grounded(pin.other)) for way in self.parts]
+            for pair in part.slid:
+                ends = at[pair.about], pair.link, grounded(pair.other)
+                along = self.position["direction", pair.link]
+                if pair.other != FRAME:
+                    turned = self.mp.expj(self.number(numbers[f"{pair.other}_{pair.joint}_angle"]))
+                    along = self.position["direction", pair.other] * turned
+                found += [(pair.force, left(along), 0, *ends), (pair.couple, none, 1, *ends)]
+            found += [(cam.force, *self.pressed(cam, at[cam.joint]), cam.link, grounded(cam.body)) for cam in part.cams]
         return found
 
-    def held(self, name, joint, at, link):
-        """Both parts of a reaction on a link at a joint, from what carries that."""
-        carrier = self.mechanism.joints[joint].link
-        return [(name, part, 0, at[joint], link, None if carrier == FRAME else carrier) for part in self.parts]
-
-    def slid(self, kind, label, at, direction, link, other):
-        """Force and moment of a sliding pair, on a link from another (None: ground), about a place."""
-        yield kind + "_force" + label, left(direction), 0, at, link, other
-        yield kind + "_moment" + label, self.mp.mpc(0), 1, at, link, other
-
-    def of_roller(self, group, at):
-        ahead, back = (self.roller(group.cam, self.angle + step) for step in (self.step, -self.step))
-        inward = left((ahead - back) / abs(ahead - back))
-        slot = self.slid("slot", "", at["A"], self.position["direction", "crank"], "block", "crank")
-        return [*slot, ("cam_force", inward, 0, at["A"], "block", None)]
-
-    def of_slider(self, group, at):
-        coupler, slider = group.links
-        guide = self.slid("guide", group.label, at[group.pin], self.position["direction", slider], slider, None)
-        inner = self.held(group.on + group.label, group.on, at, coupler)
-        return [*inner, *((group.pin, part, 0, at[group.pin], slider, coupler) for part in self.parts), *guide]
-
-    def of_rocker(self, group, at):
-        coupler, rocker = group.links
-        inner = self.held(group.on + group.label, group.on, at, coupler)
-        pivot = self.held(group.pivot_name, group.pivot_name, at, rocker)
-        return [*inner, *((group.pin, part, 0, at[group.pin], rocker, coupler) for part in self.parts), *pivot]
-
-    def of_dyad(self, group, at):
-        first, second = group.links
-        ends = [self.held(f"{link}_{on}", on, at, link) for link, on in zip(group.links, group.on, strict=True)]
-        return [*ends[0], *ends[1], *((group.pin, part, 0, at[group.pin], second, first) for part in self.parts)]
-
-    def of_lever(self, group, at):
-        lever, block = group.links
-        inner = self.held(group.on + group.label, group.on, at, block)
-        pivot = self.held(group.pivot_name, group.pivot_name, at, lever)
-        along = self.position["direction", lever]
-        return [*inner, *pivot, *self.slid("slot", group.label, at[group.on], along, block, lever)]
-
-    def of_cylinder(self, group, at):
-        rod, cylinder = group.links
-        inner = self.held(group.on + group.label, group.on, at, rod)
-        pivot = self.held(group.pivot_name, group.pivot_name, at, cylinder)
-        along = self.position["direction", cylinder]
-        return [*inner, *pivot, *self.slid("cylinder", group.label, at[group.pivot_name], along, rod, cylinder)]
-
-    def of_yoke(self, group, at):
-        block, slider = group.links
-        inner = self.held(group.on + group.label, group.on, at, block)
-        ways = (self.position["direction", name] for name in group.links)
-        slot = self.slid("slot", group.label, at[group.on], next(ways), block, slider)
-        return [*inner, *slot, *self.slid("guide", group.label, at[group.pin], next(ways), slider, None)]
-
-    def of_guided(self, group, at):
-        (follower,) = group.links
-        along = self.position["direction", follower]
-        guide = self.slid("guide", group.label, at[group.pin], along, follower, None)
-        if not isinstance(group, FlatFollower):
-            return [*guide, self.pressed(group, at[group.pin], follower)]
-        ahead, back = (dot(along, self.followed(group, self.angle + step)[0]) for step in (self.step, -self.step))
-        touched = along * self.mp.mpc(dot(along, at[group.pin]), (back - ahead) / (2 * self.step))
-        return [*guide, ("contact_force" + group.label, along, 0, touched, follower, "crank")]
-
-    def of_swinging(self, group, at):
-        (arm,) = group.links
-        pivot = self.held(group.pivot_name, group.pivot_name, at, arm)
-        return [*pivot, self.pressed(group, at[group.pin], arm)]
-
-    def pressed(self, group, at, link):
-        """Contact force of a roller, across its path on the cam, which it runs clockwise."""
-        angles = self.angle + self.step, self.angle - self.step
-        ahead, back = (self.followed(group, angle)[0] * self.mp.expj(-angle) for angle in angles)
-        outward = left((ahead - back) / abs(ahead - back)) * self.mp.expj(self.angle)
-        return "contact_force" + group.label, outward, 0, at, link, "crank"
+    def pressed(self, cam, at):
+        """Unit force of a cam on what it leads, without couple, and where it acts, by its way as seen from the cam."""
+        ahead, back = (self.table(self.angle + step)["joint", cam.joint] for step in (self.step, -self.step))
+        turning = 0 if cam.body == FRAME else 1
+        way = (ahead - back) / (2 * self.step) - turning * left(at)
+        if not cam.flat:
+            return left(way / abs(way)), 0, at
+        axis = self.position["direction", cam.link]
+        return axis, 0, at - dot(axis, way) * left(axis)
 
     def gravity(self):
         items = (item for item in self.solution.loads if isinstance(item, Gravity))
@@ -287,16 +222,6 @@ class Machine(Posture, Acting):
             return self.mp.mpf(values[self.index if values.size > 1 else 0])
 
 
-UNKNOWN: Any = {
-    CamRoller: Machine.of_roller,
-    SliderGroup: Machine.of_slider,
-    RockerGroup: Machine.of_rocker,
-    Dyad: Machine.of_dyad,
-    Pin: lambda machine, group, at: [],
-    LeverGroup: Machine.of_lever,
-    CylinderGroup: Machine.of_cylinder,
-    YokeGroup: Machine.of_yoke,
-    GuidedFollower: Machine.of_guided,
-    SwingingFollower: Machine.of_swinging,
-}
-"""What each kind of group adds to the unknown wrenches."""
+def grounded(link):
+    """The link, or None for the frame."""
+    return None if link == FRAME else link

@@ -1,40 +1,42 @@
 """SymPy's Kane method, lambdified: the fastest way an expert would otherwise take.
 
-The crank angle is the only coordinate; angles of links and the cam radius are closed forms of it. Auxiliary speeds
-move links apart at a joint, so that their equations hold the reactions there (Kane and Levinson, *Dynamics: Theory and
-Applications*, 1985: bringing noncontributing forces into evidence); they are chosen so that each gives one unknown.
-`KanesMethod` derives the equations in symbols, once for each kind of mechanism. What is asked for, and only that, goes
-through `lambdify` with common subexpressions taken out, once for each pattern of parameters that are 0, 1 or -1, which
-are written in; all others are arguments.
+The crank angle is the only coordinate; directions of links and travels of sliders are closed forms of it. Auxiliary
+speeds part each link from its neighbours, so that their equations hold the reactions there (Kane and Levinson,
+*Dynamics: Theory and Applications*, 1985: bringing noncontributing forces into evidence); the drive torque needs none.
+`KanesMethod` derives the equations in symbols from what the groups declare, once for each structure. What is asked for,
+and only that, goes through `lambdify` with common subexpressions taken out, once for each pattern of parameters that
+are 0, 1 or -1, which are written in; all others are arguments. Tables, functions and loads at points are the user's own
+numbers, computed of the motion before.
 """
 
 from functools import cache
-from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from ...machine.cam_roller import CamRoller
-from ...machine.cams import Circle, CosineLaw
-from ...machine.loads import Gravity, ProcessForce, Spring
-from ...machine.rocker_group import RockerGroup
-from ...machine.slider_group import SliderGroup
-from .kane_equations import KINDS, LINK
-from .method import Method, NotGivenError, on_a_side, require_one_design
+from ...machine.loads import Gravity
+from .applied import Applied
+from .kane_equations import Equations
+from .method import Method, NotGivenError, on_a_side, require_frictionless, require_one_design
+from .structures import leading, structure
+
+WRITTEN = 0, 1, -1
+"""Numbers that are written into the equations."""
 
 
 @cache
-def derived(kind):
-    return KINDS[kind]().solved()
+def derived(made):
+    """Equations of a structure, solved."""
+    return Equations(made).solved()
 
 
 @cache
-def compiled(kind, names, written):
-    """Function for some results of a kind of mechanism, and the names of its arguments.
+def compiled(made, names, written):
+    """Function for some results of a structure, and the names of its arguments.
 
     `written` are pairs of a parameter's name and the value that is written in.
     """
-    equations = derived(kind)
+    equations = derived(made)
     values = {sp.Symbol(name): sp.Integer(int(value)) for name, value in written}
 
     def final(expression):
@@ -64,84 +66,56 @@ def in_order(steps, results):
 
 
 def described(solution):
-    """Kind of the mechanism, and its parameters by name."""
+    """Structure of the mechanism, and its numbers by name, without those of loads but for gravity."""
     require_one_design(solution)
+    require_frictionless(solution)
     mechanism = on_a_side(solution.mechanism)
-    group: Any = mechanism.groups[-1] if mechanism.groups else None
-    values = {
+    made, values = structure(mechanism)
+    pulls = [item.vector for item in solution.loads if isinstance(item, Gravity)]
+    gravity = [sum(parts) for parts in zip((0, 0), *pulls, strict=True)]
+    values |= {
         "crank_angle": solution.crank_angle,
         "crank_speed": solution.crank_speed,
         "crank_acceleration": solution.crank_acceleration,
-        "crank_length": mechanism.crank.length,
+        "gravity_x": gravity[0],
+        "gravity_y": gravity[1],
     }
-    for name, link in mechanism.links.items():
-        values |= zip((f"{name}_{part}" for part in LINK), (link.mass, *link.centre, link.inertia), strict=True)
-    hung = [(type(item), getattr(item, "on", "O"), getattr(item, "pin", "A")) for item in mechanism.groups]
-    if hung == [(RockerGroup, "A", "B")]:
-        kind, own = "four-bar", {"rocker_length": group.rocker_length, **vector("pivot", group.pivot)}
-    elif hung == [(SliderGroup, "A", "B")]:
-        kind, own = "crank-slider", guided(group)
-    elif hung == [(CamRoller, "O", "A"), (SliderGroup, "A", "B")]:
-        kind, own = shaped(mechanism.groups[0].cam)
-        own |= guided(group)
-    else:
-        raise NotGivenError(f"SymPy's Kane method is set up for crank-sliders and four-bars, not for {mechanism.name}")
-    shared = {"coupler_length": group.coupler_length, "assembly": group.assembly}
-    return kind, values | shared | own | loading(solution.loads)
+    for group in mechanism.groups:
+        values |= leading(group, solution.crank_angle)
+    for side, link in derived(made).sides.items():
+        a, b = function_of(made, (side,), values)()
+        cosine, sine = solution.placement.links[link].direction
+        values[side] = 1 if np.nansum(np.sign(a * sine - b * cosine)) >= 0 else -1
+    return made, values
 
 
-def vector(name, parts):
-    return dict(zip((f"{name}_x", f"{name}_y"), parts, strict=True))
+def function_of(made, names, values):
+    """Function that computes results by name with one call of a lambdified function, as a list of components.
 
-
-def guided(group):
-    return {"guide_angle": float(group.guide.guide_angle), "guide_offset": group.guide.guide_offset}
-
-
-def shaped(cam):
-    """Kind of mechanism that a cam makes, and the cam's parameters by name."""
-    if isinstance(cam, Circle):
-        return "circle", {"cam_radius": cam.pitch_radius, **vector("cam", cam.centre)}
-    if not isinstance(cam, CosineLaw):
-        raise NotGivenError(f"SymPy needs a closed form of the cam, which {type(cam).__name__} has not")
-    a, b = cam.amplitude, cam.mean
-    singular = (np.sqrt(b * b + 8 * a * a) - b) / (4 * a)
-    length = (b + a * singular) * np.sqrt(1 - singular * singular)
-    parts = {"amplitude": a, "mean": b, "cam_angle": cam.guide_angle}
-    return "cosine law", parts | {"singular_cosine": singular, "law_length": length}
-
-
-def loading(loads):
-    """Gravity, spring and process force by name."""
-    kinds: Any = (Gravity, Spring, ProcessForce)
-    weights, springs, pushes = ([item for item in loads if isinstance(item, kind)] for kind in kinds)
-    number = all(isinstance(item.force, int | float) for item in pushes)
-    linear = len(springs) < 2 and all(isinstance(item.cubic, float) and item.cubic == 0 for item in springs)
-    if len(weights) + len(springs) + len(pushes) < len(loads) or not linear or not number:
-        raise NotGivenError(
-            "SymPy's Kane method takes gravity, one spring without cubic term, and process forces that are numbers"
-        )
-    stiffness, free = (springs[0].stiffness, springs[0].free_position) if springs else (0, 0)
-    pull = [sum(parts) for parts in zip((0, 0), *(item.vector for item in weights), strict=True)]
-    push = sum(item.force for item in pushes)
-    return {"stiffness": stiffness, "free_position": free, "process_force": push, **vector("gravity", pull)}
-
-
-def evaluation(solution, names):
-    """Function that computes results by name with one call of a lambdified function, as a list of components."""
-    kind, values = described(solution)
-    unknown = [name for name in names if name not in derived(kind).results]
-    if unknown:
-        raise NotGivenError(f"SymPy's Kane method is not set up to give {', '.join(unknown)} of a {kind}")
+    It takes what is known only when it is called, by name.
+    """
     plain = {name: value for name, value in values.items() if isinstance(value, int | float)}
-    function, arguments = compiled(kind, names, tuple(item for item in plain.items() if item[1] in (0, 1, -1)))
-    given, shape = [values[name] for name in arguments], solution.crank_angle.shape
+    function, arguments = compiled(made, names, tuple(item for item in plain.items() if item[1] in WRITTEN))
+    shape = np.shape(values["crank_angle"])
+    fixed = [values.get(name) for name in arguments]
 
-    def run():
+    def run(**moving):
+        given = [moving.get(name, value) for name, value in zip(arguments, fixed, strict=True)] if moving else fixed
         with np.errstate(invalid="ignore", divide="ignore"):
             return [part if np.shape(part) == shape else np.full(shape, float(part)) for part in function(*given)]
 
     return run
+
+
+def evaluation(solution, names):
+    """Function without arguments that computes results by name, as a list of components."""
+    made, values = described(solution)
+    unknown = [name for name in names if name not in derived(made).results]
+    if unknown:
+        raise NotGivenError(f"SymPy's Kane method is not set up to give {', '.join(unknown)}")
+    applied = Applied(solution, lambda name: function_of(made, (name,), values))
+    run = function_of(made, names, values | applied.numbers)
+    return lambda: run(**applied())
 
 
 def all_forces(solution):

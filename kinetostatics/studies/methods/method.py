@@ -62,6 +62,12 @@ class Method:
     bound: Callable[[Any, str], Any] | None = None
 
 
+def require_frictionless(solution):
+    """Raise `NotGivenError` for friction, whose forces depend on the reactions that they change."""
+    if solution.friction:
+        raise NotGivenError(f"its equations know no friction, but there is some in {', '.join(solution.friction)}")
+
+
 def require_one_design(solution):
     """Raise `NotGivenError` for a batch of designs, and for crank angles that are no row."""
     if solution.shape != np.shape(solution.crank_angle) or len(solution.shape) != 1:

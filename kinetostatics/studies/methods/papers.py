@@ -21,7 +21,7 @@ from ...machine.slider_group import SliderGroup, SliderMotion
 from ...mechanics.quantities import components
 from ...numbers.planar import added, cross, dot, left, minus, stretched, subtracted, vector
 from ...solution.solution import Solution
-from .method import Method, NotGivenError, on_a_side, require_one_design
+from .method import Method, NotGivenError, on_a_side, require_frictionless, require_one_design
 from .printed import (
     CircleAsPrinted,
     CosineLawAsPrinted,
@@ -267,6 +267,7 @@ def _prepared(formulas):
 
     def prepare(solution, quantity, setting=None):
         require_one_design(solution)
+        require_frictionless(solution)
         formulated = formulas(solution)
 
         def run():

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import of_scene, quantity, values
-from ..canvas import display
+from ..canvas import display, in_sight
 from .words import pretty
 
 COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
@@ -45,6 +45,8 @@ def over_turn(solutions, name, height=300):
     have = {row: s for row, s in enumerate(solutions.values()) if name in of_scene(s)}
     known = quantity(next(iter(have.values())), name)
     found = {row: values(s, name) for row, s in have.items()}
+    sight = in_sight(list(found.values()))
+    found = {row: np.where(np.abs(value) <= sight, value, np.nan) for row, value in found.items()}
     factor, unit = display(known.unit, found.values())
     curves = {row: (np.degrees(s.crank_angle), factor * found[row]) for row, s in have.items()}
     label = f"|{known.label}|" if known.vector else known.label
@@ -87,6 +89,8 @@ def hodograph(solutions, name, height=420):
     have = {row: s for row, s in enumerate(solutions.values()) if name in of_scene(s)}
     vectors = {row: of_scene(s)[name].read(s) for row, s in have.items()}
     known = of_scene(next(iter(have.values())))[name]
+    sight = in_sight([np.hypot(*vector) for vector in vectors.values()])
+    vectors = {row: np.where(np.hypot(*vector) <= sight, vector, np.nan) for row, vector in vectors.items()}
     factor, unit = display(known.unit, vectors.values())
     plot = _plot(height, f"{known.label}, x [{pretty(unit)}]", f"{known.label}, y [{pretty(unit)}]", match_aspect=True)
     names = list(solutions)

@@ -8,8 +8,8 @@ from importlib import resources
 
 import numpy as np
 
-from ... import __version__
 from ...results.losses import lose
+from ...version import __version__
 from ..canvas import display
 from . import figures, sections
 from .movement import movements
@@ -121,7 +121,7 @@ def _turning(subject):
     machines = list(subject.machines.values())
     first = subject.reference.solution
     torque = np.abs(first.balancing_torque)
-    unit = display("N", [np.array([_force(subject)])])
+    unit = display("N", _forces(subject))
     return {
         "step": subject.reference.step,
         "counts": [machine.solution.crank_angle.size for machine in machines],
@@ -131,10 +131,9 @@ def _turning(subject):
     }
 
 
-def _force(subject):
+def _forces(subject):
     solutions = [machine.solution for machine in subject.machines.values()]
-    sizes = [np.hypot(*solution.reaction(joint)) for solution in solutions for joint in solution.reactions]
-    return max((float(np.max(size[np.isfinite(size)], initial=0.0)) for size in sizes), default=0.0)
+    return [np.hypot(*solution.reaction(joint)) for solution in solutions for joint in solution.reactions]
 
 
 def _speed(machine):

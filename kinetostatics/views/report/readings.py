@@ -6,7 +6,7 @@ import numpy as np
 
 from ...mechanics.quantities import components, of_scene, scale, still
 from ...results.extremes import FLOOR
-from ..canvas import display
+from ..canvas import display, in_sight, ordinary
 from .movement import packed
 from .words import pretty
 
@@ -45,9 +45,10 @@ def _values(machine, name):
 
 
 def _sent(quantity, of_each, text):
-    arrays = [values[np.isfinite(values)] for values in of_each if values is not None]
-    largest = max((float(np.max(np.abs(values), initial=0.0)) for values in arrays), default=0.0)
-    factor, unit = display(quantity.unit, [np.array([largest])])
+    arrays = [values for values in of_each if values is not None]
+    sizes = [np.hypot(*values) if quantity.vector else values for values in arrays]
+    factor, unit = display(quantity.unit, sizes)
+    sight = in_sight(sizes)
     return {
         "label": quantity.label,
         "kind": quantity.kind,
@@ -55,7 +56,8 @@ def _sent(quantity, of_each, text):
         "unit": pretty(unit),
         "factor": factor,
         "vector": quantity.vector,
-        "decimals": decimals(factor * largest),
+        "sight": factor * sight if np.isfinite(sight) else None,
+        "decimals": decimals(factor * ordinary(sizes)),
         "values": [None if values is None else packed(factor * values, "<f8") for values in of_each],
     }
 

@@ -5,11 +5,12 @@ from typing import Any
 import numpy as np
 
 from ...errors import DriveError, KinetostaticsError, NotGivenError, ParameterError
-from ...mechanics.quantities import label_of, of_scene, unit_of
+from ...mechanics.quantities import unit_of
+from ...numbers.shown import DIGITS, at_most
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
 from .tables import Table, digits_of, of_frame, times, with_published
-from .words import DIGITS, angle, at_most, number, pretty
+from .words import angle, number, pretty
 
 FIGURES = 15.95
 """Digits of a double number."""
@@ -23,16 +24,15 @@ def glance(subject):
     rows: list[list[str]] = []
     base = None
     for machine in subject.machines.values():
-        solution, frame = machine.solution, machine.extremes
+        solution = machine.solution
         mean = float(mean_absolute_torque(solution))
         base = mean if base is None else base
-        peak = _largest(frame, "balancing torque")
         joint = "O" if "O" in solution.reactions else solution.reactions[-1]
-        reaction = _largest(frame, label_of(solution, joint))
+        peak, reaction = (_largest(machine.extremes[name]) for name in ("balancing_torque", joint))
         gain = "" if not rows else times(base / mean) if mean > 1e-12 * base else "∞"
-        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, number(abs(peak), 5)]
+        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, peak]
         lost = number(solution.losses.total, 5) if lose(solution) else ""
-        rows.append([*cells, number(reaction, 5), lost, number(solution.power_residual, 2)])
+        rows.append([*cells, reaction, lost, number(solution.power_residual, 2)])
     heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "largest |torque| [N·m]"]
     heads += ["largest reaction O [N]", "power lost [W]", "power balance"]
     note = (
@@ -43,8 +43,11 @@ def glance(subject):
     return _without_empty(Table("", heads, rows, 2, note))
 
 
-def _largest(frame, row):
-    return max(frame.loc[row, ["smallest", "largest"]], key=abs) if row in frame.index else np.nan
+def _largest(row):
+    """The largest magnitude of a quantity over the turn, with the digits that are known."""
+    low, _, high, _ = row.ends
+    value, error = max((low, row.errors[0]), (high, row.errors[2]), key=lambda end: abs(end[0]))
+    return number(abs(value), 5, error)
 
 
 def _without_empty(table):
@@ -73,27 +76,32 @@ def comparisons(subject):
 def _coefficients(subject):
     """One table of all machines: values, with what the reference has over them below."""
     name = subject.reference.name
-    frames = {machine.name: subject.comparison(machine) for machine in subject.others}
+    frames, bounds = {}, {}
+    for machine in subject.others:
+        frames[machine.name], bounds[machine.name] = subject.comparison(machine)
     rows = []
     for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index):
-        known = [frame.loc[quantity] for frame in frames.values() if quantity in frame.index]
+        with_row = [other for other, frame in frames.items() if quantity in frame.index]
+        known = [frames[other].loc[quantity] for other in with_row]
         cells = [
-            _beside(frame.loc[quantity, other], frame.loc[quantity, "ratio"]) if quantity in frame.index else ""
+            _beside(frame.loc[quantity], bounds[other].loc[quantity], other) if other in with_row else ""
             for other, frame in frames.items()
         ]
-        digits = digits_of(quantity)
-        first = next((number(row[name], digits) for row in known), "")
+        first = number(known[0][name], digits_of(quantity), bounds[with_row[0]].loc[quantity, name])
         published = next((row["published"] for row in known if row.get("published")), "")
         rows.append([quantity, pretty(known[0]["unit"]), first, *cells, published])
     note = f"Below each value how many times larger that of {name} is: above 1, the machine has less than {name}."
     return _without_empty(Table("", ["", "unit", name, *frames, "published"], rows, 2, note))
 
 
-def _beside(value, ratio):
-    """A value and its ratio; what is nothing beside the reference is 0."""
+def _beside(row, errors, name):
+    """A machine's value and its ratio, with the digits that are known; what is nothing beside the reference is 0."""
+    value, ratio = row[name], row["ratio"]
     if np.isinf(ratio):
         return "0"
-    return number(value, 2) if np.isnan(ratio) and abs(value) < 1e-12 else (number(value), times(ratio))
+    if np.isnan(ratio) and abs(value) < 1e-12:
+        return number(value, 2)
+    return number(value, bound=errors[name]), times(ratio, errors["ratio"])
 
 
 def extremes(subject):
@@ -102,19 +110,30 @@ def extremes(subject):
 
 
 def _of_extremes(machine):
-    known = {quantity.label: name for name, quantity in of_scene(machine.solution).items()}
     rows = []
-    for label, unit, low, low_at, high, high_at in machine.extremes.itertuples():
-        digits = _digits(machine.solution, known[label], np.nan_to_num([low_at, high_at]))
-        smallest, largest = (number(value, DIGITS if digits is None else digits) for value in (low, high))
+    for name, (quantity, (low, low_at, high, high_at), (low_error, _, high_error, _)) in machine.extremes.items():
+        digits = _proven_digits((low, low_error), (high, high_error))
+        if digits is None:
+            digits = _digits(machine.solution, name, np.nan_to_num([low_at, high_at]))
+        most = DIGITS if digits is None else digits
+        smallest, largest = number(low, most, low_error), number(high, most, high_error)
         told = str(digits) if digits is not None and (low or high) else ""
-        rows.append([label, pretty(unit), smallest, angle(low_at), largest, angle(high_at), told])
+        rows.append([quantity.label, pretty(quantity.unit), smallest, angle(low_at), largest, angle(high_at), told])
     heads = ["", "unit", "smallest", "at [°]", "largest", "at [°]", "digits"]
     return Table(machine.name, heads, rows, 2)
 
 
+def _proven_digits(*ends):
+    """Significant digits of values that their bounds prove; None where a bound is not known."""
+    shares = [error / abs(value) for value, error in ends if value]
+    if np.isnan(shares).any() or not np.isfinite([value for value, _ in ends]).all():
+        return None
+    with np.errstate(divide="ignore"):
+        return int(np.clip(np.floor(-np.log10(max(shares, default=0.0))), 0, 15))
+
+
 def _digits(solution, name, degrees):
-    """Significant digits of a quantity's extremes that are known; None of places, and where no condition is given."""
+    """Significant digits of a quantity's extremes by condition; None of places, and where no condition is given."""
     if unit_of(solution, name) == "m":
         return None
     try:

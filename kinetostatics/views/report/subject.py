@@ -15,7 +15,7 @@ from ...machine.loads import period_of
 from ...numbers import checks
 from ...numbers.lazy import cached_property
 from ...results.comparison import Comparison
-from ...results.tables import extremes_frame
+from ...results.tables import extremes_by_name
 from ...solution.scene import Scene
 
 MOST = 1440
@@ -53,7 +53,8 @@ class Machine:
 
     @cached_property
     def extremes(self):
-        return extremes_frame(self.solution)
+        """Extremes of all quantities by name: `Row` of `tables`."""
+        return extremes_by_name(self.solution)
 
     @property
     def motor(self):
@@ -95,11 +96,14 @@ class Subject:
         return {name: machine.solution for name, machine in self.machines.items()}
 
     def comparison(self, machine):
-        """Table of dynamic coefficients of a machine against the reference, with published figures if there are."""
-        if self.case is not None:
-            return self.case.comparison_table(machine.name, self.reference.name)
+        """Table of dynamic coefficients of a machine against the reference, with published figures if there are.
+
+        And a table of the bounds on the errors of its numbers.
+        """
         names = self.reference.name, machine.name
-        return Comparison(self.reference.solution, machine.solution, names).frame()
+        found = Comparison(self.reference.solution, machine.solution, names)
+        table = found.frame()
+        return table if self.case is None else self.case.with_published(table), found.error_bounds()
 
     @cached_property
     def files(self):

@@ -7,7 +7,8 @@ import numpy as np
 
 from ...errors import CaseError
 from ...numbers import checks
-from .words import DIGITS, angle, number, pretty
+from ...numbers.shown import DIGITS
+from .words import angle, number, pretty
 
 DIGITS_OF = {"ratio": 4, "share [%]": 4, "power residual": 2}
 """Digits of what no reader takes so exactly, by column or row."""
@@ -84,6 +85,6 @@ def digits_of(row, column=""):
     return DIGITS_OF.get(row, DIGITS_OF.get(column, DIGITS))
 
 
-def times(ratio):
+def times(ratio, bound=0.0):
     """How many times, in words; "" for NaN."""
-    return "" if np.isnan(ratio) else f"{number(ratio, 4)} ×"
+    return "" if np.isnan(ratio) else f"{number(ratio, 4, bound)} ×"

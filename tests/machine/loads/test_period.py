@@ -102,7 +102,7 @@ def test_a_period_of_whole_turns_is_taken_up_to_rounding(turns):
     assert ks.ProcessForce(1.0, period=turns * TURN * (1 + 1e-12)).period == turns * TURN
 
 
-@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow)])
 def test_a_four_stroke_engine_has_its_gas_force_in_every_other_turn(tmp_path, engine):
     if engine == "compiled":
         pytest.importorskip("numba")

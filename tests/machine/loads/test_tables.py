@@ -49,6 +49,7 @@ def test_a_table_is_known_between_the_crank_angles_of_a_solution():
     assert solved(DIAGRAM, [0.1, 0.2]).at(ANGLES).balancing_torque == pytest.approx(solved(DIAGRAM).balancing_torque)
 
 
+@pytest.mark.slow
 def test_the_compiled_loop_reads_tables_as_arrays_do():
     pytest.importorskip("numba")
     compiled = solved(DIAGRAM, engine="compiled").balancing_torque

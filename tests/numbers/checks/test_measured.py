@@ -13,11 +13,10 @@ import kinetostatics as ks
 from kinetostatics.numbers.checks import DimensionError, is_quantity, plain
 from kinetostatics.numbers.units import to_si
 from support.every import every
+from support.units import UNITS
 
-UNITS = pint.UnitRegistry()
 DECIMALS = pint.UnitRegistry(non_int_type=Decimal)
-OWN = pint.UnitRegistry()
-OWN.define("span = 0.25 * meter")
+UNITS.define("span = 0.25 * meter")
 
 
 class Labelled:
@@ -45,7 +44,7 @@ RIGHT = {
     "a torsion spring": (UNITS.Quantity(np.pi, "N*m/deg"), "N*m/rad", 180.0),
     "a mass by its weight": (UNITS.Quantity(2.0, "kg*m/s**2"), "N", 2.0),
     "the application's registry": (pint.Quantity(250.0, "mm"), "m", 0.25),
-    "a registry with units of one's own": (OWN.Quantity(2.0, "span"), "m", 0.5),
+    "a registry with units of one's own": (UNITS.Quantity(2.0, "span"), "m", 0.5),
     "decimals": (DECIMALS.Quantity(Decimal("250"), "mm"), "m", 0.25),
     "a decimal in a registry of floats": (UNITS.Quantity(Decimal("250"), "mm"), "m", 0.25),
     "a float in a registry of decimals": (DECIMALS.Quantity(250.0, "mm"), "m", 0.25),
@@ -93,7 +92,7 @@ def test_a_registry_that_lacks_the_unit_is_said_so():
 
 
 def test_lists_arrays_and_tuples_of_quantities_are_taken_one_by_one():
-    parts = [UNITS.Quantity(250.0, "mm"), OWN.Quantity(2.0, "span"), 0.75]
+    parts = [UNITS.Quantity(250.0, "mm"), UNITS.Quantity(2.0, "span"), 0.75]
     assert plain(parts, "m") == [0.25, 0.5, 0.75]
     assert plain(tuple(parts), "m") == (0.25, 0.5, 0.75)
     assert plain(np.array(parts, dtype=object), "m").tolist() == [0.25, 0.5, 0.75]
@@ -130,7 +129,7 @@ def test_few_digits_are_converted_in_double_precision(kind):
         ks.Link(UNITS.Quantity(np.ma.array([[1]], mask=[[True]], dtype=kind), "g"))
 
 
-@pytest.mark.slow_start
+@pytest.mark.slow
 def test_plain_numbers_import_no_pint():
     code = (
         "import sys, kinetostatics as ks; s = ks.solve(ks.crank_slider(0.1, 0.3, slider=ks.Link(1.0)), [0.1, 0.2], "

@@ -14,6 +14,8 @@ from kinetostatics.studies.methods.certified import Enclosure, certified, enclos
 from kinetostatics.studies.methods.method import NotGivenError
 from support.machines import ANGLES, KINDS, Machine
 
+pytestmark = pytest.mark.slow
+
 flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 mp = pytest.importorskip("mpmath", reason="mpmath is not installed (extra: precision)").mp
 

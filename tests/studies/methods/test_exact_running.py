@@ -9,6 +9,8 @@ from kinetostatics.studies.methods import running
 from kinetostatics.studies.methods.exact_running import exact_speed
 from support.driven_saws import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE, SAW
 
+pytestmark = pytest.mark.slow
+
 CUT = ks.ProcessForce(ks.Table(np.radians([7.0, 20.0, 173.0, 187.0, 340.0]), [0.0, 8e3, 8e3, 0.0, 0.0]))
 CUTTING = ks.Scene(SAW, 33.5, loads=(ks.Gravity(), CUT))
 

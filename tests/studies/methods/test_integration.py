@@ -11,6 +11,8 @@ from kinetostatics.studies.methods.method import NotGivenError
 from support.constrained import TURN, error, solved
 from support.machines import CLOSE
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("method", integration.METHODS, ids=lambda method: method.name.split()[-1])
 @pytest.mark.parametrize("name", ["plain", "cosine law", "six-bar"])

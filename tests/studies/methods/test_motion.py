@@ -5,6 +5,8 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.studies.methods import motion
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("name", motion.BENCHMARKS)
 @pytest.mark.parametrize(

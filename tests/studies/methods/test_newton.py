@@ -60,13 +60,14 @@ def test_what_no_constraint_equation_gives_is_refused(method):
     members = (
         dict.fromkeys(MEMBERS) | {name: {} for name in ("links", "references", "joints", "outputs")} | {"bars": ()}
     )
-    gear = type("Gear", (Group,), members | {"hangs_on": ()})()
+    members |= {"hangs_on": (), "links": {"gear": ks.Link()}, "references": {"gear": "O"}}
+    gear = type("Gear", (Group,), members)()
     foreign = replace(s, mechanism=ks.Mechanism("gear", ks.Crank(0.1), (gear,)))
     for refused, wanted, words in [
         (s, "pressure_angle", "no pressure_angle, but O, balancing_torque, slot_force"),
         (designs, "O", r"not a batch of shape \(2, 72\)"),
         (short, "O", "finds no position of crank-slider at 0"),
-        (foreign, "O", "written for Gear"),
+        (foreign, "O", "Gear does not declare in its pairs .* what holds gear"),
     ]:
         with pytest.raises(NotGivenError, match=words):
             method.prepare(refused, wanted, setting)

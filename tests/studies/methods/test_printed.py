@@ -7,6 +7,8 @@ import kinetostatics as ks
 from kinetostatics.mechanics.quantities import magnitude
 from support.sawframe_study import CANCELLED, CIRCLE, COLUMNS, COSINE, PLAIN, PUBLISHED
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("column", COLUMNS)
 def test_coefficients_of_each_reading_of_the_study(column):

@@ -1,13 +1,14 @@
 """Figures hold the curves of the solutions, over the longest period, and say what they show."""
 
 import builtins
+import warnings
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.views.report import figures
-from support.reports import subject
+from support.reports import near_change_points, subject
 
 pytest.importorskip("bokeh")
 
@@ -65,3 +66,18 @@ def test_without_bokeh_it_is_said_how_to_get_it(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", absent)
     with pytest.raises(ks.KinetostaticsError, match=r'pip install "kinetostatics\[report\]"'):
         figures.require()
+
+
+def test_what_grows_without_bound_is_not_drawn_and_sets_no_unit():
+    with warnings.catch_warnings(action="ignore"):
+        solution = near_change_points().solve(360)
+        size = np.hypot(*solution.reaction("O"))
+        plots = figures.over_turn({"a": solution}, "O"), figures.hodograph({"a": solution}, "O")
+    assert size.max() > 1e12
+    curve, tip = (lines(plot)["line 0"] for plot in plots)
+    for drawn in (curve["value"], np.hypot(tip["x"], tip["y"])):
+        kept = np.isfinite(drawn[:360])
+        assert np.nanmax(drawn) < 1e3
+        assert 340 < kept.sum() < 360
+        np.testing.assert_allclose(drawn[:360][kept], size[kept], rtol=1e-14)
+    assert plots[0].left[0].axis_label.text == "|reaction O| [N]"

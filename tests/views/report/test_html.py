@@ -10,6 +10,8 @@ from kinetostatics.views.report import html
 from kinetostatics.views.report.subject import subject_of
 from support.reports import COMMAND, data_of, page, plain, subject, words
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("bokeh")
 HOSTILE = "</script><script>alert(1)</script> \"quoted\" 'n' & <b>x</b> {{ 7*7 }} $$x$$ @y{0} Säge пила 鋸 שלום"
 

@@ -9,6 +9,8 @@ from kinetostatics.views.report import html, printing
 from support.every import every
 from support.reports import plain, words
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("bokeh")
 
 

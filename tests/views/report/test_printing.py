@@ -26,7 +26,6 @@ def test_without_a_browser_it_is_said_which_were_looked_for(monkeypatch):
         printing.browser()
 
 
-@pytest.mark.slow_start
 def test_what_the_browser_prints_is_the_pdf(tmp_path, monkeypatch):
     place = "--print-to-pdf="
     write = f'for word in "$@"; do case $word in {place}*) printf "%%PDF-1.4 x" > "${{word#{place}}}";; esac; done'
@@ -35,7 +34,6 @@ def test_what_the_browser_prints_is_the_pdf(tmp_path, monkeypatch):
     assert (tmp_path / "page.pdf").read_bytes() == b"%PDF-1.4 x"
 
 
-@pytest.mark.slow_start
 def test_a_browser_that_prints_nothing_is_told_with_what_it_said(tmp_path, monkeypatch):
     page = a_browser(tmp_path, monkeypatch, "echo no display here >&2; exit 7")
     with pytest.raises(FileError, match="ended with status 7 and without a PDF: no display here"):
@@ -43,7 +41,6 @@ def test_a_browser_that_prints_nothing_is_told_with_what_it_said(tmp_path, monke
     assert not (tmp_path / "page.pdf").exists()
 
 
-@pytest.mark.slow_start
 def test_a_browser_that_does_not_end_is_given_up(tmp_path, monkeypatch):
     page = a_browser(tmp_path, monkeypatch, "exec sleep 30")
     monkeypatch.setattr(printing, "PATIENCE", 0.2)

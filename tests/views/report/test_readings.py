@@ -1,12 +1,15 @@
 """Values at the angles of the page are the library's, in units that read well."""
 
+import warnings
+
 import numpy as np
 
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.results.extremes import FLOOR
 from kinetostatics.views.report.readings import decimals, readings
+from kinetostatics.views.report.subject import subject_of
 from support.every import every
-from support.reports import series, subject
+from support.reports import near_change_points, series, subject
 
 
 def of(case):
@@ -57,3 +60,11 @@ def test_forces_stand_before_motion_and_what_never_turns_is_left_out():
 )
 def test_decimals_give_the_largest_value_six_digits(largest, count):
     assert decimals(largest) == count
+
+
+def test_a_reaction_near_a_change_point_sets_neither_unit_nor_decimals_nor_scale():
+    with warnings.catch_warnings(action="ignore"):
+        found = readings(subject_of({"a": near_change_points()}).machines)
+    assert (found["O"]["unit"], found["O"]["factor"], found["O"]["decimals"]) == ("N", 1.0, 4)
+    assert 30.0 < found["O"]["sight"] < 300.0
+    assert found["balancing_torque"]["sight"] is None

@@ -12,6 +12,8 @@ from kinetostatics.views.report import sections
 from kinetostatics.views.report.subject import Subject, subject_of
 from support.reports import plain, subject, table_of
 
+pytestmark = pytest.mark.slow
+
 RUBBING = partial(subject, "sawframe_2r63_friction", "cam-cosine")
 
 

@@ -57,11 +57,16 @@
     });
   }
 
+  // What grows without bound is left out, so that all else can be seen.
+  const inSight = ({ sight }, size) => sight === null || size <= sight;
+
   function chooseVector() {
     if (!model("hodograph")) return; // it is drawn as chosen
     const item = data.quantities[vector.value];
     data.counts.forEach((count, row) => {
-      const line = renderer("hodograph", `line ${row}`), parts = report.values(vector.value, row);
+      const line = renderer("hodograph", `line ${row}`), all = report.values(vector.value, row);
+      const seen = all && all[0].map((x, place) => inSight(item, Math.hypot(x, all[1][place])));
+      const parts = all && all.map((part) => part.map((value, place) => seen[place] ? value : NaN));
       line.data_source.data = parts
         ? { angle: closed(steps(count)), x: closed(parts[0]), y: closed(parts[1]), variant: named(row, count + 1) }
         : { angle: [], x: [], y: [], variant: [] };
@@ -77,7 +82,8 @@
     const item = data.quantities[other.value], angle = steps(Math.round(period / data.step) + 1);
     data.counts.forEach((count, row) => {
       const parts = report.values(other.value, row), source = renderer("explore", `line ${row}`).data_source;
-      const value = (place) => parts.length > 1 ? Math.hypot(parts[0][place], parts[1][place]) : parts[0][place];
+      const size = (place) => parts.length > 1 ? Math.hypot(parts[0][place], parts[1][place]) : parts[0][place];
+      const value = (place) => inSight(item, Math.abs(size(place))) ? size(place) : NaN;
       source.data = parts
         ? { angle, value: angle.map((_, place) => value(place % count)), variant: named(row, angle.length) }
         : { angle: [], value: [], variant: [] };

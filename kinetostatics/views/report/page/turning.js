@@ -27,6 +27,7 @@ window.report = (() => {
   function shown(value, decimals) {
     if (Number.isNaN(value)) return "";
     if (!Number.isFinite(value)) return value > 0 ? "∞" : "-∞";
+    if (Math.abs(value) >= 1e9) return value.toExponential(5);
     const text = value.toFixed(decimals);
     return Number(text) === 0 ? (0).toFixed(decimals) : text;
   }

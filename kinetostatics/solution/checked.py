@@ -1,0 +1,16 @@
+"""What is looked at before a solution is handed out: whether it closes, whether friction jams, whether loads apply."""
+
+from ..machine.loads import refusals
+from ..mechanics import contact, jamming
+from ..numbers import checks
+
+
+def checked(solution, on_gap="raise"):
+    """The solution, its friction found, if nothing stands against it; `on_gap` as for `solve`."""
+    (solution.check if on_gap == "raise" else solution.warn)()
+    if solution.friction.acting:
+        checks.require("solve", jamming.standing(solution))
+        solution = jamming.settled(solution)
+        jamming.check(solution, on_gap)
+    checks.require("solve", *refusals(solution), *(contact.refusals(solution) if on_gap == "raise" else ()))
+    return solution

@@ -1,0 +1,286 @@
+"""Motion of a mechanism in symbols, made of what its groups declare: closed forms of loops, and their derivatives.
+
+The crank angle is the only coordinate. Angles of links and travels of sliders are functions of it: closed forms where
+the loop of a group is met by one angle, one travel, or two angles; rates and accelerations come of its derivatives.
+"""
+
+from typing import Any
+
+import sympy as sp
+from sympy.physics.mechanics import ReferenceFrame
+
+from ...machine.group import FRAME
+from .kane_cams import CURVES
+from .kane_symbols import ALPHA, ANGLE, OMEGA, PHI, SPEED, N, functions, left, linear, rate, slope
+from .method import NotGivenError
+
+
+class Body:
+    """A link: reference joint, direction, its turning by the crank angle, and auxiliary speeds of both.
+
+    `ways` are the directions along which it is parted from its neighbours.
+    """
+
+    def __init__(self, joint, frame, axis, turning, ways):
+        self.joint, self.frame, self.axis, self.turning, self.ways = joint, frame, axis, turning, ways
+        self.shift, self.spin = 0 * N.x, 0
+
+    def at(self, position):
+        """Auxiliary velocity of its point at a position."""
+        return self.shift + self.spin * left(position - self.joint)
+
+
+class Motion:
+    """Motion of one structure of mechanism.
+
+    Attributes
+    ----------
+    steps : dict of Symbol to expression
+        What results are computed from; a step may use others, in any order.
+    motions : dict of str to tuple of expressions
+        Results by name, in components.
+    symbols : dict of expression to Symbol
+        What stands for time and crank angle, functions of them and their derivatives in steps and results.
+    sides : dict of str to link
+        Signs of roots, which belong to the assembly, and the links whose angles they choose. Of the two results of that
+        name and the link's direction, a sin(theta) - b cos(theta) has the sign.
+    """
+
+    def __init__(self, structure):
+        self.structure = structure
+        self.steps, self.motions = {}, {}
+        self.sides: dict[str, str] = {}
+        self.symbols = {SPEED.diff(): ALPHA, SPEED: OMEGA, PHI.diff(): OMEGA, PHI: ANGLE}
+        self.places: dict[str, Any] = {}
+        self.bodies: dict[str, Body] = {FRAME: Body(0 * N.x, N, N.x, 0, (N.x, N.y))}
+        self.owners = dict(item for part in structure.parts for item in part.joints)
+        self.bars = {(end, link): link for part in structure.parts for _, end, link in part.bars}
+        self.slid = {item.link: item for part in structure.parts for item in part.slid}
+        self.led = {cam.link: cam for part in structure.parts for cam in part.cams}
+        self.angles: dict[str, Any] = {}
+        self.rays: dict[Any, Any] = {}
+        self.travels: dict[str, Any] = {}
+        for part in structure.parts:
+            self._assemble(part)
+        self._report()
+
+    def number(self, name):
+        """Symbol of a length or angle; those that are zero are left out."""
+        return sp.S.Zero if name in self.structure.zeros else sp.Symbol(name)
+
+    # Where everything is
+
+    def _assemble(self, part):
+        for link, _ in part.links:
+            self._point(link)
+        for joint, _ in part.joints:
+            self._place(joint)
+        for link, joint in part.links:
+            self.bodies[link].joint = self._place(joint)
+        loops = [gap for item in part.pinned if (gap := self._gap(item)) != 0]
+        lines = [gap for item in part.slid if (gap := self._off(item)) is not None]
+        self._close(part, loops, lines)
+
+    def _point(self, link):
+        """Direction of a link: of the crank, of what it slides along, or unknown."""
+        if link in self.bodies:
+            return self.bodies[link]
+        ways: Any = (N.x, N.y)
+        if link == "crank":
+            frame, turning = self._frame(link, PHI), sp.S.One
+        elif link in self.slid:
+            frame, turning = self._slot(self.slid[link])
+            if self.slid[link].other == FRAME:
+                ways = frame.x, frame.y
+        else:
+            (theta,) = functions(f"theta_{link}")
+            self.angles[link] = theta
+            frame, turning = self._frame(link, theta), slope(theta)
+            self.rays[theta] = frame.x
+        axis = -frame.x if link in self.slid and self.slid[link].rod else frame.x
+        self.bodies[link] = Body(None, frame, axis, turning, ways)
+        return self.bodies[link]
+
+    def _frame(self, name, angle, base=N, turning=None):
+        frame = ReferenceFrame(name)
+        frame.orient_axis(base, base.z, angle)
+        frame.set_ang_vel(base, (slope(angle) if turning is None else turning) * PHI.diff() * N.z)
+        return frame
+
+    def _slot(self, item):
+        """Frame along which a link slides, and its turning."""
+        if item.other == FRAME:
+            return self._frame(f"{item.link} guide", sp.Symbol(f"{item.link}_guide_angle"), turning=0), sp.S.Zero
+        body = self._point(item.other)
+        angle = self.number(f"{item.other}_{item.joint}_angle")
+        return (self._frame(f"{item.link} slot", angle, body.frame, 0) if angle else body.frame), body.turning
+
+    def _foot(self, item):
+        """Point of the line of a pair that is nearest to the reference joint of what is slid on, or to O."""
+        frame = self.bodies[item.link].frame
+        if item.other == FRAME:
+            return sp.Symbol(f"{item.link}_guide_offset") * frame.y
+        return self.bodies[item.other].joint + self.number(f"{item.other}_{item.joint}_offset") * frame.y
+
+    def _place(self, joint):
+        """Position of a joint."""
+        if joint not in self.places:
+            link = self.owners[joint]
+            body = self.bodies[link]
+            if body.joint is not None:
+                along, across = (self.number(f"{joint}_{part}") for part in ("along", "across"))
+                position = body.joint + along * body.axis + across * left(body.axis)
+                self.places[joint] = position.express(N) if link == "crank" else position
+            elif link in self.slid and self.slid[link].joint == joint:
+                (travel,) = functions(f"travel_{link}")
+                self.travels[link] = travel
+                self.places[joint] = self._foot(self.slid[link]) + travel * body.frame.x
+            else:
+                reference = next(name for part in self.structure.parts for of, name in part.links if of == link)
+                if reference == joint:
+                    raise NotGivenError(f"nothing that is declared says where joint {joint} of the {link} is")
+                body.joint = self._place(reference)
+                return self._place(joint)
+        return self.places[joint]
+
+    def _on(self, link, joint):
+        """Position of a joint as that of a point of a link."""
+        if self.owners[joint] == link or link == FRAME or (joint, link) not in self.bars:
+            return self.places[joint]
+        body = self.bodies[link]
+        return body.joint + self.number(f"{link}_length") * body.axis
+
+    def _gap(self, item):
+        """From where one link of a joint has it to where the other has it."""
+        return self._on(item.link, item.joint) - self._on(item.other, item.joint)
+
+    def _off(self, item):
+        """How far a joint is off the line that it slides along; None where it was placed on that."""
+        if item.link in self.travels:
+            return None
+        body = self.bodies[item.link]
+        return (self.places[item.joint] - self._foot(item)) & body.frame.y
+
+    # Loops
+
+    def _close(self, part, loops, lines):
+        """Closed forms of the unknown functions of a group from its loops, and their derivatives."""
+        links = [link for link, _ in part.links]
+        for link in links:
+            if link in self.led:
+                self._lead(self.led[link])
+        angles = [self.angles[link] for link in links if link in self.angles and link not in self.led]
+        travels = [link for link in links if link in self.travels and link not in self.led]
+        shape = len(angles), len(travels), len(loops), len(lines)
+        if shape == (0, 0, 0, 0):
+            return
+        if shape == (1, 1, 1, 0):
+            (gap,), (link,) = loops, travels
+            frame = self.bodies[link].frame
+            self._turn(angles[0], gap & frame.y)
+            self._travel(link, gap & frame.x)
+        elif shape == (2, 0, 1, 0):
+            self._triangle(*angles, *loops)
+        elif shape == (1, 0, 0, 1):
+            self._turn(*angles, *lines)
+        elif shape == (0, 1, 0, 1):
+            self._travel(*travels, *lines)
+        else:
+            raise NotGivenError(f"the loops of {part.kind} have no closed form that is known")
+
+    def _lead(self, cam):
+        """Function that a cam gives."""
+        curve, prefix = CURVES[cam.curve], f"{cam.link}_cam"
+        if cam.link in self.travels:
+            curve(self, self.travels[cam.link], prefix, cam.terms)
+            return
+        theta, (law,) = self.angles[cam.link], functions(f"law_{cam.link}")
+        curve(self, law, prefix, cam.terms)
+        start, sense = sp.symbols([f"{cam.link}_from", f"{cam.link}_sense"])
+        self._turned(theta, sp.cos(start + sense * law), sp.sin(start + sense * law))
+        self.derivatives(theta, sense * slope(law), sense * slope(law, 2))
+
+    def _turned(self, theta, cosine, sine):
+        for function, value in ((sp.cos, cosine), (sp.sin, sine)):
+            self.symbols[function(theta)] = symbol = sp.Symbol(f"{function}_{theta.func}")
+            self.steps[symbol] = value
+
+    def _turn(self, theta, gap):
+        """Angle that meets an equation linear in its cosine and sine."""
+        self._meet(theta, gap)
+        for order in (1, 2):
+            self._derivative(theta, slope(gap, order), order)
+
+    def _meet(self, theta, gap):
+        a, b, rest = linear(gap, sp.cos(theta), sp.sin(theta))
+        square = a**2 + b**2
+        square = square if square.has(PHI) else sp.trigsimp(square)
+        side, off = sp.Symbol(f"side_{theta.func}"), sp.Symbol(f"off_{theta.func}")
+        self.steps[off], rest = rest, off
+        root = side * sp.sqrt(square - rest**2)
+        self.sides[str(side)] = next(link for link, angle in self.angles.items() if angle == theta)
+        self.motions[str(side)] = (a, b)
+        self._turned(theta, (-rest * a - root * b) / square, (-rest * b + root * a) / square)
+
+    def _triangle(self, theta, psi, gap):
+        """Two angles that close a triangle: gap = d + p e(theta) + q e(psi) = 0."""
+        turned = [turn(angle) for angle in (theta, psi) for turn in (sp.cos, sp.sin)]
+        (p, aside, q, askew, x), (*_, y) = (linear(gap & way, *turned) for way in (N.x, N.y))
+        if aside != 0 or askew != 0:
+            raise NotGivenError("links of a loop of two angles must have their joints on their lines")
+        self._meet(theta, x * sp.cos(theta) + y * sp.sin(theta) + (x**2 + y**2 + p**2 - q**2) / (2 * p))
+        self._turned(psi, -(x + p * sp.cos(theta)) / q, -(y + p * sp.sin(theta)) / q)
+        moving = gap
+        for order in (1, 2):
+            moving = rate(moving)
+            for angle, other in ((theta, psi), (psi, theta)):
+                self._derivative(angle, moving & self.rays[other], order)
+
+    def _travel(self, link, gap):
+        """Travel that meets a linear equation."""
+        travel = self.travels[link]
+        steepness, rest = linear(gap, travel)
+        self.symbols[travel] = symbol = sp.Symbol(f"{travel.func}_0")
+        self.steps[symbol] = -rest / steepness
+        for order in (1, 2):
+            self._derivative(travel, slope(gap, order), order)
+
+    def _derivative(self, function, equation, order):
+        """Derivative of a function from an equation's derivative, which is linear in it."""
+        steepness, rest = linear(equation, slope(function, order))
+        self._name(function, order, -rest / steepness)
+
+    def _name(self, function, order, value):
+        self.symbols[slope(function, order)] = symbol = sp.Symbol(f"{function.func}_{order}")
+        self.steps[symbol] = value
+
+    def derivatives(self, function, first, second):
+        """Give both derivatives of a function."""
+        self._name(function, 1, first)
+        self._name(function, 2, second)
+
+    def define(self, function, value, first=None):
+        """Give a function of the crank angle by its value and, if that is shorter, its derivative."""
+        self.symbols[function] = symbol = sp.Symbol(f"{function.func}_0")
+        self.steps[symbol] = value
+        first = slope(value) if first is None else first
+        self.derivatives(function, first, slope(first))
+
+    # Results of motion
+
+    def _report(self):
+        for link, body in self.bodies.items():
+            if link == FRAME:
+                continue
+            turning = body.turning
+            self.motions[f"{link}_rate"] = (OMEGA * turning,)
+            self.motions[f"{link}_angular_acceleration"] = (OMEGA**2 * slope(turning) + ALPHA * turning,)
+            moving = OMEGA * rate(body.joint)
+            parts = [vector & way for vector in (body.joint, body.axis, moving) for way in (N.x, N.y)]
+            self.motions[f"{link} in motion"] = (*parts, OMEGA * turning)
+        for link, item in self.slid.items():
+            if item.other == FRAME:
+                travel = self.travels[link]
+                self.motions[f"{link}_position"] = (travel,)
+                self.motions[f"{link}_velocity"] = (OMEGA * slope(travel),)
+                self.motions[f"{link}_acceleration"] = (OMEGA**2 * slope(travel, 2) + ALPHA * slope(travel),)

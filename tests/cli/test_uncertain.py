@@ -1,0 +1,68 @@
+"""The option that tells how sure the largest values are."""
+
+import json
+
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.cli import main, uncertain
+from support.every import every
+
+CASE = "sawframe_2r63"
+SAW = ks.load_case(CASE)
+PLAIN = ["run", CASE, "--variant", "plain", "--angles", "36", "--uncertain", "crank_length=0.01 mm"]
+
+
+def test_sizes_have_units_and_go_to_the_variants_that_have_the_number():
+    found = uncertain.inputs(SAW, ["plain", "cam-cosine"], ["crank_length=0.01 mm", "slider.mass = 2 kg"])
+    wanted = {"crank_length": pytest.approx(1e-5), "slider.mass": 2.0}
+    assert found == {"plain": wanted, "cam-cosine": {"slider.mass": 2.0}}
+
+
+def test_tolerances_of_the_case_are_standard_deviations_in_si_and_a_size_told_goes_before_them():
+    found = uncertain.inputs(SAW, ["cam-circle"], ["tolerances", "slider.mass=2 kg"])["cam-circle"]
+    assert found["spring.stiffness"] == pytest.approx(7e3)
+    assert found["block.mass"] == pytest.approx(20.0 / 12.0**0.5)  # uniform
+    assert found["slider.mass"] == 2.0
+    assert set(found) == set(SAW.tolerances)
+
+
+@every(("texts", "message"), [
+    (["foo"], "cannot read 'foo'; write path=size"), (["=1 mm"], "parameter is ''"), (["crank_length="], "unit"),
+    (["crank_lenth=1 mm"], "did you mean 'crank_length'"), (["crank_length=0.1"], "has no unit"),
+    (["slider.mass=1 m"], "does not measure the same"), (["crank_length=-1 mm"], "must not be negative"),
+    (["crank_lenth=1 mm", "slider.mass=1 m"], "crank_lenth.*slider.mass"),
+    (["slider.mass=1 kg", "slider.mass=2 kg"], "slider.mass is given more than once"),
+])  # fmt: skip
+def test_what_is_no_uncertainty_is_refused_all_at_once(texts, message):
+    with pytest.raises(ks.ParameterError, match=message):
+        uncertain.inputs(SAW, ["plain"], texts)
+
+
+def test_a_case_without_tolerances_says_so():
+    with pytest.raises(ks.ParameterError, match=r"toggle_press.toml has no \[tolerances\]"):
+        uncertain.inputs(ks.load_case("toggle_press"), ["idle"], ["tolerances"])
+
+
+def test_run_tells_values_with_uncertainty_and_what_makes_it(monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "130")
+    assert main(PLAIN) == 0
+    line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("balancing") and "+-" in line)
+    assert line.split()[4:] == ["40578.9", "+-", "2.9", "39.289", "2.9", "1e-10", "crank_length", "100"]
+
+
+def test_a_number_of_no_variant_is_refused_and_one_of_another_variant_said(capsys):
+    assert main([*PLAIN[:2], "--variant", "cam-cosine", "--uncertain", "crank_length=1 mm"]) == 2
+    assert "did you mean" in capsys.readouterr().err
+    assert main([*PLAIN[:2], "--angles", "36", "--uncertain", "cam.radius=1 mm"]) == 0
+    assert capsys.readouterr().out.count("none of the uncertain numbers is one of this variant") == 2
+
+
+def test_json_has_all_digits(capsys):
+    assert main([*PLAIN, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["variants"]["plain"]["uncertainty"]
+    assert told["inputs"] == {"crank_length": pytest.approx(1e-5)}
+    solution = SAW.solve("plain", 36)
+    found = ks.extremes(solution, "O")
+    wanted = solution.at(found.angle[found.value.argmax()]).uncertainty("|O|", told["inputs"])
+    assert told["largest"]["reaction O"]["tolerance"] == pytest.approx(float(wanted.tolerance), rel=1e-12)

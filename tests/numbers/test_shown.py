@@ -1,0 +1,42 @@
+"""Numbers as people read them: no digit that is not known."""
+
+import math
+
+import pytest
+
+from kinetostatics.numbers.shown import at_most, number
+from support.every import every
+
+
+@every("value, digits, text", [
+    (40578.94111, 6, "40578.9"), (286771.9, 5, "286770"), (1234567.8, 6, "1234568"), (-2.5e8, 6, "-250000000"),
+    (1234567890123.0, 6, "1.23457e+12"), (1e9, 6, "1e+09"), (-0.0, 6, "0"), (0.1 + 0.2, 6, "0.3"), (1e-9, 6, "1e-09"),
+    (2.1e-16, 2, "2.1e-16"), (math.nan, 6, ""), (math.inf, 6, "inf"), (-math.inf, 6, "-inf"), ("words", 6, "words"),
+    (123.456, 0, "100"), (123.456, 15, "123.456"), (5, 6, "5"), (True, 6, "1"),
+])  # fmt: skip
+def test_a_number_has_at_most_six_digits_and_no_power_of_ten_where_none_is_needed(value, digits, text):
+    assert number(value, digits) == text
+
+
+@every("value, bound, text", [
+    (40578.93, 3.0, "40579"), (40578.93, 0.02, "40578.9"), (40578.93, 30.0, "40580"), (40578.93, 300.0, "40600"),
+    (40578.93, 9.99, "40579"), (40578.93, 40578.0, "40000"), (40578.93, 40579.0, "0"), (-1.5e-10, 1.5e-10, "0"),
+    (1.6e-10, 1.5e-10, "2e-10"), (1.23456789, 1e-3, "1.235"), (-9.9996, 1e-3, "-10"), (1234567.8, 3.0, "1234568"),
+    (1234567.8, 40.0, "1234570"), (1234567.8, 4e5, "1200000"), (3.0, math.inf, "3"), (3.0, math.nan, "3"),
+    (math.nan, 1.0, ""), (math.inf, 1.0, "inf"), (0.0, 1.0, "0"), (1e-300, 1e-305, "1e-300"),
+])  # fmt: skip
+def test_no_digit_is_shown_below_the_first_of_what_a_number_may_be_wrong_by(value, bound, text):
+    assert number(value, bound=bound) == text
+
+
+@pytest.mark.parametrize("power", [-300, -12, -3, 0, 4, 8, 12, 300])
+def test_what_is_shown_is_never_off_by_more_than_half_the_place_of_the_bound_or_of_the_sixth_digit(power):
+    for share in (1.0, 0.3, 2e-2, 7e-4, 3e-6, 5e-9):
+        value = 1.7632549871 * 10.0**power
+        told = float(number(value, bound=share * value) or "0")
+        assert abs(told - value) <= max(share, 1e-5) * value
+
+
+@every("bound, text", [(1.23e-10, "1.3e-10"), (0.25, "0.25"), (0.2500001, "0.26"), (9.91, "10"), (0.0, "0")])
+def test_a_bound_is_never_told_smaller_than_it_is(bound, text):
+    assert at_most(bound) == text

@@ -1,0 +1,212 @@
+"""Curves over the crank angle, hodographs and drawings: on the axes given, every axis named with its unit."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.animation import FuncAnimation, PillowWriter
+
+import kinetostatics as ks
+from kinetostatics.casefile.starters import starter
+from kinetostatics.views import figures
+
+PLOTS = {
+    "torque": ks.plots.torque,
+    "cam_force": ks.plots.cam_force,
+    "pressure_angle": ks.plots.pressure_angle,
+    "acceleration_error": ks.plots.acceleration_error,
+    "hodograph": ks.plots.hodograph,
+    "shaking": lambda s, ax: ks.plots.hodograph(s, "shaking_force", ax=ax),
+    "mechanism": ks.plots.mechanism,
+}
+
+
+@pytest.fixture(scope="module")
+def saw():
+    case = ks.load_case("sawframe_2r63")
+    return {name: case.solve(name, angles=360) for name in case.variants}
+
+
+@pytest.fixture
+def axes():
+    figure, ax = plt.subplots()
+    yield ax
+    plt.close(figure)
+
+
+@pytest.mark.parametrize("name", PLOTS)
+def test_plot_returns_the_axes_given_with_units_on_both(name, saw, axes):
+    open_figures = plt.get_fignums()
+    assert PLOTS[name](saw["cam-circle"], ax=axes) is axes
+    assert plt.get_fignums() == open_figures
+    assert all("[" in label for label in (axes.get_xlabel(), axes.get_ylabel()))
+    axes.figure.canvas.draw()
+
+
+def test_torque_curves_hold_the_numbers_of_the_solutions(saw, axes):
+    ks.plots.torque({name: saw[name] for name in ("plain", "cam-cosine")}, ax=axes)
+    curves = {line.get_label(): line.get_ydata() for line in axes.lines if not line.get_label().startswith("_")}
+    assert axes.get_ylabel() == "balancing torque [kN m]"
+    for name, curve in curves.items():
+        np.testing.assert_allclose(1000 * curve, saw[name].balancing_torque)
+    assert len(curves) == 2
+
+
+def test_acceleration_error_is_nil_for_the_exact_law_and_2_percent_for_the_circle(saw, axes):
+    ks.plots.acceleration_error({name: saw[name] for name in ("cam-cosine", "cam-circle")}, ax=axes)
+    exact, circle = (np.abs(line.get_ydata()).max() for line in axes.lines[:2])
+    assert exact < 1e-11
+    assert 2.0 < circle < 2.2
+
+
+def test_hodograph_has_equal_scales_is_closed_and_marks_the_crank_angle(saw, axes):
+    ks.plots.hodograph(saw["plain"], "O", ax=axes, marks=90)
+    x, _ = axes.lines[0].get_data()
+    assert axes.get_aspect() == 1
+    assert x[0] == x[-1]
+    assert np.max(np.abs(x)) == pytest.approx(286.77, abs=0.01)
+    assert {text.get_text() for text in axes.texts} == {"0°", "90°", "180°", "270°"}
+
+
+def test_mechanism_is_drawn_where_the_solution_puts_it(saw, axes):
+    ks.plots.mechanism(saw["plain"], angles=(30,), ax=axes)
+    ends = saw["plain"].at(np.radians([30.0])).position("B")
+    assert any(np.allclose(line.get_xydata()[-1], ends[:, 0]) for line in axes.lines if len(line.get_xdata()) == 2)
+
+
+@pytest.mark.slow
+def test_animation_moves_bars_and_force_arrows_and_saves_as_gif(saw, axes, tmp_path):
+    film = ks.plots.animation(saw["cam-circle"], joints=("O", "A", "guide"), frames=4, ax=axes)
+    assert isinstance(film, FuncAnimation)
+    film.save(tmp_path / "saw.gif", writer=PillowWriter(fps=10))
+    assert (tmp_path / "saw.gif").read_bytes().startswith(b"GIF8")
+
+
+def test_a_quantity_the_mechanism_lacks_is_refused_by_name(saw, axes):
+    with pytest.raises(ks.QuantityError, match="cam_force"):
+        ks.plots.cam_force(saw["plain"], ax=axes)
+
+
+def test_hodograph_marks_stand_at_the_reactions_of_their_crank_angles(saw, axes):
+    ks.plots.hodograph(saw["plain"], "O", ax=axes, marks=90)
+    marks = np.array(axes.lines[1].get_data())
+    expected = saw["plain"].at(np.radians([0, 90, 180, 270])).reaction("O") / 1000
+    np.testing.assert_allclose(marks, expected, rtol=1e-12)
+
+
+def test_pressure_angle_is_drawn_in_degrees(saw, axes):
+    ks.plots.pressure_angle(saw["cam-circle"], ax=axes)
+    np.testing.assert_allclose(axes.lines[0].get_ydata(), np.degrees(saw["cam-circle"].pressure_angle))
+    assert "[deg]" in axes.get_ylabel()
+
+
+def test_slotted_crank_is_drawn_from_its_pivot_through_the_block(saw, axes):
+    ks.plots.mechanism(saw["cam-circle"], angles=(50,), ax=axes)
+    pin = saw["cam-circle"].at(np.radians([50.0])).position("A")[:, 0]
+    crank = next(
+        line.get_xydata() for line in axes.lines if np.allclose(line.get_xydata()[0], 0) and len(line.get_xdata()) == 2
+    )
+    assert np.allclose(crank[1] / np.hypot(*crank[1]), pin / np.hypot(*pin))
+    assert np.hypot(*crank[1]) > np.hypot(*pin)
+
+
+def test_force_arrows_start_at_their_joints_and_point_along_the_reactions(saw, axes):
+    film = ks.plots.animation(saw["plain"], joints=("A", "guide"), frames=4, ax=axes)
+    film._draw_frame(90)  # drawing one pose is what saving does for each
+    arrows = next(item for item in axes.collections if hasattr(item, "U"))
+    pose = saw["plain"]
+    np.testing.assert_allclose(arrows.get_offsets(), [pose.position("A")[:, 90], pose.position("B")[:, 90]])
+    np.testing.assert_allclose(np.array([arrows.U, arrows.V]).T, [pose.reaction(j)[:, 90] for j in ("A", "guide")])
+    film._draw_was_started = True
+
+
+def test_acceleration_error_of_an_inclined_cosine_law_is_nil(axes):
+    law = ks.cams.CosineLaw(0.3, 2.0, 0.5)
+    turn = np.linspace(0, 2 * np.pi, 90)
+    machine = ks.cam_crank_slider(law, law.coupler_length, guide_angle=0.5)
+    ks.plots.acceleration_error(ks.solve(machine, turn, crank_speed=9.0, crank_acceleration=20.0), ax=axes)
+    assert np.max(np.abs(axes.lines[0].get_ydata())) < 1e-11
+
+
+def test_a_table_of_forces_does_not_hinder_drawing_the_mechanism(axes):
+    turn = np.linspace(0, 2 * np.pi, 36, endpoint=False)
+    machine = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
+    solution = ks.solve(machine, turn, crank_speed=9.0, loads=[ks.ProcessForce(np.sin(turn))])
+    ks.plots.mechanism(solution, ax=axes)
+    ks.plots.hodograph(solution, ax=axes)
+
+
+def test_a_batch_is_refused_with_its_shape(axes):
+    batch = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), [0.0, 1.0], crank_speed=1.0)
+    with pytest.raises(ks.ParameterError, match=r"shape \(2, 2\)"):
+        ks.plots.torque(batch, ax=axes)
+
+
+def test_hodograph_marks_that_fall_together_share_a_short_label(axes):
+    def press(motion):
+        return np.where(np.abs(np.degrees(motion.crank_angle) - 170) < 10.1, 40e3, 0.0)
+
+    solution = ks.solve(
+        ks.crank_slider(0.08, 0.4, slider=ks.Link(25)),
+        np.radians(np.arange(360)),
+        crank_speed=4 * np.pi,
+        loads=ks.ProcessForce(press),
+    )
+    ks.plots.hodograph(solution, "O", ax=axes)
+    assert {text.get_text() for text in axes.texts} == {"0°, 30° … 330°", "180°"}
+
+
+@pytest.mark.parametrize(("turns", "ticks"), [(1, [0, 90, 180, 270, 360]), (2, [0, 180, 360, 540, 720])])
+def test_curves_over_the_crank_angle_have_the_limits_of_the_period_and_ticks_at_its_quarters(axes, turns, ticks):
+    load = ks.ProcessForce(-100.0, period=2 * np.pi * turns)
+    machine = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
+    ks.plots.torque(ks.Scene(machine, 10.0, loads=load).solve(48 * turns), ax=axes)
+    assert list(axes.get_xticks()) == ticks
+    assert axes.get_xlim() == (0, ticks[-1])
+
+
+@pytest.mark.parametrize(("case", "relative"), [("chain_unit", True), ("four-bar", False)])
+def test_only_a_chain_unit_has_figures_of_its_study(tmp_path, monkeypatch, case, relative):
+    monkeypatch.setitem(figures.FIGURES, "overview", (None, lambda case: False))
+    if case == "four-bar":
+        path = tmp_path / "bars.toml"
+        path.write_text(starter("four-bar", "bars"))
+        case = path
+    drawn = {name for name, (_, applies) in figures.FIGURES.items() if applies(ks.load_case(case))}
+    assert ("rocker_velocity" in drawn) == relative
+    assert "mechanism" in drawn
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.5707963267948966])
+def test_mechanisms_fill_most_of_their_panels_in_one_direction_wide_or_tall(angle):
+    machine = ks.crank_slider(0.1, 0.4, guide_angle=angle, slider=ks.Link(1.0))
+    solution = ks.Scene(machine, 10.0).solve(24)
+    for figure, axes in (
+        (figures._overview({"a": solution, "b": solution}), 0),
+        (figures._mechanisms({"a": solution, "b": solution}), 0),
+    ):
+        figure.canvas.draw()
+        ax = figure.axes[axes]
+        shares = [
+            np.ptp(data) / np.ptp(seen)
+            for data, seen in ((ax.dataLim.intervalx, ax.get_xlim()), (ax.dataLim.intervaly, ax.get_ylim()))
+        ]
+        plt.close(figure)
+        assert min(shares) > 0.6
+
+
+SHAPES = {
+    "tall": ks.crank_slider(0.1, 0.4, guide_angle=1.57),
+    "square": ks.four_bar(0.1, 0.3, 0.3, rocker_pivot=(0.3, 0.1), coupler=ks.Link(1.0)),
+    "wide": ks.crank_slider(0.1, 0.5),
+}
+
+
+@pytest.mark.parametrize("variants", [1, 2, 3])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_an_overview_has_mechanism_torque_and_hodographs_whatever_the_proportions(shape, variants):
+    solution = ks.Scene(SHAPES[shape], 10.0, loads=ks.Gravity()).solve(24)
+    figure = figures._overview({str(number): solution for number in range(variants)})
+    plt.close(figure)
+    titles = [ax.get_title() for ax in figure.axes]
+    assert len(titles) == 2 + min(variants, 2)
+    assert titles[1] == "torque the drive must give"
