@@ -12,9 +12,8 @@ from .peaks import INNER, REACH, THROUGH, TINY
 from .reductions import MEAN, PEAK
 from .turn import NEAR
 
-KINDS = tuple(
-    ["largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range", "mean", "mean_absolute", "rms"]
-)
+EXTREMES = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
+KINDS = (*EXTREMES, "mean", "mean_absolute", "rms")
 """Reductions that are there, by their number; harmonics and the swing are not."""
 
 
