@@ -41,8 +41,12 @@ def interpreted(monkeypatch):
 
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function
+    numba.types = None
     numba.__spec__ = ModuleSpec("numba", None)
+    numba.extending = ModuleType("numba.extending")
+    numba.extending.intrinsic = lambda function: lambda one, other, more: one * other + more  # there is one: fma
     monkeypatch.setitem(sys.modules, "numba", numba)
+    monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
     loaded = cache(machine_code.load)
     for module in (compiled, loops, programs, split):
         monkeypatch.setattr(module, "_loaded", loaded)

@@ -105,6 +105,11 @@ class Program:
         """The compiled loop; see `writing.loop`."""
         return _loaded(writing.loop(self.outputs)).loop
 
+    @cached_property
+    def _short_loop(self):
+        """One with every operation rounded, as plain numbers have it."""
+        return _loaded(writing.loop(self.outputs, fuse=False)).loop
+
     def rows(self, state, leaves):
         """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand; those needed."""
         rows: list[Any] = []
@@ -174,13 +179,13 @@ class Program:
 
     def _by_short_loop(self, angle, numbers, shape):
         """The same by the loop, with the sines that plain numbers have."""
-        return self._of_one_design(angle, numbers, shape, lambda angle: (np.sin(angle), np.cos(angle)))
+        return self._of_one_design(self._short_loop, angle, numbers, shape, _sines)
 
-    def _of_one_design(self, angle, numbers, shape, turn):
+    def _of_one_design(self, loop, angle, numbers, shape, turn):
         angle, results = np.ascontiguousarray(angle.reshape(1, -1)), np.empty((1, len(self.outputs), angle.size))
         parameters = loops.table_of_parameters(_plain_numbers(numbers), ())
         sine, cosine = turn(angle)
-        loops.run(self.loop, angle, sine, cosine, parameters, loops.NO_ROWS, results)
+        loops.run(loop, angle, sine, cosine, parameters, loops.NO_ROWS, results)
         return results.reshape(-1, *shape)
 
     def _by_numbers(self, angle, numbers, shape):
@@ -196,7 +201,7 @@ class Program:
     def by_loop(self, angle, numbers, rows, shape):
         """The same by the compiled loop."""
         if len(shape) == 1 and not rows:
-            return self._of_one_design(angle, numbers, shape, loops.turn)
+            return self._of_one_design(self.loop, angle, numbers, shape, loops.turn)
         parameters = loops.table_of_parameters(numbers, shape[:-1])
         designs = len(parameters)
         own = math.prod(angle.shape[:-1]) > 1
@@ -252,9 +257,11 @@ def _plain_numbers(numbers):
     return [number.item() if type(number) is np.ndarray else number for number in numbers]
 
 
-@kept_for_same_angles
-def _turn(angle):
+def _sines(angle):
     return np.sin(angle), np.cos(angle)
+
+
+_turn = kept_for_same_angles(_sines)
 
 
 def made(source, scope):

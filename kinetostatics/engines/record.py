@@ -25,7 +25,7 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from ..numbers.planar import plus
 from .bounds import Error
-from .trace import Graph, Node, needed, operations
+from .trace import Graph, LeanGraph, Node, needed, operations
 
 
 class Table(NamedTuple):
@@ -119,7 +119,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     way : function, optional
         Other way to the placement, as `Dynamics` takes it.
     """
-    recorder = Recorder(structure, way)
+    recorder = Recorder(structure, way, LeanGraph())
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -140,14 +140,14 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
 
 def recorded(structure):
     """The scene of a structure with a `Node` for each of its numbers."""
-    return Recorder(structure, None).recorded
+    return Recorder(structure).recorded
 
 
 class Recorder:
-    """Puts nodes in place of the numbers of a structure."""
+    """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given."""
 
-    def __init__(self, structure, way):
-        self.graph = Graph()
+    def __init__(self, structure, way=None, graph=None):
+        self.graph = Graph() if graph is None else graph
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
         self.inputs: dict[Node, Callable[[Any], Error]] = {}

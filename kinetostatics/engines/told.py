@@ -34,7 +34,7 @@ def told(state, paths, units):
         SI unit by path.
     """
     structure, _ = state.apart
-    recorder = Recorder(structure, None)
+    recorder = Recorder(structure)
     scene, names = recorder.recorded, Names(recorder.graph, _modules(state))
     names.title = GIVEN
     for place, node in enumerate(recorder.parameters):

@@ -141,6 +141,73 @@ class Graph(list):
         return Node(self, "table", (place,), BY_ANGLE)
 
 
+class LeanGraph(Graph):
+    """The same with fewer operations at each crank angle, and the same values but for rounding.
+
+    Quotients are products with reciprocals, which those by one divisor share and those by a design's number leave to
+    the design; products leave signs to sums, to the last bit. Each is decided where it is recorded, by what is there,
+    so that a number is computed in one way whatever else is wanted.
+    """
+
+    def node(self, operation, *arguments):
+        if operation == "/":
+            return self._quotient(*arguments)
+        if operation == "*":
+            left, right = arguments
+            if _is_negative(left):
+                return -self.node("*", left.arguments[0], right)
+            if _is_negative(right):
+                return -self.node("*", left, right.arguments[0])
+            for one, other in ((left, right), (right, left)):
+                if isinstance(one, Node) and one.operation == "*":
+                    first, second = one.arguments
+                    if _are_inverse(first, other):
+                        return second
+                    if _are_inverse(second, other):
+                        return first
+        return super().node(operation, *arguments)
+
+    def _quotient(self, above, below):
+        if BY_ANGLE in (_varies(above), _varies(below)) and not _is_number(below, 0.0):
+            return self.node("*", above, self._over(below))
+        return super().node("/", above, below)
+
+    def _over(self, part):
+        """One over a part; of what a design's number multiplies, that over the rest."""
+        if not isinstance(part, Node):
+            return 1.0 / part
+        arguments = part.arguments
+        if _is_negative(part):
+            return -self._over(arguments[0])
+        if part.operation == "/":
+            above, below = arguments
+            return below if _is_number(above, 1.0) else super().node("/", below, above)
+        if (
+            part.operation == "*"
+            and min(map(_varies, arguments)) < part.varies
+            and not any(_is_number(part, 0.0) for part in arguments)
+        ):
+            return self.node("*", *map(self._over, arguments))
+        return super().node("/", 1.0, part)
+
+
+def _varies(part):
+    return part.varies if isinstance(part, Node) else BY_DESIGN
+
+
+def _are_inverse(one, other):
+    return _is_over(one, other) or _is_over(other, one)
+
+
+def _is_over(part, other):
+    """Whether a part is one over a node."""
+    return isinstance(part, Node) and part.operation == "/" and part.arguments[1] is other and part.arguments[0] == 1.0
+
+
+def _is_number(part, number):
+    return not isinstance(part, Node) and part == number
+
+
 def _with_signs_taken_in(operation, *arguments):
     """The same sum or difference, to the last bit, without operations that only turn a sign."""
     *left, right = arguments

@@ -1,6 +1,7 @@
 """Source of programs from recorded arithmetic: a loop for numba, a line of arrays, a line of plain numbers."""
 
 from ..numbers.elementary import ROUNDING
+from .fusing import fused
 from .trace import BY_ANGLE, Node, needed
 
 ROWS_AT_ONCE = 12
@@ -40,7 +41,7 @@ def root(square, unit):
 
 @njit(**options)
 def divisor(root, unit):
-    return root if root != root else max(root, unit)
+    return unit if root < unit else root
 
 
 @njit("void({", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})", cache=KEEP, **options)
@@ -79,45 +80,46 @@ def total(one, two, three, four):
 """
 """What a loop with sums that lose nothing has besides."""
 
-FUSED = """from numba.core import types
-from numba.extending import intrinsic, overload
+FUSED = """from numba import types
+from numba.extending import intrinsic
 
 
 @intrinsic
-def fused(typing, one, other, more):
+def fma(typing, one, other, more):
     def written(context, builder, signature, arguments):
-        return builder.fma(*arguments)
+        from llvmlite.ir import FunctionType
+
+        kind = arguments[0].type
+        function = builder.module.declare_intrinsic("llvm.fmuladd", [kind], FunctionType(kind, [kind] * 3))
+        return builder.call(function, arguments)
 
     return types.float64(types.float64, types.float64, types.float64), written
 
 
-def fma(one, other, more):
-    return one * other + more
-
-
-@overload(fma)
-def compiled_fma(one, other, more):
-    return lambda one, other, more: fused(one, other, more)
-
-
 """
-"""What a loop with fused products and sums has before all else: only bounds do, whose last bit counts for nothing."""
+"""What a loop with fused products and sums has before all else; two operations where the processor has not the one."""
 
 
-def loop(outputs) -> str:
+def loop(outputs, fuse=True) -> str:
     """Source of a module with ``loop(angle, sine, cosine, parameters, tables, results)``.
 
     It takes angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
-    designs, N), and fills results (designs, outputs, N).
+    designs, N), and fills results (designs, outputs, N). Sums are fused with products, see `fusing`, unless told.
     """
-    nodes = needed(outputs)
-    fused = any(node.operation == "fma" for node in nodes)
-    header = LOOP_HEADER.replace("\n\n\n@", f"\n{FUSED}@", 1) if fused else LOOP_HEADER
+    nodes, sums = needed(outputs), {}
+    if fuse:
+        sums = fused(nodes)
+        nodes = _still_needed(nodes, outputs, sums)
+    header = LOOP_HEADER
+    if sums or any(node.operation == "fma" for node in nodes):
+        header = LOOP_HEADER.replace("\n\n\n@", f"\n{FUSED}@", 1)
     if any(node.operation == "total" for node in nodes):
         head, end = header.rsplit("@njit", 1)
         header = f"{head}{TOTAL}@njit{end}"
     by_design = [f"        {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
-    by_angle = [_defined(node) for node in nodes if _is_computed_by_angle(node)]
+    by_angle = [
+        _fused(node, sums[node]) if node in sums else _defined(node) for node in nodes if _is_computed_by_angle(node)
+    ]
     if len(outputs) <= ROWS_AT_ONCE:
         rows = [f"        row_{place} = results[design, {place}]" for place in range(len(outputs))]
         ends = [f"row_{place}[i] = {_name(part)}" for place, part in enumerate(outputs)]
@@ -127,6 +129,22 @@ def loop(outputs) -> str:
     memory = f"    block = empty({len(outputs) * AT_ONCE})"
     inner = [BLOCKS, *(f"                {each}" for each in by_angle + ends), SPREAD]
     return header + "\n".join([memory, LOOP, *by_design, *inner]) + "\n"
+
+
+def _still_needed(nodes, outputs, sums):
+    """Nodes without products that are in their sums only."""
+    wanted = {part for part in outputs if isinstance(part, Node)}
+    for node in reversed(nodes):
+        if node in wanted:
+            parts = (sums[node].one, sums[node].other, sums[node].rest) if node in sums else node.arguments
+            wanted.update(part for part in parts if isinstance(part, Node))
+    return [node for node in nodes if node in wanted]
+
+
+def _fused(node, parts):
+    one, other, rest = map(_name, (parts.one, parts.other, parts.rest))
+    signs = ["-" if sign < 0 else "" for sign in (parts.sign, parts.rest_sign)]
+    return f"v{node.index} = fma({signs[0]}{one}, {other}, {signs[1]}{rest})"
 
 
 def line(outputs, argument_names="angle, sine, cosine, parameters, tables") -> str:

@@ -12,48 +12,61 @@ from .peaks import INNER, REACH, THROUGH, TINY
 from .reductions import MEAN, PEAK
 from .turn import NEAR
 
-KINDS = (
-    "largest",
-    "largest_at",
-    "smallest",
-    "smallest_at",
-    "largest_absolute",
-    "range",
-    "mean",
-    "mean_absolute",
-    "rms",
-)
+EXTREMES = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
+KINDS = (*EXTREMES, "mean", "mean_absolute", "rms")
 """Reductions that are there, by their number; harmonics and the swing are not."""
 
 
-def _summing(name, term):
-    """Function that sums a term of every other value, and of those between.
+LANES = 64
+"""Sums that go side by side, in vectors: the order is written out, so that the compiler cannot choose another."""
 
-    Eight sums go side by side, in vectors, in an order that is written out: a compiler that may choose the order does
-    not choose the same each time.
-    """
-    lanes = range(8)
-    start = "\n    ".join(f"sum{k} = 0.0" for k in lanes)
-    add = "\n        ".join(f"value = rows[i, {k}]\n        sum{k} += {term}" for k in lanes)
-    even, odd = (" + ".join(f"sum{k}" for k in lanes[first::2]) for first in (0, 1))
+
+def _summing(name, term):
+    """Function that sums a term of every other value, and of those between."""
     return f"""
 @njit(**options)
-def {name}(values):
-    whole = values.size // 8
-    rows = values[: 8 * whole].reshape((whole, 8))
-    {start}
-    for i in range(whole):
-        {add}
-    even, odd = {even}, {odd}
-    for i in range(8 * whole, values.size):
-        value = values[i]
-        if i % 2 == 0:
-            even += {term}
-        else:
-            odd += {term}
-    return even, odd
+def {name}(values, sums):
+    lanes = sums.size
+    sums[:] = 0.0
+    for start in range(0, values.size, lanes):
+        for k in range(min(lanes, values.size - start)):
+            value = values[np.uint64(start + k)]
+            sums[k] += {term}
+    while lanes > 2:
+        lanes //= 2
+        for k in range(lanes):
+            sums[k] += sums[lanes + k]
+    return sums[0], sums[1]
 
 """
+
+
+CURVE, SERIES, SLOPE, CHANGE = (
+    [f"{name}{k}" for k in range(2 * REACH + 1 - less)]
+    for name, less in (("curve", 0), ("series", 0), ("slope", 1), ("change", 2))
+)
+"""Names of samples about a peak, of coefficients of the polynomial through them, of its slope, of its slope's slope."""
+
+
+def _lines(lines, indent=4):
+    return f"\n{' ' * indent}".join(lines)
+
+
+def _polynomial(series):
+    """Expression of a polynomial at `place`, from names or numbers of its coefficients."""
+    *others, value = series
+    for number in reversed(others):
+        value = f"({number} + {value} * place)"
+    return value
+
+
+def _through_samples():
+    """Lines that find the place of the top of the polynomial through samples, by two of Newton's steps."""
+    for name, row in zip(SERIES, THROUGH.tolist(), strict=True):
+        yield f"{name} = {' + '.join(f'{part!r} * {sample}' for part, sample in zip(row, CURVE, strict=True) if part)}"
+    for above, below in ((SERIES, SLOPE), (SLOPE, CHANGE)):
+        yield from (f"{name} = {above[k]} * {k}.0" for k, name in enumerate(below, 1))
+    yield from [f"place -= {_polynomial(SLOPE)} / {_polynomial(CHANGE)}"] * 2
 
 
 SOURCE = f'''"""Written by kinetostatics; may be deleted at any time."""
@@ -64,59 +77,43 @@ import numpy as np
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
-THROUGH = np.array({THROUGH.T.tolist()!r})
-INNER = np.array({INNER.coef.tolist()!r})
+ALL = np.uint64(0x0101010101010101)
 
 
 @njit(**options)
-def polyval(place, series):
-    value = series[series.size - 1]
-    for k in range(series.size - 2, -1, -1):
-        value = series[k] + value * place
-    return value
+def wrapped(values, i):
+    return values[i + values.size if i < 0 else i - values.size if i >= values.size else i]
 
 
 @njit(**options)
-def between(values, at, side, work):
+def through({", ".join(CURVE)}, place):
+    """Top of the polynomial through samples, where it is, and how much lower it is with two samples fewer."""
+    {_lines(_through_samples())}
+    top = {_polynomial(SERIES)}
+    return place, top, {_polynomial(INNER.coef.tolist())} * ({SERIES[-2]} + {SERIES[-1]} * place)
+
+
+@njit(**options)
+def between(values, at, side):
     """Height of a peak, how far from its highest sample, and about how much the height may be wrong."""
-    curve, series, slope, change = work[0], work[1], work[2, : {2 * REACH}], work[3, : {2 * REACH - 1}]
-    count = values.size
-    above, below = True, True
-    for k in range({2 * REACH + 1}):
-        j = at + k - {REACH}
-        j = j + count if j < 0 else j - count if j >= count else j
-        value = side * values[j]
-        curve[k] = value
-        above &= value >= 0.0
-        below &= value <= 0.0
+    {_lines(f"{name} = side * wrapped(values, at + {k - REACH})" for k, name in enumerate(CURVE))}
+    above = {" & ".join(f"({name} >= 0.0)" for name in CURVE)}
+    below = {" & ".join(f"({name} <= 0.0)" for name in CURVE)}
     sign = 1.0 if above else -1.0 if below else 0.0
     if sign != 0.0:
-        for k in range({2 * REACH + 1}):
-            curve[k] *= abs(curve[k])
-    before, here, after = curve[{REACH - 1}], curve[{REACH}], curve[{REACH + 1}]
+        {_lines((f"{name} *= abs({name})" for name in CURVE), 8)}
+    before, here, after = {CURVE[REACH - 1]}, {CURVE[REACH]}, {CURVE[REACH + 1]}
     bend = (after - here) - (here - before)
-    first = (here - before) - (before - curve[{REACH - 2}])
-    last = (curve[{REACH + 2}] - after) - (after - here)
+    first = (here - before) - (before - {CURVE[REACH - 2]})
+    last = ({CURVE[REACH + 2]} - after) - (after - here)
     shift, found, other = 0.0, here, here + abs(bend)
     if first < 0.0 and bend < 0.0 and last < 0.0:
         shift = 0.5 * (before - after) / bend
         found = here - 0.25 * (before - after) * shift
-        series[:] = 0.0
-        for j in range({2 * REACH + 1}):
-            for k in range({2 * REACH + 1}):
-                series[k] += THROUGH[j, k] * curve[j]
-        for k in range({2 * REACH}):
-            slope[k] = series[k + 1] * (k + 1.0)
-        for k in range({2 * REACH - 1}):
-            change[k] = slope[k + 1] * (k + 1.0)
-        place = shift
-        place = place - polyval(place, slope) / polyval(place, change)
-        place = place - polyval(place, slope) / polyval(place, change)
-        top = polyval(place, series)
+        place, top, less = through({", ".join(CURVE)}, shift)
         other = top
         if abs(top - found) < 0.05 * abs(bend) and abs(place) < 1.0:
-            found, shift = top, place
-            other = top - polyval(place, INNER) * (series[{2 * REACH - 1}] + series[{2 * REACH}] * place)
+            found, shift, other = top, place, top - less
     error = abs(found - other)
     if sign == 0.0:
         return found, shift, error
@@ -126,12 +123,11 @@ def between(values, at, side, work):
 
 @njit(**options)
 def marked(values, marks):
-    """Mark the samples where values turn, or are none."""
+    """Mark the samples where values turn, or are none, which no comparison holds for."""
     count = values.size
     for i in range(1, count - 1):
         before, here, after = values[i - 1], values[i], values[i + 1]
-        turning = ((here > before) != (after > here)) | ((here < before) != (after < here)) | (here != here)
-        marks[i] = turning
+        marks[i] = ((here > before) == (after <= here)) | ((here < before) == (after >= here))
     for i in (0, count - 1):
         marks[i] = True
 
@@ -166,25 +162,26 @@ def turned(values, marks, words, places):
 
 
 @njit(**options)
-def peak(values, side, places, work):
-    """Highest peak of values times a sign among places, where, in samples, and about how much it may be wrong."""
+def peak(values, side, places, start, stop):
+    """Highest peak of values times a sign among some of the places, where, in samples, and about how far it is off."""
     count, bound, best = values.size, -inf, -inf
-    for i in places:
+    for k in range(start, stop):
+        i = places[k]
         before, after = side * values[i - 1 if i else count - 1], side * values[i + 1 if i + 1 < count else 0]
         here = side * values[i]
         bound = max(bound, here - abs(before - 2.0 * here + after))
         best = max(best, here)
-    wrapped = side * values[0] == best and side * values[count - 1] == best
-    if wrapped:  # a plateau goes on across the end of the turn, and its first sample counts too
+    around = side * values[0] == best and side * values[count - 1] == best
+    if around:  # a plateau goes on across the end of the turn, and its first sample counts too
         bound = max(bound, best - abs(side * values[1] - best))
     highest, where, worst = -inf, nan, 0.0
-    for k in range(places.size + wrapped):
-        i = places[k] if k < places.size else 0
+    for k in range(start, stop + around):
+        i = places[k] if k < stop else 0
         before, after = side * values[i - 1 if i else count - 1], side * values[i + 1 if i + 1 < count else 0]
         here = side * values[i]
         if here + abs(before - 2.0 * here + after) < bound:
             continue
-        height, shift, error = between(values, i, side, work)
+        height, shift, error = between(values, i, side)
         worst = max(worst, error)
         if height > highest or (height == highest and i + shift < where) or where != where:
             highest, where = height, i + shift
@@ -196,36 +193,51 @@ def peak(values, side, places, work):
 {_summing("sizes", "abs(value)")}
 {_summing("squares", "value * value")}
 @njit(**options)
-def kinks(values, step):
-    """What the mean of sizes of every so many values is too large by, where the sign changes (`reductions._kinks`)."""
-    count, total = values.size // step, 0.0
-    before = values[(count - 1) * step]
-    for i in range(count):
-        after = values[i * step]
-        if (before < 0.0) != (after < 0.0):
-            here, there = abs(before), abs(after)
-            total += here * there / (here + there) - (here + there) / 6.0
-        before = after
-    return total / count
+def kink(values, i, j):
+    """What the sum of sizes is too large by if the sign changes from one sample to another (`reductions._kinks`)."""
+    one, other = wrapped(values, i), wrapped(values, j)
+    if (one < 0.0) == (other < 0.0):
+        return 0.0
+    here, there = abs(one), abs(other)
+    return here * there / (here + there) - (here + there) / 6.0
 
 
 @njit(**options)
-def averaged(values, power):
+def kinks(values, marks, words):
+    """The same of all samples, and of every other."""
+    for i in range(values.size):
+        marks[i] = values[i] < 0.0
+    whole, half, before = 0.0, 0.0, marks[values.size - 1]
+    for word in range(words.size):
+        if words[word] == before * ALL:
+            continue
+        for i in range(8 * word, min(8 * word + 8, values.size)):
+            if marks[i] != before:
+                before = marks[i]
+                whole += kink(values, i - 1, i)
+                half += kink(values, i - 1, i + 1) if i % 2 else kink(values, i - 2, i)
+    return whole, half
+
+
+@njit(**options)
+def averaged(values, power, marks, words, sums):
     """Mean, of sizes or squares too, and how far that of every other value is from it."""
-    even, odd = plain(values) if power == 0 else sizes(values) if power == 1 else squares(values)
-    whole, half = (even + odd) / values.size, even / (values.size // 2)
+    even, odd = plain(values, sums) if power == 0 else sizes(values, sums) if power == 1 else squares(values, sums)
+    whole, half = even + odd, even
     if power == 1:
-        whole, half = whole - kinks(values, 1), half - kinks(values, 2)
+        more, some = kinks(values, marks, words)
+        whole, half = whole - more, half - some
+    whole, half = whole / values.size, half / (values.size // 2)
     if power == 2:
         whole, half = sqrt(whole), sqrt(half)
     return whole, abs(half - whole) if values.size % 2 == 0 else 0.0 * whole
 
 
 @njit(**options)
-def estimated(values, kind, turns, marks, words, places, work):
+def estimated(values, kind, turns, marks, words, places, sums):
     """Number, and whether so many samples do not tell it."""
     if kind >= 6:
-        found, error = averaged(values, kind - 6)
+        found, error = averaged(values, kind - 6, marks, words, sums)
         if not error > {MEAN!r} * abs(found):
             return found, False
         size = 0.0
@@ -238,9 +250,9 @@ def estimated(values, kind, turns, marks, words, places, work):
         return nan, False
     high, low, above, below, at, under = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if kind <= 1 or kind >= 4:
-        high, at, above = peak(values, 1.0, places[:tops], work)
+        high, at, above = peak(values, 1.0, places, 0, tops)
     if kind >= 2:
-        low, under, below = peak(values, -1.0, places[places.size - bottoms :], work)
+        low, under, below = peak(values, -1.0, places, places.size - bottoms, places.size)
         low = -low
     error = max(above, below)
     if kind == 1 or kind == 3:
@@ -260,13 +272,13 @@ def estimated(values, kind, turns, marks, words, places, work):
 def reduced(results, rows, kinds, turns, numbers, rough, start):
     designs, count = results.shape[0], results.shape[2]
     words = np.zeros((count + 7) // 8, np.uint64)
-    marks, places, work = words.view(np.uint8), np.empty(2 * count, np.int64), np.empty((4, {2 * REACH + 1}))
+    marks, places, sums = words.view(np.uint8), np.empty(2 * count, np.int64), np.empty({LANES})
     for design in range(designs):
         for k in range(rows.size):
             if kinds[k] >= 0:
                 values = results[design, rows[k]]
                 numbers[k, start + design], rough[k, start + design] = estimated(
-                    values, kinds[k], turns, marks, words, places, work
+                    values, kinds[k], turns, marks, words, places, sums
                 )
 
 
@@ -274,11 +286,11 @@ def reduced(results, rows, kinds, turns, numbers, rough, start):
 def closed(results, first, angle, gaps, nearest, start):
     designs, count = results.shape[0], results.shape[2]
     for design in range(designs):
-        close = 0
+        close = False
         for row in range(first, results.shape[1]):
-            for value in results[design, row]:
-                close += not value >= {NEAR!r}
-        if close == 0:
+            for i in range(count):
+                close |= not results[design, row, i] >= {NEAR!r}
+        if not close:
             continue
         gaping, least = 0, inf
         for i in range(count):
@@ -320,13 +332,8 @@ class Passes:
     def __init__(self, outputs, rows, first, angle, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
         self._passes, self._turns = compiled._loaded(SOURCE).passes, turns
-        self._given = (
-            np.array(rows, dtype=np.int64),
-            np.array(kinds, dtype=np.int64),
-            int(first),
-            np.array(angle),
-            turns,
-        )
+        places, numbers = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64)
+        self._given = places, numbers, int(first), np.array(angle), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
     def __call__(self, results, start, numbers, rough, gaps, nearest):

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import programs
-from kinetostatics.engines.trace import Node
+from kinetostatics.engines.trace import LeanGraph, Node, needed
 from kinetostatics.errors import NotGivenError
 from support.scenes import (
     SCENES,
@@ -47,3 +47,50 @@ def test_values_of_recorded_numbers_cannot_be_looked_at():
             look(node)
     with pytest.raises(TypeError, match="only squares"):
         node**3
+
+
+@pytest.fixture
+def lean():
+    """Sine and cosine of the crank angle, and two numbers of a design, that record few operations."""
+    graph = LeanGraph()
+    angle = graph.angle()
+    return angle.sin(), angle.cos(), graph.parameter(0), graph.parameter(1)
+
+
+def told(node):
+    """Operations behind a number, in order."""
+    return [part.operation for part in needed([node]) if part.arguments and part.operation != "parameter"]
+
+
+def test_quotients_by_one_divisor_share_a_reciprocal(lean):
+    sine, cosine, length, _ = lean
+    total = (sine + length) / cosine + (sine - length) / cosine
+    assert told(total).count("/") == 1
+    assert told(sine / length + cosine / length).count("/") == 1
+    assert (sine / length).arguments[1].varies == length.varies  # once for a design
+
+
+def test_a_quotient_by_a_quotient_is_one_by_its_numerator(lean):
+    sine, cosine, length, _ = lean
+    assert told(sine / (cosine / length)) == ["sin", "cos", "/", "*", "*"]
+
+
+def test_what_is_multiplied_and_divided_by_the_same_number_is_left(lean):
+    sine, cosine, length, other = lean
+    assert sine / length * length is sine
+    assert length * (sine / length) is sine
+    assert sine * cosine / cosine is sine
+    assert length / other / (length / other) is not sine  # of a design alone nothing is rewritten
+
+
+def test_products_leave_signs_to_sums(lean):
+    sine, cosine, length, _ = lean
+    assert length - (-sine) * cosine is length + sine * cosine
+    assert (-sine) * (-cosine) is sine * cosine
+    assert length + sine / -cosine is length - sine / cosine
+
+
+def test_zero_divisors_of_a_design_are_divided_by_where_they_stand(lean):
+    sine, _, length, _ = lean
+    assert told(sine / 0.0) == ["sin", "/"]
+    assert told(sine / (length * 0.0))[-1] == "*"

@@ -57,10 +57,10 @@ def flat(angles):
 
 
 def seconds(*rivals, rounds=12, spent=0.02):
-    """Least time of each rival, s; in each round each runs for about `spent` s."""
+    """Least time of a call of each rival, s; in each round each is called for about `spent` s."""
     timers = [timeit.Timer(rival) for rival in rivals]
     counts = [max(1, round(spent / min(timer.repeat(3, 1)))) for timer in timers]
-    times = [[timer.timeit(count) / count for timer, count in zip(timers, counts, strict=True)] for _ in range(rounds)]
+    times = [[min(timer.repeat(count, 1)) for timer, count in zip(timers, counts, strict=True)] for _ in range(rounds)]
     return np.min(times, axis=0)
 
 
