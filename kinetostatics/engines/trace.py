@@ -141,6 +141,10 @@ class Graph(list):
         return Node(self, "table", (place,), BY_ANGLE)
 
 
+SMALLEST = 2.0**-1022
+"""What is smaller may have no reciprocal."""
+
+
 class LeanGraph(Graph):
     """The same with fewer operations at each crank angle, and the same values but for rounding.
 
@@ -168,7 +172,7 @@ class LeanGraph(Graph):
         return super().node(operation, *arguments)
 
     def _quotient(self, above, below):
-        if BY_ANGLE in (_varies(above), _varies(below)) and not _is_number(below, 0.0):
+        if BY_ANGLE in (_varies(above), _varies(below)) and _has_reciprocal(below):
             return self.node("*", above, self._over(below))
         return super().node("/", above, below)
 
@@ -189,6 +193,15 @@ class LeanGraph(Graph):
         ):
             return self.node("*", *map(self._over, arguments))
         return super().node("/", 1.0, part)
+
+
+def _has_reciprocal(part):
+    """Whether a part is no zero, nor one moved off zero by so little that one over it is no double."""
+    if not isinstance(part, Node):
+        return abs(part) >= SMALLEST
+    if part.operation == "*" or _is_negative(part):
+        return all(map(_has_reciprocal, part.arguments))
+    return part.operation != "+" or all(isinstance(term, Node) or abs(term) >= SMALLEST for term in part.arguments)
 
 
 def _varies(part):

@@ -93,4 +93,13 @@ def test_products_leave_signs_to_sums(lean):
 def test_zero_divisors_of_a_design_are_divided_by_where_they_stand(lean):
     sine, _, length, _ = lean
     assert told(sine / 0.0) == ["sin", "/"]
-    assert told(sine / (length * 0.0))[-1] == "*"
+    assert told(sine / (length * 0.0))[-1] == "/"
+
+
+def test_what_is_moved_off_zero_by_the_smallest_number_is_divided_by_as_it_is():
+    graph = LeanGraph()
+    x, length = graph.angle(), graph.parameter(0)
+    moved = x + 5e-324
+    assert (length / moved).operation == "/"
+    assert (length / (length * moved)).operation == "/"
+    assert (length / (x + 1.0)).operation == "*"
