@@ -37,7 +37,7 @@ def parted(driven, pieces, rows, before=NONE):
 
 def _zeros(value, angle):
     """Crank angles inside pieces at which a function is zero; where it jumps from one to the next it is not."""
-    at = np.signbit(value[:, :-1]) != np.signbit(value[:, 1:])
+    at = (np.signbit(value[:, :-1]) != np.signbit(value[:, 1:])) & (value[:, :-1] != value[:, 1:])
     (low, high), (before, after) = ((rows[:, :-1][at], rows[:, 1:][at]) for rows in (angle, value))
     return low + (high - low) * before / (before - after)
 

@@ -33,7 +33,8 @@ def explain(solution, quantity, angle, design=None):
     nodes = [part for part in map(node_of, result(made, quantity, found)) if part is not None]
     steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics)) if nodes else {}
     results, angle = tuple(steps[node] for node in nodes), float(state.crank_angle)
-    value = quantities.components(state.dynamics, quantity)
+    with np.errstate(all="ignore"):
+        value = quantities.components(state.dynamics, quantity)
     value = np.array(value) if found.vector else float(value[0])
     return Explanation(
         state.mechanism.name, quantity, found.label, angle, tuple(steps.values()), results, value, found.unit

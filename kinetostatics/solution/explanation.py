@@ -60,7 +60,7 @@ class Explanation:
     results : tuple of Step
         Those of them that give the quantity, of a vector its components.
     value : float or array (2,)
-        The quantity as the solution gives it.
+        The quantity as the solution gives it, but for the last rounding.
     unit : str
 
     Examples

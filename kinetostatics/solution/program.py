@@ -154,7 +154,7 @@ class Program:
         >>> import kinetostatics as ks
         >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), crank_speed=100.0)
         >>> program = ks.compile(pump, "balancing_torque", engine="numpy", precision="single")
-        >>> bool(program.error_bound(0.5)["balancing_torque"] < 1e-5)  # of 14.9 N m
+        >>> bool(program.error_bound(0.5)["balancing_torque"] < 1e-4)  # of 14.9 N m
         True
         """
         state, leaves = self._at(angle, values)

@@ -153,7 +153,7 @@ def test_columns_of_designs_take_units_of_the_same_grammar(unit):
         ({"a": "0..1 m:100000", "b": "0..1 m:100000"}, "too many for one table"),
         ({"a": "0...1 m:3"}, "write two dots"),
         ({"a": "0..1 m:٣"}, "another form"),
-        ({"a": "0..1 m:" + "0" * 10_000}, "must be text"),
+        ({"a": "0..1 m:" + "0" * 10_000}, "longer than 200 letters"),
         ({"a": 5}, "must be text"),
         ({"a": None}, "must be text"),
         ({"a": "0..1 m*10**10**10:3"}, "is not known"),

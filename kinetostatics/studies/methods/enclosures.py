@@ -101,7 +101,7 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     >>> import kinetostatics as ks
     >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5).solve(8)
     >>> (exact,) = ks.precision.enclosure(s, "balancing_torque").exact  # arb numbers
-    >>> round(float(exact[1] - float(s.balancing_torque[1])), 9)  # N m
+    >>> round(abs(float(exact[1] - float(s.balancing_torque[1]))), 9)  # N m
     0.0
     """
     flint = library("flint")
