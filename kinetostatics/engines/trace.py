@@ -140,9 +140,10 @@ class Graph(list):
 class LeanGraph(Graph):
     """The same with fewer operations at each crank angle, and the same values but for rounding.
 
-    Quotients are products with reciprocals, which those by one divisor share and those by a design's number leave to
-    the design; products leave signs to sums, to the last bit. Each is decided where it is recorded, by what is there,
-    so that a number is computed in one way whatever else is wanted.
+    Quotients by a root are products with its reciprocal, which they share; those by a design's number leave that to the
+    design. Neither has an infinite reciprocal, as what is tiny has, so that zero by it stays zero. Products leave signs
+    to sums, to the last bit. Each is decided where it is recorded, by what is there, so that a number is computed in
+    one way whatever else is wanted.
     """
 
     def node(self, operation, *arguments):
@@ -164,7 +165,14 @@ class LeanGraph(Graph):
         return super().node(operation, *arguments)
 
     def _quotient(self, above, below):
-        if BY_ANGLE in (_varies(above), _varies(below)) and not _is_number(below, 0.0):
+        if _varies(below) == BY_ANGLE:
+            if isinstance(above, Node) and above.operation == "*":
+                left, right = above.arguments
+                if below is left or below is right:
+                    return right if below is left else left
+            if _is_root(below):
+                return self.node("*", above, self._over(below))
+        elif _varies(above) == BY_ANGLE and not _is_number(below, 0.0):
             return self.node("*", above, self._over(below))
         return super().node("/", above, below)
 
@@ -185,6 +193,16 @@ class LeanGraph(Graph):
         ):
             return self.node("*", *map(self._over, arguments))
         return super().node("/", 1.0, part)
+
+
+def _is_root(part):
+    """Whether a part is a root, or one times a number of the design."""
+    while part.operation in ("*", "-"):
+        own = [other for other in part.arguments if _varies(other) == BY_ANGLE]
+        if len(own) > 1 or (part.operation == "-" and len(part.arguments) > 1):
+            return False
+        (part,) = own
+    return part.operation in ("divisor", "sqrt", "root")
 
 
 def _varies(part):
