@@ -215,7 +215,12 @@ def _are_inverse(one, other):
 
 def _is_over(part, other):
     """Whether a part is one over a node."""
-    return isinstance(part, Node) and part.operation == "/" and part.arguments[1] is other and part.arguments[0] == 1.0
+    return (
+        isinstance(part, Node)
+        and part.operation == "/"
+        and part.arguments[1] is other
+        and _is_number(part.arguments[0], 1.0)
+    )
 
 
 def _is_number(part, number):
