@@ -116,9 +116,10 @@ if TYPE_CHECKING:
     from .results.extremes import Extremes, extremes
     from .results.losses import Losses
     from .solution.certainty import Uncertainty
-    from .solution.compile import Program, compile  # noqa: A004 - the contract's name
+    from .solution.compile import compile  # noqa: A004 - the contract's name
     from .solution.explanation import Explanation
     from .solution.group_check import check
+    from .solution.program import Program
     from .solution.scene import Scene, solve
     from .solution.solution import Solution
     from .studies import precision, stability
@@ -262,9 +263,10 @@ _WHERE = {
     "results.extremes": ["Extremes", "extremes"],
     "results.losses": ["Losses"],
     "solution.certainty": ["Uncertainty"],
-    "solution.compile": ["Program", "compile"],
+    "solution.compile": ["compile"],
     "solution.explanation": ["Explanation"],
     "solution.group_check": ["check"],
+    "solution.program": ["Program"],
     "solution.scene": ["Scene", "solve"],
     "solution.solution": ["Solution"],
     "": ["design", "drive"],

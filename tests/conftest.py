@@ -36,7 +36,7 @@ def programs(tmp_path_factory):
 @pytest.fixture
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    from kinetostatics.engines import compiled, loops, machine_code, programs
+    from kinetostatics.engines import compiled, loops, machine_code, programs, split
     from kinetostatics.numbers import kinds
 
     numba = ModuleType("numba")
@@ -48,7 +48,7 @@ def interpreted(monkeypatch):
     monkeypatch.setitem(sys.modules, "numba", numba)
     monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
     loaded = cache(machine_code.load)
-    for module in (compiled, loops, programs):
+    for module in (compiled, loops, programs, split):
         monkeypatch.setattr(module, "_loaded", loaded)
     kinds.forget()
     yield

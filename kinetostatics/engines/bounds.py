@@ -8,13 +8,14 @@ inputs gives a number within ``UNIT (k |v| + E)`` of v. Products, quotients and 
 
 import math
 from collections.abc import Callable
+from functools import reduce
+from operator import add
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .derivatives import adjoints
 from .trace import INPUTS, Node, needed
 
 SAFE = 1.0 + 1e-9
@@ -22,7 +23,9 @@ SAFE = 1.0 + 1e-9
 DUST = 2.0**-960
 """In `UNIT`: more than what is lost where a product or quotient, of bounds too, is too small for a double."""
 CAP = 2.0**100
-"""Largest input, in SI, for which dust stays dust."""
+"""Largest number of a scene, in SI, for which dust stays dust; of tables each value counts."""
+LARGEST = 2.0**1000
+"""Less than what has a reciprocal too small for a double."""
 ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
 """Largest relative error of a function of any backend, in `UNIT`; a test holds NumPy and compiled loops to it."""
 
@@ -48,38 +51,36 @@ class Bounds:
     graph : Graph
     inputs : mapping of Node to function
         ``input(bounds) -> Error`` of inputs that are not exact.
+    stretch : float
+        How many times larger than proven terms of second order are taken, see `tight`.
+    dust : float or None
+        What a product or quotient may lose if it is too small for a double; None if none is.
     """
 
-    def __init__(self, graph, inputs=None):
-        self._graph, self._inputs = graph, inputs or {}
+    def __init__(self, graph, inputs=None, stretch=1.0, dust=DUST):
+        self._graph, self._inputs, self.second, self._dust = graph, inputs or {}, stretch * UNIT, dust
+        self._uses: dict[Node, list[str]] = {}
+        self._parts: dict[Node, tuple[Any, ...]] = {}
         self._errors: dict[Node, Error] = {}
         self._totals: dict[Node, Any] = {}
         self._clear: dict[Node, Any] = {}
         self._over: dict[Node, Any] = {}
+        self._steepest: dict[Node, Any] = {}
         self._caps: dict[Node, float | None] = {}
 
     def of(self, outputs):
         """A bound for each output, not negative; infinite or NaN where there is none."""
-        for node in needed(outputs):
-            if node not in self._errors:
-                self._errors[node] = self._found(node)
-        return tuple(_whole(self.total(part)) for part in outputs)
+        nodes = [node for node in needed(outputs) if node not in self._errors]
+        self.tell_uses(nodes)
+        for node in nodes:
+            self._errors[node] = self._found(node)
+        return tuple(whole(self.total(part)) for part in outputs)
 
-    def tight(self, output):
-        """A bound for one output, as `of` gives it, from what the error of each operation makes of the output.
-
-        Derivatives of the output say so, bounded for all values within the bounds of `of`.
-        """
-        self.of([output])
-        unsure = {node for node in needed([output]) if self.total(node) is not None}
-        slopes = adjoints(self._graph, output, unsure) if output in unsure else {}
-        self.of(slopes.values())
-        total = DUST if slopes else None
-        for node, slope in slopes.items():  # what derivatives hold comes with its whole error
-            own = self.total(node) if node.operation in (*INPUTS, "held") else self._sum(self.own(node), node)
-            if own is not None:
-                total = self.fused(self.largest(slope), own, total)
-        return _whole(total)
+    def tell_uses(self, nodes):
+        """Take note of what nodes are used for: it decides in which of two ways a bound is found."""
+        for node in nodes:
+            for part in node.arguments:
+                self._uses.setdefault(part, []).append(node.operation)
 
     def _found(self, node):
         if node.operation in INPUTS:
@@ -91,14 +92,21 @@ class Bounds:
     def own(self, node) -> Error:
         """What an operation itself adds to the error of its result."""
         kind, arguments = node.operation, node.arguments
+        if any(map(_is_zero, (node, *arguments))) and kind in "+-*":
+            return EXACT
+        if self.is_reciprocal(node):
+            return Error(1.0, None)
         if kind in ("*", "/"):
-            return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, DUST)
+            return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, self._dust)
+        if kind == "total":
+            return Error(1.0, (216.0 * UNIT * UNIT) * reduce(add, map(size, arguments)))
         if kind in ("+", "-"):
             return Error(1.0, None) if len(arguments) == 2 else EXACT
         if kind == "divisor":  # none is proven where the guard may act
             root, unit = arguments
             return Error(0.0, 0.0 / self.above(root, self.total(root), unit))
-        if kind == "sign" and self.total(arguments[0]) is not None:  # nor where it may be the other
+        turns = kind == "sign" or (kind == "abs" and self.second > UNIT)
+        if turns and self.total(arguments[0]) is not None:  # nor where it may be the other
             return Error(0.0, 0.0 / self.clear(arguments[0]))
         return Error(ULP.get(kind, 0.0), None)
 
@@ -108,16 +116,30 @@ class Bounds:
     def total(self, part):
         """The whole bound of a part of an operation; None where it is exact."""
         if isinstance(part, Node) and part not in self._totals:
-            self._totals[part] = self._sum(self._errors[part], part)
+            self._totals[part] = self._total(part, *self._errors[part])
         return self._totals[part] if isinstance(part, Node) else None
 
-    def _sum(self, error, part):
-        return self.fused(error.relative, size(part), error.rest) if error.relative else error.rest
+    def _total(self, part, relative, rest):
+        if not relative:
+            return rest
+        if part in self._parts and set(self._uses.get(part, ())) <= {"+", "-"}:  # of a product, none of it by itself
+            left, own, right, across = self._parts[part]
+            return self.fused(size(right), self.fused(relative, size(left), own), across)
+        return self.fused(relative, size(part), rest)
+
+    def of_product(self, node, left, own, right, across):
+        """Rest of a product whose left factor has a rest that is a node, beside what else it has."""
+        self._parts[node] = left, own, right, across
+        return self.fused(size(right), own, across)
+
+    def uses(self, part):
+        """How often a part is used."""
+        return len(self._uses.get(part, ()))
 
     def largest(self, part):
         """Bound on the magnitude of the exact value, but for relative errors."""
         rest = self.error(part).rest
-        return size(part) if rest is None else self.fused(UNIT, rest, size(part))
+        return size(part) if rest is None else self.fused(self.second, rest, size(part))
 
     def clear(self, part):
         """What is left of a value's magnitude when its error is taken off; 0 where nothing is."""
@@ -126,16 +148,34 @@ class Bounds:
             self._clear[part] = size(part) if total is None else self.above(size(part), total)
         return self._clear[part]
 
-    def above(self, value, total, floor=0.0):
+    def above(self, value, total, floor=None):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
-        taken = floor if total is None else (SAFE * UNIT) * total + floor
-        return self._graph.node("divisor", value - taken, 0.0)
+        if total is not None:
+            value = value - (SAFE * self.second) * total
+        return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
 
     def over(self, part):
         """Bound on one over the magnitude of the exact value."""
         if part not in self._over:
             self._over[part] = 1.0 / self.clear(part) if isinstance(part, Node) else 1.0 / abs(part)
         return self._over[part]
+
+    def is_dust(self, part):
+        """Whether the rest of the bound of a part is dust, or none."""
+        return not isinstance(self.error(part).rest, Node)
+
+    def is_reciprocal(self, part):
+        """Whether a part is one over a number that is not so large that the quotient is too small for a double."""
+        if not isinstance(part, Node) or part.operation != "/":
+            return False
+        above, below = part.arguments
+        return not isinstance(above, Node) and abs(above) == 1.0 and (self.cap(below) or math.inf) < LARGEST
+
+    def steepest(self, root, square):
+        """Bound on the slope of a root between the square and the exact one; infinite if that may be negative."""
+        if root not in self._steepest:
+            self._steepest[root] = (0.5 * root) / self.above(square, self.total(square))
+        return self._steepest[root]
 
     def dust(self, rest, part):
         """A rest that is dust times the magnitude of a part: a number still where the part's cap is known."""
@@ -166,6 +206,8 @@ def size(part):
     """Magnitude of a part of an operation."""
     if not isinstance(part, Node):
         return abs(part)
+    if part.operation == "-" and len(part.arguments) == 1:
+        return size(part.arguments[0])
     square = part.operation == "*" and part.arguments[0] is part.arguments[1]
     return part if square or part.operation in ("abs", "sqrt", "root", "divisor") else abs(part)
 
@@ -175,8 +217,15 @@ def of_magnitude(vector, bounds):
     return np.hypot(*bounds) * SAFE + 4 * UNIT * np.hypot(*vector)
 
 
-def _whole(total):
+def whole(total):
+    """A bound from one in `UNIT`."""
     return 0.0 if total is None else (SAFE * UNIT) * total
+
+
+def _is_zero(part):
+    """Whether a part of an operation is a product with the number 0."""
+    factors = part.arguments if isinstance(part, Node) and part.operation == "*" else ()
+    return any(not isinstance(factor, Node) and factor == 0.0 for factor in factors)
 
 
 def _is_scaling(part):
@@ -188,20 +237,31 @@ def _is_scaling(part):
 
 
 def _of_sum(bounds, more, node, *parts):
-    if len(parts) == 1:
-        return bounds.error(parts[0])
-    return Error(0.0, plus(*(bounds.total(part) for part in parts)))
+    others = [part for part in parts if not _is_zero(part)]
+    if len(others) < 2 and more is None:
+        return bounds.error(others[0]) if others else EXACT
+    return Error(0.0, reduce(plus, map(bounds.total, others), more))
 
 
 def _of_product(bounds, more, node, left, right):
-    if isinstance(bounds.error(right).rest, Node):
+    if _is_zero(node):
+        return EXACT
+    for factor, above in ((left, right), (right, left)):
+        if bounds.is_reciprocal(factor) and not bounds.is_dust(factor):  # as of a quotient
+            rest = _of_quotient(bounds, more, node, above, factor.arguments[1]).rest
+            return Error(bounds.error(above).relative + bounds.error(factor).relative, rest)
+    first, second = bounds.error(left).rest, bounds.error(right).rest
+    if isinstance(second, Node) and not (isinstance(first, Node) and bounds.uses(left) > bounds.uses(right)):
         left, right = right, left
     (first, own), (second, other) = bounds.error(left), bounds.error(right)
-    if isinstance(own, Node):
-        across = more if other is None else bounds.fused(bounds.largest(left), other, more)
-        return Error(first + second, bounds.fused(size(right), own, across))
-    across = more if None in (own, other) else plus(UNIT * own * other, more)
-    return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), across))
+    if not isinstance(own, Node):
+        across = more if None in (own, other) else plus(bounds.second * own * other, more)
+        return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), across))
+    if isinstance(other, Node) or (other is not None and bounds.cap(left) is None):
+        across = bounds.fused(bounds.largest(left), other, more)
+    else:
+        across = plus(bounds.dust(other, left), more)
+    return Error(first + second, bounds.of_product(node, left, own, right, across))
 
 
 def _of_quotient(bounds, more, node, above, below):
@@ -212,17 +272,21 @@ def _of_quotient(bounds, more, node, above, below):
 
 def _of_root(bounds, more, node, square, unit=None):
     relative, rest = bounds.error(square)
-    if isinstance(rest, Node):
-        left = bounds.above(square, bounds.total(square))  # nothing, if it may be negative
-        rest = bounds.fused(0.5 * rest, node / left, more)
-    elif rest is not None:
-        rest = math.sqrt(rest / UNIT)
+    if not bounds.is_dust(square):
+        rest = more if rest is None else bounds.fused(bounds.steepest(node, square), rest, more)
+    else:
+        rest = None if rest is None else math.sqrt(rest / UNIT)
+        if node.operation == "root" and size(square) is not square:  # none where it is negative for sure
+            rest = plus(0.0 * square.sqrt(), rest)
     return Error(0.5 * relative, rest)
 
 
 def _of_function(bounds, more, node, argument):
-    """Of one that changes no faster than its argument."""
-    return Error(0.0, bounds.total(argument))
+    """Of one that changes no faster than its argument, and its slope no faster either."""
+    total = bounds.total(argument)
+    if total is None or bounds.second == UNIT:
+        return Error(0.0, total)
+    return Error(0.0, bounds.fused(0.5 * bounds.second * total, total, total))
 
 
 def _as_of_argument(bounds, more, node, argument, unit=None):
@@ -231,6 +295,7 @@ def _as_of_argument(bounds, more, node, argument, unit=None):
 
 
 _CARRIED: dict[str, Callable[..., Error]] = {
+    "total": _of_sum,
     "+": _of_sum,
     "-": _of_sum,
     "*": _of_product,
@@ -247,7 +312,7 @@ _CARRIED: dict[str, Callable[..., Error]] = {
 }
 _CAPS: dict[str, Callable[..., float]] = {
     "parameter": lambda: CAP,
-    "table": lambda: CAP,
+    "total": lambda *parts: sum(parts),
     "+": lambda left, right: left + right,
     "-": lambda *parts: sum(parts),
     "*": lambda left, right: left * right,
@@ -256,4 +321,6 @@ _CAPS: dict[str, Callable[..., float]] = {
     "abs": lambda value: value,
     "held": lambda value: value,
     "sqrt": math.sqrt,
+    "root": lambda square, unit: math.sqrt(square),
+    "divisor": max,
 }

@@ -4,6 +4,7 @@ What is only there for rounding is left out, and signs and factors are gathered 
 """
 
 from collections.abc import Callable
+from functools import reduce
 from types import MappingProxyType
 from typing import Any
 
@@ -12,7 +13,7 @@ from .trace import Node
 
 CALLS = {"sqrt": "sqrt", "root": "sqrt", "sin": "sin", "cos": "cos", "atan": "atan", "abs": "abs", "sign": "sign"}
 """Functions by recorded operation; the second argument of a root only says what rounding is."""
-UNSEEN = 1e-250
+UNSEEN = 1e-120
 """Constant that is added to keep a square or distance off zero."""
 ONE, ZERO = ("number", 1.0), ("number", 0.0)
 
@@ -156,6 +157,7 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
     "-": _difference,
     "*": _product,
     "/": _quotient,
+    "total": lambda *parts: reduce(_sum, parts),
     "held": lambda part: part,
     "divisor": lambda part, unit: part,
     **{name: (lambda part, *unit, name=name: _call(CALLS[name], part)) for name in CALLS},

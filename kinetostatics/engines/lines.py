@@ -226,6 +226,8 @@ def _size(node, values, sizes):
     value, kind = values[node], node.operation
     if kind in INPUTS:
         return abs(value)
+    if kind == "total":
+        return abs(value) + sum(sizes[part] - abs(values[part]) for part in node.arguments if isinstance(part, Node))
     (a, x), (b, y) = [
         (values[part], sizes[part]) if isinstance(part, Node) else (part, 0.0) for part in (*node.arguments, 0.0)[:2]
     ]

@@ -63,7 +63,7 @@ def run(loop, angle, sine, cosine, parameters, tables, results):
         if designs > 1:
             loop(*given[:3], parameters[start:stop], given[3], results[start:stop])
         else:
-            found = np.empty((1, results.shape[1], stop - start))
+            found = np.empty((1, results.shape[1], stop - start), results.dtype)
             loop(*given[:3], parameters, given[3], found)
             results[..., start:stop] = found
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..numbers.elementary import ROUNDING
+from ..numbers.elementary import ROUNDING, total
 
 
 def _plain_root(square, unit):
@@ -32,6 +32,17 @@ def _multiply_add(one, other, more, out):
     np.add(out, more, out=out)
 
 
+def _plain_total(*terms):
+    try:
+        return math.fsum(terms)
+    except (OverflowError, ValueError):
+        return total(*terms)
+
+
+def _total_of(one, two, three, four, out):
+    np.copyto(out, total(one, two, three, four))
+
+
 def _sqrt(square):
     return math.sqrt(square) if square >= 0.0 else math.nan
 
@@ -46,6 +57,7 @@ PLAIN = {
     "root": _plain_root,
     "divisor": _plain_divisor,
     "fma": lambda one, other, more: one * other + more,
+    "total": _plain_total,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -59,6 +71,7 @@ BY_DESIGN = {
     "root": _root,
     "divisor": np.maximum,
     "fma": lambda one, other, more: one * other + more,
+    "total": total,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -77,5 +90,6 @@ ARRAYS = {
     "sign_of": lambda value, out: np.copysign(1.0, value, out),
     "root_of": _root_of,
     "multiply_add": _multiply_add,
+    "total_of": _total_of,
     "maximum": lambda one, other, out: np.maximum(one, other, out=out),
 }

@@ -20,6 +20,7 @@ from .derivatives import gradients
 from .operations import ARRAYS, BY_DESIGN, PLAIN
 from .recent import kept_for_same_angles
 from .record import record
+from .tight import tight_bound
 from .trace import needed, operations
 
 FEW = 12
@@ -38,6 +39,9 @@ class Program:
     outputs : tuple of Node or float
     recording : Recording
     """
+
+    scopes: Any = (PLAIN, BY_DESIGN)
+    underflow: Any = "ignore"
 
     def __init__(self, recording, outputs=None):
         self.recording = recording
@@ -68,15 +72,17 @@ class Program:
     def bounded(self, tight=False):
         """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
 
+        Tight ones may be so where the others are finite.
+
         Raises
         ------
         NotGivenError
             Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
         """
         if tight not in self._bounded:
-            bounds = Bounds(self.recording.graph, self.recording.inputs)
-            found = map(bounds.tight, self.outputs) if tight else bounds.of(self.outputs)
-            self._bounded[tight] = Program(self.recording, (*self.outputs, *found))
+            given = self.recording.graph, self.recording.inputs
+            found = [tight_bound(*given, part) for part in self.outputs] if tight else Bounds(*given).of(self.outputs)
+            self._bounded[tight] = _Bounded(self.recording, (*self.outputs, *found), len(self.outputs), tight)
         return self._bounded[tight]
 
     @cached_property
@@ -92,7 +98,7 @@ class Program:
     @cached_property
     def _buffered(self):
         source, count = writing.buffered_line(self.outputs)
-        return [made(source, ARRAYS | by_design) for by_design in (PLAIN, BY_DESIGN)], count
+        return [made(source, ARRAYS | by_design) for by_design in self.scopes], count
 
     @cached_property
     def loop(self):
@@ -134,7 +140,7 @@ class Program:
             return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
         (single, batch), count = self._buffered
         results = np.empty((len(self.outputs), *shape))
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore", under=self.underflow):
             sine, cosine = _turn(angle)
             if len(shape) == 1:
                 try:
@@ -206,6 +212,45 @@ class Program:
         sine, cosine = loops.turn(angles)
         loops.run(self.loop, angles, sine, cosine, parameters, tables, results)
         return results.swapaxes(0, 1).reshape(-1, *shape)
+
+
+class _Bounded(Program):
+    """Values with bounds. Arrays of NumPy tell if any value was too small for a double: mostly none has to be bounded.
+
+    Attributes
+    ----------
+    values : int
+        How many of the outputs are values.
+    tight : bool
+    """
+
+    def __init__(self, recording, outputs, values, tight):
+        super().__init__(recording, outputs)
+        self.values, self.tight = values, tight
+
+    @cached_property
+    def _without_dust(self):
+        values, recording = self.outputs[: self.values], self.recording
+        bounds = Bounds(recording.graph, recording.inputs, dust=None).of(values)
+        return _Watched(recording, (*values, *bounds))
+
+    def by_numpy(self, angle, numbers, rows, shape):
+        if not self.tight:
+            try:
+                return self._without_dust.by_numpy(angle, numbers, rows, shape)
+            except FloatingPointError:
+                pass
+        return super().by_numpy(angle, numbers, rows, shape)
+
+
+class _Watched(Program):
+    """Program that NumPy alone runs, plain numbers too, and that raises FloatingPointError where one is too small."""
+
+    scopes, underflow = (BY_DESIGN, BY_DESIGN), "raise"
+
+    def by_numpy(self, angle, numbers, rows, shape):
+        numbers = [np.float64(number) if isinstance(number, float) else number for number in numbers]
+        return super().by_numpy(angle, numbers, rows, shape)
 
 
 def _plain_numbers(numbers):

@@ -59,6 +59,26 @@ SPREAD = f"""            for place in range(results.shape[1]):
                 for k in range(count):
                     row[k] = block[{AT_ONCE} * place + k]"""
 
+TOTAL = """@njit(**options)
+def summed(a, b):
+    whole = a + b
+    part = whole - a
+    return whole, (a - (whole - part)) + (b - part)
+
+
+@njit(**options)
+def total(one, two, three, four):
+    whole, first = summed(one, two)
+    whole, second = summed(whole, three)
+    whole, third = summed(whole, four)
+    lost, first = summed(first, second)
+    lost, second = summed(lost, third)
+    whole, third = summed(lost, whole)
+    return whole + (first + second + third)
+
+
+"""
+"""What a loop with sums that lose nothing has besides."""
 
 FUSED = """from numba import types
 from numba.extending import intrinsic
@@ -93,6 +113,9 @@ def loop(outputs, fuse=True) -> str:
     header = LOOP_HEADER
     if sums or any(node.operation == "fma" for node in nodes):
         header = LOOP_HEADER.replace("\n\n\n@", f"\n{FUSED}@", 1)
+    if any(node.operation == "total" for node in nodes):
+        head, end = header.rsplit("@njit", 1)
+        header = f"{head}{TOTAL}@njit{end}"
     by_design = [f"        {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
     by_angle = [
         _fused(node, sums[node]) if node in sums else _defined(node) for node in nodes if _is_computed_by_angle(node)
@@ -102,7 +125,7 @@ def loop(outputs, fuse=True) -> str:
         ends = [f"row_{place}[i] = {_name(part)}" for place, part in enumerate(outputs)]
         inner = ["        for i in range(angle.shape[1]):", *(f"            {each}" for each in by_angle + ends)]
         return header + "\n".join([LOOP, *by_design, *rows, *inner]) + "\n"
-    ends = [f"block[{place * AT_ONCE} + k] = {_name(part)}" for place, part in enumerate(outputs)]
+    ends = [f"block[uint64({place * AT_ONCE} + k)] = {_name(part)}" for place, part in enumerate(outputs)]
     memory = f"    block = empty({len(outputs) * AT_ONCE})"
     inner = [BLOCKS, *(f"                {each}" for each in by_angle + ends), SPREAD]
     return header + "\n".join([memory, LOOP, *by_design, *inner]) + "\n"
@@ -196,6 +219,7 @@ _OPERATIONS = {
     ("root", 2): "root_of",
     ("divisor", 2): "maximum",
     ("fma", 3): "multiply_add",
+    ("total", 4): "total_of",
 }
 """By operation and number of arguments: the array function that takes its result's place as last argument."""
 _IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "divisor")

@@ -56,14 +56,17 @@ class RollerForces(NamedTuple):
 
 
 def place(ray, radius, slope, curvature):
-    """Roller centre A on the ray, from r, r' and r'' (kernel)."""
+    """Roller centre A on the ray, from r, r' and r'' (kernel).
+
+    The place itself is part of its second derivative, so that its rounding cancels where a spring balances inertia.
+    """
     x, y = ray
-    outward = curvature - radius
+    along, across = radius * x, radius * y
     sideways = 2.0 * slope
     return Joint(
-        (radius * x, radius * y),
-        (slope * x - radius * y, slope * y + radius * x),
-        (outward * x - sideways * y, outward * y + sideways * x),
+        (along, across),
+        (slope * x - across, slope * y + along),
+        (curvature * x - sideways * y - along, curvature * y + sideways * x - across),
     )
 
 

@@ -208,6 +208,8 @@ class Passer:
 
     assembly: Any
     passage: Any
+    on: str
+    is_close = may_come_close = False
     through: bool
     found_on: Any
     start: Any
@@ -218,7 +220,15 @@ class Passer:
         return SIDES.get(self.assembly, self.assembly)
 
     def on_crank(self, throws):
-        return with_fields(self, passage=self.found_on(throws)) if self.through else self
+        passage = self.found_on(throws) if self.through else ""
+        is_close = not passage and self.may_come_close and self.on in throws and self.comes_close(throws[self.on])
+        if (passage, is_close) == (self.passage, self.is_close):
+            return self
+        return with_fields(self, passage=passage, is_close=is_close)
+
+    def comes_close(self, throw):
+        """Whether it only just clears a limit position, where other formulas save digits."""
+        return False
 
     def kink(self, throws):
         return kink(self, throws)

@@ -287,6 +287,9 @@ class Group:
     passage = ""
     """How it passes change points, which belongs to its structure; "" where there are none."""
 
+    may_come_close = False
+    """Whether its kind has other formulas where it only just clears a limit position."""
+
     @property
     def passes(self):
         """Whether it passes change points: motion is smooth there, but forces grow without bound."""

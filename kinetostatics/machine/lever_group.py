@@ -16,7 +16,7 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
-from . import change_points, passing
+from . import change_points, on_crank, passing
 from .declared import Slot
 from .friction import Slide, Sliding, Turning
 from .group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
@@ -89,9 +89,9 @@ def place(joint, pivot, offset, assembly):
     return LeverMotion(lever, lever._replace(joint=joint), reach, divided, closure)
 
 
-def passed(placement, on, pivot, offset, passage, side):
-    """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
-    direction, ratio, slope, *rest = passing.slotted(placement, on, pivot, offset, passage, side)
+def passed(placement, on, pivot, offset, slotted, *branch):
+    """The same for the pin `on` of a crank, from what `slotted` finds on a branch (kernel)."""
+    direction, ratio, slope, *rest = slotted(placement, on, pivot, offset, *branch)
     lever = LinkMotion(Joint(pivot, None, None), direction, ratio, slope)
     return LeverMotion(lever, lever._replace(joint=placement.joints[on]), *rest)
 
@@ -181,8 +181,9 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
     label: str = ""
     assembly: int = 1
     passage: str = field(default="", init=False, repr=False)
+    is_close: bool = field(default=False, init=False, repr=False)
 
-    TRUSTED = True
+    TRUSTED = may_come_close = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
     RULES = checks.Rules(
         "lever group",
@@ -199,6 +200,10 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
     def found_on(self, throws):
         """How it passes its change points on a crank with these throws."""
         return change_points.of_lever_group(self, throws)
+
+    def comes_close(self, throw):
+        """Whether the pin comes close to the pivot, or the block to the foot of the pivot on the slot."""
+        return on_crank.is_small(throw, self.offset, np.hypot(*self.pivot))
 
     @property
     def start(self):
@@ -268,8 +273,12 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
     def place(self, placement):
         """Add the pivot, lever and block."""
         given = self.pivot, present(self.offset)
-        motion = self.passage and passed(placement, self.on, *given, self.passage, self.side)
-        motion = motion or place(placement.joints[self.on], *given, self.side)
+        if self.passage:
+            motion = passed(placement, self.on, *given, passing.slotted, self.passage, self.side)
+        elif self.is_close:
+            motion = passed(placement, self.on, *given, on_crank.slotted, self.side)
+        else:
+            motion = place(placement.joints[self.on], *given, self.side)
         placement.joints[self.pivot_name] = motion.lever.joint
         placement.links[self._lever] = motion.lever
         placement.links[self._block] = motion.block

@@ -16,6 +16,9 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.planar import added, cross, left, minus, moment, plus, product, stretched, subtracted, vector, work
 
+TERMS = {"tip.reach": ("h", "from the pivot to the pin")}
+"""What hand calculations call lines of the kernels, and what they are."""
+
 
 class Joint(NamedTuple):
     """A moving point: position and its first and second derivatives by crank angle (None: it does not move)."""
@@ -126,6 +129,17 @@ def between(start, end, length):
         tuple(part / length for part in vector(subtracted(b, a))) for a, b in zip(start, end, strict=True)
     )
     return LinkMotion(start, direction, cross(direction, first), cross(direction, second))
+
+
+def tip(pivot, length, direction, ratio, slope):
+    """Joint at the end of a link that turns about a fixed pivot."""
+    reach = stretched(length, direction)
+    aside = left(reach)
+    return Joint(
+        added(pivot, reach),
+        stretched(ratio, aside),
+        subtracted(stretched(slope, aside), stretched(product(ratio, ratio), reach)),
+    )
 
 
 def first_at(link, arm):

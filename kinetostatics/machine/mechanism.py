@@ -59,8 +59,9 @@ class Mechanism(Batched):
 
     def __post_init__(self):
         self.RULES.admit(self)
-        if any(group.through or group.passes for group in self.groups):
-            object.__setattr__(self, "groups", tuple(group.on_crank(self.throws) for group in self.groups))
+        if any(group.through or group.passes or group.may_come_close for group in self.groups):
+            throws = self.throws
+            object.__setattr__(self, "groups", tuple(group.on_crank(throws) for group in self.groups))
         trusted = tuple((type(part), *part.names) for part in self.parts) if self.trusted else None
         if trusted is None or trusted not in _NAMED_WELL:
             checks.require(self.name, *_name_problems(self.parts))

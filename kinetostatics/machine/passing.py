@@ -6,9 +6,9 @@ Which change points there are, and the notation, is told in `change_points`.
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt
-from ..numbers.planar import added, cross, dot, left, minus, number, product, stretched, subtracted, turned, unturned
+from ..numbers.planar import added, cross, dot, minus, number, stretched, subtracted, turned, unturned
 from .change_points import BOTH, FAR, KITE, MEETING, NEAR, PARALLEL, TWICE, parted
-from .links import Joint, LinkMotion, present
+from .links import Joint, LinkMotion, present, tip
 
 SMALLEST = 2.0**-27
 """Root of a margin that is not divided by less."""
@@ -21,7 +21,6 @@ TERMS = {
     "square": ("D", "square of the distance of the joint from the pivot, or of the reach"),
     "turning": ("q", "rate of the line from the joint to the pivot, or of what is mirrored in it"),
     "rate": ("z", "rate of the links besides"),
-    "arm": ("h", "from the pivot to the pin"),
 }
 """What hand calculations call lines of the kernels, and what they are."""
 
@@ -97,18 +96,10 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
 
 def _placed(joint, pivot, rocker_length, coupler, rocker, closure, factor, distance):
     """Joint B and both links, from direction, ratio and its slope of each."""
-    p, swing, slope = rocker
-    arm = stretched(rocker_length, p)
-    aside = left(arm)
-    pin = Joint(
-        added(pivot, arm),
-        stretched(swing, aside),
-        subtracted(stretched(slope, aside), stretched(product(swing, swing), arm)),
-    )
     return PassedMotion(
         LinkMotion(joint, *coupler),
         LinkMotion(Joint(pivot, None, None), *rocker),
-        pin,
+        tip(pivot, rocker_length, *rocker),
         closure,
         factor,
         apart(distance, UNSEEN),

@@ -15,11 +15,11 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
-from ..numbers.planar import added, cross, dot, left, number, quotient, stretched, subtracted, vector
-from . import change_points, passing
+from ..numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
+from . import change_points, on_crank, passing
 from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
-from .links import Joint, Link, LinkMotion, Wrench, between
+from .links import Joint, Link, LinkMotion, Wrench, between, tip
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
@@ -34,7 +34,6 @@ TERMS = {
     "reach": ("w", "from the inner joint to the pin"),
     "divided": ("sigma", "sine of the transmission angle"),
     "cosine": ("kappa", "cosine of the transmission angle"),
-    "arm": ("h", "from the pivot to the pin"),
     "lag": ("q", "length of the first link times the square of its ratio"),
     "swing_lag": ("z", "length of the second link times the square of its ratio"),
     "along_coupler": ("U", "force of the pin on the second link along the first"),
@@ -92,16 +91,17 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     ratio_slope = (lag * cosine - swing_lag - dot(second, p)) / (c * divided)
     swing_slope = (lag - swing_lag * cosine - dot(second, q)) / (h * divided)
 
-    arm = stretched(h, p)
-    aside = left(arm)
-    pin = Joint(
-        added(pivot, arm),
-        stretched(swing, aside),
-        subtracted(stretched(swing_slope, aside), stretched(swing * swing, arm)),
-    )
+    pin = tip(pivot, h, p, swing, swing_slope)
     coupler = LinkMotion(joint, q, ratio, ratio_slope)
     rocker = LinkMotion(Joint(pivot, None, None), p, swing, swing_slope)
     return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
+
+
+def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly):
+    """The same for a pin of the crank (kernel)."""
+    coupler, rocker, *rest = on_crank.place(placement, on, coupler_length, rocker_length, pivot, assembly)
+    pin, fixed = tip(pivot, rocker_length, *rocker), Joint(pivot, None, None)
+    return RockerMotion(LinkMotion(placement.joints[on], *coupler), LinkMotion(fixed, *rocker), pin, *rest)
 
 
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
@@ -249,8 +249,13 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     def place(self, placement):
         """Add joints B and O2, coupler and rocker."""
         given = self.coupler_length, self.rocker_length, self.pivot
-        passed = self.passage and passing.place(placement, self.on, *given, self.passage, self.side)
-        self._set(placement, passed or place(placement.joints[self.on], *given, self.side))
+        if self.passage:
+            motion = passing.place(placement, self.on, *given, self.passage, self.side)
+        elif self.on in placement.throws:
+            motion = turned_by_crank(placement, self.on, *given, self.side)
+        else:
+            motion = place(placement.joints[self.on], *given, self.side)
+        self._set(placement, motion)
 
     def follow(self, placement, joints):
         """Place coupler and rocker at joints found in another way."""

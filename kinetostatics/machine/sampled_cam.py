@@ -5,7 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import NotGivenError
 from ..numbers import checks
+from ..numbers.elementary import is_foreign_array
 from ..numbers.lazy import cached_property
 from .cam import Cam
 from .turn_tables import TurnTable
@@ -129,7 +131,15 @@ class Sampled(Cam):
         return TurnTable(self.angle, self.samples, self.smoothing)
 
     def polar(self, angle, ray):
-        return tuple(spline(angle) for spline in self._table.splines[:3])
+        try:
+            return tuple(spline(angle) for spline in self._table.splines[:3])
+        except TypeError as error:
+            if not is_foreign_array(angle):
+                raise
+            raise NotGivenError(
+                "a sampled cam is read by a spline of SciPy's, which cannot take crank angles without values, as under "
+                'jax.jit: ks.compile(scene, ..., engine="jax") reads it beforehand; or give a cam with a law'
+            ) from error
 
     @property
     def noise(self):

@@ -29,7 +29,7 @@ from ..numbers.planar import (
     unturned,
     vector,
 )
-from . import change_points, passing
+from . import change_points, on_crank, passing
 from .friction import Slide, Sliding, Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction
 from .guide import Guide, guide_outputs, slid
@@ -92,12 +92,12 @@ def place(joint, coupler_length, guide, assembly):
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
 
-def passed(placement, on, coupler_length, guide, passage, side):
-    """The same for the pin `on` of a crank, on a branch through its change points (kernel)."""
+def passed(placement, on, coupler_length, guide, slid, *branch):
+    """The same for the pin `on` of a crank, from what `slid` finds on a branch (kernel)."""
     joint = placement.joints[on]
     position = unturned(joint.position, guide.direction)
     first, second = unturned(joint.first, guide.direction), unturned(joint.second, guide.direction)
-    reached = passing.slid(placement, on, coupler_length, guide, passage, side)
+    reached = slid(placement, on, coupler_length, guide, *branch)
     across = minus(guide.offset, position[1])
     return _placed(joint, coupler_length, guide, (position, first, second), across, *reached)
 
@@ -110,7 +110,7 @@ def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, rat
     travel = Joint(
         position[0] + along,
         first[0] - ratio * across,
-        minus(second[0], product(ratio_slope, across)) - lag * along,
+        second[0] - plus(product(ratio_slope, across), lag * along),
     )
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = slid(joint.position, (along, across), travel, guide)
@@ -192,8 +192,9 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
     pin: str = "B"
     label: str = ""
     passage: str = field(default="", init=False, repr=False)
+    is_close: bool = field(default=False, init=False, repr=False)
 
-    TRUSTED = True
+    TRUSTED = may_come_close = True
     PATHS: ClassVar = {"guide": ""}
     RULES = checks.Rules(
         "slider group",
@@ -210,6 +211,10 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
     def found_on(self, throws):
         """How it passes its change points on a crank with these throws."""
         return change_points.of_slider_group(self, throws)
+
+    def comes_close(self, throw):
+        """Whether the coupler, nearly as long as it must be, comes to stand nearly across the guide."""
+        return on_crank.is_small(throw, self.guide.guide_offset, self.coupler_length)
 
     @property
     def start(self):
@@ -271,8 +276,13 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
 
     def place(self, placement):
         given = self.coupler_length, self.guide.line
-        motion = self.passage and passed(placement, self.on, *given, self.passage, self.side)
-        self._set(placement, motion or place(placement.joints[self.on], *given, self.side))
+        if self.passage:
+            motion = passed(placement, self.on, *given, passing.slid, self.passage, self.side)
+        elif self.is_close:
+            motion = passed(placement, self.on, *given, on_crank.slid, self.side)
+        else:
+            motion = place(placement.joints[self.on], *given, self.side)
+        self._set(placement, motion)
 
     def follow(self, placement, joints):
         """Place coupler and slider at joints found in another way."""
@@ -303,7 +313,7 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
             return motion.travel.position - free_position
         along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
         shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
-        return along + (self.side * self.coupler_length - free_position) - self.side * shortfall
+        return along + (self.side * self.coupler_length - free_position - self.side * shortfall)
 
     def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)

@@ -29,7 +29,7 @@ from ..machine.loads import Load, ProcessForce, Table
 from ..numbers.duals import Dual
 from ..numbers.elementary import UNIT
 from ..numbers.leaves import is_structural, mapped, with_fields
-from ..numbers.planar import product, vector
+from ..numbers.planar import product, subtracted, vector
 from .dynamics import Dynamics
 from .pushes import amount, moving, pushed
 
@@ -48,16 +48,14 @@ STEP = 1e-4
 def condition(solution, points=None, reactions=None):
     """Bound of the magnification at each crank angle, NaN where the mechanism does not close.
 
-    Where change points are passed reactions grow without bound, but not motion and torque: there it is of these alone
-    unless told, and with `reactions` of them too, over what they have grown to.
-
     Parameters
     ----------
     solution : Solution
     points : array of int, optional
         Places in the flattened shape of the solution; all unless told.
     reactions : bool, optional
-        Whether reactions count; unless told they do where no change points are passed.
+        Whether reactions count; unless told they do where no change points are passed, at which they grow without
+        bound. They count over what they have grown to.
 
     Returns
     -------
@@ -302,22 +300,26 @@ def _terms(solution):
     gravity = 0.0 if solution.gravity is None else _Sized(solution.gravity).size
     found = {}
     for part in (solution.mechanism.crank, *solution.mechanism.groups):
-        joints = [placement.joints[name] for bar in part.bars for name in (bar.start, bar.end)]
+        ends = [end for bar in part.bars for end in (bar.start, bar.end)] or (*part.hangs_on, *part.joints)
+        joints = [placement.joints[name] for name in ends]
         lengths = {bar.link: _number(bar.length).value for bar in part.bars}
         for name in part.links:
             link, body = placement.links[name], bodies[name]
+            length = lengths.get(name, np.inf)  # what does not turn has none
+            if name not in lengths and link.ratio is not None:  # a lever is as long as its block is far
+                gaps = (_Sized(subtracted(joint.position, link.joint.position)).size for joint in joints)
+                length = reduce(np.maximum, gaps, 0.0)
+                length = np.where(length > 0.0, length, np.inf)
             to_centre = arm(link.direction, body.along, body.across)
             firsts = [first_at(link, to_centre), *(joint.first for joint in joints)]
             seconds = [second_at(link, to_centre), *(joint.second for joint in joints)]
             speed, acceleration = (
                 reduce(np.maximum, (_Sized(vector(one)).certain for one in ones)) for ones in (firsts, seconds)
             )
-            length = lengths.get(name, np.inf)
             rate = np.maximum(_Sized(link.ratio).certain, speed / length)
             rate_change = np.maximum(rate * rate, acceleration / length)
-            mass, inertia = _number(body.mass).value, _number(body.inertia).value
-            force = mass * (gravity + square * acceleration + alpha * speed)
-            moment = inertia * (square * rate_change + alpha * rate)
+            force = _number(body.mass).value * (gravity + square * acceleration + alpha * speed)
+            moment = _number(body.inertia).value * (square * rate_change + alpha * rate)
             found[name] = _Terms(speed, acceleration, rate, rate_change, force, moment, length)
     return found
 

@@ -1,8 +1,10 @@
 """Numbers that carry their derivatives along: forward differentiation by however many seeds."""
 
+from functools import reduce
+
 import numpy as np
 
-from .elementary import APART, ROUNDING
+from .elementary import APART, ROUNDING, total
 from .nothing import Nothing
 
 OTHERS = (np.ndarray, Nothing)
@@ -102,6 +104,11 @@ class Dual:
 
     def moved_apart(self, unit):
         return self + APART * unit
+
+    def total_with(self, terms):
+        """Called by `elementary.total`."""
+        parts = [dual(term) for term in terms]
+        return Dual(total(*(part.value for part in parts)), reduce(_sum, (part.slopes for part in parts)))
 
     def _one(self):
         if np.size(self.value) != 1:

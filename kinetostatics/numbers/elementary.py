@@ -106,6 +106,37 @@ def apart(distance, unit):
     return distance + APART * unit
 
 
+def total(*terms):
+    """Sum of up to four numbers, rounded as if once: what cancels leaves the digits that the numbers have.
+
+    What each sum loses is found exactly, twice (Ogita, Rump and Oishi 2005, *Accurate sum and dot product*, SumK).
+    Enclosures and others of any precision need no help from rounding.
+    """
+    recorded = next((term for term in terms if hasattr(term, "total_with")), None)
+    if recorded is not None:
+        return recorded.total_with(terms)
+    if not all(isinstance(term, float) or getattr(term, "dtype", _OBJECT) != _OBJECT for term in terms):
+        return sum(terms)
+    *lost, whole = _summed(_summed(terms))
+    return whole + sum(lost)
+
+
+def _summed(terms):
+    """What each sum of terms one after the other loses, and the last sum."""
+    whole, lost = terms[0], []
+    for term in terms[1:]:
+        whole, rest = sum_and_rest(whole, term)
+        lost.append(rest)
+    return *lost, whole
+
+
+def sum_and_rest(a, b):
+    """Sum of two numbers, and what it loses by rounding (Knuth)."""
+    whole = a + b
+    part = whole - a
+    return whole, (a - (whole - part)) + (b - part)
+
+
 def _holds_objects(x):
     return getattr(x, "dtype", None) == _OBJECT
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..engines import programs
+from ..engines.backends import Backend
 from ..engines.bounds import of_magnitude
 from ..errors import QuantityError
 from ..mechanics import quantities
@@ -78,7 +79,7 @@ class Certainty(Parameters):
         quantity : str
             "balancing_torque", a joint (its reaction), "slider_velocity" ...; ``"|O|"`` for the magnitude of a vector.
         tight : bool
-            Whether it may take some ten times as long, and be up to ten times smaller.
+            Whether it may take twice as long, and be up to ten times smaller.
 
         Returns
         -------
@@ -106,9 +107,7 @@ class Certainty(Parameters):
         True
         """
         name = self._inner(quantity)
-        values, bounds = self._with_bounds(name)
-        if tight:
-            bounds = np.fmin(bounds, self._with_bounds(name, tight)[1])
+        values, bounds = self._with_bounds(name, tight)
         if name != quantity:
             values, bounds = np.hypot(*values), of_magnitude(values, bounds)
         return read_only(np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds)))[()]
@@ -169,7 +168,8 @@ class Certainty(Parameters):
         state = kept.dynamics
         program, leaves = programs.of(state, (name,))
         found = leaves_of(self.places, state)
-        return slopes(program, {path: found[path] for path in by}, state, leaves, self.engine.compiled)[name]
+        backend = Backend("compiled" if self.engine.compiled else "numpy")
+        return slopes(program, {path: found[path] for path in by}, state, leaves, backend)[name]
 
     def _with_bounds(self, name, tight=False):
         """Values of a quantity, and bounds on their errors."""

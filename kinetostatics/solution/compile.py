@@ -1,33 +1,16 @@
 """`compile`: what a scene computes made ready once, and called with other numbers as often as one likes."""
 
-from collections.abc import Mapping
-from types import MappingProxyType
-from typing import Any
-
-import numpy as np
-
-from ..engines import programs
+from ..engines.arithmetic import OF as PRECISIONS
+from ..engines.backends import Backend
 from ..engines.compiled import available, require
-from ..engines.trace import needed
-from ..errors import ParameterError
-from ..machine.friction import PASSES
-from ..machine.loads import may_refuse, refusals
-from ..mechanics import jamming
-from ..mechanics.dynamics import Dynamics
-from ..mechanics.quantities import CHECKS
 from ..numbers import checks
-from ..numbers.elementary import read_only
-from ..numbers.leaves import with_fields
-from .angles import crank_angles, problems
-from .parameters import fixed, is_judged_together, is_zero, leaves_of, require_free, shaping, with_kept
-from .scene import Scene, unchecked
-from .slopes import slopes
-
-FEW = 180
-"""Crank angles around the turn at which friction is looked at."""
+from .program import Program
+from .scene import Scene
 
 
-def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa: A001 - the contract's name
+def compile(  # noqa: A001 - the contract's name
+    scene, quantities, parameters=(), engine=None, *, precision="double", device=None
+) -> Program:
     """Program of some quantities of a scene, to be called with other crank angles and other numbers.
 
     Parameters
@@ -38,8 +21,13 @@ def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa
     parameters : str or sequence of str
         Paths of numbers that are zero in the scene and shall be given other values. What is zero is otherwise absent,
         and costs nothing.
-    engine : "compiled" or "numpy"
-        Unless told, compiled if numba is installed.
+    engine : "compiled", "numpy" or "jax"
+        Unless told, compiled if numba is installed; "jax" (extra `grad`) runs on the accelerator that JAX finds.
+    precision : "double" or "single"
+        Of what is computed at each crank angle, and of the results. Sines of crank angles, tables and all that a design
+        fixes are computed in double even then, and rounded once; `Program.error_bound` says what single costs.
+    device : str, optional
+        For JAX: "cpu", "gpu" or another platform instead of the first that it has.
 
     Returns
     -------
@@ -48,13 +36,13 @@ def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa
     Raises
     ------
     ParameterError
-        The scene has no such parameter.
+        The scene has no such parameter, or JAX no such device.
     QuantityError
         The mechanism has no such quantity; the message lists those it has.
     NotGivenError
         A group or load of your own does more than arithmetic with sin, cos and sqrt, so it cannot be recorded.
     MissingLibraryError
-        ``engine="compiled"`` without numba.
+        ``engine="compiled"`` without numba, or ``engine="jax"`` without JAX.
 
     Examples
     --------
@@ -65,6 +53,8 @@ def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa
     14.875291
     >>> round(float(program(0.5, {"slider.mass": 2.0})["balancing_torque"]), 6)
     29.750582
+    >>> ks.compile(program.scene, "balancing_torque", engine="numpy", precision="single")(0.5)["balancing_torque"].dtype
+    dtype('float32')
     """
     names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     checks.require(
@@ -72,239 +62,20 @@ def compile(scene, quantities, parameters=(), engine=None) -> "Program":  # noqa
         None if isinstance(scene, Scene) else f"scene must be a Scene, as ks.Scene(...), got {checks.shown(scene)}",
         None if names else "no quantities are asked for",
         *(checks.quantity(name) for name in names),
-        None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
+        None if engine is None else checks.choice("engine", engine, ("compiled", "numpy", "jax")),
+        checks.choice("precision", precision, tuple(PRECISIONS)),
+        None if device is None else _device_problem(device, engine),
     )
     if engine == "compiled":
         require()
     kept = (parameters,) if isinstance(parameters, str) else tuple(parameters)
-    return Program(scene, names, kept, engine != "numpy" and available())
+    backend = Backend(engine or ("compiled" if available() else "numpy"), precision, device)
+    backend.device  # noqa: B018  refuses one that is not there
+    return Program(scene, names, kept, backend)
 
 
-class Program:
-    """Quantities of a scene as a program of crank angle and parameters; made by `compile`.
-
-    Attributes
-    ----------
-    scene : Scene
-    quantities : tuple of str
-    parameters : mapping of path to value
-        Every number that can be given another value, as in the scene.
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> scene = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5)
-    >>> program = ks.compile(scene, ("balancing_torque", "O"))
-    >>> sorted(program.parameters)
-    ['coupler_length', 'crank_length', 'crank_speed', 'slider.mass']
-    >>> program(1.0, {"slider.mass": 620.0})["O"].shape
-    (2,)
-    """
-
-    def __init__(self, scene, quantities, kept, compiled):
-        self.scene, self.quantities, self._compiled, self._kept = scene, quantities, compiled, kept
-        places = scene.places
-        checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
-        if scene.friction.acting:
-            scene = _with_enough_passes(scene)
-        for path in kept:
-            if is_zero(places[path].value(scene)):
-                scene = with_kept(scene, places[path].steps)
-        state = Dynamics(scene.mechanism, np.zeros(1), *_drive(scene))
-        self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
-        self._program, self._leaves = programs.of(state, quantities)
-        self._friction: Any = programs.of(state, CHECKS)[0] if scene.friction.acting else None
-        self._numbers = {path: (number, places[path].rule) for path, number in leaves_of(places, state).items()}
-        self._absent = tuple(path for path in places if path not in self._numbers)
-        self._doors = {path for path in self._numbers if is_judged_together(scene, places[path].steps)}
-        self._passages = scene.mechanism.passages
-        groups = scene.mechanism.groups
-        self._lengths = shaping(places, scene.mechanism, [group for group in groups if group.through])
-        self._fixed = fixed(places, scene.mechanism)
-        values = {path: self._leaves.numbers[number] for path, (number, _) in self._numbers.items()}
-        self.parameters: Mapping[str, Any] = MappingProxyType(values)
-
-    def __repr__(self):
-        names = ", ".join(self.parameters)
-        return f"<Program: {', '.join(self.quantities)} of {self.scene.mechanism.name}; parameters {names}>"
-
-    def __reduce__(self):
-        return Program, (self.scene, self.quantities, self._kept, self._compiled)
-
-    def __call__(self, angle, values=MappingProxyType({})):
-        """Values by quantity.
-
-        Parameters
-        ----------
-        angle : float or array (..., N)
-            Crank angles, rad; tables over the crank angles of the scene, a crank speed for instance, must fit them.
-        values : mapping of path to float or array (designs, 1)
-            Other numbers, in SI, checked as when a scene is made; all others stay.
-
-        Returns
-        -------
-        dict of str to array
-            As the solution gives them: (..., N), vectors (2, ..., N); NaN where the mechanism does not close.
-
-        Raises
-        ------
-        ParameterError
-            No machine has such a value, or there is no such parameter: what is zero in the scene is absent unless
-            `compile` was told to keep it.
-
-        Warns
-        -----
-        ConditionWarning
-            With these values friction is not found to rounding: compile a scene that has them.
-        """
-        state, leaves = self._at(angle, values)
-        if values and self._friction is not None:
-            self._look_at_friction(state, leaves, values)
-        rows = self._program.run(state, leaves, self._compiled)
-        return self._program.recording.named(read_only(rows))
-
-    def unlooked(self, angle, values, compiled):
-        """The same, compiled or not, where the caller sees to it that values are right, and looks at friction."""
-        numbers = list(self._leaves.numbers)
-        for path, value in values.items():
-            numbers[self._numbers[path][0]] = value
-        if type(angle) is float and not (self._refuses or self._program.recording.tables):
-            return self._program.recording.named(self._program.at_one(angle, numbers, compiled))
-        state, leaves = self._state(np.asarray(angle), values, self._leaves.with_numbers(numbers))
-        return self._program.recording.named(self._program.run(state, leaves, compiled))
-
-    def derivatives(self, angle, by=None, values=MappingProxyType({})):
-        """Exact derivatives of every quantity by parameters, from the recorded arithmetic.
-
-        Parameters
-        ----------
-        angle, values
-            As for a call.
-        by : sequence of str, optional
-            Paths; all parameters unless told, but for lengths where change points are passed.
-
-        Returns
-        -------
-        dict of str to dict of path to array
-            Shaped as the quantities, in units of the quantity by units of the parameter; NaN where these are.
-
-        Raises
-        ------
-        ParameterError
-            There is no such parameter, or it is a length of a mechanism that passes change points: any other length
-            makes another kind of it.
-        NotGivenError
-            A cam or load of your own does more than arithmetic with sin, cos and sqrt.
-        """
-        every = tuple(path for path in self.parameters if path not in self._fixed)
-        names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
-        checks.require("program", None if names else "by names no parameter to derive by")
-        self._require_known(names)
-        require_free("program", self.scene.mechanism, names, self._fixed)
-        state, leaves = self._at(angle, values)
-        by = {path: self._numbers[path][0] for path in names}
-        return slopes(self._program, by, state, leaves, self._compiled)
-
-    def _look_at_friction(self, state, leaves, values):
-        """Refuse a crank at rest, and warn where friction takes more passes than the scene's own numbers do."""
-        checks.require("program", jamming.standing(self.scene.varied(values)))
-        margin, residual = self._friction.run(state, leaves, self._compiled)
-        jamming.warn(state, np.asarray(margin), np.asarray(residual), stacklevel=4)
-
-    @property
-    def unrecorded(self):
-        """What messages call the code of the user's behind the quantities whose dependence is not recorded."""
-        return self._program.unrecorded
-
-    def depends_on(self, path):
-        """Whether any of the quantities depends on a parameter, as far as is recorded; see `unrecorded`."""
-        self._require_known((path,))
-        place, _ = self._numbers[path]
-        return self._program.recording.parameters[place] in set(needed(self._program.outputs))
-
-    def _at(self, angle, values):
-        """The scene at crank angles, with its leaves."""
-        angle = np.array(angle) if type(angle) is float else crank_angles(angle, "program")
-        wrong = problems(angle)
-        if wrong:
-            checks.require("program", wrong)
-        if values and not isinstance(values, Mapping):
-            checks.require("program", f"values must be a dict of parameter to number, got {checks.shown(values)}")
-        return self._state(
-            angle, values, self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
-        )
-
-    def _state(self, angle, values, leaves):
-        shape = _shape(angle, leaves)
-        if self._refuses or self._program.recording.tables:
-            scene = self.scene.varied(values) if values else self.scene
-            state = Dynamics(scene.mechanism, angle, *_drive(scene))
-            checks.require("program", *refusals(state))
-            return state, leaves
-        state = object.__new__(Dynamics)
-        vars(state).update(self._fields, crank_angle=angle, shape=shape)
-        return state, leaves
-
-    def _numbers_with(self, values):
-        """All numbers, in their order, with some values in place of their own."""
-        self._require_known(values)
-        numbers, wrong = list(self._leaves.numbers), []
-        for path, value in values.items():
-            number, rule = self._numbers[path]
-            found = rule.quick(value)
-            if found is checks.UNSURE:
-                found, problem = rule.taken(value, path)
-                wrong.append(problem)
-            numbers[number] = found
-        if wrong:
-            checks.require("program", *wrong)
-        if not self._doors.isdisjoint(values):
-            self.scene.varied(values)
-        if not self._lengths.isdisjoint(values):
-            self._require_same_kind(values)
-        return numbers
-
-    def _require_same_kind(self, values):
-        """Refuse lengths that make change points, or take them away: the arithmetic is that of one kind."""
-        name, before = self.scene.mechanism.name, self._passages
-        if self.scene.varied(values).mechanism.passages != before:
-            given = ", ".join(sorted(self._lengths.intersection(values)))
-            raise ParameterError(
-                f"program: {name} with other values of {given} is of another kind (which change points it passes), "
-                "whose arithmetic is another: change lengths together so that it stays, or compile a program of it"
-            )
-
-    def _require_known(self, names):
-        if all(path in self._numbers for path in names):
-            return
-        for path in names:
-            if path in self._absent:
-                raise ParameterError(
-                    f"program: {path} is zero in the scene and so left out; keep it by "
-                    f'compile(..., parameters=("{path}",))'
-                )
-        checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
-
-
-def _with_enough_passes(scene):
-    """The scene with as many passes over its friction as it takes around the turn."""
-    if any(np.ndim(leaf) and np.shape(leaf)[-1] > 1 for leaf in (scene.crank_speed, scene.crank_acceleration)):
-        return with_fields(scene, friction=with_fields(scene.friction, passes=PASSES[1]))
-    with np.errstate(all="ignore"):
-        found = jamming.settled(unchecked(scene, np.linspace(0.0, scene.period, FEW, endpoint=False), "numpy"))
-    return with_fields(scene, friction=found.friction)
-
-
-def _drive(scene):
-    return scene.crank_speed, scene.crank_acceleration, scene.loads, scene.friction
-
-
-def _shape(angle, leaves):
-    """Shape (..., N) of scalar results; refused where tables over the crank angles, or designs, do not fit them."""
-    try:
-        return leaves.shape(angle.shape)
-    except ValueError:
-        arrays = (leaf for leaf in (*leaves.numbers, *leaves.tables) if type(leaf) is not float)
-        given = {f"array {number} of the scene": array.shape for number, array in enumerate(arrays, 1)}
-        checks.require("program", checks.fitting(crank_angle=angle.shape, **given))
-        raise
+def _device_problem(device, engine):
+    """What is wrong with a device that is asked for, but that it is not there; or None."""
+    if engine != "jax":
+        return 'device is for engine="jax"; all others run on the processor'
+    return None if isinstance(device, str) else f'device must be a text as "gpu", got {checks.shown(device)}'

@@ -5,7 +5,7 @@ import numpy as np
 from ..numbers.elementary import read_only
 
 
-def slopes(program, by, state, leaves, compiled):
+def slopes(program, by, state, leaves, backend):
     """Derivatives by quantity and by path, shaped as the quantities; NaN where these are.
 
     Parameters
@@ -15,9 +15,9 @@ def slopes(program, by, state, leaves, compiled):
         Which leaf each number is.
     state : Dynamics
     leaves : Leaves
-    compiled : bool
+    backend : engines.backends.Backend
     """
-    rows = program.by_parameters(tuple(by.values())).run(state, leaves, compiled)
+    rows = backend.run(program.by_parameters(tuple(by.values())), state, leaves)
     count = len(program.outputs)
     gaps, found = np.isnan(rows[:count]), rows[count:].reshape(count, len(by), *state.shape)
     if gaps.any():

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..machine.builders import cam_crank_slider, crank_slider, four_bar
+from ..machine.builders import cam_crank_slider, crank_slider, four_bar, slotted_lever
 from ..machine.cams import Circle, CosineLaw
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
@@ -134,6 +134,20 @@ def _change_point(distance):
     return _solution(mechanism, np.concatenate([_before(0.0, distance), -_before(0.0, distance)]))
 
 
+def _just_turning(distance):
+    """Crank and ground in one line are a little shorter than coupler and rocker: the crank only just gets through."""
+    crank, coupler, ground = 0.3, 0.45, 0.7
+    mechanism = _chain_unit(crank, coupler, (crank + ground - coupler) * (1.0 + distance), (ground, 0.0))
+    return _solution(mechanism, math.pi + math.sqrt(distance) * np.linspace(-2.0, 2.0, 21))
+
+
+def _just_sliding(distance):
+    """The block of a slotted lever all but reaches the foot of the pivot on the slot."""
+    lever, block = Link(3.0, 0.2, 5e-2), Link(1.0)
+    mechanism = slotted_lever(0.1, pivot=(0.2, 0.0), offset=0.1 * (1.0 - distance), lever=lever, block=block)
+    return _solution(mechanism, math.sqrt(distance) * np.linspace(-2.0, 2.0, 22))
+
+
 def _folding(crank, coupler, rocker, frame, *angles):
     """Scene by distance of a four-bar before its links come to lie in one line at these crank angles, and beyond."""
 
@@ -179,11 +193,12 @@ def _nearly_balanced(share):
 
 
 _DISTANCE = "distance from it [rad]"
+_EXCESS = "excess of its length [1]"
 _SCALES = tuple(10.0**k for k in range(-9, 10))
 PLACES = (
     Place("dead centres, inclined guide", _DISTANCE, DISTANCES, _dead_centre, "slider_position"),
     Place("limit position", _DISTANCE, DISTANCES, _limit_position, "O"),
-    Place("coupler barely long enough", "excess of its length [1]", DISTANCES, _barely_long_enough, "O"),
+    Place("coupler barely long enough", _EXCESS, DISTANCES, _barely_long_enough, "O"),
     Place("singular angle of the cosine cam", _DISTANCE, DISTANCES, _singular_angle, "cam_force"),
     Place(
         "pressure angle toward 90 deg",
@@ -194,6 +209,8 @@ PLACES = (
     ),
     Place("four-bar toggle", _DISTANCE, DISTANCES, _toggle, "O"),
     Place("four-bar change point", _DISTANCE, DISTANCES, _change_point, "O"),
+    Place("four-bar that only just turns", _EXCESS, DISTANCES[2:], _just_turning, "O"),
+    Place("slotted lever that only just turns", _EXCESS, DISTANCES[2:], _just_sliding, "O"),
     Place("rhombus", _DISTANCE, DISTANCES, _folding(0.3, 0.3, 0.3, 0.3, 0.0, math.pi), "O"),
     Place("kite", _DISTANCE, DISTANCES, _folding(0.2, 0.2, 0.5, 0.5, math.pi), "O"),
     Place("kite, A passing O2", _DISTANCE, DISTANCES, _folding(0.2, 0.5, 0.5, 0.2, 0.0), "balancing_torque"),

@@ -64,8 +64,10 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
     -------
     pandas.DataFrame
         A row for each method and setting: time [ns/angle], largest error over the crank angles relative to the
-        quantity's largest value, the bound that the method itself proves for that, NaN where it proves none, and for
-        what a method cannot give the reason, with NaN for all three: a motion that is too coarse for a table is one.
+        A row for each method and setting: time [ns/angle], largest error over the crank angles relative to the
+        quantity's largest value, the bound that the method itself proves for that, NaN where it proves none, the device
+        that computes, and for what a method cannot give the reason, with NaN for the three numbers: a motion that is
+        too coarse for a table is one.
 
     Raises
     ------
@@ -96,10 +98,11 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
             try:
                 run = method.prepare(solution, quantity, setting)
                 row |= {"error": float(np.max(relative_errors(run(), reference))), "not given": ""}
+                row["device"] = method.device() if method.device else "cpu"
                 row["bound"] = np.max(method.bound(solution, quantity)) / reference.largest if method.bound else np.nan
                 runs[len(rows)] = run
             except KinetostaticsError as why:
-                row |= {"error": np.nan, "bound": np.nan, "not given": str(why)}
+                row |= {"error": np.nan, "bound": np.nan, "device": "", "not given": str(why)}
             rows.append(row)
     known = declared(solution, quantity)
     table = pd.DataFrame(rows).assign(

@@ -17,7 +17,7 @@ from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
 from ..numbers.elementary import UNIT
 from .methods import METHODS
-from .methods.certified import enclosure, relative_errors
+from .methods.certified import differences, enclosure, relative_errors
 from .methods.engines import proven
 from .places import PLACES, Place
 from .timing import circumstances
@@ -30,7 +30,7 @@ METHOD_SETTINGS = {
     "ours, NumPy": None,
     "ours, compiled": None,
     "ours, torque by powers": None,
-    "single precision": None,
+    "float32 crank angles": None,
     "papers' formulas": None,
     "SymPy Kane, lambdified": None,
     "Newton iteration, global system": 6,
@@ -58,9 +58,9 @@ def study(places=None, methods=None, progress=None):
     -------
     pandas.DataFrame
         A row for each place, number and method: largest error over the crank angles, relative to the quantity's
-        largest value; the largest condition; the largest bound that `Solution.error_bound` proves for the library's own
-        values, infinite where it proves none; how many angles lose digits, flip to the other assembly, are NaN; what
-        was raised; why it is not given.
+        largest value; the largest condition; what one rounding of the crank angle makes of it; the largest bound that
+        `Solution.error_bound` proves for the library's own values, infinite where it proves none; how many angles lose
+        digits, flip to the other assembly, are NaN; what was raised; why it is not given.
 
     Raises
     ------
@@ -95,6 +95,7 @@ def _at(place, number, methods):
         bound = UNIT * _within_a_turn(solution).condition_of(place.quantity)
         other = _other_assembly(solution, place.quantity)
         largest = float(np.max(proven(solution, place.quantity))) / reference.largest
+        rounding = _of_one_rounding(solution, place.quantity, reference)
     known = declared(solution, place.quantity)
     common = {"place": place.name, "axis": place.axis, "number": number, "quantity": place.quantity}
     common |= {"label": known.label, "unit": known.unit}
@@ -102,6 +103,7 @@ def _at(place, number, methods):
         {
             **common,
             "condition": np.max(bound) / UNIT,
+            "angle rounding": rounding,
             "bound": largest,
             **_behaviour(method, solution, place.quantity, reference, bound, other),
         }
@@ -112,6 +114,20 @@ def _at(place, number, methods):
 def _within_a_turn(solution):
     """The same at crank angles below a turn: the turns before are exact, nothing of them need be lost."""
     return solution.at(np.fmod(solution.crank_angle, 2 * math.pi))
+
+
+def _of_one_rounding(solution, quantity, reference):
+    """Largest change of the quantity by half a unit in the last place of the crank angle, over its largest value.
+
+    Infinite where the next number is beyond a limit position.
+    """
+    for way in (-math.inf, math.inf):
+        try:
+            moved = enclosure(solution.at(np.nextafter(solution.crank_angle, way)), quantity, digits=20)
+        except NotGivenError:
+            continue
+        return 0.5 * float(differences(moved, reference).max())
+    return math.inf
 
 
 def _other_assembly(solution, quantity):

@@ -74,6 +74,8 @@ def work_precision(table, ax=None, like=None):
         if len(rows):
             setting = rows["setting"].iloc[0]
             text = f"{name} ({setting})" if setting else name
+            device = rows["device"].iloc[0] if "device" in rows else "cpu"
+            text += "" if device == "cpu" else f", on {device}"
             ax.plot(rows[time], np.maximum(rows["error"], EXACT), label=text, **style)
             proven = rows.dropna(subset=["bound"]) if "bound" in rows else rows.assign(bound=np.nan)[:0]
             ax.vlines(proven[time], np.maximum(proven["error"], EXACT), proven["bound"], color=style["color"], lw=1.0)
@@ -89,7 +91,8 @@ def work_precision(table, ax=None, like=None):
 def error_by_distance(table, ax=None):
     """Error of every method over the number that leads to a place, logarithmic.
 
-    Dashed is the condition times rounding, dotted the bound that the library proves for its own values.
+    Dashed is the condition times rounding, dashed and dotted what one rounding of the crank angle makes, dotted the
+    bound that the library proves for its own values.
 
     Errors of a thousand times the largest value and more, and NaN, lie on the upper edge.
 
@@ -127,6 +130,9 @@ def error_by_distance(table, ax=None):
         "k--",
         label="condition x rounding",
     )
+    if "angle rounding" in problem:
+        shown = problem["angle rounding"].clip(EXACT, USELESS)
+        ax.plot(problem["number"], shown, "-.", color="0.5", label="one rounding of the crank angle")
     if "bound" in problem:
         ax.plot(problem["number"], problem["bound"].clip(EXACT, USELESS), "k:", label="proven bound of ours")
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 3 * USELESS), xlabel=table["axis"].iloc[0])

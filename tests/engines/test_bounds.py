@@ -1,5 +1,8 @@
 """Bounds on rounding errors: never less than the true error, and not much more."""
 
+import math
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,12 +10,16 @@ import kinetostatics as ks
 from kinetostatics import ConditionWarning
 from kinetostatics.engines import bounds, loops, programs
 from kinetostatics.engines.compiled import available
+from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.elementary import UNIT, total
 from kinetostatics.studies.methods.enclosures import enclosure
+from support import bounded as bounded_machines
 from support.bounded import FAMILIES, errors, solution
 from support.every import every
 
+FINE_TURN = np.linspace(0.0, 2 * np.pi, 180, endpoint=False) + 0.01
+"""Angles enough for the worst error of a turn."""
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False)
 
 
@@ -45,7 +52,7 @@ def test_no_value_of_random_machines_is_off_by_more_than_its_bound(flint, family
 )
 def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, variant, most):
     scene = ks.load_case(case).variants[variant].scene
-    s, bound = bounded(scene, "balancing_torque", TURN + 0.01)
+    s, bound = bounded(scene, "balancing_torque", FINE_TURN)
     exact = enclosure(s, "balancing_torque").exact[0]
     error = np.array([abs(float(truth - float(value))) for truth, value in zip(exact, s.balancing_torque, strict=True)])
     assert np.all(error <= bound)
@@ -57,8 +64,7 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, va
 
 def bounds_of(graph, outputs, values, tight=False):
     """Bounds of outputs at some values of the parameters of a graph."""
-    own = bounds.Bounds(graph)
-    found = tuple(map(own.tight, outputs)) if tight else own.of(outputs)
+    found = [tight_bound(graph, {}, part) for part in outputs] if tight else bounds.Bounds(graph).of(outputs)
     return programs.Program(None, found)._by_numbers(np.zeros(1), values, (1,))[:, 0]
 
 
@@ -86,6 +92,51 @@ def test_a_root_of_what_is_proven_to_be_negative_has_no_bound():
     square = one * one - other * other
     (bound,) = bounds_of(graph, [square.forgiving_root(unit)], [1.0, 1.0 + 6 * UNIT, 2.0])
     assert not np.isfinite(bound)
+
+
+def test_a_root_of_what_is_negative_for_sure_has_no_bound():
+    graph = Graph()
+    one, other, unit = map(graph.parameter, range(3))
+    roots = [(one * other).forgiving_root(unit), (other * other).forgiving_root(unit)]
+    negative, positive = bounds_of(graph, roots, [1e-20, -1.0, 2.0])
+    assert np.isnan(negative)
+    assert positive > 0.0
+
+
+def test_a_product_with_a_reciprocal_is_bounded_as_the_quotient():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    below = one + other - 1.9999
+    outputs = one * (1.0 / below), one / below
+    product, quotient = bounds_of(graph, outputs, [1.0, 1.0])
+    assert quotient < product < 1.001 * quotient  # one rounding more
+    huge = 1.0 / (1e30 * one * 1e30) / 1e250  # loses digits as too small for a double
+    (bound,) = bounds_of(graph, [huge * other], [1.0, 1.0])
+    assert bound >= 5e-324
+
+
+def test_rows_of_tables_may_be_of_any_size():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    found = bounds.Bounds(graph).of([one * other * graph.row(0)])
+    (bound,) = programs.Program(None, found)._plain(0.0, 0.0, 1.0, [1e-170, 1e-170], [1e200])
+    assert bound >= 1e-140  # computed 0
+
+
+def test_products_with_the_number_zero_count_for_nothing():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    rounded = one + other
+    (bound,) = bounds_of(graph, [one * other + 0.0 * rounded], [3.0, 0.7])
+    assert bound == pytest.approx(2.1 * UNIT, rel=1e-8, abs=0.0)
+
+
+def test_a_bound_that_is_too_small_is_found(flint, monkeypatch):
+    made = next(found for found in (solution("four-bar", seed) for seed in range(9)) if found is not None)
+    values, proven = bounded_machines.NUMPY.with_bounds(made.dynamics, ("O",))
+    too_small = SimpleNamespace(with_bounds=lambda *given: (values, {"O": 1e-4 * proven["O"]}))
+    monkeypatch.setitem(bounded_machines.ENGINES, "numpy", too_small)
+    assert errors(made, ("O",)).wrong
 
 
 def test_what_a_factor_of_two_loses_of_the_smallest_numbers_is_bounded():
@@ -124,6 +175,21 @@ def test_what_is_too_small_for_a_double_is_bounded_too():
     assert 0.0 < bound[0] < 1e-270
 
 
+def test_bounds_on_the_steep_flank_of_a_table_are_not_much_more_than_its_worst_error(flint):
+    scene = ks.load_case("shaper").variants["cutting"].scene
+    made = scene.solve(np.radians(np.linspace(177.3, 178.3, 60)))
+    (worst, most), (_, tightest) = (_worst(made, "O2", tight) for tight in (False, True))
+    assert most < 150 * worst
+    assert tightest < 20 * worst
+
+
+def _worst(solution, quantity, tight):
+    """Largest error and largest bound of a vector."""
+    pairs = zip(enclosure(solution, quantity).exact, solution.reaction(quantity), strict=True)
+    found = [[float(truth - float(own)) for truth, own in zip(*pair, strict=True)] for pair in pairs]
+    return np.max(np.hypot(*found)), np.max(np.hypot(*solution.error_bound(quantity, tight)))
+
+
 @every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")])
 def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(flint, function, exact):
     random = np.random.default_rng(1)
@@ -137,3 +203,14 @@ def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(f
         truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
         error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
     assert max(error) <= bounds.ULP.get(function, bounds.ULP["atan"]) * UNIT
+
+
+def test_a_total_of_given_numbers_is_bounded_by_one_rounding_of_itself():
+    graph = Graph()
+    parts = [graph.parameter(place) for place in range(4)]
+    values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
+    whole = math.fsum(values)
+    bound, carried = bounds_of(graph, (total(*parts), total(parts[0] * parts[1], parts[2], parts[3])), values)
+    assert 1e-17 < abs(whole) < 1e-16
+    assert abs(whole) * UNIT <= bound < 1.001 * abs(whole) * UNIT
+    assert carried == pytest.approx(0.18 * UNIT + abs(0.18 - 0.9) * UNIT, rel=1e-8)

@@ -13,9 +13,9 @@ from support.every import every
 VALUES = (-1.0, -ROUNDING / 2, 0.0, 1e-300, 0.3, 2.0)
 
 
-@every("name", ["sin", "cos", "atan", "sqrt", "abs", "root", "divisor", "fma"])
+@every("name", ["sin", "cos", "atan", "sqrt", "abs", "root", "divisor", "fma", "total"])
 def test_plain_numbers_and_arrays_agree(name):
-    count = {"root": 1, "divisor": 1, "fma": 2}.get(name, 0)
+    count = {"root": 1, "divisor": 1, "fma": 2, "total": 3}.get(name, 0)
     with np.errstate(invalid="ignore"):
         arrays = BY_DESIGN[name](np.array(VALUES), *[1.0] * count)
     for value, found in zip(VALUES, arrays, strict=True):
@@ -36,3 +36,8 @@ def test_memory_given_receives_the_same(operation):
 def test_a_root_forgives_rounding_only():
     assert PLAIN["root"](-ROUNDING / 2, 1.0) == 0.0
     assert math.isnan(PLAIN["root"](-3 * ROUNDING, 1.0))
+
+
+def test_a_total_of_plain_numbers_too_large_is_infinite_or_nothing():
+    assert PLAIN["total"](1e308, 1e308, -1.0, 0.0) != PLAIN["total"](1.0, 2.0, 3.0, 4.0) == 10.0
+    assert not math.isfinite(PLAIN["total"](math.inf, -math.inf, 0.0, 0.0))

@@ -9,6 +9,7 @@ import kinetostatics as ks
 from kinetostatics.engines import programs, writing
 from kinetostatics.engines.record import Recording
 from kinetostatics.engines.trace import Graph
+from kinetostatics.numbers import elementary
 
 ANGLE = np.linspace(0.0, 6.0, 9)
 S = ks.solve(ks.crank_slider(0.1, 0.4, slider=ks.Link(3.0)), ANGLE, crank_speed=5.0, loads=ks.Gravity())
@@ -71,3 +72,16 @@ def test_an_output_that_is_a_sine_of_the_crank_angle_itself_is_computed_too():
     angles = np.linspace(0.0, 6.0, 50)
     found = program.by_numpy(angles, [2.0], (), angles.shape)
     np.testing.assert_array_equal(found, [np.sin(angles), 2.0 * np.cos(angles), np.cos(angles), angles])
+
+
+@pytest.mark.slow_start
+def test_a_total_loses_nothing_in_any_engine():
+    pytest.importorskip("numba")
+    graph = Graph()
+    parts = [graph.parameter(place) for place in range(4)]
+    outputs = (elementary.total(*parts), elementary.total(parts[0], graph.angle(), -parts[3]))
+    values, angles = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001], np.array([0.1, 0.7])
+    program = programs.Program(Recording((), outputs, (), (), tuple(parts), (), graph))
+    wanted = [[math.fsum(values)] * 2, [math.fsum((0.3, angle, -values[3])) for angle in angles]]
+    for compute in (program.by_numpy, program.by_loop):
+        np.testing.assert_array_equal(compute(angles, values, (), angles.shape), wanted)

@@ -450,3 +450,20 @@ def test_angles_that_lose_half_their_digits_are_those_whose_condition_says_so_in
     whole = s.condition.ravel()
     assert np.array_equal(points, np.flatnonzero(whole > HALF))
     np.testing.assert_array_equal(condition, whole[points])
+
+
+def test_a_slotted_lever_is_ordinary_at_its_dead_centres():
+    """There it stands still for an instant, and forces are what they are nearby."""
+    lever = ks.slotted_lever(0.1, pivot=(0.0, -0.2), lever=ks.Link(3.0, 0.2, 0.05), block=ks.Link(1.0))
+    dead = -np.arcsin(0.5) + np.array([-1e-3, -1e-9, 0.0, 1e-9, 1e-3])
+    s = ks.solve(lever, dead, crank_speed=9.0, loads=ks.Gravity())
+    assert np.all(s.condition < 100.0)
+    assert np.all(s.condition > 1.0)
+
+
+def test_a_cylinder_and_a_yoke_are_ordinary_where_they_stand_still():
+    swinging = ks.Mechanism("pump", ks.Crank(0.1), (ks.CylinderGroup((0.4, 0.0), cylinder=ks.Link(3.0, 0.1, 0.02)),))
+    yoke = ks.Mechanism("yoke", ks.Crank(0.1), (ks.YokeGroup(ks.Guide.at(0.0), slider=ks.Link(3.0)),))
+    still = ks.solve(swinging, [np.arccos(0.25), np.arccos(0.25) + 1e-9], crank_speed=9.0)
+    assert np.all(still.condition < 200.0)
+    assert np.all(ks.solve(yoke, [0.0, 1e-9, 1.0], crank_speed=9.0).condition < 100.0)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from kinetostatics.numbers import elementary
-from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, root, sign, stack
+from kinetostatics.numbers.duals import Dual
+from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, root, sign, stack, total
 
 
 @pytest.mark.parametrize("name", ["sin", "cos", "sqrt"])
@@ -46,3 +47,25 @@ def test_stacks_are_arrays_and_locked_arrays_cannot_be_written_to():
     assert stack([np.ones(2), np.zeros(2)]).tolist() == [[1.0, 1.0], [0.0, 0.0]]
     with pytest.raises(ValueError, match="read-only"):
         read_only(np.ones(2))[0] = 2.0
+
+
+def cancelling(count):
+    """Four numbers of any sizes each, whose sum is next to nothing."""
+    random = np.random.default_rng(5)
+    one, two, three = random.uniform(0.1, 1.0, (3, count)) * 2.0 ** random.integers(-8, 9, (3, count))
+    return one, two, -three, -(one + two - three) * (1.0 + 2.0 ** -random.integers(20, 60, count))
+
+
+def test_a_total_is_rounded_once_whatever_cancels():
+    terms = cancelling(200)
+    exact = [math.fsum(row) for row in zip(*terms, strict=True)]
+    np.testing.assert_allclose(total(*terms), exact, rtol=2.0**-52, atol=0.0)
+    assert np.abs(sum(terms) - exact).max() > 1e-17
+    assert total(0.1, 0.2, -0.3) == math.fsum((0.1, 0.2, -0.3))
+    assert total(np.longdouble(2.0), 1.0) == 3.0
+
+
+def test_a_total_has_the_slopes_of_a_sum():
+    found = total(Dual(np.array(0.1), np.array([[1.0], [0.0]])), 0.2, -Dual(np.array(0.3), np.array([[0.0], [2.0]])))
+    assert found.value == math.fsum((0.1, 0.2, -0.3))
+    np.testing.assert_array_equal(found.slopes, [[1.0], [-2.0]])

@@ -4,6 +4,7 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.engines import programs
+from kinetostatics.engines.backends import Backend
 from kinetostatics.solution.parameters import leaves_of
 from kinetostatics.solution.slopes import slopes
 
@@ -15,7 +16,9 @@ def test_slopes_stand_by_quantity_and_path_and_are_missing_in_gaps():
     state = SCENE.unsolved(TURN).dynamics
     program, leaves = programs.of(state, ("balancing_torque", "O"))
     places = leaves_of(SCENE.places, state)
-    found = slopes(program, {path: places[path] for path in ("crank_length", "slider.mass")}, state, leaves, False)
+    found = slopes(
+        program, {path: places[path] for path in ("crank_length", "slider.mass")}, state, leaves, Backend("numpy")
+    )
     assert found["O"]["slider.mass"].shape == (2, 24)
     gaps = np.isnan(SCENE.solve(TURN, on_gap="nan").balancing_torque)
     assert gaps.any()

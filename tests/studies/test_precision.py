@@ -30,7 +30,7 @@ KINDS = [
     ("mower_drive", "unbalanced"),
     ("chain_unit", "rho-0.5"),
 ]
-OURS = [method for method in METHODS if method.ours]
+OURS = [method for method in METHODS if method.ours and method.precision == "double"]
 OTHERS = [method for method in METHODS if not method.ours]
 TIME = "time [ns/angle]"
 
@@ -64,6 +64,18 @@ def test_ours_lie_within_5e_15_and_are_marked_as_ours(torque):
     ours = torque[torque["ours"]]
     assert list(ours["method"]) == ["ours, NumPy", "ours, torque by powers"]
     assert np.all(ours["error"] < 5e-15)
+
+
+def test_single_precision_has_rows_with_its_errors_bounds_and_the_device(case):
+    """What is compiled has the bits of NumPy, and its own tests."""
+    single = [method for method in METHODS if method.precision == "single" and "compiled" not in method.name]
+    assert [method.name for method in single] == ["ours, NumPy, single precision", "ours, JAX, single precision"]
+    table = precision.study(case.solve("plain", 12), methods=single, repeats=1)
+    given = table[table["not given"] == ""]
+    assert len(given) >= 1
+    assert np.all((given["error"] > 1e-8) & (given["error"] <= given["bound"]) & (given["bound"] < 1e-5))
+    assert given["device"].iloc[0] == "cpu"
+    assert np.all(given["device"] != "")
 
 
 # The front

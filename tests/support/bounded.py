@@ -1,21 +1,26 @@
 """Random machines of every kind, near every singular place and of every size, and their errors beside proven bounds."""
 
 import warnings
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import kinetostatics as ks
+from kinetostatics.engines.engines import COMPILED, NUMPY
 from kinetostatics.errors import KinetostaticsError
+from kinetostatics.machine.guide import Guide
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.numbers.leaves import with_fields
+from kinetostatics.numbers.leaves import mapped
 from kinetostatics.studies.methods.enclosures import on_arb
 from kinetostatics.studies.places import PLACES
 
 from . import chains, loads
+from .shipped import shipped
 
 BITS = 200
-FAMILIES = "chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing"
+FAMILIES = "chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped"
+CASES = "sawframe_2r63", "chain_unit", "toggle_press", "mower_drive", "v_twin"
+ENGINES: dict[str, Any] = {"numpy": NUMPY, "compiled": COMPILED}
 
 
 class Found(NamedTuple):
@@ -27,45 +32,58 @@ class Found(NamedTuple):
     share: float
 
 
-def solution(family, seed, engine="numpy"):
-    """A random solution of a family at a few crank angles, or None if it has none."""
+def solution(family, seed, count=5):
+    """A random solution of a family at some crank angles, or None if it has none."""
     rng = np.random.default_rng([FAMILIES.index(family), seed])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            return _made(family, rng, engine)
+            return _made(family, rng, count)
         except KinetostaticsError:
             return None
 
 
-def _made(family, rng, engine):
+def other_numbers(solution, seed, spread=0.02):
+    """A solution of the same structure, each number but those of guides off by a random part of it."""
+    rng = np.random.default_rng(seed)
+
+    def number(value):
+        return value * (1.0 + spread * rng.uniform(-1, 1)) if isinstance(value, float) else value
+
+    parts = solution.mechanism, solution.crank_speed, solution.crank_acceleration, solution.loads, solution.friction
+    return _solved(*(mapped(part, number, {Guide: lambda own: own}) for part in parts), solution.crank_angle)
+
+
+def _solved(mechanism, speed, acceleration, given, friction, angles):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return ks.Scene(mechanism, speed, acceleration, given, friction).solve(angles, on_gap="nan")
+
+
+def _made(family, rng, count):
     if family == "chain":
-        scene, angles = chains.chain(int(rng.integers(1 << 30)), int(rng.integers(1, 5)))
-        return scene.solve(angles, engine=engine, on_gap="nan")
+        scene, (low, *_, high) = chains.chain(int(rng.integers(1 << 30)), int(rng.integers(1, 5)))
+        return scene.solve(rng.uniform(low, high, count), on_gap="nan")
     if family == "place":
         place = PLACES[rng.integers(len(PLACES))]
         found = place.scene(place.numbers[rng.integers(len(place.numbers))])
-        near = rng.choice(found.crank_angle.ravel(), 5)
-        return ks.solve(
-            found.mechanism,
-            near,
-            crank_speed=found.crank_speed,
-            loads=found.loads,
-            engine=engine,
-            on_gap="nan",
-        )
+        angles = rng.choice(found.crank_angle.ravel(), count)
+        return _solved(found.mechanism, found.crank_speed, 0.0, found.loads, found.friction, angles)
+    if family == "shipped":
+        variants = shipped(str(rng.choice(CASES))).variants
+        scene = variants[str(rng.choice(list(variants)))].scene
+        return scene.solve(rng.uniform(-7, 7, count), on_gap="nan")
     size, mass = (10.0 ** rng.uniform(-6, 6), 10.0 ** rng.uniform(-12, 12)) if family == "scaled" else (1.0, 1.0)
     mechanism = _mechanism("plain" if family in ("scaled", "rubbing") else family, rng, size, mass)
     made = [loads.load(rng, kind, mechanism, size) for kind in rng.choice(loads.KINDS, 3)]
     friction = {"O": ks.PinFriction(rng.uniform(0, 0.1), 0.01 * size)} if family == "rubbing" else {}
     return ks.solve(
         mechanism,
-        rng.uniform(-1, 1, 5) * 10.0 ** rng.uniform(-9, 4, 5),
+        rng.uniform(-1, 1, count) * 10.0 ** rng.uniform(-9, 4, count),
         crank_speed=rng.uniform(-50, 50),
         crank_acceleration=rng.uniform(-50, 50),
         loads=[load for load in made if load is not None],
         friction=friction,
-        engine=engine,
         on_gap="nan",
     )
 
@@ -104,32 +122,33 @@ def _mechanism(family, rng, size, mass):
     return ks.crank_slider(crank, length, **common)
 
 
-def errors(solution, names=None):
-    """Every quantity of a solution, or some, beside the kernels on arb numbers."""
+def errors(solution, names=None, engine="numpy", tight=False):
+    """Every quantity of a solution, or some, by one program, beside the kernels on arb numbers."""
     from flint import arb, ctx
 
-    known, wrong, values, unbounded, share = of_scene(solution), [], 0, 0, 0.0
+    known, wrong, total, unbounded, share = of_scene(solution), [], 0, 0, 0.0
+    names = tuple(names or known)
+    values, bounds = ENGINES[engine].with_bounds(solution.dynamics, names, tight)
     with ctx.workprec(BITS):
-        exact = on_arb(arb, with_fields(solution, engine=solution.engine))
-        for name in names or known:
-            own, bounds = (
-                _rows(known[name], found) for found in (components(solution, name), solution.error_bound(name))
-            )
-            for value, bound, middle in zip(own, bounds, components(exact, name), strict=True):
-                for place, truth in enumerate(np.broadcast_to(np.asarray(middle, dtype=object), np.shape(value))):
-                    truth = arb(truth)
-                    if not (np.isfinite(value[place]) and truth.is_finite()):
-                        continue
-                    error = abs(arb(float(value[place])) - truth)
-                    values += 1
-                    unbounded += not np.isfinite(bound[place])
-                    if np.isfinite(bound[place]) and not error.abs_lower() <= arb(float(bound[place])):
-                        wrong.append(
-                            (name, float(solution.crank_angle[place]), float(error.mid()), float(bound[place]))
-                        )
+        exact = on_arb(arb, solution)
+        for name in names:
+            for value, bound, middle in zip(
+                _rows(known[name], values[name]),
+                _rows(known[name], bounds[name]),
+                components(exact, name),
+                strict=True,
+            ):
+                truth = [arb(part) for part in np.broadcast_to(np.asarray(middle, dtype=object), np.shape(value))]
+                told = np.isfinite(value) & [part.is_finite() for part in truth]
+                total += np.count_nonzero(told)
+                unbounded += np.count_nonzero(told & ~np.isfinite(bound))
+                for place in np.flatnonzero(told & np.isfinite(bound)):
+                    error = abs(arb(float(value[place])) - truth[place]).abs_lower()
+                    if not error <= arb(float(bound[place])):
+                        wrong.append((name, float(solution.crank_angle[place]), float(error), float(bound[place])))
                     if bound[place] > 0:
-                        share = max(share, float(error.abs_lower()) / bound[place])
-    return Found(values, wrong, unbounded, share)
+                        share = max(share, float(error) / bound[place])
+    return Found(total, wrong, unbounded, share)
 
 
 def _rows(quantity, found):

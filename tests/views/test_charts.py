@@ -34,6 +34,13 @@ def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_ea
     plt.close(figure)
 
 
+def test_a_method_that_runs_on_an_accelerator_says_so_in_the_legend(torque):
+    table = torque.assign(device=["gpu: X" if name == "ours, NumPy" else "cpu" for name in torque["method"]])
+    labels = charts.work_precision(table).get_legend_handles_labels()[1]
+    assert "ours, NumPy, on gpu: X" in labels
+    assert sum("on gpu" in label for label in labels) == 1
+
+
 def test_error_of_zero_is_drawn_below_rounding_and_a_method_that_gives_nothing_is_not_drawn(torque):
     table = torque.assign(error=torque["error"].where(torque["method"] != "two-mass coupler"))
     table.loc[table["method"] == "ours, NumPy", "error"] = 0.0

@@ -1,10 +1,11 @@
-"""Rows of a table: what is wrong with them, and with what is read from them."""
+"""Rows of a table: what is wrong with them, how they are read, and what is wrong with what is read from them."""
 
 import math
 
 import numpy as np
 
 from ...errors import ParameterError
+from ...numbers.elementary import namespace
 from .period import TURN
 
 BEYOND = 1e-9
@@ -32,10 +33,29 @@ def travel_problem(x):
     return None if x.size > 1 else "at least 2 rows are needed, got 1; a value that does not change is no table"
 
 
+def looked_at(place, returning):
+    """The library that looks values up, places and strokes: NumPy, unless they have no values yet, as under JAX."""
+    try:
+        return np, np.asarray(place, dtype=float), returning if returning is None else np.asarray(returning)
+    except (TypeError, ValueError):
+        return next(xp for xp in map(namespace, (place, returning)) if xp is not np), place, returning
+
+
+def pieces(xp, x, y, place):
+    """Start, value there and slope of the piece between rows that each place lies in; of the first or last beyond."""
+    piece = xp.clip(xp.searchsorted(xp.asarray(x), place, side="right") - 1, 0, x.size - 2)
+    return tuple(xp.asarray(part)[piece] for part in (x, y, np.diff(y) / np.diff(x)))
+
+
+def outside(x, place):
+    """Whether places lie beyond the rows."""
+    room = BEYOND * (x[-1] - x[0])
+    return (place < x[0] - room) | (place > x[-1] + room)
+
+
 def require_inside(x, place, motion):
     """Raise an error where a slider goes beyond the rows."""
-    room = BEYOND * (x[-1] - x[0])
-    out = (place < x[0] - room) | (place > x[-1] + room)
+    out = outside(x, place)
     if out.any():
         angle = np.degrees(np.broadcast_to(motion.crank_angle, out.shape)[out])
         raise ParameterError(

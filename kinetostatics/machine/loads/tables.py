@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import CaseError, ParameterError
 from ...numbers import checks
+from ...numbers.elementary import namespace
 from ...numbers.leaves import with_fields
 from . import rows
 from .period import TURN, WholeTurns
@@ -97,7 +98,13 @@ class Table:
             None if back is None or over == "travel" else 'back is for a table over="travel"',
             None if slider is None or over == "travel" else 'slider is for a table over="travel"',
         )
-        arrays = {name: np.array(values, dtype=float) for name, values in found.items()}
+        try:
+            arrays = {name: np.array(values, dtype=float) for name, values in found.items()}
+        except TypeError as error:
+            raise ParameterError(
+                "table: its rows have no values yet, as under jax.jit or jax.grad: give plain numbers, and let JAX "
+                "trace crank angles and numbers of the mechanism; tables have no derivatives by their rows"
+            ) from error
         shapes = {values.shape for values in arrays.values()}
         fits = len(shapes) == 1 and arrays["x"].ndim == 1
         checks.require("table", None if fits else f"{' and '.join(arrays)} must be 1-D, of one length")
@@ -251,21 +258,24 @@ class Table:
         Raises
         ------
         ParameterError
-            The travel goes beyond the table.
+            The travel goes beyond the table; where it has no value yet, as under ``jax.jit``, there is NaN instead.
         """
-        place, x, y = np.asarray(self.place(motion), dtype=float), self.x, self.y
+        returning = None if self.back is None else self.returns(motion)
+        xp, place, returning = rows.looked_at(self.place(motion), returning)
+        x, y = self.x, self.y
         if self.over == "angle":
-            turns = np.floor((place - x[0]) / self.period)
+            turns = xp.floor((place - x[0]) / self.period)
             x, y = np.append(x, x[0] + self.period), np.append(y, y[0])
-            piece = _piece(x, place - turns * self.period)
-            return x[piece] + turns * self.period, y[piece], (np.diff(y) / np.diff(x))[piece]
-        rows.require_inside(x, place, motion)
-        piece, step = _piece(x, place), np.diff(x)
-        if self.back is None:
-            return x[piece], y[piece], (np.diff(y) / step)[piece]
-        returning = self.returns(motion)
-        slope = np.where(returning, (np.diff(self.back) / step)[piece], (np.diff(y) / step)[piece])
-        return x[piece], np.where(returning, self.back[piece], y[piece]), slope
+            start, value, slope = rows.pieces(xp, x, y, place - turns * self.period)
+            return start + turns * self.period, value, slope
+        start, value, slope = rows.pieces(xp, x, y, place)
+        if self.back is not None:
+            _, value_back, slope_back = rows.pieces(xp, x, self.back, place)
+            value, slope = xp.where(returning, value_back, value), xp.where(returning, slope_back, slope)
+        if xp is np:
+            rows.require_inside(x, place, motion)
+            return start, value, slope
+        return start, xp.where(rows.outside(x, place), xp.nan, value), slope
 
     def rate(self, motion):
         """Rate of the slider along its guide by the crank angle, m."""
@@ -273,8 +283,8 @@ class Table:
 
     def returns(self, motion):
         """Whether the slider is on its stroke with negative velocity; standing still, as if the crank turned on."""
-        forward = np.where(np.asarray(motion.crank_speed) < 0, -1.0, 1.0)
-        return forward * self.rate(motion) < 0
+        speed = motion.crank_speed
+        return namespace(speed).where(speed < 0, -1.0, 1.0) * self.rate(motion) < 0
 
     def period_on(self, mechanism):
         """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""
@@ -310,11 +320,6 @@ class Table:
 
     def __hash__(self):
         return hash(self._content)
-
-
-def _piece(x, place):
-    """Number of the piece between rows that each place lies in; the first or last beyond them."""
-    return np.clip(np.searchsorted(x, place, side="right") - 1, 0, x.size - 2)
 
 
 def _passed(function, levels, turns):

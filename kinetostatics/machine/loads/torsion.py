@@ -165,9 +165,10 @@ class TorsionSpring(Couple):
         return minus(0.5 * self.stiffness * angle * angle, product(present(self.moment), angle))
 
     def _angle(self, motion):
-        """Angle of the link from where the spring is free."""
+        """Angle of the link from where the spring is free, to all digits near half a turn too."""
         cosine, sine = self._leaning(motion.placement)
-        return 2.0 * atan(sine / (1.0 + cosine))
+        ahead = 1.0 + cosine
+        return 2.0 * atan(2.0 * sine / (ahead * ahead + sine * sine))
 
     def _leaning(self, placement):
         """Unit vector of the link as seen from where the spring is free."""

@@ -1,7 +1,7 @@
 """Methods under study: other ways to the library's results, kept to be measured against it.
 
 method      what a method is
-engines     the library's own path: NumPy, compiled, JAX, by powers; single precision
+engines     the library's own path: NumPy, compiled, JAX, by powers, in double and in single precision
 joints      other ways to the motion: differences, spectra, harmonic series; two-mass coupler
 papers      the published studies' own formulas, and the one with a wrong sign as printed
 newton      Newton iteration on the loop equations, and all forces from one system

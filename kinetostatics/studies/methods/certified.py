@@ -13,7 +13,7 @@ from ...mechanics.quantities import scale
 from .enclosures import Enclosure, enclosure, library, magnitude, place_of
 from .independent import independent, working_digits
 
-__all__ = ["Enclosure", "certified", "enclosure", "independent", "relative_errors"]
+__all__ = ["Enclosure", "certified", "differences", "enclosure", "independent", "relative_errors"]
 
 
 def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
@@ -100,7 +100,16 @@ def relative_errors(found, reference: Enclosure):
     def difference(value, exact):
         return float(flint.arb(float(value)) - exact) if np.isfinite(value) else abs(float(value))
 
-    with flint.ctx.workprec(reference.bits):
+    return _relative(found, reference, difference)
+
+
+def differences(other: Enclosure, reference: Enclosure):
+    """Differences of two enclosures at each crank angle, relative to the largest value of the second, array (N,)."""
+    return _relative(other.exact, reference, lambda value, exact: float(value - exact))
+
+
+def _relative(found, reference, difference):
+    with library("flint").ctx.workprec(reference.bits):
         parts = [
             np.array([difference(*pair) for pair in zip(np.broadcast_to(values, exact.shape), exact, strict=True)])
             for values, exact in zip(found, reference.exact, strict=True)

@@ -1,4 +1,4 @@
-"""The library's own path under study: NumPy, compiled, JAX; single precision; torque by powers alone."""
+"""The library's own path under study: NumPy, compiled, JAX, each in single precision too; torque by powers alone."""
 
 import warnings
 from dataclasses import replace
@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...engines import programs
+from ...engines.backends import Backend
 from ...engines.compiled import require
 from ...engines.engines import COMPILED, NUMPY
-from ...errors import MissingLibraryError
 from ...mechanics.quantities import components
 from ...solution.scene import Scene, unchecked
 from .method import Method, NotGivenError
@@ -55,24 +55,29 @@ def proven(solution, quantity):
     return np.linalg.norm(np.reshape(solution.error_bound(quantity), (-1, *solution.shape)), axis=0)
 
 
-def _jax(solution, quantity, setting):
-    try:
-        import jax
-    except ImportError:
-        raise MissingLibraryError('JAX is not installed: pip install "kinetostatics[grad]"') from None
+def _elsewhere(engine, precision):
+    """The recorded program in a precision, or by JAX on the device that it finds, with the bounds that are proven."""
+    backend = Backend(engine, precision)
+    bounding = backend if engine == "jax" else Backend("numpy", precision)
 
-    with jax.enable_x64(True):
-        angle = jax.numpy.asarray(solution.crank_angle)
-        compute = jax.jit(lambda angle: components(_solved(solution, angle), quantity))
-        try:
-            jax.block_until_ready(compute(angle))
-        except (TypeError, ValueError) as error:
-            raise NotGivenError(f"a load or cam that JAX cannot trace: {str(error).splitlines()[0]}") from error
-        compiled_once = compute.lower(angle).compile()
-    return lambda: tuple(jax.block_until_ready(compiled_once(angle)))
+    def prepare(solution, quantity, setting):
+        if engine == "compiled":
+            require()
+        state = solution.dynamics
+        made, leaves = programs.of(state, (quantity,))
+        backend.run(made, state, leaves)
+        return lambda: tuple(backend.run(made, state, leaves))
+
+    def bound(solution, quantity):
+        made, leaves = programs.of(solution.dynamics, (quantity,))
+        return np.linalg.norm(bounding.bounds(made, solution.dynamics, leaves), axis=0)
+
+    name = {"numpy": "NumPy", "jax": "JAX"}.get(engine, engine)
+    title = f"ours, {name}" + (", single precision" if precision == "single" else "")
+    return Method(title, prepare, ours=True, bound=bound, precision=precision, device=lambda: backend.device)
 
 
-def _single(solution, quantity, setting):
+def _single_angles(solution, quantity, setting):
     angle = solution.crank_angle.astype(np.float32)
 
     def run():
@@ -94,7 +99,8 @@ METHODS = (
     Method("ours, compiled", _compiled, ours=True, bound=proven),
     Method("ours, NumPy, with proven bounds", _numpy_with_bounds, ours=True, bound=proven),
     Method("ours, compiled, with proven bounds", _compiled_with_bounds, ours=True, bound=proven),
-    Method("ours, JAX jit", _jax, ours=True),
+    _elsewhere("jax", "double"),
+    *(_elsewhere(engine, "single") for engine in ("numpy", "compiled", "jax")),
     Method("ours, torque by powers", _by_power, ours=True),
-    Method("single precision", _single),
+    Method("float32 crank angles", _single_angles),
 )

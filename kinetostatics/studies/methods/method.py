@@ -43,6 +43,10 @@ class Method:
     bound : function, optional
         ``bound(solution, quantity)``: what the method itself proves its error to be at most, (N,). Without, it does not
         know how wrong it is.
+    precision : "double" or "single"
+        Of the library's own path.
+    device : function, optional
+        ``device()``: what computes, as "gpu: NVIDIA H100"; without, the processor, "cpu".
 
     Examples
     --------
@@ -60,6 +64,8 @@ class Method:
     settings: tuple[Any, ...] = (None,)
     ours: bool = False
     bound: Callable[[Any, str], Any] | None = None
+    precision: str = "double"
+    device: Callable[[], str] | None = None
 
 
 def require_frictionless(solution):

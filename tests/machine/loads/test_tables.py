@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.machines import largest
 from support.scenes import six_bar
 
@@ -176,3 +177,72 @@ def test_kinks_of_a_table_over_travel_lie_in_both_turns_of_a_branch():
     assert (kinks < 2 * np.pi).any()
     assert (kinks > 2 * np.pi).any()
     assert jumps.size == 4
+
+
+# JAX
+
+
+@pytest.fixture
+def double():
+    """JAX in double precision, and back to what it was."""
+    jax = pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
+    with jax.enable_x64(True):
+        yield jax
+
+
+PHASES = np.linspace(0.3, 6.0, 12)
+TABLES = {
+    "angle": ks.Table(PHASES, 100.0 * np.sin(3.0 * PHASES)),
+    "travel": ks.Table(X, DIAGRAM.y, over="travel"),
+    "both strokes": DIAGRAM,
+}
+MANY = np.linspace(-7.0, 14.0, 60)
+
+
+def torque(table, angles, length=0.2, speed=100.0):
+    pump = ks.crank_slider(0.05, length, coupler=ks.Link(0.5, 0.1, 0.001), slider=ks.Link(1.0))
+    loads = [ks.ProcessForce(table), ks.Gravity()]
+    return ks.solve(pump, angles, crank_speed=speed, loads=loads, on_gap="nan").balancing_torque
+
+
+@pytest.mark.slow_start
+@every("name", TABLES)
+@every("speed", [100.0, -100.0])
+def test_jax_reads_tables_as_numpy_does(double, name, speed):
+    expected = torque(TABLES[name], MANY, speed=speed)
+    for run in (double.jit(torque, static_argnums=0), torque):
+        found = run(TABLES[name], double.numpy.asarray(MANY), 0.2, speed)
+        assert found.dtype == "float64"
+        assert largest(np.asarray(found) - expected) <= 1e-13 * largest(expected)
+
+
+@pytest.mark.slow_start
+@every("name", TABLES)
+def test_gradients_by_jax_through_a_table_are_those_of_the_record(double, name):
+    pump = ks.crank_slider(0.05, 0.2, coupler=ks.Link(0.5, 0.1, 0.001), slider=ks.Link(1.0))
+    scene = ks.Scene(pump, 100.0, loads=[ks.ProcessForce(TABLES[name]), ks.Gravity()])
+    program = ks.compile(scene, "balancing_torque", engine="numpy")
+    expected = program.derivatives(MANY, ["coupler_length", "crank_speed"])["balancing_torque"]
+    for place, path in ((2, "coupler_length"), (3, "crank_speed")):
+        slope = double.jit(double.jacfwd(torque, argnums=place), static_argnums=0)
+        for angles in (MANY, double.numpy.asarray(MANY)):
+            found = np.asarray(slope(TABLES[name], angles, 0.2, 100.0))
+            assert largest(found - expected[path]) <= 1e-13 * largest(expected[path]), path
+
+
+def test_beyond_a_table_over_travel_jax_gives_nan(double):
+    traced = double.jit(torque, static_argnums=0)
+    found = np.asarray(traced(DIAGRAM, MANY, 0.24, 100.0))
+    travel = 0.05 * np.cos(MANY) + np.sqrt(0.24**2 - 0.05**2 * np.sin(MANY) ** 2)
+    assert np.array_equal(np.isnan(found), travel > 0.25 * (1 + 1e-9))
+    with pytest.raises(ks.ParameterError, match="beyond it at"):
+        torque(DIAGRAM, MANY, 0.24)
+
+
+def test_rows_that_jax_traces_are_refused_with_what_to_do(double):
+    def of_values(values):
+        return torque(ks.Table(X, values, over="travel"), MANY).sum()
+
+    for run in (double.jit(of_values), double.grad(of_values)):
+        with pytest.raises(ks.ParameterError, match=r"rows have no values yet.*numbers of the mechanism"):
+            run(np.array([1.0, 2.0, 3.0]))

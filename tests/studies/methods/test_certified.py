@@ -183,7 +183,7 @@ def test_what_is_zero_but_for_rounding_is_given_up():
     [
         (slider_group, "place", "sine", "plain", "balancing_torque"),
         (slider_group, "resolve", "guide_force", "six-bar", "guide_force2"),
-        (rocker_group, "place", "divisor", "six-bar", "O2"),
+        (rocker_group, "turned_by_crank", "divisor", "six-bar", "O2"),
         (cam_roller, "resolve", "slot", "circle", "slot_force"),
     ],
 )

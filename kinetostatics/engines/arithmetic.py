@@ -1,0 +1,189 @@
+"""Bounds on the errors of a program that another arithmetic runs than the one that bounds are computed in.
+
+A value may come in single precision, or from a compiler that fuses products and sums and takes what is too small for
+zero. Bounds are then computed beside the same values in double, which differ from the exact ones by less: whatever
+order of roundings the other takes, each result is within its unit of the exact one of what went into it.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import partial, reduce
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import NotGivenError
+from ..numbers.elementary import UNIT
+from ..numbers.planar import plus
+from .bounds import SAFE, ULP, Bounds, Error, size
+from .trace import BY_ANGLE, INPUTS, Node, needed
+
+
+class Arithmetic(NamedTuple):
+    """What is known of a floating-point arithmetic.
+
+    Attributes
+    ----------
+    dtype : type
+    unit : float
+        Largest relative error of one rounding.
+    safe : float
+        What bounds are enlarged by for terms of second order, over all operations one after the other.
+    least : float
+        In `unit`: twice the smallest number with all its digits; what is smaller may be lost.
+    limit : float
+        Half of the largest power of two.
+    ulp : mapping of str to float
+        Largest relative error of each function, in `unit`; a test holds all engines to it.
+    """
+
+    dtype: Any
+    unit: float
+    safe: float
+    least: float
+    limit: float
+    ulp: Mapping[str, float]
+
+
+SINGLE_ULP = {"sin": 8.0, "cos": 8.0, "atan": 8.0, "sqrt": 1.0, "root": 1.0}
+SINGLE = Arithmetic(np.float32, 2.0**-24, 1.0 + 2.0**-5, 2.0**-101, 2.0**126, SINGLE_ULP)
+DOUBLE = Arithmetic(np.float64, UNIT, SAFE, 2.0**-960, 2.0**1022, dict.fromkeys(ULP, 4.0) | {"sqrt": 1.0, "root": 1.0})
+OF = {"double": DOUBLE, "single": SINGLE}
+"""By what a user calls it."""
+SECOND_ORDER = 8.0
+"""Roundings of an operation, beside those that its arguments bring, that make terms of second order."""
+
+
+def is_handed_over(node):
+    """Whether a node is computed in double beforehand: what a design fixes, tables, sine and cosine of the crank."""
+    of_angle = node.operation in ("sin", "cos") and node.arguments[0].operation == "angle"
+    return node.varies < BY_ANGLE or node.operation in INPUTS or of_angle
+
+
+class BoundsElsewhere:
+    """Bounds for the nodes of a graph that another arithmetic computes; what is handed over to it is rounded once.
+
+    As in `Bounds` an exact value is within ``unit (k |v| + E)`` of the one computed, but v is the value in double, and
+    E, a node or a number, is never absent: in it is what may be lost as too small.
+
+    Parameters
+    ----------
+    graph : Graph
+    inputs : mapping of Node to function
+        As for `Bounds`.
+    arithmetic : Arithmetic
+    """
+
+    def __init__(self, graph, inputs, arithmetic):
+        self._graph, self._arithmetic, self._in_double = graph, arithmetic, Bounds(graph, inputs)
+        self._errors: dict[Node, Error] = {}
+        self._reaches: dict[Node, Any] = {}
+        self._depths: dict[Node, int] = {}
+
+    def of(self, outputs):
+        """A bound for each output, not negative; infinite or NaN where there is none."""
+        for node in needed(outputs):
+            if node not in self._errors:
+                self._errors[node] = self._handed_over(node) if is_handed_over(node) else self._found(node)
+                self._look_at(node)
+        return tuple(map(self._whole, outputs))
+
+    def _whole(self, part):
+        bound = (self._arithmetic.safe * self._arithmetic.unit) * self.total(part)
+        if not isinstance(part, Node):
+            return bound
+        return bound + 0.0 / self._positive(self._arithmetic.limit - self._reaches[part])
+
+    def _handed_over(self, node):
+        self._in_double.of([node])
+        relative, rest = self._in_double.error(node)
+        finer = UNIT / self._arithmetic.unit
+        rounded = 0.0 if finer == 1.0 else 1.0
+        return Error(rounded + finer * relative, plus(None if rest is None else finer * rest, self._arithmetic.least))
+
+    def _found(self, node):
+        kind, parts = node.operation, node.arguments
+        relative, carried = RULES[kind](self, node, *parts)
+        own = 0.0 if kind in EXACTLY or (len(parts) < 2 and kind == "-") else self._arithmetic.ulp.get(kind, 1.0)
+        is_sum = kind in ("+", "-") and all(isinstance(part, Node) for part in parts)
+        return Error(relative + own, carried if is_sum or kind in EXACTLY else carried + self._arithmetic.least)
+
+    def _look_at(self, node):
+        """How many operations one after the other lead to a node, and the largest number on the way."""
+        parts = [] if is_handed_over(node) else [part for part in node.arguments if isinstance(part, Node)]
+        self._depths[node] = 1 + max((self._depths[part] for part in parts), default=0)
+        unit, safe = self._arithmetic.unit, self._arithmetic.safe
+        if self._depths[node] * (self._errors[node].relative + SECOND_ORDER) * unit > (safe - 1.0) / 4.0:
+            raise NotGivenError("no bound can be given in this precision: too many operations follow one another")
+        reaches = [self._reaches[part] for part in parts]
+        if not parts or node.operation in ("+", "-", "*", "/", "divisor"):
+            reaches.append(self.largest(node))
+        self._reaches[node] = reduce(partial(self._graph.node, "divisor"), reaches)
+
+    def error(self, part) -> Error:
+        """Of a constant too, which may be no number of this arithmetic."""
+        if isinstance(part, Node):
+            return self._errors[part]
+        least = self._arithmetic.least
+        with np.errstate(over="ignore"):
+            same = float(self._arithmetic.dtype(part)) == part
+        exact = part == 0.0 or (same and abs(part) > self._arithmetic.unit * least)
+        return Error(0.0, 0.0) if exact else Error(1.0, least)
+
+    def total(self, part):
+        """The whole bound of a part of an operation, in units."""
+        relative, rest = self.error(part)
+        return self._fused(relative, size(part), rest) if relative else rest
+
+    def largest(self, part):
+        """Bound on the magnitude of the computed value and of the exact one, but for relative errors."""
+        return self._fused(self._arithmetic.safe * self._arithmetic.unit, self.error(part).rest, size(part))
+
+    def clear(self, value, part, floor=0.0):
+        """What is left of a value above a floor when the error of a part is taken off; 0 where nothing is."""
+        return self._positive(value - (self._arithmetic.safe * self._arithmetic.unit) * self.total(part) - floor)
+
+    def _positive(self, value):
+        return self._graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
+
+    def of_product(self, node, left, right):
+        (first, own), (second, other) = self.error(left), self.error(right)
+        return Error(first + second, self._fused(size(right), own, self.largest(left) * other))
+
+    def of_quotient(self, node, above, below):
+        (first, own), (second, other) = self.error(above), self.error(below)
+        return Error(first + second, self._fused(size(node), other, own) / self.clear(size(below), below))
+
+    def of_root(self, node, square, unit=None):
+        relative, rest = self.error(square)
+        return Error(0.5 * relative, 0.5 * rest * (node / self.clear(square, square)))
+
+    def of_divisor(self, node, root, unit):
+        """None is proven where the guard may act."""
+        relative, rest = self.error(root)
+        return Error(relative, rest + 0.0 / self.clear(root, root, 2.0 * self.largest(unit)))
+
+    def _fused(self, one, other, more):
+        """Product and sum, in one operation where the processor has it."""
+        plain = [part for part in (one, other) if not isinstance(part, Node)]
+        if len(plain) == 2 or 1.0 in plain:
+            return one * other + more
+        return self._graph.node("fma", one, other, more)
+
+
+EXACTLY = ("abs", "held", "divisor", "sign")
+"""Operations that round nothing."""
+RULES: dict[str, Callable[..., Error]] = {
+    "+": lambda bounds, node, left, right: Error(0.0, bounds.total(left) + bounds.total(right)),
+    "-": lambda bounds, node, *parts: (
+        Error(0.0, bounds.total(parts[0]) + bounds.total(parts[1])) if len(parts) == 2 else bounds.error(parts[0])
+    ),
+    "*": BoundsElsewhere.of_product,
+    "/": BoundsElsewhere.of_quotient,
+    "sqrt": BoundsElsewhere.of_root,
+    "root": BoundsElsewhere.of_root,
+    **dict.fromkeys(("sin", "cos", "atan"), lambda bounds, node, argument: Error(0.0, bounds.total(argument))),
+    **dict.fromkeys(("abs", "held"), lambda bounds, node, argument: bounds.error(argument)),
+    "divisor": BoundsElsewhere.of_divisor,
+    "sign": lambda bounds, node, value: Error(0.0, 0.0 / bounds.clear(size(value), value)),
+}
+"""What a result has of the errors of its arguments."""

@@ -1,0 +1,180 @@
+"""A program in two parts: what a design fixes, and what is left at each crank angle, for another arithmetic.
+
+The first part is computed in double, as are sines and cosines of the crank angle and the rows of tables; all of it is
+rounded once when it is handed over, so that a crank angle may be a million turns and masses may nearly cancel.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numbers.lazy import cached_property
+from . import loops, programs, writing
+from .compiled import _loaded
+from .operations import BY_DESIGN
+from .programs import Program
+from .trace import BY_ANGLE, Graph, Node, needed
+
+HEADER = '''"""Written by kinetostatics; may be deleted at any time."""
+
+from math import atan, copysign as as_signed, cos, inf, nan, sin, sqrt
+
+import numpy as np
+from numba import njit
+from numpy import float32, uint64
+
+options = dict(error_model="numpy", nogil=True)
+ROUNDING, NAN, ZERO, ONE = float32({rounding!r}), float32(nan), float32(0.0), float32(1.0)
+
+
+@njit(**options)
+def root(square, unit):
+    return sqrt(max(square, ZERO)) if square >= -ROUNDING * unit else NAN
+
+
+@njit(**options)
+def divisor(root, unit):
+    return root if root != root else max(root, unit)
+
+
+@njit(**options)
+def copysign(one, value):
+    return as_signed(ONE, value)
+
+
+@njit(**options)
+def empty(count):
+    return np.empty(count, np.float32)
+
+
+@njit(**options)
+def fma(one, other, more):
+    return one * other + more
+
+
+@njit("void({types})", cache=KEEP, **options)
+'''
+"""What a compiled loop in single precision has before it: functions without a number in double."""
+
+
+class Given(NamedTuple):
+    """What is handed over: arrays of one dtype, and numbers that NumPy takes to be of the same.
+
+    Attributes
+    ----------
+    angle, sine, cosine : array (..., N)
+    parameters : list of number or array (..., 1)
+    rows : list of number or array (..., N)
+    shape : tuple of int
+        Of results, without that of outputs.
+    """
+
+    angle: Any
+    sine: Any
+    cosine: Any
+    parameters: list
+    rows: list
+    shape: tuple
+
+
+class Split:
+    """A program whose arithmetic at each crank angle is apart from what a design fixes.
+
+    Attributes
+    ----------
+    at_angles : Program
+        Its parameters are what the design fixes; it has no other constants.
+    """
+
+    def __init__(self, program):
+        self._whole = program
+        given, outputs = _cut(program.outputs)
+        self._fixed = programs.made(writing.line(given), BY_DESIGN)
+        self.at_angles = Program(program.recording, outputs)
+
+    def given(self, state, leaves, dtype):
+        """What is handed over of a `Dynamics` whose leaves are at hand."""
+        shape = state.shape or (1,)
+        angle = state.crank_angle.reshape(state.crank_angle.shape or (1,))
+        if angle.shape[-1:] != shape[-1:]:
+            angle = np.broadcast_to(angle, angle.shape[:-1] + shape[-1:])
+        with np.errstate(all="ignore"):
+            parameters = [_of_type(part, dtype) for part in self._fixed_by(leaves.numbers)]
+            rows = [_of_type(row, dtype) for row in self._whole.rows(state, leaves)]
+            angle, sine, cosine = (part.astype(dtype) for part in (angle, *programs._turn(angle)))
+        return Given(angle, sine, cosine, parameters, rows, shape)
+
+    def _fixed_by(self, numbers):
+        try:
+            return self._fixed(0.0, 0.0, 1.0, numbers, ())
+        except (ZeroDivisionError, OverflowError):  # plain numbers raise it, those of NumPy answer with infinity or NaN
+            return self._fixed(0.0, 0.0, 1.0, [np.float64(part) for part in numbers], ())
+
+    def by_numpy(self, given):
+        """Outputs (outputs, *shape) by array operations."""
+        (_, batch), count = self.at_angles._buffered
+        results = np.empty((len(self.at_angles.outputs), *given.shape), given.angle.dtype)
+        step = programs.BLOCK if len(given.shape) == 1 else given.shape[-1]
+        with np.errstate(all="ignore"):
+            for start in range(0, given.shape[-1], step):
+                part = slice(start, start + step)
+                turn = [array[..., part] for array in given[:3]]
+                rows = [row[..., part] if np.size(row) > 1 else row for row in given.rows]
+                own = results[..., part]
+                free = np.empty((count, *own.shape[1:]), own.dtype)
+                batch(*turn, given.parameters, rows, free, own)
+        return results
+
+    def by_loop(self, given):
+        """The same by a loop compiled for single precision."""
+        shape, dtype = given.shape, given.angle.dtype
+        parameters = loops.table_of_parameters(given.parameters, shape[:-1]).astype(dtype)
+        own = given.angle.size > shape[-1]
+        turn = [
+            np.ascontiguousarray((np.broadcast_to(array, shape) if own else array).reshape(-1, shape[-1]))
+            for array in given[:3]
+        ]
+        rows = loops.table_of_rows(given.rows, shape).astype(dtype)
+        results = np.empty((len(parameters), len(self.at_angles.outputs), shape[-1]), dtype)
+        angle, sine, cosine = turn
+        loops.run(self._loop, angle, sine, cosine, parameters, rows, results)
+        return results.swapaxes(0, 1).reshape(-1, *shape)
+
+    @cached_property
+    def _loop(self):
+        """The loop compiled for single precision."""
+        source = writing.loop(self.at_angles.outputs)
+        types = ", ".join([writing.GIVEN] * 5 + [writing.FILLED]).format(2, 2, 2, 2, 3, 3)
+        header = HEADER.format(rounding=writing.ROUNDING, types=types.replace("float64", "float32"))
+        return _loaded(header + source[source.index("def loop(") :]).loop
+
+
+def _of_type(part, dtype):
+    return float(part) if isinstance(part, float) else np.asarray(part, dtype)
+
+
+def _cut(outputs):
+    """What is handed over to the operations at each crank angle, and outputs of a graph of these alone."""
+    graph = Graph()
+    parameters: list[tuple[Any, Node]] = []
+    nodes: dict[Node, Node] = {}
+    constants: dict[float, Node] = {}
+
+    def copied(part):
+        known: Any = nodes if isinstance(part, Node) else constants
+        if part not in known:
+            known[part] = graph.parameter(len(parameters))
+            parameters.append((part, known[part]))
+        return known[part]
+
+    for node in needed(outputs):
+        if node.varies < BY_ANGLE:
+            continue
+        if node.operation == "angle":
+            nodes[node] = graph.angle()
+        elif node.operation == "table":
+            nodes[node] = graph.row(*node.arguments)
+        else:
+            nodes[node] = graph.node(node.operation, *map(copied, node.arguments))
+    found = tuple(map(copied, outputs))
+    return tuple(part for part, _ in parameters), found

@@ -1,0 +1,194 @@
+"""Bounds on single precision and on other engines: never less than the true error, and none where nothing is known."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.engines import programs
+from kinetostatics.engines.arithmetic import DOUBLE, SINGLE, BoundsElsewhere, is_handed_over
+from kinetostatics.engines.backends import Backend
+from kinetostatics.engines.trace import Graph
+from kinetostatics.errors import NotGivenError
+from support.bounded import FAMILIES, solution
+from support.elsewhere import errors, exact_values
+from support.every import every
+
+U = 2.0**-24
+ANGLES = np.linspace(0.01, 6.2, 40)
+NUMPY = Backend("numpy", "single")
+
+
+@pytest.fixture
+def flint():
+    return pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+
+
+@pytest.fixture
+def numba():
+    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+
+
+@pytest.fixture
+def jax():
+    return pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
+
+
+@every("family", FAMILIES)
+def test_no_value_in_single_precision_of_random_machines_is_off_by_more_than_its_bound(flint, family):
+    made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)
+    exact = exact_values(made, ("balancing_torque", *made.reactions, "kinetic_energy"))
+    found = errors(made, exact, [NUMPY])[NUMPY]
+    assert found.values > 10
+    assert found.wrong == []
+
+
+@every(
+    "case, variant, most",
+    [
+        ("sawframe_2r63", "plain", 20),
+        ("sawframe_2r63", "cam-cosine", 60),
+        ("chain_unit", "rho-0.5", 250),
+        ("toggle_press", "coining", 100),
+        ("compressor", None, 100),
+    ],
+)
+def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(case, variant, most):
+    case = ks.load_case(case)
+    scene = case.variants[variant or case.reference].scene
+    program = ks.compile(scene, ("balancing_torque", "O"), engine="numpy", precision="single")
+    exact = ks.compile(scene, ("balancing_torque", "O"), engine="numpy")(ANGLES)
+    values, bounds = program(ANGLES), program.error_bound(ANGLES)
+    for name, bound in bounds.items():
+        error = np.abs(values[name] - exact[name])
+        assert np.all(error <= bound)
+        assert np.max(bound) < most * np.max(error)
+
+
+def bounds_of(outputs, values, arithmetic=SINGLE):
+    found = BoundsElsewhere(outputs[0].graph, {}, arithmetic).of(outputs)
+    return programs.Program(None, found)._by_numbers(np.array([0.5]), values, (1,))[:, 0]
+
+
+def test_what_is_handed_over_is_rounded_once_and_each_operation_once_more():
+    graph = Graph()
+    turn, mass, length = graph.angle().sin(), graph.parameter(0), graph.parameter(1)
+    outputs = turn, mass * length, (mass * length) * turn, mass * turn + length * turn
+    found = bounds_of(outputs, [3.0, 0.7])
+    s = np.sin(0.5)
+    wanted = [s * U, 2.1 * U, 3 * 2.1 * s * U, 4 * 3.7 * s * U]
+    assert np.all(found >= wanted)
+    np.testing.assert_allclose(found, wanted, rtol=0.05)
+
+
+def test_in_double_precision_nothing_is_rounded_when_it_is_handed_over():
+    graph = Graph()
+    mass, turn = graph.parameter(0), graph.angle().sin()
+    (found,) = bounds_of([mass * turn], [3.0], DOUBLE)
+    assert found == pytest.approx(3.0 * np.sin(0.5) * 3 * 2.0**-53, rel=1e-6)
+
+
+def test_a_constant_that_is_no_single_number_is_rounded_too():
+    graph = Graph()
+    turn = graph.angle().sin()
+    half, tenth = bounds_of([(turn + 1.0) * 0.5, (turn + 1.0) * 0.1], [])
+    assert tenth > 1.2 * half / 5
+
+
+def test_where_a_number_on_the_way_is_too_large_there_is_no_bound():
+    """In single precision 1 / (m s)^2 is 0 for m = 1e25, as wrong as can be and finite."""
+    graph = Graph()
+    large = graph.parameter(0) * graph.angle().sin()
+    small = 1.0 / (large * large)
+    assert bounds_of([small], [1e15]) < 1e-35
+    assert not np.isfinite(bounds_of([small], [1e25]))
+    heavy = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(1e37)), 30.0)
+    program = ks.compile(heavy, "balancing_torque", engine="numpy", precision="single")
+    assert np.all(np.isinf(program.error_bound(ANGLES)["balancing_torque"]))
+
+
+def test_what_is_too_small_for_single_precision_is_bounded():
+    light = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(1e-43)), 1.0)
+    program = ks.compile(light, "balancing_torque", engine="numpy", precision="single")
+    exact = light.solve(ANGLES).balancing_torque
+    bound = program.error_bound(ANGLES)["balancing_torque"]
+    assert np.all(np.abs(program(ANGLES)["balancing_torque"] - exact) <= bound)
+    assert np.max(bound) < 1e-35
+
+
+def test_where_single_precision_does_not_tell_whether_the_mechanism_closes_there_is_no_bound():
+    folded = ks.Scene(ks.crank_slider(0.5, 0.5, slider=ks.Link(1.0)), 1.0)
+    program = ks.compile(folded, "B", engine="numpy", precision="single")
+    with np.errstate(all="ignore"):
+        angles = [0.3, np.pi / 2 - 1e-5, np.pi / 2]
+        bound, found = program.error_bound(angles)["B"], program(angles)["B"]
+    assert not np.isfinite(bound[:, 2]).any()
+    near = ks.compile(folded, "B", engine="numpy")(angles[:2])["B"]  # in double, far nearer than single precision
+    assert np.all(np.abs(found[:, :2] - near) <= bound[:, :2])
+
+
+def test_where_there_is_no_value_there_is_no_bound_either():
+    short = ks.Scene(ks.crank_slider(0.5, 0.3, slider=ks.Link(1.0)), 1.0)
+    program = ks.compile(short, "B", engine="numpy", precision="single")
+    assert np.isnan(program.error_bound([0.1, 1.5])["B"][:, 1]).all()
+    assert np.isnan(program([0.1, 1.5])["B"][:, 1]).all()
+
+
+def test_of_too_many_operations_after_one_another_no_bound_is_given():
+    graph = Graph()
+    long = graph.angle().sin()
+    for _ in range(3000):
+        long = long * graph.angle().cos()
+    with pytest.raises(NotGivenError, match="too many operations"):
+        bounds_of([long], [])
+
+
+def test_tables_and_what_a_design_fixes_are_handed_over():
+    graph = Graph()
+    mass, angle, row = graph.parameter(0), graph.angle(), graph.row(0)
+    assert all(map(is_handed_over, (mass, mass * mass, angle, row, angle.sin(), angle.cos())))
+    assert not any(map(is_handed_over, (angle * angle, mass * angle, (2.0 * angle).sin(), row * row)))
+
+
+FUNCTIONS = [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")]
+
+
+def single_numbers():
+    """Of all sizes, and those next to multiples of a right angle."""
+    random = np.random.default_rng(1)
+    sizes = random.uniform(-1, 1, 60_000) * 10.0 ** random.uniform(-10, 6, 60_000)
+    near = (np.arange(1, 20_000) * np.pi / 2).astype(np.float32)
+    return np.concatenate([sizes.astype(np.float32), near, np.nextafter(near, np.float32(0))])
+
+
+def off(found, exact, unit):
+    return np.max(np.abs(found.astype(float) - exact) / np.abs(exact)) / unit
+
+
+@every("function, name", FUNCTIONS)
+def test_functions_of_numpy_in_single_precision_keep_to_their_ulp(function, name):
+    numbers = single_numbers()
+    compute = getattr(np, function)
+    assert off(compute(numbers), compute(numbers.astype(float)), U) <= SINGLE.ulp[name]
+
+
+@every("function, name", FUNCTIONS)
+def test_functions_of_compiled_loops_in_single_precision_keep_to_their_ulp(numba, function, name):
+    own = getattr(math, name)
+    compute = numba.vectorize([numba.float32(numba.float32)], nopython=True)(lambda number: own(number))
+    numbers = single_numbers()
+    assert off(compute(numbers), getattr(np, function)(numbers.astype(float)), U) <= SINGLE.ulp[name]
+
+
+@every("function, name", FUNCTIONS)
+def test_functions_of_jax_on_the_processor_keep_to_their_ulp(jax, function, name):
+    numbers = single_numbers()
+    exact = getattr(np, function)(numbers.astype(np.longdouble))
+    with jax.default_device(jax.devices("cpu")[0]):
+        single = np.asarray(jax.jit(getattr(jax.numpy, function))(numbers))
+        with jax.enable_x64(True):
+            double = np.asarray(jax.jit(getattr(jax.numpy, function))(numbers.astype(float)))
+    assert off(single, exact.astype(float), U) <= SINGLE.ulp[name]
+    if np.finfo(np.longdouble).eps < 1e-18:
+        assert np.max(np.abs(double - exact) / np.abs(exact)) <= DOUBLE.ulp[name] * 2.0**-53

@@ -1,0 +1,105 @@
+"""Tight bounds on rounding errors: never less than the true error, and smaller where errors cancel."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.engines import bounds, programs
+from kinetostatics.engines.engines import NUMPY
+from kinetostatics.engines.tight import STRETCH, tight_bound
+from kinetostatics.engines.trace import Graph
+from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.studies.places import PLACES
+from support.bounded import FAMILIES, errors, solution
+from support.every import every
+from support.shipped import shipped
+
+
+def found(graph, output, angle, *values):
+    """Forward and tight bound of an output at a crank angle and some values of the parameters of a graph."""
+    both = (*bounds.Bounds(graph).of([output]), tight_bound(graph, {}, output))
+    return programs.Program(None, both)._by_numbers(np.array([angle]), values, (1,))[:, 0]
+
+
+@every("family", FAMILIES)
+def test_no_value_of_random_machines_is_off_by_more_than_its_tight_bound(family):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    made = next(found for found in (solution(family, seed, 20) for seed in range(9)) if found is not None)
+    compared = errors(made, ("balancing_torque", "O"), tight=True)
+    assert compared.values > 10
+    assert compared.wrong == []
+
+
+def test_errors_of_what_is_used_twice_cancel():
+    graph = Graph()
+    other, factor = map(graph.parameter, range(2))
+    rounded = graph.angle() + other + other
+    forward, tight = found(graph, rounded - factor * rounded, 1.0, 0.3, 1.0 + 2.0**-30)
+    assert forward > 7.0 * UNIT
+    assert tight == pytest.approx(1.6 * UNIT, rel=0.01, abs=0.0)
+
+
+def test_errors_that_count_in_second_order_alone_are_bounded():
+    graph = Graph()
+    other, tiny = map(graph.parameter, range(2))
+    lost = [(part + tiny) - part for part in (graph.angle(), other)]  # computed 0, truly 2^-54
+    _, tight = found(graph, lost[0] * lost[1], 1.0, 1.0, 2.0**-54)
+    assert tight >= 2.0**-108
+
+
+def test_where_terms_of_second_order_are_not_small_the_forward_bound_stands_in():
+    graph = Graph()
+    one, other = graph.angle(), graph.parameter(0)
+    difference = one * one - other * other
+    forward, tight = found(graph, one / difference, 1.0, 1.0 + 100 * UNIT * STRETCH**0.5)
+    assert np.isfinite(forward)
+    assert not np.isfinite(tight)
+    place = next(place for place in PLACES if place.name == "limit position")
+    s = place.scene(1e-10)
+    forward = s.error_bound("O")
+    assert np.isfinite(forward).any()
+    assert np.array_equal(np.isfinite(s.error_bound("O", tight=True)), np.isfinite(forward))
+
+
+def test_tight_bounds_of_values_of_every_size_are_finite_and_no_larger():
+    for size in (1e-9, 1.0, 1e9):
+        pump = ks.crank_slider(0.05 * size, 0.2 * size, slider=ks.Link(mass=1e-12), coupler=ks.Link(1e9, 0.1 * size))
+        s = ks.solve(pump, np.linspace(0.1, 6.0, 40), crank_speed=1e-3)
+        tight, forward = s.error_bound("balancing_torque", tight=True), s.error_bound("balancing_torque")
+        assert np.all(tight <= 1.001 * forward)
+        assert np.all(tight > 0.0)
+
+
+@every(
+    "case, variant",
+    [("sawframe_2r63", "plain"), ("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("toggle_press", "idle")],
+)
+def test_tight_bounds_take_at_most_twice_the_operations_of_forward_bounds(case, variant):
+    s = shipped(case).variants[variant].scene.solve(4)
+    program, _ = programs.of(s.dynamics, ("balancing_torque",))
+    values, forward, tight = (programs.operations(of.outputs) for of in _ways(program))
+    assert forward <= 4.8 * values
+    assert tight <= 2.0 * forward
+
+
+def _ways(program):
+    return program, program.bounded(), program.bounded(tight=True)
+
+
+def test_numpy_tells_where_a_product_is_too_small_for_a_double():
+    for count in range(1, 70):
+        values = np.full((count, 2), 1e-200)
+        for part in (values[:, 0], values[:, 0].copy()):
+            with pytest.raises(FloatingPointError), np.errstate(all="ignore", under="raise"):
+                np.multiply(part, part, out=np.empty(count))
+            with pytest.raises(FloatingPointError), np.errstate(all="ignore", under="raise"):
+                np.divide(part, 1e200, out=np.empty(count))
+
+
+def test_bounds_of_arrays_with_values_too_small_for_a_double_are_those_of_plain_numbers():
+    pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1e-300))
+    angles = np.linspace(0.3, 6.0, 30)
+    many, alone = (ks.Scene(pump, 1e-9).solve(part).dynamics for part in (angles, angles[:1]))
+    bound = [NUMPY.with_bounds(state, ("balancing_torque",))[1]["balancing_torque"] for state in (many, alone)]
+    assert np.all(bound[0] > 0.0)
+    assert bound[0][0] == bound[1][0]

@@ -1,0 +1,76 @@
+"""Condition, warning and proven bound tell the same of every machine: none is sure where another is not."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.errors import NotGivenError
+from kinetostatics.machine.friction import NONE
+from kinetostatics.mechanics.assembly import HALF, NO_DIGIT
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.numbers.elementary import UNIT
+from support.bounded import FAMILIES, solution
+from support.every import every
+
+LOOSE = 1000.0
+"""How many times more than condition times rounding a bound may be: it has every operation on its worst side."""
+
+
+def size(parts):
+    return np.abs(parts[0]) if len(parts) == 1 else np.hypot(*parts)
+
+
+def looked_at(made):
+    """Error bound, relative to the largest value, and condition of each force at the angles where any digit is left."""
+    for quantity in made.mechanism.outputs:
+        with np.errstate(all="ignore"):
+            largest = np.nanmax(size(components(made, quantity)))
+            bound = size(np.atleast_2d(made.error_bound(quantity))) / largest
+            condition = made.condition_of(quantity)
+        left = (condition < NO_DIGIT) & np.isfinite(bound)
+        if largest > 0 and left.any():
+            yield quantity, bound[left], condition[left]
+
+
+def warned(made):
+    """Whether solving again warns of lost digits."""
+    with warnings.catch_warnings(record=True) as caught, np.errstate(all="ignore"):
+        warnings.simplefilter("always")
+        given = {"crank_speed": made.crank_speed, "crank_acceleration": made.crank_acceleration}
+        ks.solve(made.mechanism, made.crank_angle, **given, on_gap="nan")
+    return any("correct digits" in str(warning.message) for warning in caught)
+
+
+@every("family", FAMILIES)
+@every("seed", range(1))
+def test_where_a_bound_is_wide_the_condition_is_large(family, seed):
+    made = solution(family, seed)
+    for _, bound, condition in looked_at(made) if made is not None else ():
+        assert np.all(bound <= LOOSE * UNIT * condition)
+
+
+@every("family", ("chain", "plain", "four-bar", "place"))
+@every("seed", range(8))
+def test_where_the_condition_of_a_motion_is_large_a_warning_is_given_and_nowhere_else(family, seed):
+    made = solution(family, seed)
+    if made is not None:
+        with np.errstate(all="ignore"):
+            condition = replace(made, loads=(), friction=NONE).condition
+        assert warned(made) == bool(np.any(condition > HALF))
+
+
+@every("family", ("plain", "four-bar", "place", "cam"))
+@every("seed", range(2))
+def test_no_error_is_more_than_the_condition_times_rounding(family, seed):
+    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    made = solution(family, seed)
+    for quantity, _, condition in looked_at(made) if made is not None else ():
+        try:
+            reference = ks.precision.enclosure(made, quantity, digits=20)
+        except NotGivenError:  # a table in double precision, or a quantity that is zero
+            continue
+        error = ks.precision.relative_errors(components(made, quantity), reference)
+        assert np.nanmax(error) <= UNIT * np.max(condition)

@@ -1,0 +1,146 @@
+"""Kernels in the crank angle from a pivot or guide: the same as the general ones, and exact where those lose digits."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics import ConditionWarning
+from kinetostatics.engines.record import record
+from kinetostatics.engines.trace import BY_ANGLE, needed
+from kinetostatics.machine import lever_group, on_crank, rocker_group, slider_group
+from kinetostatics.machine.group import Throw
+from kinetostatics.machine.guide import Line
+from support.every import every
+
+TURN = np.linspace(-7.0, 7.0, 41)
+SIDES = (1, -1)
+
+
+def placed(crank, ahead=None):
+    """The pin of a crank, A, and one beside it, C."""
+    pins = () if ahead is None else (ks.Pin(on="crank", at=ahead, name="C"),)
+    return ks.Mechanism("pins", ks.Crank(crank), (*pins, ks.SliderGroup(9.0 * crank))).place(TURN)
+
+
+def lengths(seed):
+    random = np.random.default_rng(seed)
+    pivot = (random.uniform(-1, 1), 0.0 if seed % 3 == 0 else random.uniform(-1, 1))
+    return *random.uniform(0.1, 1.0, 3), pivot, random.uniform(-0.3, 0.3)
+
+
+def same(one, other, closure):
+    """Whether two results are the same where the linkage closes and is not near a limit position."""
+    good = closure > 1e-3
+    assert good.any() or not (closure > 0).any()
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_allclose(
+            np.broadcast_to(a, TURN.shape)[good], np.broadcast_to(b, TURN.shape)[good], atol=1e-9
+        )
+
+
+def link(motion):
+    return *motion.direction, motion.ratio, motion.ratio_slope
+
+
+def pin(at):
+    return *at.position, *at.first, *at.second
+
+
+@every("seed", range(20))
+def test_a_four_bar_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
+    a, b, h, pivot, aside = lengths(seed)
+    placement = placed(a, None if seed % 2 else (a, aside))
+    name = "A" if seed % 2 else "C"
+    for side in SIDES:
+        found = rocker_group.turned_by_crank(placement, name, b, h, pivot, side)
+        wanted = rocker_group.place(placement.joints[name], b, h, pivot, side)
+        for part in ("coupler", "rocker"):
+            same(link(getattr(found, part)), link(getattr(wanted, part)), wanted.closure)
+        same(pin(found.pin), pin(wanted.pin), wanted.closure)
+        same(found[3:], wanted[3:], wanted.closure)
+
+
+@every("seed", range(20))
+def test_a_slotted_lever_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
+    a, _, _, pivot, offset = lengths(seed)
+    placement = placed(a, None if seed % 2 else (a, offset))
+    name, offset = "A" if seed % 2 else "C", None if seed % 4 == 0 else offset
+    for side in SIDES:
+        found = lever_group.passed(placement, name, pivot, offset, on_crank.slotted, side)
+        wanted = lever_group.place(placement.joints[name], pivot, offset, side)
+        same(link(found.lever), link(wanted.lever), wanted.closure)
+        same(found[2:], wanted[2:], wanted.closure)
+
+
+@every("seed", range(20))
+def test_a_slider_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
+    a, length, angle, _, offset = lengths(seed)
+    placement = placed(a, None if seed % 2 else (a, offset))
+    name = "A" if seed % 2 else "C"
+    guide = Line(None if seed % 3 else (math.cos(angle), math.sin(angle)), None if seed % 4 == 0 else offset)
+    for side in SIDES:
+        found = slider_group.passed(placement, name, length, guide, on_crank.slid, side)
+        wanted = slider_group.place(placement.joints[name], length, guide, side)
+        same(link(found.coupler), link(wanted.coupler), wanted.closure)
+        same((*found.travel, *found[2:6]), (*wanted.travel, *wanted[2:6]), wanted.closure)
+
+
+def test_a_pivot_at_the_crank_centre_and_a_pin_that_meets_its_pivot_have_finite_motions():
+    together = ks.solve(ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=(0.0, 0.0)), TURN, crank_speed=1.0)
+    np.testing.assert_allclose(together.rate("rocker"), 1.0, rtol=1e-14)
+    many = ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=(np.array([[0.0], [0.2]]), np.array([[0.0], [0.1]])))
+    np.testing.assert_allclose(ks.solve(many, TURN, crank_speed=1.0, on_gap="nan").rate("rocker")[0], 1.0, rtol=1e-14)
+    with pytest.warns(ConditionWarning):
+        met = ks.solve(ks.four_bar(0.5, 0.4, 0.4, rocker_pivot=(0.5, 0.0)), [0.0, 1e-30, 0.1], crank_speed=1.0)
+    assert np.isfinite(met.position("B")).all()
+    assert np.isfinite(met.rate("rocker")).all()
+
+
+@every(
+    "given, close",
+    [
+        ((0.3, 0.0, 2.0), False),
+        ((0.3, 0.2, 0.5001), True),
+        ((0.3, -0.2, 0.5001), True),
+        ((0.3, 0.2, 0.0999), True),
+        ((0.5, 0.1, 0.41), True),
+        ((0.3, 0.2, 0.6), False),
+        ((0.3, np.array([[0.0], [0.2]]), 0.5001), True),
+        ((0.3, np.array([[0.0], [0.1]]), 0.5001), False),
+    ],
+)
+def test_lengths_that_differ_little_from_what_others_leave_them_are_told(given, close):
+    radius, offset, length = given
+    assert on_crank.is_small(Throw((radius, 0.0), True), offset, length) is close
+    assert on_crank.is_small(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
+
+
+def test_ordinary_sliders_and_levers_are_placed_as_ever_and_close_ones_with_care():
+    ordinary = ks.crank_slider(0.3, 2.0, guide_offset=0.1), ks.slotted_lever(0.1, pivot=(0.0, -0.2), offset=0.02)
+    close = ks.crank_slider(0.3, 0.41, guide_offset=0.1), ks.slotted_lever(0.1, pivot=(0.0, -0.2), offset=0.099)
+    assert not any(mechanism.groups[-1].is_close for mechanism in ordinary)
+    assert all(mechanism.groups[-1].is_close for mechanism in close)
+
+
+def counted(structure):
+    """Operations at each crank angle, and how many of these are divisions or roots."""
+    recording = record(structure, ("balancing_torque",))
+    slow = [node for node in needed(recording.outputs) if node.operation in ("/", "sqrt", "root")]
+    return recording.operations, sum(node.varies == BY_ANGLE for node in slow)
+
+
+def test_a_four_bar_on_the_crank_takes_few_more_operations_and_fewer_divisions(monkeypatch):
+    links = {name: ks.Link(3.0, 0.1, 0.1) for name in ("coupler", "rocker")}
+    scene = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), **links), 9.0)
+    structure, _ = scene.solve(3).apart
+    whole, slow = counted(structure)
+
+    def general(placement, on, *given):
+        return rocker_group.place(placement.joints[on], *given)
+
+    monkeypatch.setattr(rocker_group, "turned_by_crank", general)
+    whole_before, slow_before = counted(structure)
+    assert whole <= 1.06 * whole_before
+    assert slow < slow_before

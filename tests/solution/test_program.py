@@ -1,0 +1,136 @@
+"""Programs in single precision and by JAX: what a user is given, what it costs in digits, and what is refused."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from support.every import every
+
+ANGLES = np.linspace(0.0, 6.0, 25)
+SAW = ks.Scene(
+    ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0)), 33.5, loads=ks.Gravity()
+)
+SINGLE = {"engine": "numpy", "precision": "single"}
+
+
+def made(scene=SAW, quantities=("balancing_torque", "O"), **options):
+    return ks.compile(scene, quantities, **options)
+
+
+@every("angle", [0.3, ANGLES, ANGLES[None], ANGLES[:3]], ids=np.shape)
+@every("values", [{}, {"slider.mass": 620.0}, {"slider.mass": np.array([[500.0], [620.0]])}], ids=len)
+def test_single_precision_gives_single_numbers_of_the_same_shape_within_the_bound(angle, values):
+    program, exact = made(**SINGLE), made(engine="numpy")(angle, values)
+    found, bounds = program(angle, values), program.error_bound(angle, values)
+    for name, value in exact.items():
+        assert found[name].shape == bounds[name].shape == value.shape
+        assert (found[name].dtype, bounds[name].dtype) == (np.float32, float)
+        assert np.all(np.abs(found[name] - value) <= bounds[name])
+        assert np.all(bounds[name] < 1e-5 * np.max(np.abs(value)))
+
+
+def test_derivatives_are_in_single_precision_too():
+    exact = made(engine="numpy").derivatives(ANGLES)
+    for quantity, found in made(**SINGLE).derivatives(ANGLES).items():
+        for path, slope in found.items():
+            assert slope.dtype == np.float32
+            wanted = exact[quantity][path]
+            assert np.max(np.abs(slope - wanted)) <= 1e-5 * np.max(np.abs(wanted)), path
+
+
+def test_bounds_in_double_precision_are_those_of_a_solution():
+    solution = SAW.solve(ANGLES)
+    for name, bound in made(engine="numpy").error_bound(ANGLES).items():
+        assert np.array_equal(bound, solution.error_bound(name))
+
+
+def test_a_program_tells_what_runs_it_and_so_does_its_copy():
+    program = pickle.loads(pickle.dumps(made(**SINGLE)))
+    assert (program.engine, program.precision, program.device) == ("numpy", "single", "cpu")
+    assert made(engine="numpy").precision == "double"
+    assert np.array_equal(program(0.3)["O"], made(**SINGLE)(0.3)["O"])
+
+
+def test_results_cannot_be_written_to():
+    with pytest.raises(ValueError, match="read-only"):
+        made(**SINGLE)(ANGLES)["O"][0] = 0.0
+
+
+SAMPLES = np.radians(np.arange(0.0, 360.0, 4.0))
+LAW = ks.cams.CosineLaw(0.3, 2.0)
+WHAT_IS_TABLED = {
+    "a sampled cam": ks.cam_crank_slider(ks.cams.Sampled(SAMPLES, LAW.radius(SAMPLES)[0]), 2.0, slider=ks.Link(600.0)),
+    "no mass": ks.crank_slider(0.3, 2.0),
+    "a function": ks.crank_slider(0.3, 2.0, slider=ks.Link(1.0)),
+}
+
+
+def pull(motion):
+    return np.where(np.asarray(motion.crank_angle) < 3.0, 100.0, 0.0)
+
+
+@every("name", WHAT_IS_TABLED)
+def test_what_is_no_arithmetic_is_computed_beforehand(name):
+    scene = ks.Scene(WHAT_IS_TABLED[name], 30.0, loads=ks.ProcessForce(pull) if name == "a function" else ())
+    exact = made(scene, engine="numpy")(ANGLES)
+    found = made(scene, **SINGLE)(ANGLES)
+    for quantity, value in exact.items():
+        assert np.max(np.abs(found[quantity] - value)) <= 3e-6 * np.max(np.abs(value)), quantity
+
+
+def test_of_what_rounds_in_unknown_ways_no_bound_is_given():
+    scene = ks.Scene(WHAT_IS_TABLED["a function"], 30.0, loads=ks.ProcessForce(pull))
+    with pytest.raises(ks.NotGivenError, match="no bound can be given"):
+        made(scene, **SINGLE).error_bound(ANGLES)
+
+
+REFUSED = [
+    ({"precision": "half"}, "precision is 'half', allowed: 'double', 'single'"),
+    ({"precision": "singel"}, "did you mean 'single'"),
+    ({"precision": None}, "precision is None"),
+    ({"precision": np.float32}, "precision is"),
+    ({"precision": 32}, "precision is 32"),
+    ({"engine": "tpu"}, "engine is 'tpu', allowed: 'compiled', 'numpy', 'jax'"),
+    ({"engine": "gpu", "precision": "half"}, "engine is 'gpu'.*precision is 'half'"),
+    ({"device": "gpu"}, 'device is for engine="jax"'),
+    ({"device": "cpu", "engine": "numpy"}, 'device is for engine="jax"'),
+    ({"device": 0, "engine": "jax"}, 'device must be a text as "gpu", got 0'),
+    ({"device": ["gpu"], "engine": "jax"}, "device must be a text"),
+]
+
+
+@every("options, words", REFUSED)
+def test_unknown_precisions_engines_and_devices_are_refused(options, words):
+    with pytest.raises(ks.ParameterError, match=f"(?s){words}"):
+        made(**options)
+
+
+@every("precision", ["single", "double"])
+def test_an_unknown_quantity_is_refused_in_every_precision(precision):
+    with pytest.raises(ks.QuantityError, match="torqe"):
+        made(quantities="torqe", engine="numpy", precision=precision)
+
+
+@pytest.fixture
+def jax():
+    return pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
+
+
+@pytest.mark.slow_start
+def test_jax_gives_arrays_of_numpy_in_the_precision_asked_for_and_names_its_device(jax):
+    exact = made(engine="numpy")(ANGLES)
+    for precision, dtype in (("single", np.float32), ("double", float)):
+        program = made(engine="jax", precision=precision, device="cpu")
+        found, bounds = program(ANGLES), program.error_bound(ANGLES)
+        assert program.device == "cpu"
+        for name, value in exact.items():
+            assert type(found[name]) is np.ndarray
+            assert found[name].dtype == dtype
+            assert np.all(np.abs(found[name] - value) <= 2 * bounds[name])
+
+
+def test_a_device_that_jax_does_not_have_is_refused(jax):
+    with pytest.raises(ks.ParameterError, match="device 'abacus': JAX finds none, only"):
+        made(engine="jax", device="abacus")
