@@ -91,10 +91,6 @@ class Node:
     def moved_apart(self, unit):
         return self + APART * unit
 
-    def total_with(self, terms):
-        """Called by `elementary.total`."""
-        return self.graph.node("total", *terms, *[0.0] * (4 - len(terms)))
-
     def _unknown(self, other=None):
         raise TypeError("the value of a recorded number is not known yet: kernels must not branch on values")
 
@@ -141,16 +137,13 @@ class Graph(list):
         return Node(self, "table", (place,), BY_ANGLE)
 
 
-SMALLEST = 2.0**-1022
-"""What is smaller may have no reciprocal."""
-
-
 class LeanGraph(Graph):
     """The same with fewer operations at each crank angle, and the same values but for rounding.
 
-    Quotients are products with reciprocals, which those by one divisor share and those by a design's number leave to
-    the design; products leave signs to sums, to the last bit. Each is decided where it is recorded, by what is there,
-    so that a number is computed in one way whatever else is wanted.
+    Quotients by a root are products with its reciprocal, which they share; those by a design's number leave that to the
+    design. Neither has an infinite reciprocal, as what is tiny has, so that zero by it stays zero. Products leave signs
+    to sums, to the last bit. Each is decided where it is recorded, by what is there, so that a number is computed in
+    one way whatever else is wanted.
     """
 
     def node(self, operation, *arguments):
@@ -172,7 +165,14 @@ class LeanGraph(Graph):
         return super().node(operation, *arguments)
 
     def _quotient(self, above, below):
-        if BY_ANGLE in (_varies(above), _varies(below)) and _has_reciprocal(below):
+        if _varies(below) == BY_ANGLE:
+            if isinstance(above, Node) and above.operation == "*":
+                left, right = above.arguments
+                if below is left or below is right:
+                    return right if below is left else left
+            if _is_root(below):
+                return self.node("*", above, self._over(below))
+        elif _varies(above) == BY_ANGLE and not _is_number(below, 0.0):
             return self.node("*", above, self._over(below))
         return super().node("/", above, below)
 
@@ -195,13 +195,14 @@ class LeanGraph(Graph):
         return super().node("/", 1.0, part)
 
 
-def _has_reciprocal(part):
-    """Whether a part is no zero, nor one moved off zero by so little that one over it is no double."""
-    if not isinstance(part, Node):
-        return abs(part) >= SMALLEST
-    if part.operation == "*" or _is_negative(part):
-        return all(map(_has_reciprocal, part.arguments))
-    return part.operation != "+" or all(isinstance(term, Node) or abs(term) >= SMALLEST for term in part.arguments)
+def _is_root(part):
+    """Whether a part is a root, or one times a number of the design."""
+    while part.operation in ("*", "-"):
+        own = [other for other in part.arguments if _varies(other) == BY_ANGLE]
+        if len(own) > 1 or (part.operation == "-" and len(part.arguments) > 1):
+            return False
+        (part,) = own
+    return part.operation in ("divisor", "sqrt", "root")
 
 
 def _varies(part):
@@ -214,7 +215,12 @@ def _are_inverse(one, other):
 
 def _is_over(part, other):
     """Whether a part is one over a node."""
-    return isinstance(part, Node) and part.operation == "/" and part.arguments[1] is other and part.arguments[0] == 1.0
+    return (
+        isinstance(part, Node)
+        and part.operation == "/"
+        and part.arguments[1] is other
+        and _is_number(part.arguments[0], 1.0)
+    )
 
 
 def _is_number(part, number):
