@@ -91,6 +91,10 @@ class Node:
     def moved_apart(self, unit):
         return self + APART * unit
 
+    def total_with(self, terms):
+        """Called by `elementary.total`."""
+        return self.graph.node("total", *terms, *[0.0] * (4 - len(terms)))
+
     def _unknown(self, other=None):
         raise TypeError("the value of a recorded number is not known yet: kernels must not branch on values")
 
@@ -137,6 +141,10 @@ class Graph(list):
         return Node(self, "table", (place,), BY_ANGLE)
 
 
+SMALLEST = 2.0**-1022
+"""What is smaller may have no reciprocal."""
+
+
 class LeanGraph(Graph):
     """The same with fewer operations at each crank angle, and the same values but for rounding.
 
@@ -172,7 +180,7 @@ class LeanGraph(Graph):
                     return right if below is left else left
             if _is_root(below):
                 return self.node("*", above, self._over(below))
-        elif _varies(above) == BY_ANGLE and not _is_number(below, 0.0):
+        elif _varies(above) == BY_ANGLE and (isinstance(below, Node) or abs(below) >= SMALLEST):
             return self.node("*", above, self._over(below))
         return super().node("/", above, below)
 
