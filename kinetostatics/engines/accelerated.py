@@ -67,7 +67,7 @@ class OnDevice:
         scope = {name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "abs", "copysign", "nan", "inf")}
         scope |= {"atan": xp.arctan, "divisor": xp.maximum, "fma": lambda one, other, more: one * other + more}
         scope["root"] = lambda square, unit: xp.where(
-            square >= -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
+            square > -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
         )
         line = programs.made(writing.line(outputs), scope)
 

@@ -10,7 +10,7 @@ from ..numbers.elementary import ROUNDING, total
 def _plain_root(square, unit):
     if square > 0.0:
         return math.sqrt(square)
-    return 0.0 if square >= -ROUNDING * unit else math.nan
+    return 0.0 if square > -ROUNDING * unit else math.nan
 
 
 def _plain_divisor(root, unit):
@@ -18,13 +18,13 @@ def _plain_divisor(root, unit):
 
 
 def _root(square, unit):
-    return np.where(square >= -ROUNDING * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
+    return np.where(square > -ROUNDING * unit, np.sqrt(np.maximum(square, 0.0)), np.nan)
 
 
 def _root_of(square, unit, out):
     np.maximum(square, 0.0, out=out)
     np.sqrt(out, out)
-    np.copyto(out, np.nan, where=np.less(square, -ROUNDING * unit))
+    np.copyto(out, np.nan, where=np.less_equal(square, -ROUNDING * unit))
 
 
 def _multiply_add(one, other, more, out):

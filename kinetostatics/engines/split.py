@@ -29,7 +29,7 @@ ROUNDING, NAN, ZERO, ONE = float32({rounding!r}), float32(nan), float32(0.0), fl
 
 @njit(**options)
 def root(square, unit):
-    return sqrt(max(square, ZERO)) if square >= -ROUNDING * unit else NAN
+    return sqrt(max(square, ZERO)) if square > -ROUNDING * unit else NAN
 
 
 @njit(**options)

@@ -36,7 +36,7 @@ options = dict(error_model="numpy", nogil=True)
 
 @njit(**options)
 def root(square, unit):
-    return sqrt(max(square, 0.0)) if square >= {-ROUNDING!r} * unit else nan
+    return sqrt(max(square, 0.0)) if square > {-ROUNDING!r} * unit else nan
 
 
 @njit(**options)

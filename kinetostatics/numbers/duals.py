@@ -95,7 +95,7 @@ class Dual:
 
     def forgiving_root(self, unit):
         """Called by `elementary.root`, as the next two by `divisor` and `apart`."""
-        closed = self.value >= -ROUNDING * dual(unit).value
+        closed = self.value > -ROUNDING * dual(unit).value
         root = np.where(closed, np.sqrt(np.maximum(self.value, 0.0)), np.nan)
         return self._chained(root, np.divide(0.5, root))
 

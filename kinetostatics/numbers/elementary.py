@@ -63,11 +63,14 @@ APART = 2.0**-90
 
 
 def root(square, unit):
-    """Root of a square that counts in `unit`; NaN where that is negative by more than rounding."""
+    """Root of a square that counts in `unit`; NaN where that is negative by more than rounding.
+
+    NaN also where both are too small for the precision: no sign is known of such a square.
+    """
     if _holds_objects(square):
         return _each("forgiving_root", square, unit, lambda square: square.sqrt())
     xp = namespace(square)
-    return xp.where(square >= -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0 * unit)), xp.nan)
+    return xp.where(square > -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0 * unit)), xp.nan)
 
 
 def divisor(root, unit):

@@ -76,3 +76,10 @@ def test_all_constants_and_fixed_numbers_are_parameters_of_what_is_left():
     assert all(node.varies or node.operation == "parameter" for node in graph)
     arguments = [part for node in graph if node.operation not in ("parameter", "table") for part in node.arguments]
     assert not any(isinstance(part, float) for part in arguments)
+
+
+@every("backend", [NUMPY, COMPILED])
+def test_gaps_of_machines_too_small_for_single_precision_are_gaps(interpreted, backend):
+    s = ks.Scene(ks.crank_slider(0.3e-30, 0.25e-30, slider=ks.Link(1.0)), 7.0).solve([0.1, 1.5], on_gap="nan")
+    assert np.isnan(s.slider_position).tolist() == [False, True]
+    assert np.isnan(rows(backend, s, ("slider_position", "coupler_rate"))).all(), "no sign of a square is known"

@@ -32,6 +32,12 @@ def test_a_square_below_zero_by_rounding_only_has_the_root_zero():
     assert not np.isnan(root(square, 3.0)).any()
 
 
+def test_a_square_and_a_unit_too_small_for_the_precision_have_no_root():
+    lost = np.array([-1e-60, 1e-60]).astype(np.float32)
+    assert np.isnan(root(lost, np.float32(0.0))).all()
+    assert root(np.zeros(1), 1e-300).tolist() == [0.0]
+
+
 def test_divisors_stay_off_zero_and_distances_have_a_direction():
     assert divisor(np.array([0.0, 2.0]), 1e-3).tolist() == [1e-3, 2.0]
     assert apart(0.0, 2.0) == 2.0 * APART > 0.0
