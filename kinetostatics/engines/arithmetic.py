@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import NotGivenError
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import SAFE, ULP, Bounds, Error, size
+from .bounds import SAFE, ULP, Bounds, Error, is_zero, size
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 
@@ -146,6 +146,8 @@ class BoundsElsewhere:
         return self._graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
 
     def of_product(self, node, left, right):
+        if is_zero(node):
+            return Error(0.0, 0.0)
         (first, own), (second, other) = self.error(left), self.error(right)
         return Error(first + second, self._fused(size(right), own, self.largest(left) * other))
 

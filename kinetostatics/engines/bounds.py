@@ -92,7 +92,7 @@ class Bounds:
     def own(self, node) -> Error:
         """What an operation itself adds to the error of its result."""
         kind, arguments = node.operation, node.arguments
-        if any(map(_is_zero, (node, *arguments))) and kind in "+-*":
+        if any(map(is_zero, (node, *arguments))) and kind in "+-*":
             return EXACT
         if self.is_reciprocal(node):
             return Error(1.0, None)
@@ -222,7 +222,7 @@ def whole(total):
     return 0.0 if total is None else (SAFE * UNIT) * total
 
 
-def _is_zero(part):
+def is_zero(part):
     """Whether a part of an operation is a product with the number 0."""
     factors = part.arguments if isinstance(part, Node) and part.operation == "*" else ()
     return any(not isinstance(factor, Node) and factor == 0.0 for factor in factors)
@@ -237,14 +237,14 @@ def _is_scaling(part):
 
 
 def _of_sum(bounds, more, node, *parts):
-    others = [part for part in parts if not _is_zero(part)]
+    others = [part for part in parts if not is_zero(part)]
     if len(others) < 2 and more is None:
         return bounds.error(others[0]) if others else EXACT
     return Error(0.0, reduce(plus, map(bounds.total, others), more))
 
 
 def _of_product(bounds, more, node, left, right):
-    if _is_zero(node):
+    if is_zero(node):
         return EXACT
     for factor, above in ((left, right), (right, left)):
         if bounds.is_reciprocal(factor) and not bounds.is_dust(factor):  # as of a quotient

@@ -6,6 +6,7 @@ recorded arithmetic holds for all scenes of that structure, whatever their numbe
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -18,7 +19,7 @@ from ..machine.friction import NONE
 from ..machine.loads import Load, ProcessForce, table_errors
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import given, moving, title_of
-from ..mechanics.quantities import all_found, components, of_scene
+from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.elementary import UNIT
 from ..numbers.lazy import cached_property
@@ -123,7 +124,11 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
-    outputs = tuple(part.flat[0] for parts in found for part in parts)
+    outputs = tuple(
+        output
+        for name, parts in zip(quantities, found, strict=True)
+        for output in _with_gaps([part.flat[0] for part in parts], name, recorder.recorded)
+    )
     known = of_scene(recorder.recorded)
     vectors = tuple(name != "closure" and known[name].vector and not sizes for name in quantities)
     return Recording(
@@ -136,6 +141,23 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
         recorder.graph,
         recorder.inputs,
     )
+
+
+def _with_gaps(outputs, name, scene):
+    """Outputs that hang on no root, as those of a load on the crank, made NaN where the mechanism does not close."""
+    if name in ("closure", *CHECKS) or all(_roots([output]) for output in outputs):
+        return outputs
+    places = [part for joint in scene.placement.joints.values() for part in joint.position]
+    roots = _roots([np.ravel(part)[0] for part in places])
+    return [output if _roots([output]) else reduce(_with_gap, roots, output) for output in outputs]
+
+
+def _with_gap(output, root):
+    return output + 0.0 * root.held()
+
+
+def _roots(outputs):
+    return [node for node in needed(outputs) if node.operation == "root"]
 
 
 def recorded(structure):

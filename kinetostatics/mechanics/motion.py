@@ -1,6 +1,7 @@
 """Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link."""
 
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 from ..errors import QuantityError
@@ -11,7 +12,7 @@ from ..machine.loads import is_given
 from ..machine.loads.places import PLACE
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, kinds
-from ..numbers.elementary import namespace, read_only, stack
+from ..numbers.elementary import held, namespace, read_only, stack
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves, taken_apart, wider
 from ..numbers.planar import number, plus, product, stretched, vector
@@ -110,12 +111,21 @@ class Motion:
 
     def rate(self, link):
         """Angular velocity of a link, (..., N), rad/s."""
-        return self._scalar(product(self.crank_speed, self._link(link).ratio))
+        found = self._link(link)
+        return self._scalar(self._with_gaps(product(self.crank_speed, found.ratio), found))
 
     def angular_acceleration(self, link):
         """Angular acceleration of a link, (..., N), rad/s2."""
         found = self._link(link)
-        return self._scalar(angular_acceleration(found.ratio, found.ratio_slope, *self.accelerating))
+        rate = angular_acceleration(found.ratio, found.ratio_slope, *self.accelerating)
+        return self._scalar(self._with_gaps(rate, found))
+
+    def _with_gaps(self, rate, link):
+        """The rate of a link; of one that turns evenly NaN too where the mechanism does not close."""
+        if hasattr(link.ratio, "shape"):
+            return rate
+        places = [part for joint in self.placement.joints.values() for part in joint.position if hasattr(part, "shape")]
+        return plus(rate, product(0.0, held(reduce(plus, places, None))))
 
     def travel(self, slider=None):
         """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m.

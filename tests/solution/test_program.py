@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.mechanics.quantities import of_scene
 from support.every import every
 
 ANGLES = np.linspace(0.0, 6.0, 25)
@@ -134,3 +135,25 @@ def test_jax_gives_arrays_of_numpy_in_the_precision_asked_for_and_names_its_devi
 def test_a_device_that_jax_does_not_have_is_refused(jax):
     with pytest.raises(ks.ParameterError, match="device 'abacus': JAX finds none, only"):
         made(engine="jax", device="abacus")
+
+
+@every("crank", [ks.Link(), ks.Link(3.0, 0.1, 0.1)], ids=["massless", "heavy"])
+@every("bodies", [{}, {"coupler": ks.Link(150.0, 0.1, 20.5), "slider": ks.Link(600.0)}], ids=["massless", "heavy"])
+@every("loads", [[], [ks.Gravity()]], ids=len)
+def test_every_quantity_has_the_gaps_of_the_mechanism_even_what_never_changes(crank, bodies, loads):
+    """The crank turns evenly, and weighs the same, where no coupler reaches the guide."""
+    scene = ks.Scene(ks.crank_slider(0.3, 0.25, crank=crank, **bodies), 7.0, 3.0, loads)
+    solution = scene.solve([0.1, 1.5], on_gap="nan")
+    names = tuple(of_scene(solution))
+    program, single = made(scene, names, engine="numpy"), made(scene, names, **SINGLE)
+    found, bounds = program(solution.crank_angle), program.error_bound(solution.crank_angle)
+    one, coarse = program(1.5), single(solution.crank_angle)
+    coarse_bounds, slopes = single.error_bound(solution.crank_angle), program.derivatives(solution.crank_angle)
+    for name, quantity in of_scene(solution).items():
+        own = quantity.read(solution), found[name], coarse[name], bounds[name], coarse_bounds[name]
+        for values in (*own, *slopes[name].values(), solution.error_bound(name)):
+            assert np.isfinite(values[..., 0]).all(), name
+            assert np.isnan(values[..., 1]).all(), name
+        assert np.isnan(one[name]).all(), name
+    assert found["crank_rate"][0] == solution.rate("crank")[0] == 7.0
+    assert bounds["crank_rate"][0] == 0.0
