@@ -1,6 +1,7 @@
 """What a scene computes as a program, called with other crank angles and numbers as often as one likes."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -61,7 +62,9 @@ class Program:
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)
         self._friction: Any = programs.of(state, CHECKS)[0] if scene.friction.acting else None
-        self._numbers = {path: (number, places[path].rule) for path, number in leaves_of(places, state).items()}
+        self._numbers = {
+            path: (number, _of_designs(places[path].rule)) for path, number in leaves_of(places, state).items()
+        }
         self._absent = tuple(path for path in places if path not in self._numbers)
         self._doors = {path for path in self._numbers if is_judged_together(scene, places[path].steps)}
         self._passages = scene.mechanism.passages
@@ -281,6 +284,11 @@ class Program:
                     f'compile(..., parameters=("{path}",))'
                 )
         checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+
+
+def _of_designs(rule):
+    """The rule of a number that is one for all crank angles of a design, as it was recorded."""
+    return replace(rule, table=False) if getattr(rule, "table", False) else rule
 
 
 def _with_enough_passes(scene):
