@@ -49,7 +49,7 @@ def interpreted(monkeypatch):
     monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
     loaded = cache(machine_code.load)
     for module in (compiled, loops, programs, split):
-        monkeypatch.setattr(module, "_loaded", loaded)
+        monkeypatch.setattr(module, "loaded", loaded)
     kinds.forget()
     yield
     kinds.forget()

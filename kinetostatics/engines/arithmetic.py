@@ -132,11 +132,11 @@ class BoundsElsewhere:
     def total(self, part):
         """The whole bound of a part of an operation, in units."""
         relative, rest = self.error(part)
-        return self._fused(relative, size(part), rest) if relative else rest
+        return self._in_double.fused(relative, size(part), rest) if relative else rest
 
     def largest(self, part):
         """Bound on the magnitude of the computed value and of the exact one, but for relative errors."""
-        return self._fused(self._arithmetic.safe * self._arithmetic.unit, self.error(part).rest, size(part))
+        return self._in_double.fused(self._arithmetic.safe * self._arithmetic.unit, self.error(part).rest, size(part))
 
     def clear(self, value, part, floor=0.0):
         """What is left of a value above a floor when the error of a part is taken off; 0 where nothing is."""
@@ -147,11 +147,11 @@ class BoundsElsewhere:
 
     def of_product(self, node, left, right):
         (first, own), (second, other) = self.error(left), self.error(right)
-        return Error(first + second, self._fused(size(right), own, self.largest(left) * other))
+        return Error(first + second, self._in_double.fused(size(right), own, self.largest(left) * other))
 
     def of_quotient(self, node, above, below):
         (first, own), (second, other) = self.error(above), self.error(below)
-        return Error(first + second, self._fused(size(node), other, own) / self.clear(size(below), below))
+        return Error(first + second, self._in_double.fused(size(node), other, own) / self.clear(size(below), below))
 
     def of_root(self, node, square, unit=None):
         relative, rest = self.error(square)
@@ -161,13 +161,6 @@ class BoundsElsewhere:
         """None is proven where the guard may act."""
         relative, rest = self.error(root)
         return Error(relative, rest + 0.0 / self.clear(root, root, 2.0 * self.largest(unit)))
-
-    def _fused(self, one, other, more):
-        """Product and sum, in one operation where the processor has it."""
-        plain = [part for part in (one, other) if not isinstance(part, Node)]
-        if len(plain) == 2 or 1.0 in plain:
-            return one * other + more
-        return self._graph.node("fma", one, other, more)
 
 
 EXACTLY = ("abs", "held", "divisor", "sign")

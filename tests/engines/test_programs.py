@@ -357,7 +357,7 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
         kept = (path for path in tmp_path.rglob("*") if path.suffix in (".py", ".nbi", ".nbc"))
         return sorted((path.name, path.stat().st_mtime_ns) for path in kept)
 
-    compiled._loaded.cache_clear()
+    compiled.loaded.cache_clear()
     kinds.forget()
     exec(code)
     here, compiled_here = capsys.readouterr().out, files()
