@@ -63,7 +63,7 @@ def lines(solution, shape, name):
     corners = shape.corners[name]
     if corners.shape[1] > 1 and name != "cylinder":
         yield LINES["bar"], put(corners[:, np.argsort(corners[0])[[0, -1]]])
-    for slot, ends in shape.slots.items():
+    for slot, ends in shape.slots:
         if slot.link == name and not slot.rod:
             yield LINES["slotted"], put(ends)
             yield LINES["slot"], put(ends)

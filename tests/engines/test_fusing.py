@@ -64,6 +64,7 @@ def test_a_fused_loop_keeps_the_zero_of_twins_with_equal_numbers(graph):
     assert program.by_loop(angles, [0.1, 0.7, 0.1, 0.8], (), angles.shape).any(axis=-1).all()
 
 
+@pytest.mark.slow
 def test_a_value_is_the_same_to_the_last_bit_whatever_is_computed_with_it():
     pytest.importorskip("numba")
     saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, (1.0, 0.1), 20.5), slider=ks.Link(600.0))

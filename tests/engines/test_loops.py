@@ -61,6 +61,7 @@ def test_a_limit_position_is_warned_of_with_the_same_words_from_the_same_place(i
     assert [(kind, file) for kind, _, file in found[0]] == [(ks.ConditionWarning, __file__)]
 
 
+@pytest.mark.slow
 def test_loops_of_many_outputs_are_vectorised(numba):
     state = ks.load_case("sawframe_2r63").variants["plain"].scene.solve(np.linspace(0.0, 6.0, 3600)).dynamics
     values, leaves = programs.of(state, ("O", "A", "B", "guide"))

@@ -44,6 +44,7 @@ def warned(made):
     return any("correct digits" in str(warning.message) for warning in caught)
 
 
+@pytest.mark.slow
 @every("family", FAMILIES)
 @every("seed", range(1))
 def test_where_a_bound_is_wide_the_condition_is_large(family, seed):
@@ -62,6 +63,7 @@ def test_where_the_condition_of_a_motion_is_large_a_warning_is_given_and_nowhere
         assert warned(made) == bool(np.any(condition > HALF))
 
 
+@pytest.mark.slow
 @every("family", ("plain", "four-bar", "place", "cam"))
 @every("seed", range(2))
 def test_no_error_is_more_than_the_condition_times_rounding(family, seed):

@@ -346,6 +346,7 @@ def assert_bound(solution, allowed=1e4):
     return known.sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", RANDOM)
 def test_condition_bounds_the_true_magnification_of_random_mechanisms_and_is_no_hundred_times_as_large(kind):
     """Fifty of each kind, at four crank angles."""

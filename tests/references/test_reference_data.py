@@ -130,6 +130,7 @@ GROUPS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", ANEW)
 def test_data_made_anew_is_the_same(folder, check, tmp_path):
     """To the last digit of every value; bounds may differ as the kernels' order of operations does."""

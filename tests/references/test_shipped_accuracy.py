@@ -39,6 +39,7 @@ values change by more than their size within a part of 1e-3 of the travel.
 """
 
 
+@pytest.mark.slow
 @every("case, variant", [(case, variant) for case in ks.shipped_cases() for variant in shipped(case).variants])
 def test_torque_and_reactions_are_near_the_exact_ones_and_bounded(case, variant):
     s = shipped(case).variants[variant].scene.solve(TURN)

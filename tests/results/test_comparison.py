@@ -55,6 +55,7 @@ def test_the_two_sides_of_a_jump_on_a_flank_are_no_extremum_to_match():
     assert (found.torque_extremum_ratios > 6.0).all()
 
 
+@pytest.mark.slow
 def test_an_extremum_that_only_the_reference_has_is_compared_with_none():
     """The toggle press turns 1640 N m into force where it idles with no extremum; both its minima are none of one."""
     case = ks.load_case("toggle_press")
@@ -96,6 +97,7 @@ def test_a_load_of_two_turns_is_compared_turn_by_turn():
     assert np.isfinite(ks.compare(plain, firing).torque_extremum_ratios).all()
 
 
+@pytest.mark.slow
 def test_bounds_stand_in_the_rows_and_columns_of_the_numbers():
     case = ks.load_case("toggle_press")
     found = case.compare("coining", "idle")

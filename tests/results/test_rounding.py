@@ -38,6 +38,7 @@ def test_bounds_of_several_quantities_together_are_those_of_each():
         assert (several.errors(name) < 1e-12 * np.abs(found.value).max()).all()
 
 
+@pytest.mark.slow
 def test_the_compiled_engine_is_not_waited_for():
     solution = ks.solve(SAW, 0.0, crank_speed=33.5)
     wanted = known(solution, "O").errors("O")

@@ -150,6 +150,7 @@ def test_derivatives_have_the_shape_of_the_quantity():
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
 @pytest.mark.parametrize("angle", [0.5, [0.5]])
 @pytest.mark.parametrize("count", [5, 5000])

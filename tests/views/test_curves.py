@@ -176,6 +176,7 @@ def test_only_a_chain_unit_has_figures_of_its_study(tmp_path, monkeypatch, case,
     assert "mechanism" in drawn
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [0.0, 1.5707963267948966])
 def test_mechanisms_fill_most_of_their_panels_in_one_direction_wide_or_tall(angle):
     machine = ks.crank_slider(0.1, 0.4, guide_angle=angle, slider=ks.Link(1.0))

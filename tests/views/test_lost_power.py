@@ -75,6 +75,7 @@ def test_what_has_no_losses_to_draw_says_why(saw, draw, given, words):
         draw(given(saw["plain"]))
 
 
+@pytest.mark.slow
 def test_figures_of_a_case_with_friction_have_both_and_of_one_without_none(tmp_path):
     case = ks.load_case("sawframe_2r63_friction")
     (path,) = figures.draw_case(case, tmp_path, "svg", "losses")
