@@ -75,6 +75,7 @@ class BoundsElsewhere:
 
     def __init__(self, graph, inputs, arithmetic):
         self._graph, self._arithmetic, self._in_double = graph, arithmetic, Bounds(graph, inputs)
+        self._fused = self._in_double.fused
         self._errors: dict[Node, Error] = {}
         self._reaches: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
@@ -132,11 +133,11 @@ class BoundsElsewhere:
     def total(self, part):
         """The whole bound of a part of an operation, in units."""
         relative, rest = self.error(part)
-        return self._in_double.fused(relative, size(part), rest) if relative else rest
+        return self._fused(relative, size(part), rest) if relative else rest
 
     def largest(self, part):
         """Bound on the magnitude of the computed value and of the exact one, but for relative errors."""
-        return self._in_double.fused(self._arithmetic.safe * self._arithmetic.unit, self.error(part).rest, size(part))
+        return self._fused(self._arithmetic.safe * self._arithmetic.unit, self.error(part).rest, size(part))
 
     def clear(self, value, part, floor=0.0):
         """What is left of a value above a floor when the error of a part is taken off; 0 where nothing is."""
@@ -147,11 +148,11 @@ class BoundsElsewhere:
 
     def of_product(self, node, left, right):
         (first, own), (second, other) = self.error(left), self.error(right)
-        return Error(first + second, self._in_double.fused(size(right), own, self.largest(left) * other))
+        return Error(first + second, self._fused(size(right), own, self.largest(left) * other))
 
     def of_quotient(self, node, above, below):
         (first, own), (second, other) = self.error(above), self.error(below)
-        return Error(first + second, self._in_double.fused(size(node), other, own) / self.clear(size(below), below))
+        return Error(first + second, self._fused(size(node), other, own) / self.clear(size(below), below))
 
     def of_root(self, node, square, unit=None):
         relative, rest = self.error(square)

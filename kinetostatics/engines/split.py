@@ -143,10 +143,9 @@ class Split:
     @cached_property
     def _loop(self):
         """The loop compiled for single precision."""
-        source = writing.loop(self.at_angles.outputs)
         types = ", ".join([writing.GIVEN] * 5 + [writing.FILLED]).format(2, 2, 2, 2, 3, 3)
         header = HEADER.format(rounding=writing.ROUNDING, types=types.replace("float64", "float32"))
-        return loaded(header + source[source.index("def loop(") :]).loop
+        return loaded(header + writing.loop_alone(self.at_angles.outputs)).loop
 
 
 def _of_type(part, dtype):
