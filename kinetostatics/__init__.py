@@ -40,15 +40,16 @@ Rooms, in the order in which they build on each other
     numbers     elementary functions, planar vectors, leaves of parameter trees, checks, units, files
     machine     what it is: links, guide, cams, crank, groups, loads, the mechanism made of them
     mechanics   what it does: motion, forces, assembly, principal points, quantities with their units
-    engines     how fast, how sure: kernels recorded once a structure, NumPy lines, compiled loops, derivatives
+    engines     how fast, how sure: kernels recorded once a structure, run by NumPy, numba or JAX; derivatives, bounds
     results     extremes, means, reductions, comparison, tables
-    solution    what users hold: scene, solution, solve, compile
+    solution    what users hold: scene, solution, solve, compile, explanations, uncertainty
     drive       motors, periodic running, flywheels, starting and coasting
     design      counterweights, four-bar classes, contact of cams, optimisation under limits, torque-free cams
     sweeps      designs, sweep, workers, datasets, tolerances
     studies     needs, precision, stability, the methods under study
     casefile    case files: schema, reading, building
     views       plots, charts, drawings, reports
+    cli         the command line
 """
 
 from importlib import import_module

@@ -49,10 +49,37 @@ def interpreted(monkeypatch):
     monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
     loaded = cache(machine_code.load)
     for module in (compiled, loops, programs, split):
-        monkeypatch.setattr(module, "_loaded", loaded)
+        monkeypatch.setattr(module, "loaded", loaded)
     kinds.forget()
     yield
     kinds.forget()
+
+
+@pytest.fixture
+def numba():
+    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
+
+
+@pytest.fixture
+def jax():
+    return pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
+
+
+@pytest.fixture
+def double(jax):
+    """JAX in double precision, and back to what it was."""
+    before = jax.config.jax_enable_x64
+    jax.config.update("jax_enable_x64", True)
+    yield jax
+    jax.config.update("jax_enable_x64", before)
+
+
+@pytest.fixture
+def flint():
+    """python-flint at 200 bits, and back to what it was."""
+    flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+    with flint.ctx.workprec(200):
+        yield flint
 
 
 @pytest.fixture(scope="session")

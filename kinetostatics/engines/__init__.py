@@ -1,4 +1,4 @@
-"""How fast and how sure: kernels recorded once a structure, run as NumPy lines or compiled loops; derivatives.
+"""How fast and how sure: kernels recorded once a structure, run by NumPy, numba or JAX; derivatives, bounds on errors.
 
 May import errors, numbers, machine, mechanics.
 """

@@ -75,6 +75,7 @@ class BoundsElsewhere:
 
     def __init__(self, graph, inputs, arithmetic):
         self._graph, self._arithmetic, self._in_double = graph, arithmetic, Bounds(graph, inputs)
+        self._fused = self._in_double.fused
         self._errors: dict[Node, Error] = {}
         self._reaches: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
@@ -163,13 +164,6 @@ class BoundsElsewhere:
         """None is proven where the guard may act."""
         relative, rest = self.error(root)
         return Error(relative, rest + 0.0 / self.clear(root, root, 2.0 * self.largest(unit)))
-
-    def _fused(self, one, other, more):
-        """Product and sum, in one operation where the processor has it."""
-        plain = [part for part in (one, other) if not isinstance(part, Node)]
-        if len(plain) == 2 or 1.0 in plain:
-            return one * other + more
-        return self._graph.node("fma", one, other, more)
 
 
 EXACTLY = ("abs", "held", "divisor", "sign")

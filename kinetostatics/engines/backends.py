@@ -8,7 +8,7 @@ import numpy as np
 
 from . import accelerated, arithmetic
 from .arithmetic import BoundsElsewhere
-from .bounds import CAP
+from .bounds import CAP, where_known
 from .programs import Program
 from .split import Split
 
@@ -76,8 +76,7 @@ class Backend:
         rows = self._with_bounds(program).run(state, leaves, self.engine == "compiled")
         values, found = rows[:count], rows[count:]
         small = all(np.all(np.abs(leaf) <= CAP) for leaf in (*leaves.numbers, *leaves.tables))
-        unknown = np.isnan(found) if small else True
-        return np.where(np.isnan(values), np.nan, np.where(unknown, np.inf, found))
+        return where_known(values, found if small else np.nan)
 
     def _with_bounds(self, program):
         if self.is_own:

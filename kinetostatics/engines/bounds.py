@@ -217,6 +217,11 @@ def of_magnitude(vector, bounds):
     return np.hypot(*bounds) * SAFE + 4 * UNIT * np.hypot(*vector)
 
 
+def where_known(values, bounds):
+    """Bounds as users have them: infinite where none is proven, NaN where there is no value."""
+    return np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds))
+
+
 def whole(total):
     """A bound from one in `UNIT`."""
     return 0.0 if total is None else (SAFE * UNIT) * total

@@ -39,8 +39,8 @@ def require():
 
 
 @cache
-def _loaded(text):
-    """Module of the source, its machine code kept on disk."""
+def loaded(text):
+    """Module of a source, its machine code kept on disk."""
     from .machine_code import load
 
     require()

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from .compiled import _loaded, cores
+from .compiled import cores, loaded
 from .recent import kept_for_same_angles
 from .writing import TURN
 
@@ -22,7 +22,7 @@ NO_ROWS = np.empty((0, 1, 0))
 def turn(angle):
     """Sines and cosines of crank angles (1 or designs, N), which designs may share."""
     sine, cosine = np.empty(angle.shape), np.empty(angle.shape)
-    _loaded(TURN).shared(angle.ravel(), sine.ravel(), cosine.ravel())
+    loaded(TURN).shared(angle.ravel(), sine.ravel(), cosine.ravel())
     return sine, cosine
 
 

@@ -15,7 +15,7 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves
 from . import loops, writing
 from .bounds import Bounds
-from .compiled import _loaded, available
+from .compiled import available, loaded
 from .derivatives import gradients
 from .operations import ARRAYS, BY_DESIGN, PLAIN
 from .recent import kept_for_same_angles
@@ -96,19 +96,20 @@ class Program:
         return made(writing.line(self.outputs), PLAIN)
 
     @cached_property
-    def _buffered(self):
+    def buffered(self):
+        """Lines of arrays for one design and for a batch, and how many buffers they take."""
         source, count = writing.buffered_line(self.outputs)
         return [made(source, ARRAYS | by_design) for by_design in self.scopes], count
 
     @cached_property
     def loop(self):
         """The compiled loop; see `writing.loop`."""
-        return _loaded(writing.loop(self.outputs)).loop
+        return loaded(writing.loop(self.outputs)).loop
 
     @cached_property
     def _short_loop(self):
         """One with every operation rounded, as plain numbers have it."""
-        return _loaded(writing.loop(self.outputs, fuse=False)).loop
+        return loaded(writing.loop(self.outputs, fuse=False)).loop
 
     def rows(self, state, leaves):
         """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand; those needed."""
@@ -138,10 +139,10 @@ class Program:
         """Outputs (outputs, *shape) from crank angles (..., N), numbers or arrays (..., 1), and rows of tables."""
         if not shape:
             return self.by_numpy(np.reshape(angle, 1), numbers, [np.reshape(row, 1) for row in rows], (1,))[:, 0]
-        (single, batch), count = self._buffered
+        (single, batch), count = self.buffered
         results = np.empty((len(self.outputs), *shape))
         with np.errstate(all="ignore", under=self.underflow):
-            sine, cosine = _turn(angle)
+            sine, cosine = turn(angle)
             if len(shape) == 1:
                 try:
                     for start in range(0, shape[0], BLOCK):
@@ -261,7 +262,7 @@ def _sines(angle):
     return np.sin(angle), np.cos(angle)
 
 
-_turn = kept_for_same_angles(_sines)
+turn = kept_for_same_angles(_sines)
 
 
 def made(source, scope):

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..numbers.lazy import cached_property
 from . import loops, programs, writing
-from .compiled import _loaded
+from .compiled import loaded
 from .operations import BY_DESIGN
 from .programs import Program
 from .trace import BY_ANGLE, Graph, Node, needed
@@ -101,7 +101,7 @@ class Split:
         with np.errstate(all="ignore"):
             parameters = [_of_type(part, dtype) for part in self._fixed_by(leaves.numbers)]
             rows = [_of_type(row, dtype) for row in self._whole.rows(state, leaves)]
-            angle, sine, cosine = (part.astype(dtype) for part in (angle, *programs._turn(angle)))
+            angle, sine, cosine = (part.astype(dtype) for part in (angle, *programs.turn(angle)))
         return Given(angle, sine, cosine, parameters, rows, shape)
 
     def _fixed_by(self, numbers):
@@ -112,7 +112,7 @@ class Split:
 
     def by_numpy(self, given):
         """Outputs (outputs, *shape) by array operations."""
-        (_, batch), count = self.at_angles._buffered
+        (_, batch), count = self.at_angles.buffered
         results = np.empty((len(self.at_angles.outputs), *given.shape), given.angle.dtype)
         step = programs.BLOCK if len(given.shape) == 1 else given.shape[-1]
         with np.errstate(all="ignore"):
@@ -143,10 +143,9 @@ class Split:
     @cached_property
     def _loop(self):
         """The loop compiled for single precision."""
-        source = writing.loop(self.at_angles.outputs)
         types = ", ".join([writing.GIVEN] * 5 + [writing.FILLED]).format(2, 2, 2, 2, 3, 3)
         header = HEADER.format(rounding=writing.ROUNDING, types=types.replace("float64", "float32"))
-        return _loaded(header + source[source.index("def loop(") :]).loop
+        return loaded(header + writing.loop_alone(self.at_angles.outputs)).loop
 
 
 def _of_type(part, dtype):

@@ -45,8 +45,8 @@ def divisor(root, unit):
 
 
 @njit("void({", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})", cache=KEEP, **options)
-def loop(angle, sine, cosine, parameters, tables, results):
 '''
+LOOP_HEAD = "def loop(angle, sine, cosine, parameters, tables, results):"
 LOOP = """    for design in range(parameters.shape[0]):
         first = design * (angle.shape[0] > 1)
         table = design * (tables.shape[1] > 1)"""
@@ -106,16 +106,31 @@ def loop(outputs, fuse=True) -> str:
     It takes angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
     designs, N), and fills results (designs, outputs, N). Sums are fused with products, see `fusing`, unless told.
     """
-    nodes, sums = needed(outputs), {}
-    if fuse:
-        sums = fused(nodes)
-        nodes = _still_needed(nodes, outputs, sums)
+    nodes, sums = _computed(outputs, fuse)
     header = LOOP_HEADER
     if sums or any(node.operation == "fma" for node in nodes):
         header = LOOP_HEADER.replace("\n\n\n@", f"\n{FUSED}@", 1)
     if any(node.operation == "total" for node in nodes):
         head, end = header.rsplit("@njit", 1)
         header = f"{head}{TOTAL}@njit{end}"
+    return header + _function(outputs, nodes, sums)
+
+
+def loop_alone(outputs) -> str:
+    """Source of the same function without what stands before it."""
+    return _function(outputs, *_computed(outputs))
+
+
+def _computed(outputs, fuse=True):
+    """What is computed for outputs, in order, and the sums among it that are fused."""
+    nodes = needed(outputs)
+    if not fuse:
+        return nodes, {}
+    sums = fused(nodes)
+    return _still_needed(nodes, outputs, sums), sums
+
+
+def _function(outputs, nodes, sums):
     by_design = [f"        {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
     by_angle = [
         _fused(node, sums[node]) if node in sums else _defined(node) for node in nodes if _is_computed_by_angle(node)
@@ -124,11 +139,11 @@ def loop(outputs, fuse=True) -> str:
         rows = [f"        row_{place} = results[design, {place}]" for place in range(len(outputs))]
         ends = [f"row_{place}[i] = {_name(part)}" for place, part in enumerate(outputs)]
         inner = ["        for i in range(angle.shape[1]):", *(f"            {each}" for each in by_angle + ends)]
-        return header + "\n".join([LOOP, *by_design, *rows, *inner]) + "\n"
+        return "\n".join([LOOP_HEAD, LOOP, *by_design, *rows, *inner]) + "\n"
     ends = [f"block[uint64({place * AT_ONCE} + k)] = {_name(part)}" for place, part in enumerate(outputs)]
     memory = f"    block = empty({len(outputs) * AT_ONCE})"
     inner = [BLOCKS, *(f"                {each}" for each in by_angle + ends), SPREAD]
-    return header + "\n".join([memory, LOOP, *by_design, *inner]) + "\n"
+    return "\n".join([LOOP_HEAD, memory, LOOP, *by_design, *inner]) + "\n"
 
 
 def _still_needed(nodes, outputs, sums):

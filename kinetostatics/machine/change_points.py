@@ -209,7 +209,8 @@ class Passer:
     assembly: Any
     passage: Any
     on: str
-    is_close = may_come_close = False
+    is_close = False
+    may_come_close: bool
     through: bool
     found_on: Any
     start: Any

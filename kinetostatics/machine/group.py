@@ -57,8 +57,9 @@ the unknown forces *on* them; what the group needs from others goes into ``deman
 group: the mechanism sees to the reaction on the link that carries the joint. No joint outside `hangs_on` and no link
 but the crank can be asked.
 
-*Change points.* Most groups have none to pass. One that does says in `on_crank(crank)` how, by a text `passage` that
-belongs to its structure, and gives `turns` and `change_points`; `kink(crank)` says what becomes of a chosen side there.
+*Change points.* Most groups have none to pass. One that does says in `on_crank(throws)` how, by a text `passage` that
+belongs to its structure, and gives `turns` and `change_points`; `kink(throws)` says what becomes of a chosen side
+there.
 
 *Friction.* Where links rub, `resolve` is asked several times: what it finds must be linear in the loads.
 

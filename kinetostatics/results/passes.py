@@ -331,7 +331,7 @@ class Passes:
 
     def __init__(self, outputs, rows, first, angle, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
-        self._passes, self._turns = compiled._loaded(SOURCE).passes, turns
+        self._passes, self._turns = compiled.loaded(SOURCE).passes, turns
         places, numbers = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64)
         self._given = places, numbers, int(first), np.array(angle), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]

@@ -39,19 +39,27 @@ def leaves_of(places, state):
     return {path: number for path, number in found.items() if isinstance(number, Numbered)}
 
 
+def keeping(scene, places, wanted):
+    """The scene with the wanted numbers that are zero, and so absent from programs, kept as numbers."""
+    for path in wanted:
+        if is_zero(places[path].value(scene)):
+            scene = _with_kept(scene, places[path].steps)
+    return scene
+
+
 def is_zero(value):
     """Whether a value is the one number zero, which is absent from a program unless it is kept."""
     return isinstance(value, int | float) and value == 0
 
 
-def with_kept(item, steps):
+def _with_kept(item, steps):
     """Copy of a tree in which a zero is kept as a number; nothing is checked."""
     if not steps:
         return Kept(0.0)
     step, *rest = steps
     if isinstance(step, int):
-        return tuple(with_kept(part, rest) if place == step else part for place, part in enumerate(item))
-    return with_fields(item, **{step: with_kept(getattr(item, step), rest)})
+        return tuple(_with_kept(part, rest) if place == step else part for place, part in enumerate(item))
+    return with_fields(item, **{step: _with_kept(getattr(item, step), rest)})
 
 
 def is_judged_together(item, steps):

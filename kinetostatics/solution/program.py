@@ -19,7 +19,7 @@ from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.leaves import with_fields
 from .angles import crank_angles, problems
-from .parameters import fixed, is_judged_together, is_zero, leaves_of, require_free, shaping, with_kept
+from .parameters import fixed, is_judged_together, keeping, leaves_of, require_free, shaping
 from .scene import unchecked
 from .slopes import slopes
 
@@ -55,9 +55,7 @@ class Program:
         checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
         if scene.friction.acting:
             scene = _with_enough_passes(scene)
-        for path in kept:
-            if is_zero(places[path].value(scene)):
-                scene = with_kept(scene, places[path].steps)
+        scene = keeping(scene, places, kept)
         state = Dynamics(scene.mechanism, np.zeros(1), *_drive(scene))
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)

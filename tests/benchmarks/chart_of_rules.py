@@ -45,7 +45,7 @@ def main():
         for graph, fuse in product((Graph, LeanGraph), (False, True)):
             record.LeanGraph = graph
             made = Program(record.record(few.dynamics.apart[0], names))
-            made.loop = compiled._loaded(writing.loop(made.outputs, fuse)).loop
+            made.loop = compiled.loaded(writing.loop(made.outputs, fuse)).loop
             rivals.append((made, fuse, *of_turn(made, scene)))
         times = least([run for *_, run in rivals]) / (DESIGNS * ANGLES) * 1e9
         for (made, fuse, lean, _), spent in zip(rivals, times, strict=True):

@@ -12,12 +12,6 @@ from kinetostatics.engines.backends import Backend
 from support.elsewhere import diverse, errors, exact_values
 from support.every import every
 
-
-@pytest.fixture
-def jax():
-    return pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
-
-
 SINGLE, DOUBLE = Backend("jax", "single", "cpu"), Backend("jax", "double", "cpu")
 
 

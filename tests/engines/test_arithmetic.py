@@ -20,21 +20,6 @@ ANGLES = np.linspace(0.01, 6.2, 40)
 NUMPY = Backend("numpy", "single")
 
 
-@pytest.fixture
-def flint():
-    return pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-
-
-@pytest.fixture
-def numba():
-    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-
-
-@pytest.fixture
-def jax():
-    return pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
-
-
 @every("family", FAMILIES)
 def test_no_value_in_single_precision_of_random_machines_is_off_by_more_than_its_bound(flint, family):
     made = next(found for found in (solution(family, seed) for seed in range(9)) if found is not None)

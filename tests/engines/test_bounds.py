@@ -23,11 +23,6 @@ FINE_TURN = np.linspace(0.0, 2 * np.pi, 180, endpoint=False) + 0.01
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False)
 
 
-@pytest.fixture
-def flint():
-    return pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-
-
 def bounded(scene, quantity, angles=TURN):
     s = scene.solve(angles)
     return s, s.error_bound(quantity)

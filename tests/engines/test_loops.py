@@ -18,11 +18,6 @@ from support.scenes import (
 )
 
 
-@pytest.fixture
-def numba():
-    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-
-
 def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeypatch):
     """Of many designs each thread takes some, of a single one some angles."""
     expected = solve(SCENES["plain"], SAMPLES + SIZES), solve(SCENES["plain"], ANGLES)

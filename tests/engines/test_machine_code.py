@@ -24,11 +24,6 @@ def twice(x):
 
 
 @pytest.fixture
-def numba():
-    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-
-
-@pytest.fixture
 def folder(tmp_path, monkeypatch):
     """The folder of programs, which is not there yet; temporary files have a folder of their own."""
     monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path / "new" / "programs"))

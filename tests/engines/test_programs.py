@@ -54,20 +54,6 @@ def assert_agree(found, expected, tolerance=1e-13):
 # JAX
 
 
-@pytest.fixture
-def jax():
-    return pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
-
-
-@pytest.fixture
-def double(jax):
-    """JAX in double precision, and back to what it was."""
-    before = jax.config.jax_enable_x64
-    jax.config.update("jax_enable_x64", True)
-    yield jax
-    jax.config.update("jax_enable_x64", before)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", DIVERSE)
 def test_solve_under_jax_jit_equals_numpy(double, name):
@@ -88,16 +74,6 @@ def test_jax_in_single_precision_is_warned_of(jax):
 
 
 # arb
-
-
-@pytest.fixture
-def flint():
-    """python-flint at 200 bits, and back to what it was."""
-    flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-    before = flint.ctx.prec
-    flint.ctx.prec = 200
-    yield flint
-    flint.ctx.prec = before
 
 
 def assert_narrow(found, flint):
@@ -165,11 +141,6 @@ def test_dask_arrays_stay_lazy_in_chunks_and_equal_numpy(name):
 
 
 # Recorded and compiled programs
-
-
-@pytest.fixture
-def numba():
-    return pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
 
 
 def program(solution, names, sizes=False):
@@ -357,7 +328,7 @@ def test_second_process_finds_the_compiled_program_on_disk(numba, tmp_path, monk
         kept = (path for path in tmp_path.rglob("*") if path.suffix in (".py", ".nbi", ".nbc"))
         return sorted((path.name, path.stat().st_mtime_ns) for path in kept)
 
-    compiled._loaded.cache_clear()
+    compiled.loaded.cache_clear()
     kinds.forget()
     exec(code)
     here, compiled_here = capsys.readouterr().out, files()

@@ -348,13 +348,6 @@ def test_quantities_that_are_not_known_are_refused_before_anything_is_written(sa
     assert not out.exists()
 
 
-def test_the_version_is_told(capsys):
-    with pytest.raises(SystemExit) as caught:
-        main(["--version"])
-    assert caught.value.code == 0
-    assert capsys.readouterr().out == f"kinetostatics {ks.__version__}\n"
-
-
 def test_memory_that_runs_out_is_told_in_a_line(saw, monkeypatch, capsys):
     def solve(*_):
         raise MemoryError("Unable to allocate 8 GiB")

@@ -16,22 +16,6 @@ STEP = "1e-20"
 """Of the central difference, relative: its own error is 1e-40 times the third derivative."""
 
 
-@pytest.fixture
-def double():
-    """JAX in double precision, and back to what it was."""
-    jax = pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
-    with jax.enable_x64(True):
-        yield jax
-
-
-@pytest.fixture
-def flint():
-    """python-flint at 200 bits, and back to what it was."""
-    flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
-    with flint.ctx.workprec(200):
-        yield flint
-
-
 def links(coupler_length=2.0):
     """Of the sawframe: the mass centre stays at the middle of the coupler, whatever its length."""
     return {"coupler": ks.Link(150.0, coupler_length / 2, 20.5), "slider": ks.Link(600.0)}

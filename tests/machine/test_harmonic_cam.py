@@ -90,13 +90,10 @@ def test_batches_of_coefficients_solve_as_each_design_does():
 
 
 @pytest.mark.slow
-def test_compiled_loop_jax_and_enclosures_agree():
-    numba, jax, flint = (pytest.importorskip(name) for name in ("numba", "jax", "flint"))
-    assert numba
-    jax.config.update("jax_enable_x64", True)
+def test_compiled_loop_jax_and_enclosures_agree(numba, double, flint):
     expected = scene().solve(ANGLES).balancing_torque
     assert_allclose(scene().solve(ANGLES, engine="compiled").balancing_torque, expected, rtol=1e-11, atol=1e-8)
-    traced = scene().solve(jax.numpy.array(ANGLES)).balancing_torque
+    traced = scene().solve(double.numpy.array(ANGLES)).balancing_torque
     assert_allclose(traced, expected, rtol=1e-11, atol=1e-8)
     arb = flint.arb
     cam = ks.cams.Harmonic(tuple(map(arb, COSINE)), tuple(map(arb, SINE)), arb(TURNED))

@@ -31,13 +31,12 @@ def lengths(seed):
 
 
 def same(one, other, closure):
-    """Whether two results are the same where the linkage closes and is not near a limit position."""
+    """Check that two results are the same where the linkage closes and is not near a limit position."""
     good = closure > 1e-3
     assert good.any() or not (closure > 0).any()
     for a, b in zip(one, other, strict=True):
-        np.testing.assert_allclose(
-            np.broadcast_to(a, TURN.shape)[good], np.broadcast_to(b, TURN.shape)[good], atol=1e-9
-        )
+        here, there = (np.broadcast_to(values, TURN.shape)[good] for values in (a, b))
+        np.testing.assert_allclose(here, there, rtol=1e-11, atol=1e-11)
 
 
 def link(motion):

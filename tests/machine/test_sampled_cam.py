@@ -176,8 +176,7 @@ def test_noise_unlike_that_of_the_table_is_warned_of(noise, words):
         ks.cams.Sampled(*table, noise=noise)
 
 
-def test_a_sampled_cam_that_jax_traces_is_refused_with_what_to_do():
-    jax = pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
+def test_a_sampled_cam_that_jax_traces_is_refused_with_what_to_do(double):
     mechanism = ks.cam_crank_slider(ks.cams.Sampled(*rounded(LAW, 360, 1e-9)), 2.0, slider=ks.Link(600.0))
-    with jax.enable_x64(True), pytest.raises(ks.NotGivenError, match=r"sampled cam.*ks.compile"):
-        jax.jit(lambda angle: ks.solve(mechanism, angle, crank_speed=3.0, on_gap="nan").balancing_torque)(np.ones(3))
+    with pytest.raises(ks.NotGivenError, match=r"sampled cam.*ks.compile"):
+        double.jit(lambda angle: ks.solve(mechanism, angle, crank_speed=3.0, on_gap="nan").balancing_torque)(np.ones(3))

@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.numbers import paths
 from kinetostatics.numbers.leaves import Kept
-from kinetostatics.solution.parameters import is_judged_together, is_zero, shaping, with_kept
+from kinetostatics.solution.parameters import is_judged_together, is_zero, keeping, shaping
 
 SAW = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 30.0, loads=ks.Gravity())
 DELTOID = ks.four_bar(0.3, 0.8, 0.8, rocker_pivot=(0.3, 0.0), assembly="open", rocker=ks.Link(20.0, 0.5, 2.0))
@@ -19,9 +19,9 @@ def test_only_the_one_number_zero_is_absent(value, zero):
     assert is_zero(value) is zero
 
 
-def test_a_zero_is_kept_at_its_place_and_nothing_else_changes():
+def test_a_wanted_zero_is_kept_at_its_place_and_nothing_else_changes():
     places = paths.places(SAW)
-    kept = with_kept(SAW, places["coupler.mass"].steps)
+    kept = keeping(SAW, places, ("coupler.mass", "slider.mass"))
     assert isinstance(places["coupler.mass"].value(kept), Kept)
     others = places.keys() - {"coupler.mass"}
     assert all(places[path].value(kept) is places[path].value(SAW) for path in others)

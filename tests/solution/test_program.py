@@ -114,11 +114,6 @@ def test_an_unknown_quantity_is_refused_in_every_precision(precision):
         made(quantities="torqe", engine="numpy", precision=precision)
 
 
-@pytest.fixture
-def jax():
-    return pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
-
-
 @pytest.mark.slow_start
 def test_jax_gives_arrays_of_numpy_in_the_precision_asked_for_and_names_its_device(jax):
     exact = made(engine="numpy")(ANGLES)

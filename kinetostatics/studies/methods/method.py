@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import NotGivenError
 from ...machine.change_points import SIDES
 
-__all__ = ["Method", "NotGivenError", "on_a_side", "require_one_design"]
+__all__ = ["Method", "NotGivenError", "on_a_side", "require_frictionless", "require_one_design"]
 
 
 def on_a_side(mechanism):

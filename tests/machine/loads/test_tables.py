@@ -182,14 +182,6 @@ def test_kinks_of_a_table_over_travel_lie_in_both_turns_of_a_branch():
 # JAX
 
 
-@pytest.fixture
-def double():
-    """JAX in double precision, and back to what it was."""
-    jax = pytest.importorskip("jax", reason="jax is not installed (extra: grad)")
-    with jax.enable_x64(True):
-        yield jax
-
-
 PHASES = np.linspace(0.3, 6.0, 12)
 TABLES = {
     "angle": ks.Table(PHASES, 100.0 * np.sin(3.0 * PHASES)),
