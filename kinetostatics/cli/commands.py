@@ -185,8 +185,21 @@ def stability(options):
     if machine.wants_json(options):
         machine.print_json("stability", places=table, files=paths)
         return
-    print_table(table.drop(columns=["machine", "versions"]).set_index("place"))
+    say(f"at how many of the {table['place'].nunique()} places each method does what, several things at some:\n")
+    print_table(_counts(table))
+    near = table[table["method"].str.startswith("ours") & ~table["does"].isin(["exact", "does not give it"])]
+    if len(near):
+        say("\nwhere ours is not exact:\n")
+        print_table(near.set_index("place")[["method", "worst error", "condition there"]])
+    say("\nmethod by method at each place:")
     print(*paths, sep="\n")
+
+
+def _counts(table):
+    """How often each method does what, the good first."""
+    counts = table["does"].str.get_dummies(", ").groupby(table["method"], sort=False).sum()
+    good = [text for text in ("exact", "as near as the condition allows") if text in counts]
+    return counts[[*good, *counts.columns.drop(good)]]
 
 
 def compare(options):
