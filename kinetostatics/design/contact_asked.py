@@ -2,8 +2,6 @@
 
 from ..errors import ParameterError
 from ..machine import hertz
-from ..machine.cam_roller import CamRoller
-from ..machine.follower import Follower
 from ..machine.profile import POSITIVE
 from ..machine.profile import profile as working_curve
 from ..numbers import checks
@@ -73,7 +71,7 @@ def contact(
     """
     checks.require("contact", checks.solution("solution", solution))
     require_single(solution, "contact", "cam_force")
-    groups = [group for group in solution.mechanism.groups if isinstance(group, CamRoller)]
+    groups = solution.mechanism.led_by_ground
     told = {"roller_radius": roller_radius, "width": width, "youngs_modulus": youngs_modulus}
     told |= {"poissons_ratio": poissons_ratio}
     if groups:
@@ -127,7 +125,7 @@ def _of_both(roller, name):
 
 def _no_roller(mechanism):
     text = f"solution must be of a mechanism with a CamRoller, a {mechanism.name} has none"
-    follows = any(isinstance(group, Follower) for group in mechanism.groups)
+    follows = any(group.led for group in mechanism.groups)
     return text + "; give its follower a Roller or Face, then contact_pressure is an output" * follows
 
 

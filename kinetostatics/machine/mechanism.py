@@ -98,6 +98,11 @@ class Mechanism(Batched):
         """Whether it passes change points: motion is smooth there, but forces grow without bound."""
         return any(group.passes for group in self.groups)
 
+    @property
+    def led_by_ground(self):
+        """Groups that a cam fixed to the frame leads."""
+        return tuple(group for group in self.groups if any(led.body == FRAME for led in group.led))
+
     def grows(self, name):
         """Whether a force grows without bound at change points that it passes: one of a group that does, or at O."""
         parts = [group for group in self.groups if group.passes]

@@ -8,7 +8,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from ..design.fronts import Front
-from ..machine.cam_roller import CamRoller
 from ..numbers import checks
 from ..numbers.files import unwritable
 from .canvas import axes, closed, finished, styled
@@ -81,8 +80,8 @@ def front_page(found):
 
 
 def cam_of(scene):
-    """Cam of a scene's first cam roller; None without one."""
-    return next((group.cam for group in scene.mechanism.groups if isinstance(group, CamRoller)), None)
+    """First cam of a scene that is fixed to the frame; None without one."""
+    return next((group.cam for group in scene.mechanism.led_by_ground), None)
 
 
 def pitch_curves(cams, ax=None):
