@@ -159,13 +159,16 @@ def precision(options):
         page=precision_page,
     )
     table = pd.read_csv(paths[0])
-    fronts = [study.front(part) for _, part in table.groupby(["variant", "quantity"], sort=False)]
+    groups = table.groupby(["variant", "quantity"], sort=False)
+    fronts = {names: study.front(part) for names, part in groups}
     if machine.wants_json(options):
-        machine.print_json("precision", case=machine.of_case(case), best=pd.concat(fronts), files=paths)
+        machine.print_json("precision", case=machine.of_case(case), best=pd.concat(fronts.values()), files=paths)
         return
-    say(f"{case.title}\n\nno other method is both faster and nearer than these:\n")
-    shown = ["variant", "quantity", "method", "setting", "value", "time [ns/angle]", "error"]
-    print_table(pd.concat(fronts)[shown].set_index("variant").astype(object).fillna(""))
+    say(f"{case.title}\n\nno other method is both faster and nearer than these; errors by the largest value:")
+    for (variant, _), front in fronts.items():
+        say(f"\n{variant}: {front['label'].iloc[0]}\n")
+        shown = front.set_index("method")[["setting", "value", "time [ns/angle]", "error"]]
+        print_table(shown.astype(object).fillna(""))
     absent = table[table.groupby(["variant", "quantity", "method"])["error"].transform("count") == 0]
     if len(absent):
         say("\nwhat does not apply:\n")
@@ -185,8 +188,21 @@ def stability(options):
     if machine.wants_json(options):
         machine.print_json("stability", places=table, files=paths)
         return
-    print_table(table.drop(columns=["machine", "versions"]).set_index("place"))
+    say(f"at how many of the {table['place'].nunique()} places each method does what, several things at some:\n")
+    print_table(_counts(table))
+    near = table[table["method"].str.startswith("ours") & ~table["does"].isin(["exact", "does not give it"])]
+    if len(near):
+        say("\nwhere ours is not exact:\n")
+        print_table(near.set_index("place")[["method", "worst error", "condition there"]])
+    say("\nmethod by method at each place:")
     print(*paths, sep="\n")
+
+
+def _counts(table):
+    """How often each method does what, the good first."""
+    counts = table["does"].str.get_dummies(", ").groupby(table["method"], sort=False).sum()
+    good = [text for text in ("exact", "as near as the condition allows") if text in counts]
+    return counts[[*good, *counts.columns.drop(good)]]
 
 
 def compare(options):

@@ -52,7 +52,7 @@ def tell(solution, given):
     print_table(shown.rename(columns=columns), _of_two_digits(table))
     say(
         f"\nlargest values, and how sure they are: standard uncertainty from that of {', '.join(sorted(given))}, "
-        "independent and to first order, and the proven bound on rounding added to it"
+        "independent and to first order, and the proven bound on rounding added to it, rounded up to two digits"
     )
 
 

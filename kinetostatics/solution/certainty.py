@@ -57,7 +57,8 @@ class Uncertainty:
     def __repr__(self):
         rows = {**self.inputs, "all inputs": self.tolerance, "rounding": self.rounding}
         with np.errstate(all="ignore"):
-            return "\n".join(f"{np.nanmax(values, initial=0.0):12.3g}  {name}" for name, values in rows.items())
+            lines = [f"{np.nanmax(values, initial=0.0):12.3g}  {name}" for name, values in rows.items()]
+        return "\n".join(["largest over the crank angles, SI:", *lines])
 
 
 class Certainty(Parameters):
@@ -85,7 +86,8 @@ class Certainty(Parameters):
         -------
         array
             Shaped as the quantity, in its unit: of a vector for each component. Infinite where nothing can be proven
-            (a divisor may vanish, a sign is not sure), NaN where there is no value.
+            (a divisor may vanish, a sign is not sure), NaN where there is no value. At a dead centre where a table over
+            travel has another value on the way back, as large as the step: which side of it holds is not known.
 
         Raises
         ------
@@ -116,7 +118,8 @@ class Certainty(Parameters):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
 
         To first order in the inputs, by exact derivatives (JCGM 100:2008, *Guide to the expression of uncertainty in
-        measurement*, section 5.1); see `tolerances` for spreads of any size and kind.
+        measurement*, section 5.1); see `tolerances` for spreads of any size and kind. Near a limit position or toggle, where the inputs
+        move the position itself by more than the distance to it, first order says nothing: vary the inputs there.
 
         Parameters
         ----------
@@ -128,7 +131,8 @@ class Certainty(Parameters):
         Returns
         -------
         Uncertainty
-            Also an array of its `total`.
+            With `tolerance`, `rounding` and their sum, `total`, each shaped as the quantity; NumPy's functions take it as
+            its `total`. Printed, it tells the largest over the crank angles.
 
         Raises
         ------

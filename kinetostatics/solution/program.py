@@ -74,7 +74,8 @@ class Program:
 
     def __repr__(self):
         names = ", ".join(self.parameters)
-        return f"<Program: {', '.join(self.quantities)} of {self.scene.mechanism.name}; parameters {names}>"
+        runs = f"{self.engine}, {self.precision}"
+        return f"<Program: {', '.join(self.quantities)} of {self.scene.mechanism.name}; {runs}; parameters {names}>"
 
     def __reduce__(self):
         return Program, (self.scene, self.quantities, self._kept, self._backend)

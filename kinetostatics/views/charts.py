@@ -80,6 +80,8 @@ def work_precision(table, ax=None, like=None):
             proven = rows.dropna(subset=["bound"]) if "bound" in rows else rows.assign(bound=np.nan)[:0]
             ax.vlines(proven[time], np.maximum(proven["error"], EXACT), proven["bound"], color=style["color"], lw=1.0)
             ax.plot(proven[time], proven["bound"], "_", color=style["color"], markersize=9)
+    if "bound" in given and given["bound"].notna().any():
+        ax.plot([], [], "_", color=ACCENT, markersize=9, label="proven bound on the error below it")
     ax.set(xscale="log", yscale="log", ylim=(EXACT / 3, 30))
     ax.set_xlabel("time [ms]" if whole else "time [ns per crank angle]")
     text = "largest error / largest value [1]"

@@ -300,3 +300,24 @@ def test_explain_prints_the_hand_calculation_and_writes_it(tmp_path, capsys):
 def test_explain_refuses_what_is_not_there(options, words, capsys):
     assert main(["explain", "sawframe_2r63", *options]) == 2
     assert words in capsys.readouterr().err
+
+
+def test_stability_tells_each_method_in_a_line_and_not_each_place(tmp_path, monkeypatch, capsys):
+    from kinetostatics.studies import stability
+
+    does = {"ours, NumPy": ["exact", "as near as the condition allows"], "series": ["gives NaN, loses digits"] * 2}
+    rows = [
+        {"place": place, "method": method, "does": text, "worst error": 1e-9, "condition there": 1e9}
+        for method, texts in does.items()
+        for place, text in zip(("toggle", "kite"), texts, strict=True)
+    ]
+    path = tmp_path / "stability_summary.csv"
+    pd.DataFrame(rows).to_csv(path)
+    monkeypatch.setattr(stability, "write", lambda *_, **__: ["stability.csv", path])
+    assert main(["stability", "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    lines = {line[:11].strip(): line[11:].split() for line in printed.splitlines()}
+    assert lines["ours, NumPy"] == ["1", "1", "0", "0"]
+    assert lines["series"] == ["0", "0", "2", "2"]
+    assert "toggle" not in printed
+    assert "kite   ours, NumPy" in printed

@@ -50,6 +50,7 @@ def test_bounds_in_double_precision_are_those_of_a_solution():
 def test_a_program_tells_what_runs_it_and_so_does_its_copy():
     program = pickle.loads(pickle.dumps(made(**SINGLE)))
     assert (program.engine, program.precision, program.device) == ("numpy", "single", "cpu")
+    assert "numpy, single; parameters" in repr(program)
     assert made(engine="numpy").precision == "double"
     assert np.array_equal(program(0.3)["O"], made(**SINGLE)(0.3)["O"])
 
