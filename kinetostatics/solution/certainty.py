@@ -118,8 +118,8 @@ class Certainty(Parameters):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
 
         To first order in the inputs, by exact derivatives (JCGM 100:2008, *Guide to the expression of uncertainty in
-        measurement*, section 5.1); see `tolerances` for spreads of any size and kind. Near a limit position or toggle, where the inputs
-        move the position itself by more than the distance to it, first order says nothing: vary the inputs there.
+        measurement*, section 5.1); see `tolerances` for spreads of any size and kind. Where the inputs may move a limit
+        position or toggle across the crank angle, first order says nothing: vary the inputs there.
 
         Parameters
         ----------
@@ -131,8 +131,8 @@ class Certainty(Parameters):
         Returns
         -------
         Uncertainty
-            With `tolerance`, `rounding` and their sum, `total`, each shaped as the quantity; NumPy's functions take it as
-            its `total`. Printed, it tells the largest over the crank angles.
+            With `tolerance`, `rounding` and their sum, `total`, each shaped as the quantity; for NumPy's functions it
+            is an array of its `total`. Printed, it tells the largest over the crank angles.
 
         Raises
         ------
