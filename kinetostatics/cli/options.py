@@ -58,7 +58,7 @@ def _run(group):
         type=_text,
         metavar="PATH=SIZE",
         help='also how sure the largest values are: standard uncertainty of a number, "crank_length=0.01 mm", or '
-        '"tolerances" for those of the case file',
+        '"tolerances" for those of the case file; several, each with --uncertain before it',
     )
     _for_machines(command, "all results, a row for each crank angle")
 

@@ -17,7 +17,7 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
-from ..solution.scene import Scene
+from ..solution.scene import scene_problem
 from .motor import Motor, single
 
 INERTIA, SLOPE, TORQUE, CLOSURE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque", "closure")
@@ -46,7 +46,7 @@ class Driven:
         flywheel, wrong = single(flywheel, "kg*m**2", name="flywheel", low=0.0)
         checks.require(
             owner,
-            None if isinstance(scene, Scene) else f"scene must be a Scene, as ks.Scene(...), got {checks.shown(scene)}",
+            scene_problem(scene),
             None if isinstance(motor, Motor | None) else f"motor must be a Motor, got {checks.shown(motor)}",
             wrong,
             None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),

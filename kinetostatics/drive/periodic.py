@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import DriveError
 from ..numbers import checks
 from ..solution.angles import crank_angles
-from ..solution.scene import Scene
+from ..solution.scene import scene_problem
 from .bends import parted
 from .following import from_above
 from .motor import single
@@ -170,7 +170,7 @@ def _at_mean_speed(driven, pieces, inertia, gained, speed):
 
 def _direction(scene):
     """Sign of the crank speed of a scene that is to be run without motor."""
-    checks.require("steady", None if isinstance(scene, Scene) else f"scene must be a Scene, got {checks.shown(scene)}")
+    checks.require("steady", scene_problem(scene))
     speed, wrong = single(scene.crank_speed, "rad/s", name="crank_speed of the scene", unequal=0.0)
     checks.require("steady", wrong)
     return math.copysign(1.0, speed)

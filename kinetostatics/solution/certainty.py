@@ -8,12 +8,12 @@ import numpy as np
 
 from ..engines import programs
 from ..engines.backends import Backend
-from ..engines.bounds import of_magnitude, where_known
+from ..engines.bounds import of_magnitude
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.elementary import read_only
-from .parameters import Parameters, fixed, keeping, leaves_of, require_free
+from .parameters import Parameters, fixed, is_zero, leaves_of, require_free, with_kept
 from .slopes import slopes
 
 
@@ -112,15 +112,14 @@ class Certainty(Parameters):
         values, bounds = self._with_bounds(name, tight)
         if name != quantity:
             values, bounds = np.hypot(*values), of_magnitude(values, bounds)
-        return read_only(where_known(values, bounds))[()]
+        return read_only(np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds)))[()]
 
     def uncertainty(self, quantity, inputs):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
 
         To first order in the inputs, by exact derivatives (JCGM 100:2008, *Guide to the expression of uncertainty in
-        measurement*, section 5.1); see `tolerances` for spreads of any size and kind. Near a limit position or toggle,
-        where the inputs move the position itself by more than the distance to it, first order says nothing: vary the
-        inputs there.
+        measurement*, section 5.1); see `tolerances` for spreads of any size and kind. Where the inputs may move a limit
+        position or toggle across the crank angle, first order says nothing: vary the inputs there.
 
         Parameters
         ----------
@@ -132,8 +131,8 @@ class Certainty(Parameters):
         Returns
         -------
         Uncertainty
-            With `tolerance`, `rounding` and their sum, `total`, each shaped as the quantity; NumPy's functions take it
-            as its `total`. Printed, it tells the largest over the crank angles.
+            With `tolerance`, `rounding` and their sum, `total`, each shaped as the quantity; for NumPy's functions it
+            is an array of its `total`. Printed, it tells the largest over the crank angles.
 
         Raises
         ------
@@ -166,7 +165,11 @@ class Certainty(Parameters):
 
     def _slopes(self, name, by):
         """Derivatives of a quantity by numbers of the scene, by path."""
-        state = keeping(self, self.places, by).dynamics
+        kept = self
+        for path in by:
+            if is_zero(self.places[path].value(self)):
+                kept = with_kept(kept, self.places[path].steps)
+        state = kept.dynamics
         program, leaves = programs.of(state, (name,))
         found = leaves_of(self.places, state)
         backend = Backend("compiled" if self.engine.compiled else "numpy")

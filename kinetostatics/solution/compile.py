@@ -5,7 +5,7 @@ from ..engines.backends import Backend
 from ..engines.compiled import available, require
 from ..numbers import checks
 from .program import Program
-from .scene import Scene
+from .scene import scene_problem
 
 
 def compile(  # noqa: A001 - the contract's name
@@ -59,7 +59,7 @@ def compile(  # noqa: A001 - the contract's name
     names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     checks.require(
         "compile",
-        None if isinstance(scene, Scene) else f"scene must be a Scene, as ks.Scene(...), got {checks.shown(scene)}",
+        scene_problem(scene),
         None if names else "no quantities are asked for",
         *(checks.quantity(name) for name in names),
         None if engine is None else checks.choice("engine", engine, ("compiled", "numpy", "jax")),

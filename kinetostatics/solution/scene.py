@@ -138,6 +138,14 @@ class Scene(Parameters):
         return np.linspace(0.0, self.period, angles, endpoint=False)
 
 
+def scene_problem(value):
+    """What is wrong with what is given as a scene, or None; a variant of a case and others hold one."""
+    if isinstance(value, Scene):
+        return None
+    hint = "; give its .scene" if isinstance(getattr(value, "scene", None), Scene) else ""
+    return f"scene must be a Scene, as ks.Scene(...), got {checks.shown(value)}{hint}"
+
+
 def solve(
     mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), friction=None, on_gap="raise", engine=None
 ):

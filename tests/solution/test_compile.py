@@ -115,6 +115,10 @@ def test_numbers_that_only_together_make_no_machine_are_refused():
 
 
 WRONG = {
+    "a variant": (
+        lambda: ks.compile(ks.load_case("shaper").variants["idle"], "O"),
+        r"got Variant\(.*; give its .scene",
+    ),
     "no scene": (lambda: ks.compile(saw().mechanism, "O"), "scene must be a Scene"),
     "no quantity": (lambda: ks.compile(saw(), ()), "no quantities"),
     "unknown quantity": (lambda: ks.compile(saw(), "cam_force", engine="numpy"), "quantity is 'cam_force', allowed"),

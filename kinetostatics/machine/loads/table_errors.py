@@ -30,6 +30,17 @@ def kinks_within(table, motion):
     steepest = max(float(np.max(np.abs(np.diff(side) / np.diff(table.x)))) for side in sides)
     row = np.clip(np.searchsorted(table.x, place), 1, table.x.size - 1)
     beside = np.minimum(np.abs(place - table.x[row - 1]), np.abs(place - table.x[row])) <= near
-    jump = 0.0 if table.back is None else float(np.max(np.abs(table.y - table.back)))
+    jump = 0.0 if table.back is None else _largest_within(table.x, table.y - table.back, place, near)
     standing = np.abs(table.rate(motion)) <= near
     return np.where(beside, 2.0 * steepest, 0.0), np.where(standing, jump, 0.0), near
+
+
+def _largest_within(x, y, place, near):
+    """Bound on the magnitude of a polygon so near to each place."""
+    largest = np.max(np.abs(y))
+    if np.min(np.diff(x)) < 2.0 * near:  # more than one row may be so near
+        return largest
+    row = np.clip(np.searchsorted(x, place - near), 0, x.size - 1)
+    beside = np.where(np.abs(x[row] - place) <= 2.0 * near, np.abs(y[row]), 0.0)
+    ends = [np.abs(np.interp(end, x, y)) for end in (place - near, place + near)]
+    return np.maximum(beside, np.maximum(*ends)) + 8 * UNIT * largest

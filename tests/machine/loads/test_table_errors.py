@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 import numpy as np
+import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.loads import table_errors
@@ -30,3 +31,16 @@ def test_kinks_and_jumps_are_told_beside_rows_and_ends_of_strokes_only():
     assert np.flatnonzero(jumps).tolist() == [0, 2]
     assert kinks[1] == 0.0
     assert 0.0 < near < 1e-6
+
+
+@pytest.mark.parametrize("beside", [0.0, 5e-8, -5e-8])
+def test_at_the_end_of_a_stroke_a_table_jumps_by_what_its_ways_differ_there_not_elsewhere(beside):
+    """At the inner end both ways are 0; the outer end is a row at which they differ by a peak, or lies just beside."""
+    pump = ks.crank_slider(0.05, 0.2)
+    x = [0.14, 0.16, 0.24, 0.25 + beside, 0.26, 0.3]
+    table = ks.Table(x, [0.0, 0.0, 0.0, -700.0, 0.0, -9e5], over="travel", back=np.zeros(6))
+    s = ks.solve(pump, [0.0, np.pi], crank_speed=100.0, loads=ks.ProcessForce(table))
+    (outer, inner) = table_errors.kinks_within(table, s)[1]
+    assert 700.0 <= outer <= 701.0
+    assert inner < 1e-8
+    assert s.error_bound("B")[0, 1] < 1e-6
