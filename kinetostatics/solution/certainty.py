@@ -8,12 +8,12 @@ import numpy as np
 
 from ..engines import programs
 from ..engines.backends import Backend
-from ..engines.bounds import of_magnitude
+from ..engines.bounds import of_magnitude, where_known
 from ..errors import QuantityError
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.elementary import read_only
-from .parameters import Parameters, fixed, is_zero, leaves_of, require_free, with_kept
+from .parameters import Parameters, fixed, keeping, leaves_of, require_free
 from .slopes import slopes
 
 
@@ -112,7 +112,7 @@ class Certainty(Parameters):
         values, bounds = self._with_bounds(name, tight)
         if name != quantity:
             values, bounds = np.hypot(*values), of_magnitude(values, bounds)
-        return read_only(np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds)))[()]
+        return read_only(where_known(values, bounds))[()]
 
     def uncertainty(self, quantity, inputs):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
@@ -165,11 +165,7 @@ class Certainty(Parameters):
 
     def _slopes(self, name, by):
         """Derivatives of a quantity by numbers of the scene, by path."""
-        kept = self
-        for path in by:
-            if is_zero(self.places[path].value(self)):
-                kept = with_kept(kept, self.places[path].steps)
-        state = kept.dynamics
+        state = keeping(self, self.places, by).dynamics
         program, leaves = programs.of(state, (name,))
         found = leaves_of(self.places, state)
         backend = Backend("compiled" if self.engine.compiled else "numpy")
