@@ -3,6 +3,8 @@
 from dataclasses import replace
 from functools import partial
 
+import re
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
@@ -312,9 +314,9 @@ def test_command_writes_all_rows_the_summary_and_the_chart(two_places, tmp_path,
     for table in (rows, summary):
         assert table["machine"].nunique() == table["versions"].nunique() == 1
         assert table["versions"].str.contains(f"numpy {np.__version__}").all()
-    for place, method, verdict in summary[["place", "method", "does"]].itertuples(index=False):
-        line = next(line for line in printed.splitlines() if line.startswith(place) and method in line)
-        assert verdict in line
+    for method, of_method in summary.groupby("method"):
+        line = next(line for line in printed.splitlines() if line.startswith(method))
+        assert sum(map(int, re.findall(r"\b\d+\b", line.removeprefix(method)))) >= len(of_method)
     assert plt.imread(folder / "stability.png").shape[0] > 500
     text = (folder / "stability.svg").read_text()
     for name in ("ours, NumPy", SINGLE, SECOND, "condition x rounding", *(place.name for place in two_places)):
