@@ -1,9 +1,8 @@
 """Stability: every failure that the table names is counted here; none of ours, at any place."""
 
+import re
 from dataclasses import replace
 from functools import partial
-
-import re
 
 import matplotlib.pyplot as plt
 import numpy as np
