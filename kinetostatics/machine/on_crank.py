@@ -181,11 +181,12 @@ def slotted(placement, on, pivot, offset, assembly):
 def is_small(throw, offset, length):
     """Whether the difference of a length, more or less an offset, and the radius of a pin is small, in any design."""
     radius = throw.at[0] if throw.ahead else None
-    if not type(radius) is type(offset) is type(length) is float:
-        if not all(map(checks.known, (*throw.at, offset, length))):
-            return False
-        radius, offset, length = map(np.asarray, (throw.polar[0], offset, length))
+    if type(radius) is type(offset) is type(length) is float:
+        unit = CLOSE * (length + radius)
+        return abs(abs(length + offset) - radius) < unit or abs(abs(length - offset) - radius) < unit
+    if not all(map(checks.known, (*throw.at, offset, length))):
+        return False
+    radius, offset, length = map(np.asarray, (throw.polar[0], offset, length))
     far, near = abs(length + offset) - radius, abs(length - offset) - radius
     unit = CLOSE * (length + radius)
-    found = (abs(far) < unit) | (abs(near) < unit)
-    return found if type(found) is bool else bool(np.any(found))
+    return bool(np.any((abs(far) < unit) | (abs(near) < unit)))
