@@ -14,7 +14,6 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from flint import arb
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
@@ -75,6 +74,8 @@ def least(rivals):
 
 
 def largest_error(made, solution, exact):
+    from flint import arb
+
     found = made.run(solution.dynamics, solution.dynamics.apart[1], compiled=True)
     size = np.abs(found).max(axis=1)
     errors = [

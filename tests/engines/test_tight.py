@@ -22,8 +22,7 @@ def found(graph, output, angle, *values):
 
 
 @every("family", FAMILIES)
-def test_no_value_of_random_machines_is_off_by_more_than_its_tight_bound(family):
-    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+def test_no_value_of_random_machines_is_off_by_more_than_its_tight_bound(flint, family):
     made = next(found for found in (solution(family, seed, 20) for seed in range(9)) if found is not None)
     compared = errors(made, ("balancing_torque", "O"), tight=True)
     assert compared.values > 10

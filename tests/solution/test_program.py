@@ -155,8 +155,8 @@ def test_every_quantity_has_the_gaps_of_the_mechanism_even_what_never_changes(cr
     assert bounds["crank_rate"][0] == 0.0
 
 
-@every("options", [{"engine": "numpy"}, {"engine": "compiled"}, SINGLE], ids=str)
-@every("speeds", [[1.0, 2.0], [[1.0, 2.0], [3.0, 4.0]]], ids=np.shape)
+@pytest.mark.parametrize("options", [{"engine": "numpy"}, {"engine": "compiled"}, SINGLE], ids=str)
+@pytest.mark.parametrize("speeds", [[1.0, 2.0], [[1.0, 2.0], [3.0, 4.0]]], ids=np.shape)
 def test_a_speed_that_was_recorded_as_one_number_cannot_become_a_table_over_the_angles(options, speeds):
     if options["engine"] == "compiled":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
