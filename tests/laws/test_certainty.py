@@ -66,8 +66,7 @@ def test_where_the_condition_of_a_motion_is_large_a_warning_is_given_and_nowhere
 @pytest.mark.slow
 @every("family", ("plain", "four-bar", "place", "cam"))
 @every("seed", range(2))
-def test_no_error_is_more_than_the_condition_times_rounding(family, seed):
-    pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+def test_no_error_is_more_than_the_condition_times_rounding(flint, family, seed):
     made = solution(family, seed)
     for quantity, _, condition in looked_at(made) if made is not None else ():
         try:
