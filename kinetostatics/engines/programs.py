@@ -14,12 +14,12 @@ from ..errors import NotGivenError, QuantityError
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves
 from . import loops, writing
-from .bounds import Bounds
 from .compiled import available, loaded
 from .derivatives import gradients
 from .operations import ARRAYS, BY_DESIGN, PLAIN
 from .recent import kept_for_same_angles
 from .record import record
+from .running import RunningBounds
 from .tight import tight_bound
 from .trace import needed, operations
 
@@ -81,7 +81,7 @@ class Program:
         """
         if tight not in self._bounded:
             given = self.recording.graph, self.recording.inputs
-            found = [tight_bound(*given, part) for part in self.outputs] if tight else Bounds(*given).of(self.outputs)
+            found = [tight_bound(*given, part) for part in self.outputs] if tight else RunningBounds(*given).of(self.outputs)
             self._bounded[tight] = _Bounded(self.recording, (*self.outputs, *found), len(self.outputs), tight)
         return self._bounded[tight]
 
@@ -232,7 +232,7 @@ class _Bounded(Program):
     @cached_property
     def _without_dust(self):
         values, recording = self.outputs[: self.values], self.recording
-        bounds = Bounds(recording.graph, recording.inputs, dust=None).of(values)
+        bounds = RunningBounds(recording.graph, recording.inputs, dust=None).of(values)
         return _Watched(recording, (*values, *bounds))
 
     def by_numpy(self, angle, numbers, rows, shape):

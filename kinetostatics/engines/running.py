@@ -1,0 +1,476 @@
+"""Proven bounds on the rounding errors of recorded outputs that cost about as much as the outputs.
+
+Running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, sections 3.1 to 3.4) with what
+the structure tells beforehand. A value is either
+
+relative
+    exact times (1 + d) for each of some `roundings`, |d| <= `UNIT`, and times (1 + e) to some power for each of some
+    pivots (Higham's counter <k>, with pivots). Products, quotients and roots only count; nothing is computed. A pivot
+    is a sum that something is divided by or whose root is taken: its relative error e is computed once.
+absolute
+    within `UNIT` times `factor` times (`bound` - `reserve` |value|) of the exact one. `bound` is computed along. It
+    has what later roundings need in reserve, as |sum| is at most the sum of magnitudes that `bound` is made of: then a
+    sum, or a product by what is relative, adds no term of its own.
+
+A bound is infinite where a pivot is not known to one part in 256, or where the guard of a divisor acts.
+"""
+
+import math
+from collections import Counter
+from functools import reduce
+from typing import Any, NamedTuple
+
+from ..numbers.planar import plus
+from .bounds import DUST, SAFE, ULP, is_zero
+from .trace import BY_ANGLE, INPUTS, Node, needed
+
+KNOWN = 2.0**-8
+"""Largest relative error of a pivot."""
+LIMIT = 2.0**979
+"""In bounds of pivots, in `UNIT`: makes what is more than `KNOWN` infinite, and is taken out again: 2^-53 2^979 2^1024."""
+GUARDED = 2.0**1000
+"""Makes what a guard adds infinite, times `LIMIT`."""
+MOST = 2.0
+"""Roundings in reserve, up to which sums of magnitudes stand for the magnitude of a sum."""
+
+
+class Relative(NamedTuple):
+    """Error of a value that is a product: how many `roundings`, powers of `pivots`, and what it lost as too small."""
+
+    roundings: float
+    pivots: dict[Node, float]
+    dust: Any
+
+
+class Absolute(NamedTuple):
+    """Error of a value with sums in it."""
+
+    terms: list
+    reserve: float
+    factor: float
+
+
+EXACT = Relative(0.0, {}, None)
+
+
+class RunningBounds:
+    """Bounds for the nodes of a graph, each found once.
+
+    Parameters
+    ----------
+    graph : Graph
+    inputs : mapping of Node to function
+        ``input(bounds) -> Error`` of inputs that are not exact, as for `bounds.Bounds`.
+    dust : float or None
+        What a product or quotient may lose if it is too small for a double; None if none is.
+    """
+
+    def __init__(self, graph, inputs=None, dust=DUST):
+        self._graph, self._inputs, self._dust = graph, inputs or {}, dust
+        self._relative: dict[Node, Relative | None] = {}
+        self._absolute: dict[Node, Absolute] = {}
+        self._bounds: dict[Node, Any] = {}
+        self._uses: Counter[Node] = Counter()
+        self._needs: dict[Node, float] = {}
+        self._pivots: dict[Node, Any] = {}
+        self._coefficients: dict[Any, Any] = {}
+        self._reciprocals: dict[Node, Any] = {}
+        self._guards: dict[Node, dict[Node, None]] = {}
+        self._caps: dict[Node, Any] = {}
+        self._positive: dict[Node, bool] = {}
+
+    def of(self, outputs):
+        """A bound for each output, not negative; infinite or NaN where there is none."""
+        everything = needed(outputs)
+        nodes = [node for node in everything if node not in self._relative]
+        self._uses.update(part for part in outputs if isinstance(part, Node))
+        for node in nodes:
+            self._tell_reciprocal(node)
+            self._uses.update(part for part in node.arguments if isinstance(part, Node))
+        for node in nodes:
+            self._relative[node] = self._counted(node)
+        for node in reversed(nodes):
+            if self._relative[node] is None:
+                self._tell_needs(node)
+        for node in everything:
+            if self._relative[node] is None and node not in self._absolute:
+                self._absolute[node] = self._found(node)
+        return tuple(self._whole(part) for part in outputs)
+
+    def _whole(self, part):
+        bound, factor = self._raw(part)
+        return 0.0 if bound is None else (SAFE * 2.0**-53 * factor) * bound
+
+    # What is relative
+
+    def relative(self, part):
+        """Error of a part if it is relative, else None."""
+        return self._relative[part] if isinstance(part, Node) else EXACT
+
+    def _counted(self, node):
+        kind, parts = node.operation, node.arguments
+        if kind in INPUTS:
+            return self._counted_input(node)
+        if kind in ("+", "-", "total"):
+            return self._counted_sum(node, [part for part in parts if not is_zero(part)])
+        if kind == "*":
+            return EXACT if is_zero(node) else self._counted_product(node, 1.0, _is_scaling)
+        if kind == "/":
+            return self._counted_product(node, -1.0, lambda part: part is parts[1] and _is_scaling(part))
+        if kind in ("sqrt", "root"):
+            return self._counted_root(node)
+        if kind == "divisor":
+            return self._counted_divisor(node)
+        found = self.relative(parts[0])
+        if kind in ("abs", "held") or found is None:
+            return found
+        is_exact = not found.roundings and found.dust is None
+        if kind == "sign":  # of a product only what is lost as too small may turn it
+            return EXACT if found.dust is None and not found.pivots else None
+        return Relative(ULP[kind], {}, None) if is_exact and not found.pivots else None
+
+    def _counted_input(self, node):
+        if node not in self._inputs:
+            return EXACT
+        if node.varies == BY_ANGLE:
+            return None
+        relative, rest = self._inputs[node](self)
+        return Relative(relative, {}, None) if rest is None else None
+
+    def _counted_sum(self, node, parts):
+        errors = [self.relative(part) for part in parts]
+        if not parts:
+            return EXACT
+        if len(parts) == 1:
+            return errors[0]
+        is_plus = node.operation == "+" and all(map(self.is_positive, parts))
+        if None in errors or not is_plus or any(error.pivots for error in errors):
+            return None
+        dust = reduce(plus, (error.dust for error in errors))
+        return Relative(1.0 + max(error.roundings for error in errors), {}, dust)
+
+    def _counted_product(self, node, sign, is_exactly):
+        left, right = node.arguments
+        one, other = self.relative(left), self.as_divisor(right) if sign < 0.0 else self.relative(right)
+        if one is None or other is None:
+            return None
+        pivots = {pivot: one.pivots.get(pivot, 0.0) + sign * other.pivots.get(pivot, 0.0) for pivot in one.pivots | other.pivots}
+        own = 0.0 if is_exactly(left) or is_exactly(right) else 1.0
+        return Relative(
+            one.roundings + other.roundings + own,
+            {pivot: power for pivot, power in pivots.items() if power},
+            self._dust_of_product(node, one, other, sign),
+        )
+
+    def _dust_of_product(self, node, one, other, sign):
+        if self._dust is None:
+            return None
+        left, right = node.arguments
+        dust = self._dust
+        if one.dust is not None:
+            dust = plus(one.dust * (self.cap(right) if sign > 0.0 else self._cap_over(right)), dust)
+        if other.dust is not None:
+            dust = plus(other.dust * self.cap(left), dust)
+        return dust
+
+    def as_divisor(self, part):
+        """Error of a part that something is divided by: its own if it cannot be lost as too small, or of a pivot."""
+        found = self.relative(part)
+        return found if found is not None and found.dust is None else Relative(0.0, {part: 1.0}, None)
+
+    def _counted_root(self, node):
+        square = node.arguments[0]
+        found = self.relative(square)
+        if found is None or not self.is_positive(square) or _varies(found.dust):
+            found = Relative(0.0, {square: 1.0}, None)
+        dust = found.dust
+        if dust is not None:
+            dust = math.sqrt(dust * 2.0**53) if isinstance(dust, float) else (dust * 2.0**53).sqrt()
+        return Relative(1.0 + 0.5 * found.roundings, {pivot: 0.5 * power for pivot, power in found.pivots.items()}, dust)
+
+    def _counted_divisor(self, node):
+        """As what is guarded; where the guard acts that is no pivot."""
+        found = self.relative(node.arguments[0])
+        if found is None:
+            found = Relative(0.0, {node.arguments[0]: 1.0}, None)
+        pivot = next((pivot for pivot in found.pivots if pivot not in self._pivots), node)
+        self._guards.setdefault(pivot, {})[node] = None
+        return found if pivot is not node else found._replace(pivots={**found.pivots, node: 1.0})
+
+    def pivot(self, node):
+        """Bound on the relative error of a pivot, in `UNIT`, times `LIMIT`."""
+        if node not in self._pivots:
+            guards = self._guards.get(node, {})
+            bound, factor = (None, 1.0) if node in guards else self._raw(node)
+            found = (0.0 if bound is None else bound) * self.over(node)
+            for guard in guards:
+                found = self.fused(GUARDED, guard - guard.arguments[0], found)
+            self._pivots[node] = (LIMIT * factor) * found
+        return self._pivots[node]
+
+    def over(self, node):
+        """Bound on one over the magnitude of a computed value: its reciprocal where that is computed."""
+        if not isinstance(node, Node):
+            return 1.0 / abs(node)
+        if node not in self._reciprocals:
+            above_one = node.operation == "+" and _is_number(node.arguments[0], 1.0) and self.is_positive(node)
+            if above_one and node.arguments[1].operation == "abs":
+                return 1.0
+            self._reciprocals[node] = 1.0 / self._graph.node("divisor", self.size(node), 0.0)
+        return self._reciprocals[node]
+
+    def _tell_reciprocal(self, node):
+        """Take note of reciprocals among the values, of what is guarded, and of squares of what they are of."""
+        if node.operation != "/" or isinstance(node.arguments[0], Node):
+            return
+        above, below = node.arguments
+        over = self.size(node) * (1.0 / abs(above)) if above else None
+        while over is not None and isinstance(below, Node) and below not in self._reciprocals:
+            self._reciprocals[below] = over
+            if below.operation in ("sqrt", "root"):
+                over = over * over
+            elif below.operation != "divisor":
+                return
+            below = below.arguments[0]
+
+    # What is absolute
+
+    def _tell_needs(self, node):
+        """What parts are to have in reserve: for the roundings of an operation, and for what it needs itself."""
+        kind, parts = node.operation, [part for part in node.arguments if self.relative(part) is None]
+        wanted = self._needs.get(node, 0.0) + self._own(node)
+        if kind in ("abs", "held", "*", "/", "+", "-", "total") and not self._is_charged(node):
+            others = [self.relative(part) for part in node.arguments]
+            if kind == "/":
+                parts, others = parts[:1], [self.as_divisor(node.arguments[1])]
+            if kind in ("*", "/") and any(other is not None and other.pivots for other in others):
+                return
+            for part in parts:
+                share = 0.5 * wanted if kind == "*" and len(parts) > 1 else wanted
+                self._needs[part] = max(self._needs.get(part, 0.0), share)
+
+    def _is_charged(self, node):
+        """Whether a sum's bound has a term for what is wanted in reserve, instead of its parts."""
+        is_sum = node.operation in ("+", "-", "total") and self._own(node) > 0.0
+        return is_sum and self._needs.get(node, 0.0) + 1.0 > MOST
+
+    def _own(self, node):
+        """Roundings of an operation, and of what else it takes that is relative."""
+        kind, parts = node.operation, node.arguments
+        if kind in ("abs", "held") or len(parts) == 1:
+            return 0.0
+        if kind == "*":
+            others = [self.relative(part) for part in parts if self.relative(part) is not None]
+            return (0.0 if any(map(_is_scaling, parts)) else 1.0) + sum(map(_roundings, others))
+        if kind == "/":
+            return 1.0 + _roundings(self.as_divisor(parts[1]))
+        return 0.0 if sum(not is_zero(part) for part in parts) < 2 else 1.0
+
+    def _found(self, node):
+        kind, reserve = node.operation, self._needs.get(node, 0.0)
+        if kind in INPUTS:
+            relative, rest = self._inputs[node](self)
+            return Absolute([(reserve + relative, self.size(node)), (1.0, rest)], reserve, 1.0)
+        if kind == "sign":
+            (argument,) = node.arguments
+            return Absolute([(1.0, 0.0 / self.above(self.size(argument), self.total(argument)))], 0.0, 1.0)
+        if kind in ("sin", "cos", "atan"):
+            terms = [(reserve + ULP[kind], self.size(node)), (1.0, self.total(node.arguments[0]))]
+            return Absolute(terms, reserve, 1.0)
+        wanted = reserve + self._own(node)
+        if self._is_charged(node):
+            terms, factor = self._of_sum(node, 0.0)
+            return Absolute([*terms, (wanted, self.size(node))], reserve, factor)
+        of = {"*": self._of_product, "/": self._of_quotient}.get(kind, self._of_sum)
+        terms, factor = of(node, wanted)
+        return Absolute(terms, reserve, factor)
+
+    def _of_sum(self, node, held):
+        """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes."""
+        terms, factor = [], 1.0
+        for part in node.arguments:
+            if is_zero(part):
+                continue
+            found = self.relative(part)
+            if found is None:
+                own, more = self.absolute(part, held)
+                terms += own + more
+                factor = max(factor, self._absolute[part].factor)
+            else:
+                terms += [(self.coefficient(found, held), self.size(part)), (1.0, found.dust)]
+        if node.operation == "total":  # three sums without loss, and what they lose
+            terms += [(216.0 * 2.0**-106, self.size(part)) for part in node.arguments]
+        return terms, factor
+
+    def _of_product(self, node, held):
+        left, right = node.arguments
+        if self.relative(left) is not None:
+            left, right = right, left
+        found = self.relative(right)
+        if found is not None:
+            lost = [] if found.dust is None else [(found.dust, self.cap(left))]
+            return self._scaled(left, found, self.size(right), held, lost)
+        factor = max(self._absolute[left].factor, self._absolute[right].factor)
+        second = 2.0 * 2.0**-53 * factor
+        if left is right:
+            own = self.bound(left, 0.5 * held)
+            return [(self.fused(second, own, 2.0 * self.size(left)), own), (1.0, self._dust)], factor
+        one, other = self.bound(left, 0.5 * held), self.bound(right, 0.5 * held)
+        larger = self.fused(second, other, self.size(right))
+        return [(larger, one), (self.size(left), other), (1.0, self._dust)], factor
+
+    def _of_quotient(self, node, held):
+        above, below = node.arguments
+        return self._scaled(above, self.as_divisor(below), self.over(below), held, [])
+
+    def _scaled(self, part, found, size, held, lost):
+        """An absolute part times, or over, what is relative."""
+        if found.pivots:
+            charge = self.coefficient(found, held - found.roundings * _growth(found))
+            bound = self.fused(charge, self.size(part), self.bound(part, 0.0))
+        else:
+            bound = self.bound(part, held)
+        return [(size, bound), (1.0, self._dust), *lost], self._absolute[part].factor * _growth(found)
+
+    def absolute(self, part, held):
+        """Terms of the bound of an absolute part, and of so much in reserve."""
+        own = self._absolute[part]
+        more = [(held - own.reserve, self.size(part))] if held > own.reserve else []
+        return (own.terms if self._uses[part] < 2 else [(1.0, self.bound(part))]), more
+
+    def bound(self, part, held=0.0):
+        """Bound of an absolute part with so much in reserve."""
+        if part not in self._bounds:
+            self._bounds[part] = self.summed(self._absolute[part].terms)
+        reserve = self._absolute[part].reserve
+        return self.fused(held - reserve, self.size(part), self._bounds[part]) if held > reserve else self._bounds[part]
+
+    def coefficient(self, found, more=0.0):
+        """What a relative error is of the magnitude of its value, in `UNIT`."""
+        roundings = _roundings(found) + more
+        if not found.pivots:
+            return roundings
+        key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
+        if key not in self._coefficients:
+            grown = _slope(found) / LIMIT
+            terms = [(grown * abs(power), self.pivot(pivot)) for pivot, power in found.pivots.items()]
+            self._coefficients[key] = self.summed([*terms, (1.0, roundings)])
+        return self._coefficients[key]
+
+    def _raw(self, part):
+        found = self.relative(part)
+        if found is None:
+            return self.bound(part), self._absolute[part].factor
+        return self.summed([(self.coefficient(found), self.size(part)), (1.0, found.dust)]), 1.0
+
+    def total(self, part):
+        """The whole bound of a part of an operation; None where it is exact."""
+        bound, factor = self._raw(part)
+        return None if bound is None else factor * bound
+
+    # Arithmetic
+
+    def summed(self, terms):
+        """Sum of products: of what a design fixes first, the others one after the other; None of nothing."""
+        terms = [(one, other) for one, other in terms if other is not None and not _is_number(one, 0.0) and not _is_number(other, 0.0)]
+        terms.sort(key=lambda term: _varies(term[0]) or _varies(term[1]))
+        total = None
+        for one, other in terms:
+            total = self.fused(one, other, total)
+        return total
+
+    def fused(self, one, other, more):
+        """Product and sum, in one operation where the processor has it."""
+        plain = [part for part in (one, other) if not isinstance(part, Node)]
+        if more is None or len(plain) == 2 or 1.0 in plain:
+            return plus(one * other, more)
+        return self._graph.node("fma", one, other, more)
+
+    def above(self, value, total, floor=None):
+        """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
+        if total is not None:
+            value = value - (SAFE * 2.0**-53) * total
+        return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
+
+    def size(self, part):
+        """Magnitude of a part of an operation."""
+        if not isinstance(part, Node):
+            return abs(part)
+        if part.operation == "-" and len(part.arguments) == 1:
+            return self.size(part.arguments[0])
+        return part if self.is_positive(part) else abs(part)
+
+    def is_positive(self, part):
+        """Whether a part cannot be negative, whatever the numbers."""
+        if not isinstance(part, Node):
+            return part >= 0.0
+        if part not in self._positive:
+            kind, parts = part.operation, part.arguments
+            self._positive[part] = kind in ("abs", "sqrt", "root") or (
+                (kind in ("*", "/", "+", "divisor") and all(map(self.is_positive, parts)))
+                or (kind == "*" and parts[0] is parts[1])
+                or (kind == "divisor" and any(map(self.is_positive, parts)))
+            )
+        return self._positive[part]
+
+    def cap(self, part):
+        """A magnitude not less than a value's: of its design if possible."""
+        if not isinstance(part, Node):
+            return abs(part)
+        if part not in self._caps:
+            found = None
+            if part.varies == BY_ANGLE and part.operation not in INPUTS:
+                found = self._cap(part.operation, part.arguments)
+            self._caps[part] = self.size(part) if found is None or _varies(found) else found
+        return self._caps[part]
+
+    def _cap(self, kind, parts):
+        if kind in ("sin", "cos"):
+            return 1.0
+        if kind in ("abs", "held", "+", "-", "divisor"):
+            return reduce(plus, map(self.cap, parts))
+        if kind == "*":
+            return self.cap(parts[0]) * self.cap(parts[1])
+        if kind in ("sqrt", "root"):
+            square = self.cap(parts[0])
+            return square.sqrt() if isinstance(square, Node) and not _varies(square) else None
+        if kind == "/":
+            return self.cap(parts[0]) * self._cap_over(parts[1])
+        return None
+
+    def _cap_over(self, part):
+        guarded = isinstance(part, Node) and part.operation == "divisor" and not _varies(part.arguments[1])
+        return self.over(part.arguments[1] if guarded else part)
+
+
+def _is_scaling(part):
+    """Whether a factor is a power of two near one: it loses no digit but of dust."""
+    return not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
+
+
+def _is_number(part, number):
+    return not isinstance(part, Node) and part == number
+
+
+def _varies(part):
+    return isinstance(part, Node) and part.varies == BY_ANGLE
+
+
+def _logarithm(found):
+    """Largest logarithm of what pivots make of a value: of each |log(1 + e)| <= |e| / (1 - |e|)."""
+    return sum(map(abs, found.pivots.values())) * KNOWN / (1.0 - KNOWN)
+
+
+def _growth(found):
+    return math.exp(_logarithm(found))
+
+
+def _roundings(found):
+    """Roundings, with terms of second order with pivots."""
+    return found.roundings * _growth(found)
+
+
+def _slope(found):
+    """How much more than the sum of |power e| what pivots make is: exp(x) - 1 <= x (exp(X) - 1) / X for x <= X."""
+    most = _logarithm(found)
+    return math.expm1(most) / most / (1.0 - KNOWN)
