@@ -30,6 +30,8 @@ LIMIT = 2.0**979
 """In bounds of pivots, in `UNIT`: makes what is more than `KNOWN` infinite, and is taken out again: 2^-53 2^979 2^1024."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
+SECOND = 2.0**-51
+"""More than what makes terms of second order of bounds, with their factors."""
 MOST = 2.0
 """Roundings in reserve, up to which sums of magnitudes stand for the magnitude of a sum."""
 
@@ -71,6 +73,7 @@ class RunningBounds:
         self._absolute: dict[Node, Absolute] = {}
         self._bounds: dict[Node, Any] = {}
         self._uses: Counter[Node] = Counter()
+        self._crossed: Counter[Node] = Counter()
         self._needs: dict[Node, float] = {}
         self._pivots: dict[Node, Any] = {}
         self._coefficients: dict[Any, Any] = {}
@@ -92,6 +95,8 @@ class RunningBounds:
         for node in reversed(nodes):
             if self._relative[node] is None:
                 self._tell_needs(node)
+                if node.operation == "*" and self.relative(node.arguments[0]) is self.relative(node.arguments[1]):
+                    self._crossed.update(set(node.arguments))
         for node in everything:
             if self._relative[node] is None and node not in self._absolute:
                 self._absolute[node] = self._found(node)
@@ -311,12 +316,13 @@ class RunningBounds:
             lost = [] if found.dust is None else [(found.dust, self.cap(left))]
             return self._scaled(left, found, self.size(right), held, lost)
         factor = max(self._absolute[left].factor, self._absolute[right].factor)
-        second = 2.0 * 2.0**-53 * factor
         if left is right:
             own = self.bound(left, 0.5 * held)
-            return [(self.fused(second, own, 2.0 * self.size(left)), own), (1.0, self._dust)], factor
+            return [(self.fused(SECOND, self.bound(left), 2.0 * self.size(left)), own), (1.0, self._dust)], factor
+        if self._crossed[left] > self._crossed[right]:
+            left, right = right, left
         one, other = self.bound(left, 0.5 * held), self.bound(right, 0.5 * held)
-        larger = self.fused(second, other, self.size(right))
+        larger = self.fused(SECOND, self.bound(right), self.size(right))
         return [(larger, one), (self.size(left), other), (1.0, self._dust)], factor
 
     def _of_quotient(self, node, held):
@@ -372,12 +378,34 @@ class RunningBounds:
 
     def summed(self, terms):
         """Sum of products: of what a design fixes first, the others one after the other; None of nothing."""
-        terms = [(one, other) for one, other in terms if other is not None and not _is_number(one, 0.0) and not _is_number(other, 0.0)]
+        terms = [
+            self._stripped(one, other)
+            for one, other in terms
+            if other is not None and not _is_number(one, 0.0) and not _is_number(other, 0.0)
+        ]
+        if any(_is_number(one, 1.0) and _varies(other) for one, other in terms):  # it has dust enough
+            terms = [term for term in terms if not (_is_number(term[0], 1.0) and self._is_dust(term[1]))]
         terms.sort(key=lambda term: _varies(term[0]) or _varies(term[1]))
         total = None
         for one, other in terms:
             total = self.fused(one, other, total)
         return total
+
+    def _is_dust(self, part):
+        return isinstance(part, float) and self._dust is not None and part <= 256.0 * self._dust
+
+    def _stripped(self, one, other):
+        """A term whose magnitude is of a product with numbers of the design: these multiply the other factor."""
+        while not _varies(one) and _varies(other):
+            inner = other.arguments[0] if other.operation == "abs" else other
+            if inner.operation != "*" or not self.is_positive(other):
+                break
+            fixed = [part for part in inner.arguments if not _varies(part)]
+            if not fixed:
+                break
+            (rest,) = (part for part in inner.arguments if _varies(part))
+            one, other = one * self.size(fixed[0]), self.size(rest)
+        return one, other
 
     def fused(self, one, other, more):
         """Product and sum, in one operation where the processor has it."""
