@@ -27,11 +27,6 @@ def _root_of(square, unit, out):
     np.copyto(out, np.nan, where=np.less_equal(square, -ROUNDING * unit))
 
 
-def _multiply_add(one, other, more, out):
-    np.multiply(one, other, out=out)
-    np.add(out, more, out=out)
-
-
 def _plain_total(*terms):
     try:
         return math.fsum(terms)
@@ -89,7 +84,6 @@ ARRAYS = {
     "absolute": np.absolute,
     "sign_of": lambda value, out: np.copysign(1.0, value, out),
     "root_of": _root_of,
-    "multiply_add": _multiply_add,
     "total_of": _total_of,
     "maximum": lambda one, other, out: np.maximum(one, other, out=out),
 }

@@ -32,7 +32,8 @@ GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
 SECOND = 2.0**-51
 """More than what makes terms of second order of bounds, with their factors."""
-MOST = 2.0
+CRITICAL = 2.0
+MOST = 4.0
 """Roundings in reserve, up to which sums of magnitudes stand for the magnitude of a sum."""
 
 
@@ -73,6 +74,7 @@ class RunningBounds:
         self._absolute: dict[Node, Absolute] = {}
         self._bounds: dict[Node, Any] = {}
         self._uses: Counter[Node] = Counter()
+        self._behind: set[Node] = set()
         self._crossed: Counter[Node] = Counter()
         self._needs: dict[Node, float] = {}
         self._pivots: dict[Node, Any] = {}
@@ -92,6 +94,7 @@ class RunningBounds:
             self._uses.update(part for part in node.arguments if isinstance(part, Node))
         for node in nodes:
             self._relative[node] = self._counted(node)
+        self._behind.update(needed(self._pivotal(nodes)))
         for node in reversed(nodes):
             if self._relative[node] is None:
                 self._tell_needs(node)
@@ -254,10 +257,13 @@ class RunningBounds:
                 share = 0.5 * wanted if kind == "*" and len(parts) > 1 else wanted
                 self._needs[part] = max(self._needs.get(part, 0.0), share)
 
+    def _pivotal(self, nodes):
+        return {pivot for node in nodes if (found := self._relative[node]) is not None for pivot in found.pivots}
+
     def _is_charged(self, node):
         """Whether a sum's bound has a term for what is wanted in reserve, instead of its parts."""
         is_sum = node.operation in ("+", "-", "total") and self._own(node) > 0.0
-        return is_sum and self._needs.get(node, 0.0) + 1.0 > MOST
+        return is_sum and self._needs.get(node, 0.0) + 1.0 > (CRITICAL if node in self._behind else MOST)
 
     def _own(self, node):
         """Roundings of an operation, and of what else it takes that is relative."""
@@ -318,7 +324,8 @@ class RunningBounds:
         factor = max(self._absolute[left].factor, self._absolute[right].factor)
         if left is right:
             own = self.bound(left, 0.5 * held)
-            return [(self.fused(SECOND, self.bound(left), 2.0 * self.size(left)), own), (1.0, self._dust)], factor
+            size = self.size(left)
+            return [(self.fused(SECOND, self.bound(left), size + size), own), (1.0, self._dust)], factor
         if self._crossed[left] > self._crossed[right]:
             left, right = right, left
         one, other = self.bound(left, 0.5 * held), self.bound(right, 0.5 * held)

@@ -210,7 +210,11 @@ def buffered_line(outputs) -> tuple[str, int]:
             target, count = f"b{count}", count + 1
         free += released
         place_of[node] = target
-        source.append(f"    {_OPERATIONS[node.operation, len(names)]}({', '.join([*names, target])})")
+        if node.operation == "fma":
+            *factors, more = names
+            source.append(f"    multiply({', '.join([*factors, target])}); add({target}, {more}, {target})")
+        else:
+            source.append(f"    {_OPERATIONS[node.operation, len(names)]}({', '.join([*names, target])})")
     source += [f"    r{place}[...] = {place_of.get(part) or _name(part, _PLAIN)}" for place, part in copies]
     heads = ["def line(angle, sine, cosine, parameters, tables, buffers, results):"]
     heads += [f"    {', '.join(f'b{k}' for k in range(count))}, = buffers"] if count else []
@@ -233,7 +237,6 @@ _OPERATIONS = {
     ("held", 1): "positive",
     ("root", 2): "root_of",
     ("divisor", 2): "maximum",
-    ("fma", 3): "multiply_add",
     ("total", 4): "total_of",
 }
 """By operation and number of arguments: the array function that takes its result's place as last argument."""
