@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from .content import LIBRARY, key_of, of_class
+from .lazy import cached_property
 
 
 class _Mark:
@@ -55,12 +56,10 @@ class Leaves:
         Whether the structure tells all else; False with objects of the user's that may change unseen.
     """
 
-    __slots__ = ("lasting", "numbers", "parts", "tables")
-
     def __init__(self):
         self.numbers, self.tables, self.parts, self.lasting = [], [], [], True
 
-    @property
+    @cached_property
     def are_plain(self):
         """Whether all are plain numbers, and the structure tells all else."""
         return self.lasting and not self.tables and FLOATS.issuperset(map(type, self.numbers))
@@ -155,6 +154,13 @@ def mapped(item, number, special=None):
     if isinstance(item, int | float | np.number) and item == 0:
         return item
     return number(item) if isinstance(item, int | float | np.number | np.ndarray) else item
+
+
+def made(kind: Any, /, **values):
+    """Item of a dataclass with values in its fields, nothing checked."""
+    whole = object.__new__(kind)
+    whole.__dict__.update(values)
+    return whole
 
 
 def with_fields(item, **changes):
@@ -252,10 +258,6 @@ def _passing(item, leaves):
     return Opaque(item, (id(item),))
 
 
-def _structural(item, leaves):
-    return item if type(item) in _AS_THEY_ARE else _by_content(item, leaves)
-
-
 _TAKERS: dict[type, Callable] = {
     int: _number,
     bool: _as_it_is,
@@ -267,7 +269,7 @@ _TAKERS: dict[type, Callable] = {
     Kept: _kept,
     FunctionType: _by_content,
 }
-_AS_THEY_ARE = (bool, int, float, str, type(None))
+_AS_THEY_ARE = frozenset((bool, int, float, str, type(None)))
 
 
 def _taker(kind):
@@ -292,7 +294,7 @@ def _of_dataclass(kind):
         array = "taken_apart" if name in over_angles else "constants"
         lines.append(f"    v{place} = item.{name}")
         if structural:
-            lines.append(f"    if v{place}.__class__ is not str: v{place} = structural(v{place}, leaves)")
+            lines.append(f"    if v{place}.__class__ not in as_they_are: v{place} = structural(v{place}, leaves)")
         else:
             lines += [
                 f"    if v{place}.__class__ is float:",
@@ -300,14 +302,28 @@ def _of_dataclass(kind):
                 f"            append(v{place})",
                 f"            v{place} = NUMBER",
                 f"        else: v{place} = 0.0",
+                f"    elif v{place}.__class__ is pair and len(v{place}) == 2:",
+                f"        first, second = v{place}",
+                "        if first.__class__ is second.__class__ is float:",
+                "            if first != 0.0:",
+                "                append(first)",
+                "                first = NUMBER",
+                "            else: first = 0.0",
+                "            if second != 0.0:",
+                "                append(second)",
+                "                second = NUMBER",
+                "            else: second = 0.0",
+                f"            v{place} = pair, first, second",
+                f"        else: v{place} = taken_apart(v{place}, leaves)",
                 f"    elif v{place} is not None:",
                 f"        kind = type(v{place})",
                 f"        if kind is array: v{place} = {array}(v{place}, leaves)",
                 f"        else: v{place} = (takers.get(kind) or taker_of(kind))(v{place}, leaves)",
             ]
     lines.append(f"    return (whole, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
-    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "array": np.ndarray}
-    scope |= {"structural": _structural, "takers": _TAKERS, "taker_of": _taker}
+    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "pair": tuple}
+    scope |= {"structural": _by_content, "as_they_are": _AS_THEY_ARE, "array": np.ndarray}
+    scope |= {"takers": _TAKERS, "taker_of": _taker}
     exec("\n".join(lines), scope)
     return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_its_class(kind, scope["taker"])
 
