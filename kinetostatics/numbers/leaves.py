@@ -291,34 +291,25 @@ def _of_dataclass(kind):
     over_angles = getattr(kind, "OVER_ANGLES", ())
     lines = ["def taker(item, leaves):", "    append = leaves.numbers.append"]
     for place, (name, structural) in enumerate(_kinds(kind)):
-        array = "taken_apart" if name in over_angles else "constants"
-        lines.append(f"    v{place} = item.{name}")
+        array, value = "taken_apart" if name in over_angles else "constants", f"v{place}"
+        lines.append(f"    {value} = item.{name}")
         if structural:
-            lines.append(f"    if v{place}.__class__ not in as_they_are: v{place} = structural(v{place}, leaves)")
+            lines.append(f"    if {value}.__class__ not in as_they_are: {value} = structural({value}, leaves)")
         else:
             lines += [
-                f"    if v{place}.__class__ is float:",
-                f"        if v{place} != 0.0:",
-                f"            append(v{place})",
-                f"            v{place} = NUMBER",
-                f"        else: v{place} = 0.0",
-                f"    elif v{place}.__class__ is pair and len(v{place}) == 2:",
-                f"        first, second = v{place}",
+                f"    if {value}.__class__ is float:",
+                *_of_float(value, 8),
+                f"    elif {value}.__class__ is pair and len({value}) == 2:",
+                f"        first, second = {value}",
                 "        if first.__class__ is second.__class__ is float:",
-                "            if first != 0.0:",
-                "                append(first)",
-                "                first = NUMBER",
-                "            else: first = 0.0",
-                "            if second != 0.0:",
-                "                append(second)",
-                "                second = NUMBER",
-                "            else: second = 0.0",
-                f"            v{place} = pair, first, second",
-                f"        else: v{place} = taken_apart(v{place}, leaves)",
-                f"    elif v{place} is not None:",
-                f"        kind = type(v{place})",
-                f"        if kind is array: v{place} = {array}(v{place}, leaves)",
-                f"        else: v{place} = (takers.get(kind) or taker_of(kind))(v{place}, leaves)",
+                *_of_float("first", 12),
+                *_of_float("second", 12),
+                f"            {value} = pair, first, second",
+                f"        else: {value} = taken_apart({value}, leaves)",
+                f"    elif {value} is not None:",
+                f"        kind = type({value})",
+                f"        if kind is array: {value} = {array}({value}, leaves)",
+                f"        else: {value} = (takers.get(kind) or taker_of(kind))({value}, leaves)",
             ]
     lines.append(f"    return (whole, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
     scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "pair": tuple}
@@ -326,6 +317,12 @@ def _of_dataclass(kind):
     scope |= {"takers": _TAKERS, "taker_of": _taker}
     exec("\n".join(lines), scope)
     return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_its_class(kind, scope["taker"])
+
+
+def _of_float(value, indent):
+    """Lines that take a float."""
+    lines = f"if {value} != 0.0:", f"    append({value})", f"    {value} = NUMBER", f"else: {value} = 0.0"
+    return [" " * indent + line for line in lines]
 
 
 def _with_its_class(kind, taker):
