@@ -20,18 +20,19 @@ from collections import Counter
 from functools import reduce
 from typing import Any, NamedTuple
 
+from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import DUST, SAFE, ULP, is_zero
+from .bounds import DUST, SAFE, ULP, is_zero, whole
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
-KNOWN = 2.0**-8
-"""Largest relative error of a pivot."""
-LIMIT = 2.0**979
-"""In bounds of pivots, in `UNIT`: makes what is more than `KNOWN` infinite, and is taken out again: 2^-53 2^979 2^1024."""
+KNOWN, CURVED, POWER = 0.1, 18.0, 16.0
+"""Relative errors x of pivots stay below `KNOWN`; up to `POWER` then (1 - x)^-m - 1 <= m x (1 + `CURVED` x)."""
+LIMIT = 2.0**973
+"""What bounds of pivots are held times, in `UNIT`: an overflow where x (1 + `CURVED` x) is 1/4 or more."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
-SECOND = 2.0**-51
-"""More than what makes terms of second order of bounds, with their factors."""
+SECOND = 2.0**-52
+"""More than what makes a term of second order of two bounds."""
 CRITICAL = 2.0
 MOST = 4.0
 """Roundings in reserve, up to which sums of magnitudes stand for the magnitude of a sum."""
@@ -50,7 +51,6 @@ class Absolute(NamedTuple):
 
     terms: list
     reserve: float
-    factor: float
 
 
 EXACT = Relative(0.0, {}, None)
@@ -103,11 +103,8 @@ class RunningBounds:
         for node in everything:
             if self._relative[node] is None and node not in self._absolute:
                 self._absolute[node] = self._found(node)
-        return tuple(self._whole(part) for part in outputs)
+        return tuple(whole(self.total(part)) for part in outputs)
 
-    def _whole(self, part):
-        bound, factor = self._raw(part)
-        return 0.0 if bound is None else (SAFE * 2.0**-53 * factor) * bound
 
     # What is relative
 
@@ -193,7 +190,7 @@ class RunningBounds:
             found = Relative(0.0, {square: 1.0}, None)
         dust = found.dust
         if dust is not None:
-            dust = math.sqrt(dust * 2.0**53) if isinstance(dust, float) else (dust * 2.0**53).sqrt()
+            dust = math.sqrt(dust / UNIT) if isinstance(dust, float) else (dust / UNIT).sqrt()
         return Relative(1.0 + 0.5 * found.roundings, {pivot: 0.5 * power for pivot, power in found.pivots.items()}, dust)
 
     def _counted_divisor(self, node):
@@ -209,11 +206,11 @@ class RunningBounds:
         """Bound on the relative error of a pivot, in `UNIT`, times `LIMIT`."""
         if node not in self._pivots:
             guards = self._guards.get(node, {})
-            bound, factor = (None, 1.0) if node in guards else self._raw(node)
+            bound = None if node in guards else self.total(node)
             found = (0.0 if bound is None else bound) * self.over(node)
             for guard in guards:
                 found = self.fused(GUARDED, guard - guard.arguments[0], found)
-            self._pivots[node] = (LIMIT * factor) * found
+            self._pivots[node] = self.fused(CURVED * UNIT, found, 1.0) * (LIMIT * found)
         return self._pivots[node]
 
     def over(self, node):
@@ -262,7 +259,9 @@ class RunningBounds:
 
     def _is_charged(self, node):
         """Whether a sum's bound has a term for what is wanted in reserve, instead of its parts."""
-        is_sum = node.operation in ("+", "-", "total") and self._own(node) > 0.0
+        if node.operation == "total":  # rounds its result, however large its terms
+            return True
+        is_sum = node.operation in ("+", "-") and self._own(node) > 0.0
         return is_sum and self._needs.get(node, 0.0) + 1.0 > (CRITICAL if node in self._behind else MOST)
 
     def _own(self, node):
@@ -272,33 +271,31 @@ class RunningBounds:
             return 0.0
         if kind == "*":
             others = [self.relative(part) for part in parts if self.relative(part) is not None]
-            return (0.0 if any(map(_is_scaling, parts)) else 1.0) + sum(map(_roundings, others))
+            return (0.0 if any(map(_is_scaling, parts)) else 1.0) + sum(other.roundings for other in others)
         if kind == "/":
-            return 1.0 + _roundings(self.as_divisor(parts[1]))
+            return 1.0 + self.as_divisor(parts[1]).roundings
         return 0.0 if sum(not is_zero(part) for part in parts) < 2 else 1.0
 
     def _found(self, node):
         kind, reserve = node.operation, self._needs.get(node, 0.0)
         if kind in INPUTS:
             relative, rest = self._inputs[node](self)
-            return Absolute([(reserve + relative, self.size(node)), (1.0, rest)], reserve, 1.0)
+            return Absolute([(reserve + relative, self.size(node)), (1.0, rest)], reserve)
         if kind == "sign":
             (argument,) = node.arguments
-            return Absolute([(1.0, 0.0 / self.above(self.size(argument), self.total(argument)))], 0.0, 1.0)
+            return Absolute([(1.0, 0.0 / self.above(self.size(argument), self.total(argument)))], 0.0)
         if kind in ("sin", "cos", "atan"):
             terms = [(reserve + ULP[kind], self.size(node)), (1.0, self.total(node.arguments[0]))]
-            return Absolute(terms, reserve, 1.0)
+            return Absolute(terms, reserve)
         wanted = reserve + self._own(node)
         if self._is_charged(node):
-            terms, factor = self._of_sum(node, 0.0)
-            return Absolute([*terms, (wanted, self.size(node))], reserve, factor)
+            return Absolute([*self._of_sum(node, 0.0), (wanted, self.size(node))], reserve)
         of = {"*": self._of_product, "/": self._of_quotient}.get(kind, self._of_sum)
-        terms, factor = of(node, wanted)
-        return Absolute(terms, reserve, factor)
+        return Absolute(of(node, wanted), reserve)
 
     def _of_sum(self, node, held):
         """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes."""
-        terms, factor = [], 1.0
+        terms = []
         for part in node.arguments:
             if is_zero(part):
                 continue
@@ -306,12 +303,11 @@ class RunningBounds:
             if found is None:
                 own, more = self.absolute(part, held)
                 terms += own + more
-                factor = max(factor, self._absolute[part].factor)
             else:
                 terms += [(self.coefficient(found, held), self.size(part)), (1.0, found.dust)]
         if node.operation == "total":  # three sums without loss, and what they lose
-            terms += [(216.0 * 2.0**-106, self.size(part)) for part in node.arguments]
-        return terms, factor
+            terms += [(216.0 * UNIT * UNIT, self.size(part)) for part in node.arguments]
+        return terms
 
     def _of_product(self, node, held):
         left, right = node.arguments
@@ -321,16 +317,14 @@ class RunningBounds:
         if found is not None:
             lost = [] if found.dust is None else [(found.dust, self.cap(left))]
             return self._scaled(left, found, self.size(right), held, lost)
-        factor = max(self._absolute[left].factor, self._absolute[right].factor)
         if left is right:
             own = self.bound(left, 0.5 * held)
             size = self.size(left)
-            return [(self.fused(SECOND, self.bound(left), size + size), own), (1.0, self._dust)], factor
+            return [(self.fused(SECOND, self.bound(left), size + size), own), (1.0, self._dust)]
         if self._crossed[left] > self._crossed[right]:
             left, right = right, left
         one, other = self.bound(left, 0.5 * held), self.bound(right, 0.5 * held)
-        larger = self.fused(SECOND, self.bound(right), self.size(right))
-        return [(larger, one), (self.size(left), other), (1.0, self._dust)], factor
+        return [(self.larger(right), one), (self.size(left), other), (1.0, self._dust)]
 
     def _of_quotient(self, node, held):
         above, below = node.arguments
@@ -339,11 +333,10 @@ class RunningBounds:
     def _scaled(self, part, found, size, held, lost):
         """An absolute part times, or over, what is relative."""
         if found.pivots:
-            charge = self.coefficient(found, held - found.roundings * _growth(found))
-            bound = self.fused(charge, self.size(part), self.bound(part, 0.0))
+            bound = self.fused(self.coefficient(found, held - found.roundings), self.larger(part), self.bound(part))
         else:
             bound = self.bound(part, held)
-        return [(size, bound), (1.0, self._dust), *lost], self._absolute[part].factor * _growth(found)
+        return [(size, bound), (1.0, self._dust), *lost]
 
     def absolute(self, part, held):
         """Terms of the bound of an absolute part, and of so much in reserve."""
@@ -360,26 +353,26 @@ class RunningBounds:
 
     def coefficient(self, found, more=0.0):
         """What a relative error is of the magnitude of its value, in `UNIT`."""
-        roundings = _roundings(found) + more
+        roundings = found.roundings + more
         if not found.pivots:
             return roundings
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
-            grown = _slope(found) / LIMIT
-            terms = [(grown * abs(power), self.pivot(pivot)) for pivot, power in found.pivots.items()]
+            slope = _slope(found.pivots.values()) / LIMIT
+            terms = [(slope * abs(power), self.pivot(pivot)) for pivot, power in found.pivots.items()]
             self._coefficients[key] = self.summed([*terms, (1.0, roundings)])
         return self._coefficients[key]
 
-    def _raw(self, part):
-        found = self.relative(part)
-        if found is None:
-            return self.bound(part), self._absolute[part].factor
-        return self.summed([(self.coefficient(found), self.size(part)), (1.0, found.dust)]), 1.0
-
     def total(self, part):
         """The whole bound of a part of an operation; None where it is exact."""
-        bound, factor = self._raw(part)
-        return None if bound is None else factor * bound
+        found = self.relative(part)
+        if found is None:
+            return self.bound(part)
+        return self.summed([(self.coefficient(found), self.size(part)), (1.0, found.dust)])
+
+    def larger(self, part):
+        """Bound on the magnitude of the exact value of an absolute part."""
+        return self.fused(SECOND, self.bound(part), self.size(part))
 
     # Arithmetic
 
@@ -424,7 +417,7 @@ class RunningBounds:
     def above(self, value, total, floor=None):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
         if total is not None:
-            value = value - (SAFE * 2.0**-53) * total
+            value = value - (SAFE * UNIT) * total
         return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
 
     def size(self, part):
@@ -491,21 +484,7 @@ def _varies(part):
     return isinstance(part, Node) and part.varies == BY_ANGLE
 
 
-def _logarithm(found):
-    """Largest logarithm of what pivots make of a value: of each |log(1 + e)| <= |e| / (1 - |e|)."""
-    return sum(map(abs, found.pivots.values())) * KNOWN / (1.0 - KNOWN)
-
-
-def _growth(found):
-    return math.exp(_logarithm(found))
-
-
-def _roundings(found):
-    """Roundings, with terms of second order with pivots."""
-    return found.roundings * _growth(found)
-
-
-def _slope(found):
-    """How much more than the sum of |power e| what pivots make is: exp(x) - 1 <= x (exp(X) - 1) / X for x <= X."""
-    most = _logarithm(found)
-    return math.expm1(most) / most / (1.0 - KNOWN)
+def _slope(powers):
+    """How much more than `CURVED` allows for pivots to some powers make; by Jensen as if all were one."""
+    power = sum(map(abs, powers))
+    return max(1.0, math.expm1(-power * math.log1p(-KNOWN)) / (power * KNOWN * (1.0 + CURVED * KNOWN)))
