@@ -33,9 +33,8 @@ GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
 SECOND = 2.0**-52
 """More than what makes a term of second order of two bounds."""
-CRITICAL = 2.0
-MOST = 4.0
-"""Roundings in reserve, up to which sums of magnitudes stand for the magnitude of a sum."""
+FEW, MORE = 1.0, 2.0
+"""Roundings in reserve: of magnitudes of what is added, and of a value's own, which may be far smaller."""
 
 
 class Relative(NamedTuple):
@@ -74,9 +73,7 @@ class RunningBounds:
         self._absolute: dict[Node, Absolute] = {}
         self._bounds: dict[Node, Any] = {}
         self._uses: Counter[Node] = Counter()
-        self._behind: set[Node] = set()
         self._crossed: Counter[Node] = Counter()
-        self._needs: dict[Node, float] = {}
         self._pivots: dict[Node, Any] = {}
         self._coefficients: dict[Any, Any] = {}
         self._reciprocals: dict[Node, Any] = {}
@@ -94,16 +91,14 @@ class RunningBounds:
             self._uses.update(part for part in node.arguments if isinstance(part, Node))
         for node in nodes:
             self._relative[node] = self._counted(node)
-        self._behind.update(needed(self._pivotal(nodes)))
-        for node in reversed(nodes):
+        for node in nodes:
             if self._relative[node] is None:
-                self._tell_needs(node)
                 if node.operation == "*" and self.relative(node.arguments[0]) is self.relative(node.arguments[1]):
                     self._crossed.update(set(node.arguments))
         for node in everything:
             if self._relative[node] is None and node not in self._absolute:
                 self._absolute[node] = self._found(node)
-        return tuple(whole(self.total(part)) for part in outputs)
+        return tuple(whole(self._with_reserve(part)) for part in outputs)
 
 
     # What is relative
@@ -148,6 +143,8 @@ class RunningBounds:
             return EXACT
         if len(parts) == 1:
             return errors[0]
+        if all(error is not None and error == EXACT for error in errors) and node.operation != "total":
+            return Relative(1.0, {}, None)
         is_plus = node.operation == "+" and all(map(self.is_positive, parts))
         if None in errors or not is_plus or any(error.pivots for error in errors):
             return None
@@ -206,7 +203,7 @@ class RunningBounds:
         """Bound on the relative error of a pivot, in `UNIT`, times `LIMIT`."""
         if node not in self._pivots:
             guards = self._guards.get(node, {})
-            bound = None if node in guards else self.total(node)
+            bound = None if node in guards else self._with_reserve(node)
             found = (0.0 if bound is None else bound) * self.over(node)
             for guard in guards:
                 found = self.fused(GUARDED, guard - guard.arguments[0], found)
@@ -240,116 +237,85 @@ class RunningBounds:
 
     # What is absolute
 
-    def _tell_needs(self, node):
-        """What parts are to have in reserve: for the roundings of an operation, and for what it needs itself."""
-        kind, parts = node.operation, [part for part in node.arguments if self.relative(part) is None]
-        wanted = self._needs.get(node, 0.0) + self._own(node)
-        if kind in ("abs", "held", "*", "/", "+", "-", "total") and not self._is_charged(node):
-            others = [self.relative(part) for part in node.arguments]
-            if kind == "/":
-                parts, others = parts[:1], [self.as_divisor(node.arguments[1])]
-            if kind in ("*", "/") and any(other is not None and other.pivots for other in others):
-                return
-            for part in parts:
-                share = 0.5 * wanted if kind == "*" and len(parts) > 1 else wanted
-                self._needs[part] = max(self._needs.get(part, 0.0), share)
-
-    def _pivotal(self, nodes):
-        return {pivot for node in nodes if (found := self._relative[node]) is not None for pivot in found.pivots}
-
-    def _is_charged(self, node):
-        """Whether a sum's bound has a term for what is wanted in reserve, instead of its parts."""
-        if node.operation == "total":  # rounds its result, however large its terms
-            return True
-        is_sum = node.operation in ("+", "-") and self._own(node) > 0.0
-        return is_sum and self._needs.get(node, 0.0) + 1.0 > (CRITICAL if node in self._behind else MOST)
-
-    def _own(self, node):
-        """Roundings of an operation, and of what else it takes that is relative."""
-        kind, parts = node.operation, node.arguments
-        if kind in ("abs", "held") or len(parts) == 1:
-            return 0.0
-        if kind == "*":
-            others = [self.relative(part) for part in parts if self.relative(part) is not None]
-            return (0.0 if any(map(_is_scaling, parts)) else 1.0) + sum(other.roundings for other in others)
-        if kind == "/":
-            return 1.0 + self.as_divisor(parts[1]).roundings
-        return 0.0 if sum(not is_zero(part) for part in parts) < 2 else 1.0
-
     def _found(self, node):
-        kind, reserve = node.operation, self._needs.get(node, 0.0)
+        kind, parts = node.operation, node.arguments
         if kind in INPUTS:
             relative, rest = self._inputs[node](self)
-            return Absolute([(reserve + relative, self.size(node)), (1.0, rest)], reserve)
+            return Absolute([(relative + MORE, self.size(node)), (1.0, rest)], MORE)
         if kind == "sign":
-            (argument,) = node.arguments
-            return Absolute([(1.0, 0.0 / self.above(self.size(argument), self.total(argument)))], 0.0)
+            return Absolute([(1.0, 0.0 / self.above(self.size(parts[0]), self.total(parts[0])))], 0.0)
         if kind in ("sin", "cos", "atan"):
-            terms = [(reserve + ULP[kind], self.size(node)), (1.0, self.total(node.arguments[0]))]
-            return Absolute(terms, reserve)
-        wanted = reserve + self._own(node)
-        if self._is_charged(node):
-            return Absolute([*self._of_sum(node, 0.0), (wanted, self.size(node))], reserve)
-        of = {"*": self._of_product, "/": self._of_quotient}.get(kind, self._of_sum)
-        return Absolute(of(node, wanted), reserve)
+            return Absolute([(ULP[kind] + MORE, self.size(node)), (1.0, self.total(parts[0]))], MORE)
+        if kind == "*":
+            return self._of_product(node)
+        return self._of_quotient(node) if kind == "/" else self._of_sum(node)
 
-    def _of_sum(self, node, held):
-        """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes."""
-        terms = []
-        for part in node.arguments:
-            if is_zero(part):
-                continue
+    def _of_sum(self, node):
+        """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes, or of its own."""
+        parts = [part for part in node.arguments if not is_zero(part)]
+        own = 1.0 if len(parts) > 1 else 0.0
+        reserve = min((self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=FEW)
+        is_charged = reserve < 0.0 or node.operation == "total" or node.varies < BY_ANGLE
+        terms = [(own + MORE, self.size(node))] if is_charged else []
+        for part in parts:
             found = self.relative(part)
             if found is None:
-                own, more = self.absolute(part, held)
-                terms += own + more
+                terms += self.terms(part)
             else:
-                terms += [(self.coefficient(found, held), self.size(part)), (1.0, found.dust)]
+                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), self.size(part)))
+                terms.append((1.0, found.dust))
         if node.operation == "total":  # three sums without loss, and what they lose
-            terms += [(216.0 * UNIT * UNIT, self.size(part)) for part in node.arguments]
-        return terms
+            terms += [(216.0 * UNIT * UNIT, self.size(part)) for part in parts]
+        return Absolute(terms, MORE if is_charged else reserve)
 
-    def _of_product(self, node, held):
+    def _of_product(self, node):
         left, right = node.arguments
         if self.relative(left) is not None:
             left, right = right, left
         found = self.relative(right)
         if found is not None:
+            own = 0.0 if any(map(_is_scaling, node.arguments)) else 1.0
             lost = [] if found.dust is None else [(found.dust, self.cap(left))]
-            return self._scaled(left, found, self.size(right), held, lost)
+            return self._scaled(left, found, own, self.size(right), lost)
         if left is right:
-            own = self.bound(left, 0.5 * held)
-            size = self.size(left)
-            return [(self.fused(SECOND, self.bound(left), size + size), own), (1.0, self._dust)]
+            bound, size = self.bound(left, 0.5), self.size(left)
+            terms = [(self.fused(SECOND, bound, size + size), bound), (1.0, self._dust)]
+            return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
         if self._crossed[left] > self._crossed[right]:
             left, right = right, left
-        one, other = self.bound(left, 0.5 * held), self.bound(right, 0.5 * held)
-        return [(self.larger(right), one), (self.size(left), other), (1.0, self._dust)]
+        held = [self._absolute[part].reserve for part in (left, right)]
+        bound = self.bound(left, 0.0 if sum(held) >= 1.0 else 1.0)
+        terms = [(self.larger(right), bound), (self.size(left), self.bound(right)), (1.0, self._dust)]
+        return Absolute(terms, sum(held) - 1.0 if sum(held) >= 1.0 else MORE)
 
-    def _of_quotient(self, node, held):
+    def _of_quotient(self, node):
         above, below = node.arguments
-        return self._scaled(above, self.as_divisor(below), self.over(below), held, [])
+        return self._scaled(above, self.as_divisor(below), 1.0, self.over(below), [])
 
-    def _scaled(self, part, found, size, held, lost):
+    def _scaled(self, part, found, own, size, lost):
         """An absolute part times, or over, what is relative."""
+        own += found.roundings
+        held = self._absolute[part].reserve
         if found.pivots:
-            bound = self.fused(self.coefficient(found, held - found.roundings), self.larger(part), self.bound(part))
+            charge = self.coefficient(found._replace(roundings=0.0), own + MORE)
+            bound, reserve = self.fused(charge, self.larger(part), self.bound(part)), MORE
+        elif held >= own:
+            bound, reserve = self.bound(part), held - own
         else:
-            bound = self.bound(part, held)
-        return [(size, bound), (1.0, self._dust), *lost]
+            charge = 4.0 * math.ceil((own + MORE - held) / 4.0)
+            bound, reserve = self.fused(charge, self.size(part), self.bound(part)), held + charge - own
+        return Absolute([(size, bound), (1.0, self._dust), *lost], reserve)
 
-    def absolute(self, part, held):
-        """Terms of the bound of an absolute part, and of so much in reserve."""
-        own = self._absolute[part]
-        more = [(held - own.reserve, self.size(part))] if held > own.reserve else []
-        return (own.terms if self._uses[part] < 2 else [(1.0, self.bound(part))]), more
+    def terms(self, part):
+        """Terms of the bound of an absolute part; one where it is used again."""
+        return self._absolute[part].terms if self._uses[part] < 2 else [(1.0, self.bound(part))]
 
     def bound(self, part, held=0.0):
-        """Bound of an absolute part with so much in reserve."""
+        """Bound of an absolute part; with `MORE` in reserve if it has less than wanted."""
         if part not in self._bounds:
             self._bounds[part] = self.summed(self._absolute[part].terms)
-        reserve = self._absolute[part].reserve
-        return self.fused(held - reserve, self.size(part), self._bounds[part]) if held > reserve else self._bounds[part]
+        bound = self._bounds[part]
+        return bound if self._absolute[part].reserve >= held else self.fused(held + MORE, self.size(part), bound)
 
     def coefficient(self, found, more=0.0):
         """What a relative error is of the magnitude of its value, in `UNIT`."""
@@ -358,13 +324,22 @@ class RunningBounds:
             return roundings
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
-            slope = _slope(found.pivots.values()) / LIMIT
-            terms = [(slope * abs(power), self.pivot(pivot)) for pivot, power in found.pivots.items()]
+            slope = _slope(found.pivots.values())
+            powers = [(pivot, slope * abs(power)) for pivot, power in found.pivots.items()]
+            roundings -= sum(power * self._reserve(pivot) for pivot, power in powers)
+            terms = [(power / LIMIT, self.pivot(pivot)) for pivot, power in powers]
             self._coefficients[key] = self.summed([*terms, (1.0, roundings)])
         return self._coefficients[key]
 
+    def _reserve(self, part):
+        return self._absolute[part].reserve if part in self._absolute else 0.0
+
     def total(self, part):
-        """The whole bound of a part of an operation; None where it is exact."""
+        """The whole bound of a part of an operation, without reserve; None where it is exact."""
+        bound, reserve = self._with_reserve(part), self._reserve(part)
+        return self.fused(-reserve / SAFE, self.size(part), bound) if reserve else bound
+
+    def _with_reserve(self, part):
         found = self.relative(part)
         if found is None:
             return self.bound(part)
