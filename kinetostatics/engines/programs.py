@@ -81,7 +81,11 @@ class Program:
         """
         if tight not in self._bounded:
             given = self.recording.graph, self.recording.inputs
-            found = [tight_bound(*given, part) for part in self.outputs] if tight else RunningBounds(*given).of(self.outputs)
+            found = (
+                [tight_bound(*given, part) for part in self.outputs]
+                if tight
+                else RunningBounds(*given).of(self.outputs)
+            )
             self._bounded[tight] = _Bounded(self.recording, (*self.outputs, *found), len(self.outputs), tight)
         return self._bounded[tight]
 

@@ -1,0 +1,290 @@
+"""Errors of recorded values that are products: counts of roundings, and what a design tells of magnitudes.
+
+Products, quotients and roots of what has few relative errors have few as well (Higham, *Accuracy and Stability of
+Numerical Algorithms*, 2002, section 3.4, the counter <k>): nothing has to be computed for them.
+"""
+
+import math
+from collections.abc import Callable
+from functools import reduce
+from typing import Any, NamedTuple
+
+from ..numbers.elementary import UNIT
+from ..numbers.planar import plus
+from .bounds import ULP, Error, is_zero
+from .trace import BY_ANGLE, INPUTS, Graph, Node
+
+
+class Relative(NamedTuple):
+    """Error of a value that is a product: how many `roundings`, powers of `pivots`, and what it lost as too small."""
+
+    roundings: float
+    pivots: dict[Node, float]
+    dust: Any
+
+
+EXACT = Relative(0.0, {}, None)
+
+
+class Counted:
+    """What is relative among the nodes of a graph.
+
+    Parameters
+    ----------
+    graph : Graph
+    inputs : mapping of Node to function
+        ``input(bounds) -> Error`` of inputs that are not exact.
+    dust : float or None
+        What a product or quotient may lose if it is too small for a double; None if none is.
+    """
+
+    def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
+        self._graph, self._inputs, self._dust = graph, inputs or {}, dust
+        self._relative: dict[Node, Relative | None] = {}
+        self._pivots: dict[Node, Any] = {}
+        self._guards: dict[Node, dict[Node, None]] = {}
+        self._squares: set[Any] = set()
+        self._reciprocals: dict[Node, Any] = {}
+        self._caps: dict[Node, Any] = {}
+        self._positive: dict[Node, bool] = {}
+
+    def count(self, nodes):
+        """Find what is relative among nodes in the order of computing."""
+        self._squares.update(node.arguments[0] for node in nodes if node.operation in ("sqrt", "root"))
+        for node in nodes:
+            self._tell_reciprocal(node)
+        for node in nodes:
+            self._relative[node] = self._counted(node)
+
+    def relative(self, part):
+        """Error of a part if it is relative, else None."""
+        return self._relative[part] if isinstance(part, Node) else EXACT
+
+    def _counted(self, node):
+        kind, parts = node.operation, node.arguments
+        if kind in INPUTS:
+            return self._counted_input(node)
+        if kind in ("+", "-", "total"):
+            return self._counted_sum(node, [part for part in parts if not is_zero(part)])
+        if kind == "*":
+            return EXACT if is_zero(node) else self._counted_product(node, 1.0, is_scaling)
+        if kind == "/":
+            return self._counted_product(node, -1.0, lambda part: part is parts[1] and is_scaling(part))
+        if kind in ("sqrt", "root"):
+            return self._counted_root(node)
+        if kind == "divisor":
+            return self._counted_divisor(node)
+        found = self.relative(parts[0])
+        if kind in ("abs", "held") or found is None:
+            return found
+        if kind == "sign":  # of a product only what is lost as too small may turn it
+            return EXACT if found.dust is None and not found.pivots else None
+        return Relative(ULP[kind], {}, None) if is_exact(found) else None
+
+    def _counted_input(self, node):
+        if node not in self._inputs:
+            return EXACT
+        if node.varies == BY_ANGLE:
+            return None
+        relative, rest = self._inputs[node](self)
+        return Relative(relative, {}, None) if rest is None else None
+
+    def _counted_sum(self, node, parts):
+        errors = [self.relative(part) for part in parts]
+        if not parts:
+            return EXACT
+        if len(parts) == 1:
+            return errors[0]
+        if all(map(is_exact, errors)) and node.operation != "total":
+            return Relative(1.0, {}, None)
+        is_plus = node.operation == "+" and all(map(self.is_positive, parts))
+        if None in errors or not is_plus or any(error.pivots for error in errors):
+            return None
+        dust = reduce(plus, (error.dust for error in errors))
+        return Relative(1.0 + max(error.roundings for error in errors), {}, dust)
+
+    def _counted_product(self, node, sign, is_exactly):
+        left, right = node.arguments
+        one, other = self.relative(left), self.as_divisor(right) if sign < 0.0 else self.relative(right)
+        if one is None or other is None:
+            return None
+        pivots = {
+            pivot: one.pivots.get(pivot, 0.0) + sign * other.pivots.get(pivot, 0.0)
+            for pivot in one.pivots | other.pivots
+        }
+        own = 0.0 if is_exactly(left) or is_exactly(right) else 1.0
+        return Relative(
+            one.roundings + other.roundings + own,
+            {pivot: power for pivot, power in pivots.items() if power},
+            self._dust_of_product(node, one, other, sign),
+        )
+
+    def _dust_of_product(self, node, one, other, sign):
+        if self._dust is None:
+            return None
+        left, right = node.arguments
+        dust = self._dust
+        if one.dust is not None:
+            dust = plus(one.dust * (self.cap(right) if sign > 0.0 else self._cap_over(right)), dust)
+        if other.dust is not None:
+            dust = plus(other.dust * self.cap(left), dust)
+        return dust
+
+    def as_divisor(self, part):
+        """Error of a part that something is divided by: its own if it cannot be lost as too small, or of a pivot."""
+        found = self.relative(part)
+        return found if found is not None and found.dust is None else Relative(0.0, {part: 1.0}, None)
+
+    def _counted_root(self, node):
+        square = node.arguments[0]
+        found = self.relative(square)
+        if found is None or not self.is_positive(square) or varies(found.dust):
+            found = Relative(0.0, {square: 1.0}, None)
+        dust = found.dust
+        if dust is not None:
+            dust = math.sqrt(dust / UNIT) if isinstance(dust, float) else (dust / UNIT).sqrt()
+        return Relative(
+            1.0 + 0.5 * found.roundings, {pivot: 0.5 * power for pivot, power in found.pivots.items()}, dust
+        )
+
+    def _counted_divisor(self, node):
+        """As what is guarded; where the guard acts that is no pivot."""
+        found = self.relative(node.arguments[0])
+        if found is None:
+            found = Relative(0.0, {node.arguments[0]: 1.0}, None)
+        pivot = next((pivot for pivot in found.pivots if pivot not in self._pivots), node)
+        self._guards.setdefault(pivot, {})[node] = None
+        return found if pivot is not node else found._replace(pivots={**found.pivots, node: 1.0})
+
+    def over(self, node):
+        """Bound on one over the magnitude of a computed value: its reciprocal where that is computed."""
+        if not isinstance(node, Node):
+            return 1.0 / abs(node)
+        if node not in self._reciprocals:
+            above_one = node.operation == "+" and is_number(node.arguments[0], 1.0) and self.is_positive(node)
+            if above_one and node.arguments[1].operation == "abs":
+                return 1.0
+            size = node if node in self._squares else self.size(node)  # what is negative has no root
+            self._reciprocals[node] = 1.0 / self._graph.node("divisor", size, 0.0)
+        return self._reciprocals[node]
+
+    def _tell_reciprocal(self, node):
+        """Take note of reciprocals among the values, of what is guarded, and of squares of what they are of."""
+        if node.operation != "/" or isinstance(node.arguments[0], Node):
+            return
+        above, below = node.arguments
+        over = self.size(node) * (1.0 / abs(above)) if above else None
+        if below in self._squares:
+            return
+        while over is not None and isinstance(below, Node) and below not in self._reciprocals:
+            self._reciprocals[below] = over
+            if below.operation in ("sqrt", "root"):
+                over = over * over
+            elif below.operation != "divisor":
+                return
+            below = below.arguments[0]
+
+    def cap(self, part):
+        """A magnitude not less than a value's: of its design if possible."""
+        if not isinstance(part, Node):
+            return abs(part)
+        if part not in self._caps:
+            found = None
+            if part.varies == BY_ANGLE and part.operation not in INPUTS:
+                found = self._cap(part.operation, part.arguments)
+            self._caps[part] = self.size(part) if found is None or varies(found) else found
+        return self._caps[part]
+
+    def _cap(self, kind, parts):
+        if kind in ("sin", "cos"):
+            return 1.0
+        if kind in ("abs", "held", "+", "-", "divisor"):
+            return reduce(plus, map(self.cap, parts))
+        if kind == "*":
+            return self.cap(parts[0]) * self.cap(parts[1])
+        if kind in ("sqrt", "root"):
+            square = self.cap(parts[0])
+            return square.sqrt() if isinstance(square, Node) and not varies(square) else None
+        if kind == "/":
+            return self.cap(parts[0]) * self._cap_over(parts[1])
+        return None
+
+    def _cap_over(self, part):
+        guarded = isinstance(part, Node) and part.operation == "divisor" and not varies(part.arguments[1])
+        return self.over(part.arguments[1] if guarded else part)
+
+    def summed(self, terms):
+        """Sum of products: of what a design fixes first, the others one after the other; None of nothing."""
+        terms = [
+            self._stripped(one, other)
+            for one, other in terms
+            if other is not None and not is_number(one, 0.0) and not is_number(other, 0.0)
+        ]
+        if any(is_number(one, 1.0) and varies(other) for one, other in terms):  # a bound, which has dust enough
+            terms = [term for term in terms if not (is_number(term[0], 1.0) and self._is_dust(term[1]))]
+        terms.sort(key=lambda term: varies(term[0]) or varies(term[1]))
+        total = None
+        for one, other in terms:
+            total = self.fused(one, other, total)
+        return total
+
+    def _is_dust(self, part):
+        return isinstance(part, float) and self._dust is not None and part <= 256.0 * self._dust
+
+    def _stripped(self, one, other):
+        """A term whose magnitude is of a product with numbers of the design: these multiply the other factor."""
+        while not varies(one) and varies(other):
+            inner = other.arguments[0] if other.operation == "abs" else other
+            if inner.operation != "*" or not self.is_positive(other):
+                break
+            fixed = [part for part in inner.arguments if not varies(part)]
+            if not fixed:
+                break
+            (rest,) = (part for part in inner.arguments if varies(part))
+            one, other = one * self.size(fixed[0]), self.size(rest)
+        return one, other
+
+    def fused(self, one, other, more):
+        """Product and sum, in one operation where the processor has it."""
+        plain = [part for part in (one, other) if not isinstance(part, Node)]
+        if more is None or len(plain) == 2 or 1.0 in plain:
+            return plus(one * other, more)
+        return self._graph.node("fma", one, other, more)
+
+    def size(self, part):
+        """Magnitude of a part of an operation."""
+        if not isinstance(part, Node):
+            return abs(part)
+        if part.operation == "-" and len(part.arguments) == 1:
+            return self.size(part.arguments[0])
+        return part if self.is_positive(part) else abs(part)
+
+    def is_positive(self, part):
+        """Whether a part cannot be negative, whatever the numbers."""
+        if not isinstance(part, Node):
+            return part >= 0.0
+        if part not in self._positive:
+            kind, parts = part.operation, part.arguments
+            self._positive[part] = kind in ("abs", "sqrt", "root") or (
+                (kind in ("*", "/", "+", "divisor") and all(map(self.is_positive, parts)))
+                or (kind == "*" and parts[0] is parts[1])
+                or (kind == "divisor" and any(map(self.is_positive, parts)))
+            )
+        return self._positive[part]
+
+
+def is_exact(error):
+    return error is not None and not error.roundings and not error.pivots and error.dust is None
+
+
+def is_scaling(part):
+    """Whether a factor is a power of two near one: it loses no digit but of dust."""
+    return not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
+
+
+def is_number(part, number):
+    return not isinstance(part, Node) and part == number
+
+
+def varies(part):
+    return isinstance(part, Node) and part.varies == BY_ANGLE
