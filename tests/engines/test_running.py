@@ -1,0 +1,99 @@
+"""Bounds that are computed along: never less than the true error, and cheap beside the values."""
+
+import numpy as np
+
+import kinetostatics as ks
+from kinetostatics.engines import programs
+from kinetostatics.engines.running import CURVED, KNOWN, LIMIT, POWER, RunningBounds
+from kinetostatics.engines.trace import Graph
+from kinetostatics.numbers.elementary import UNIT, total
+from support.every import every
+from support.shipped import shipped
+
+
+def bounds_of(graph, outputs, values, angle=0.0):
+    found = RunningBounds(graph).of(outputs)
+    return programs.Program(None, found)._by_numbers(np.array([angle]), values, (1,))[:, 0]
+
+
+def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_hand():
+    graph = Graph()
+    one, two = graph.parameter(0), graph.parameter(1)
+    outputs = one + two, one * two, one / two, (one * one).sqrt(), (one + two) * one
+    values = bounds_of(graph, outputs, [3.0, 0.7])
+    wanted = [3.7 * UNIT, 2.1 * UNIT, 3.0 / 0.7 * UNIT, 1.5 * 3.0 * UNIT, 2 * 3.7 * 3.0 * UNIT]
+    np.testing.assert_allclose(values, wanted, rtol=1e-8)
+
+
+def test_powers_of_pivots_are_bounded_up_to_what_makes_the_bound_infinite():
+    known = np.linspace(1e-6, KNOWN, 1000)
+    for power in (0.5, 1.0, 2.0, 5.0, POWER):
+        assert np.all(np.expm1(-power * np.log1p(-known)) <= power * known * (1.0 + CURVED * known))
+    largest = np.roots([CURVED, 1.0, -np.finfo(float).max / LIMIT * UNIT]).max()
+    assert 0.08 < largest < KNOWN
+
+
+def test_a_root_of_what_is_or_may_be_negative_has_no_bound():
+    graph = Graph()
+    one, other, unit = map(graph.parameter, range(3))
+    product = (one * other).forgiving_root(unit)
+    difference = (one * one - other * other).forgiving_root(unit)
+    assert not np.isfinite(bounds_of(graph, [product], [1e-20, -1.0, 2.0])).any()
+    assert not np.isfinite(bounds_of(graph, [difference], [1.0, 1.0 + 6 * UNIT, 2.0])).any()
+    assert np.isfinite(bounds_of(graph, [difference, 1.0 / difference], [1.0, 0.9, 2.0])).all()
+
+
+def test_where_the_guard_of_a_divisor_acts_there_is_no_bound():
+    graph = Graph()
+    one, other, unit = map(graph.parameter, range(3))
+    guarded = 1.0 / (one * one - other * other).sqrt().kept_off_zero(unit)
+    clear, acting = (bounds_of(graph, [guarded], [1.0, 0.5, unit])[0] for unit in (1e-8, 0.9))
+    assert np.isfinite(clear)
+    assert not np.isfinite(acting)
+
+
+def test_a_product_of_two_differences_that_are_lost_is_bounded_in_second_order():
+    graph = Graph()
+    one, tiny = map(graph.parameter, range(2))
+    lost = [(part + tiny) - part for part in (one, 2.0 * one)]  # computed 0, truly 2^-54
+    (bound,) = bounds_of(graph, [lost[0] * lost[1]], [1.0, 2.0**-54])
+    assert bound >= 2.0**-108
+
+
+def test_what_is_lost_as_too_small_is_bounded_beside_a_sum_that_is_zero():
+    graph = Graph()
+    one, other, huge = map(graph.parameter, range(3))
+    zero = graph.angle().sin() - graph.angle().sin() * 3.0
+    (bound,) = bounds_of(graph, [(zero + one * other) * huge], [1e-170, 1e-170, 1e30])
+    assert bound >= 1e-310
+
+
+def test_a_total_of_given_numbers_is_bounded_by_few_roundings_of_itself():
+    graph = Graph()
+    parts = [graph.parameter(place) for place in range(4)]
+    values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
+    (bound,) = bounds_of(graph, [total(*parts) * parts[0]], values)
+    assert bound < 1e-31
+
+
+def test_a_bound_does_not_hang_on_what_else_is_asked_for():
+    s = ks.load_case("sawframe_2r63").variants["cam-cosine"].scene.solve(np.linspace(0.1, 6.0, 5))
+    alone, together = (
+        programs.of(s.dynamics, names)[0].bounded().run(s.dynamics, s.dynamics.apart[1])
+        for names in (("O",), ("slider_velocity", "B", "O"))
+    )
+    np.testing.assert_allclose(alone[2:], together[-2:], rtol=1e-12)
+
+
+@every(
+    "case, variant",
+    [("sawframe_2r63", "plain"), ("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("mower_drive", "full")],
+)
+def test_values_with_bounds_take_at_most_three_and_a_half_times_the_operations_and_few_divisions(case, variant):
+    s = shipped(case).variants[variant].scene.solve(4)
+    program, _ = programs.of(s.dynamics, ("balancing_torque",))
+    assert programs.operations(program.bounded().outputs) <= 3.5 * programs.operations(program.outputs)
+
+
+def test_an_output_that_is_a_plain_number_is_exact():
+    assert RunningBounds(Graph()).of([0.0]) == (0.0,)
