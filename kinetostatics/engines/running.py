@@ -141,12 +141,15 @@ class RunningBounds(Counted):
             bound, size = self.bound(left, 0.5), self.size(left)
             terms = [(self.fused(SECOND, bound, size + size), bound), (1.0, self._dust)]
             return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
-        if self._crossed[left] > self._crossed[right]:
-            left, right = right, left
-        held = [self._absolute[part].reserve for part in (left, right)]
-        bound = self.bound(left, 0.0 if sum(held) >= 1.0 else 1.0)
-        terms = [(self.larger(right), bound), (self.size(left), self.bound(right)), (1.0, self._dust)]
-        return Absolute(terms, sum(held) - 1.0 if sum(held) >= 1.0 else MORE)
+        held = self._absolute[left].reserve + self._absolute[right].reserve
+        one, other = self.bound(left, 0.0 if held >= 1.0 else 1.0), self.bound(right)
+        if self._crossed[left] > self._crossed[right]:  # one of both is to be larger, and may be so for others too
+            factors = self.size(right), self.larger(left)
+        else:
+            factors = self.larger(right), self.size(left)
+        return Absolute(
+            [(factors[0], one), (factors[1], other), (1.0, self._dust)], held - 1.0 if held >= 1.0 else MORE
+        )
 
     def _of_quotient(self, node):
         above, below = node.arguments

@@ -73,7 +73,9 @@ def test_tight_bounds_of_values_of_every_size_are_finite_and_no_larger():
     "case, variant",
     [("sawframe_2r63", "plain"), ("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("toggle_press", "idle")],
 )
-def test_tight_bounds_take_at_most_nine_times_the_operations_of_values_and_forward_bounds_three_and_a_half(case, variant):
+def test_tight_bounds_take_at_most_nine_times_the_operations_of_values_and_forward_bounds_three_and_a_half(
+    case, variant
+):
     s = shipped(case).variants[variant].scene.solve(4)
     program, _ = programs.of(s.dynamics, ("balancing_torque",))
     values, forward, tight = (programs.operations(of.outputs) for of in _ways(program))
