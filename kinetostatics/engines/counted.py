@@ -34,11 +34,11 @@ class Counted:
     graph : Graph
     inputs : mapping of Node to function
         ``input(bounds) -> Error`` of inputs that are not exact.
-    dust : float or None
-        What a product or quotient may lose if it is too small for a double; None if none is.
+    dust : float
+        What a product or quotient may lose if it is too small for a double; 0 if none is.
     """
 
-    def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
+    def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float):
         self._graph, self._inputs, self._dust = graph, inputs or {}, dust
         self._relative: dict[Node, Relative | None] = {}
         self._pivots: dict[Node, Any] = {}
@@ -120,8 +120,8 @@ class Counted:
         )
 
     def _dust_of_product(self, node, one, other, sign):
-        if self._dust is None:
-            return None
+        if not self._dust:
+            return 0.0
         left, right = node.arguments
         dust = self._dust
         if one.dust is not None:
@@ -229,7 +229,7 @@ class Counted:
         return total
 
     def _is_dust(self, part):
-        return isinstance(part, float) and self._dust is not None and part <= 256.0 * self._dust
+        return isinstance(part, float) and 0.0 < part <= 256.0 * self._dust
 
     def _stripped(self, one, other):
         """A term whose magnitude is of a product with numbers of the design: these multiply the other factor."""

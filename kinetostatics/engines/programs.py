@@ -236,7 +236,7 @@ class _Bounded(Program):
     @cached_property
     def _without_dust(self):
         values, recording = self.outputs[: self.values], self.recording
-        bounds = RunningBounds(recording.graph, recording.inputs, dust=None).of(values)
+        bounds = RunningBounds(recording.graph, recording.inputs, dust=0.0).of(values)
         return _Watched(recording, (*values, *bounds))
 
     def by_numpy(self, angle, numbers, rows, shape):

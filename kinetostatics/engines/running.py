@@ -53,8 +53,8 @@ class RunningBounds(Counted):
     graph : Graph
     inputs : mapping of Node to function
         ``input(bounds) -> Error`` of inputs that are not exact, as for `bounds.Bounds`.
-    dust : float or None
-        What a product or quotient may lose if it is too small for a double; None if none is.
+    dust : float
+        What a product or quotient may lose if it is too small for a double; 0 if none is.
     """
 
     def __init__(self, graph, inputs=None, dust=DUST):

@@ -4,7 +4,7 @@ from kinetostatics.engines.counted import EXACT, Counted, Relative
 from kinetostatics.engines.trace import Graph, needed
 
 
-def counted(output, dust=None):
+def counted(output, dust=0.0):
     found = Counted(output.graph, {}, dust)
     found.count(needed([output]))
     return found, found.relative(output)
@@ -14,7 +14,7 @@ def test_products_quotients_and_roots_of_given_numbers_count_their_roundings():
     graph = Graph()
     one, other = map(graph.parameter, range(2))
     assert counted(one)[1] == EXACT
-    assert counted(one * other / one)[1] == Relative(2.0, {}, None)
+    assert counted(one * other / one)[1] == Relative(2.0, {}, 0.0)
     assert counted(one * one)[1].roundings == 1.0
     assert counted((one * one).sqrt())[1].roundings == 1.5
     assert counted(0.5 * one)[1] == EXACT
