@@ -25,7 +25,7 @@ MOST = {"numpy": {"torque": 4.0, "all": 4.0}, "compiled": {"torque": 2.5, "all":
 
 
 @pytest.mark.parametrize("engine", MOST)
-@pytest.mark.parametrize("case, variant", CASES)
+@pytest.mark.parametrize(("case", "variant"), CASES)
 def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, monkeypatch, engine, case, variant):
     if engine == "compiled" and not compiled.available():
         pytest.skip("numba is not installed (extra: fast)")
