@@ -146,7 +146,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
 
 
 def _with_gaps(outputs, name, scene, behind):
-    """Outputs made NaN too where groups cannot be assembled on whose roots they do not hang, as weights of the crank."""
+    """Outputs made NaN too where groups cannot be assembled they do not hang on, as weights of the crank."""
     if name in ("closure", *CHECKS):
         return outputs
     roots = _roots(node for part in places(scene.placement, behind[name]) for node in np.ravel(part))

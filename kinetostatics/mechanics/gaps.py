@@ -1,8 +1,8 @@
 """Where quantities have no value since parts of the mechanism cannot be assembled.
 
 Motion of a group has none where the group, or one that it hangs on, cannot be assembled; its forces have none either
-where a group cannot that hangs on it, for they carry that group's. What is of the crank, or of the mechanism as a whole,
-has none where any group cannot. All else does not hang on the gap, and stays.
+where a group cannot that hangs on it, for they carry that group's. What is of the crank, or of the mechanism as a
+whole, has none where any group cannot. All else does not hang on the gap, and stays.
 """
 
 from collections import defaultdict

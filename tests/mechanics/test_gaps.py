@@ -1,4 +1,4 @@
-"""Where a group cannot be assembled nothing has a value that hangs on it or carries its forces; all else has its own."""
+"""Where a group cannot be assembled nothing has a value that hangs on it or carries its forces; all else has one."""
 
 from dataclasses import replace
 
@@ -33,7 +33,8 @@ def yoke(inner, outer):
 def on_the_rocker(inner, outer):
     """A four-bar whose rocker carries a slider with too short a rod."""
     four_bar = ks.RockerGroup(0.2, 0.15, (0.2, 0.0), coupler=inner, rocker=inner)
-    return four_bar, ks.Pin("rocker", (0.1, 0.02), "D"), short_slider("D", outer, coupler_length=0.12, guide=ks.Guide.at(0.0, 0.2))
+    slider = short_slider("D", outer, coupler_length=0.12, guide=ks.Guide.at(0.0, 0.2))
+    return four_bar, ks.Pin("rocker", (0.1, 0.02), "D"), slider
 
 
 def on_the_lever(inner, outer):
@@ -115,7 +116,7 @@ def test_what_stays_beside_a_gap_is_what_the_group_has_alone():
 
 @every("machine", [vee, on_the_rocker], ids=lambda machine: machine.__name__)
 def test_friction_has_the_gaps_of_the_forces_it_comes_of(machine):
-    """Of the joints of the first group that of a cylinder stays beside the other's gap, not that of the rocker below."""
+    """Of the first group a cylinder's joint stays beside the other's gap, a rocker's that carries it does not."""
     pin = ks.PinFriction(0.1, 0.01)
     s = replace(made(machine), friction={"O": pin, "A": pin, "C": pin}).solve(TURN, on_gap="nan")
     for name, stays in (("A", machine is vee), ("C", False), ("O", False)):
