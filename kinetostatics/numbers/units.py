@@ -18,7 +18,7 @@ _NUMBER_AND_UNIT = re.compile(
 )
 _USUAL = {"rad": ("90", "deg"), "rad/s": ("300", "rpm")}
 """What engineers write for a unit of SI, for advice."""
-_FACTOR = re.compile(r"([^\W\d_][A-Za-z_]*|[°%])(?:(?:\^|\*\*)?([-+]?[1-9])|([²³]))?")
+_FACTOR = re.compile(r"([^\W\d_][A-Za-z_]*|°[CF]?|%)(?:(?:\^|\*\*)?([-+]?[1-9])|([²³]))?")
 _BETWEEN = re.compile(r"\s*(?:[*/·⋅]|\bper\b)\s*|\s+")
 _DIGITS = re.compile(r"[-+−–]?\d(?:[\d.,'’_\s]*\d)?")
 _SEPARATOR = re.compile(r"[.,'’_\s]")
@@ -99,11 +99,19 @@ def _base(given, unit):
 
     registry = _registry()
     try:
-        scale, base = registry.get_base_units(registry.parse_units(_spelled_for_pint(given)))
+        units = registry.parse_units(_spelled_for_pint(given))
+        scale, base = registry.get_base_units(units)
+        nothing = registry.Quantity(0.0, units).to_base_units().magnitude
     except (pint.PintError, ValueError, TypeError, AttributeError):
         scale = None
     if scale is None or not 0 < scale < math.inf:
-        raise ValueError(f'unit "{shown(given)[1:-1]}" is not known; give one that converts to "{unit}"')
+        remedy = "" if given == unit else f'; give one that converts to "{unit}"'
+        raise ValueError(f'unit "{shown(given)[1:-1]}" is not known{remedy}')
+    if nothing != 0.0:
+        raise ValueError(
+            f'unit "{given}" has a zero of its own, so that twice its number is not twice as much; give a unit whose '
+            "zero is nothing, as K, or delta_degC for a difference"
+        )
     return scale, base
 
 
