@@ -16,7 +16,7 @@ from ..numbers.planar import plus
 def groups_behind(mechanism):
     """Groups that must be assembled for a quantity to have a value, by its name: all, unless it is of a group."""
     groups, inner = mechanism.groups, _inner(mechanism.groups)
-    found = defaultdict(lambda: groups)
+    found: defaultdict[str, tuple] = defaultdict(lambda: groups)
     for place, group in enumerate(groups):
         outer = set().union(*(own for own in inner if place in own))
         rubbing = [f"{name}{ending}" for name in group.pairs for ending in ("_friction", "_friction_loss")]

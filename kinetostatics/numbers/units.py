@@ -55,7 +55,7 @@ def to_si(text, unit):
     if found is None:
         advice = respelled(text, _NUMBER_AND_UNIT.fullmatch) if readable else ""
         raise ValueError(
-            f"must be text of a number and a unit that converts to {unit}, found {shown(text)}"
+            f"must be text of a number and a unit that converts to {unit}, found {quoted(text)}"
             + (advice or f'; write for example "{" ".join(_USUAL.get(unit, ("1.5", unit)))}"')
         )
     number, given = found[1], found[2] or found[3]
@@ -106,7 +106,7 @@ def _base(given, unit):
         scale = None
     if scale is None or not 0 < scale < math.inf:
         remedy = "" if given == unit else f'; give one that converts to "{unit}"'
-        raise ValueError(f'unit "{shown(given)[1:-1]}" is not known{remedy}')
+        raise ValueError(f'unit "{quoted(given)[1:-1]}" is not known{remedy}')
     if nothing != 0.0:
         raise ValueError(
             f'unit "{given}" has a zero of its own, so that twice its number is not twice as much; give a unit whose '
@@ -142,7 +142,7 @@ def _spelled_for_pint(text):
     return "".join(spelled)
 
 
-def shown(value, most=80):
+def quoted(value, most=80):
     """The value as Python writes it, cut if it is long."""
     if isinstance(value, dict | list | tuple | set):
         return f"a {type(value).__name__}"

@@ -26,7 +26,7 @@ from ..mechanics.pushes import title_of
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number
 from .extremes import extrema
-from .means import ROUNDED, PRECISE, closed_turn, means
+from .means import PRECISE, ROUNDED, closed_turn, means
 from .rounding import PLACED, zeroed
 
 NOTHING = 1e-12

@@ -15,7 +15,7 @@ class Beyond(NamedTuple):
 
     Attributes
     ----------
-    count, of : int
+    values, of : int
         How many values, of how many.
     angle : float
         Crank angle where it is worst, rad.
@@ -25,7 +25,7 @@ class Beyond(NamedTuple):
         What both orders make there; the second is NaN where there is no value with that input larger or smaller.
     """
 
-    count: int
+    values: int
     of: int
     angle: float
     path: str
@@ -38,7 +38,7 @@ class Beyond(NamedTuple):
         if np.isfinite(self.second):
             found = f"the first makes {self.first:.2g} {unit}, the second {self.second:.2g}, most of it of {self.path}"
         return (
-            f"the uncertainty of {quantity} is of first order in the inputs, which says too little at {self.count} of "
+            f"the uncertainty of {quantity} is of first order in the inputs, which says too little at {self.values} of "
             f"{self.of} crank angles: at {np.degrees(self.angle):.9g} deg {found}; vary the inputs there, as "
             "ks.tolerances does"
         )

@@ -235,7 +235,11 @@ def _table(values, found):
 def _usual_units():
     """SI unit of each number of everyday machines, by path without the label of its group."""
     loads = Gravity(), Spring(1.0, 0.0), TorsionSpring(1.0, 0.0, on="crank"), TorsionDamper(1.0, on="crank")
-    machines = crank_slider(1.0, 3.0), four_bar(1.0, 3.0, 2.5, rocker_pivot=(3.0, 0.0)), slotted_lever(1.0, pivot=(0.0, -3.0))
+    machines = (
+        crank_slider(1.0, 3.0),
+        four_bar(1.0, 3.0, 2.5, rocker_pivot=(3.0, 0.0)),
+        slotted_lever(1.0, pivot=(0.0, -3.0)),
+    )
     scenes = Scene(machines[0], 1.0, loads=loads), *(Scene(machine, 1.0) for machine in machines[1:])
     return {path: unit for scene in scenes for path, unit in scene.units.items()}
 

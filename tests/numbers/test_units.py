@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from kinetostatics.numbers.units import base_factor, factor, shown, to_si
+from kinetostatics.numbers.units import base_factor, factor, quoted, to_si
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def test_factors_go_to_the_unit_and_to_the_base():
 
 
 def test_long_values_are_shown_short():
-    assert len(shown("x" * 1000)) < 100
+    assert len(quoted("x" * 1000)) < 100
 
 
 @pytest.mark.parametrize(

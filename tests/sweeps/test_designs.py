@@ -107,9 +107,10 @@ KG, M = (pint.UnitRegistry().Quantity([1.0, 2.0], unit) for unit in ("kg", "m"))
 
 
 @every("name, given, unit", [
-    ("crank_length", KG, "m"), ("crank_length", "1..2 kg:2", "m"), ("coupler_length2", KG, "m"), ("slider3.mass", M, "kg"),
-    ("slider.mass", "1..2 m:2", "kg"), ("crank_speed", "1..2 Hz:2", "rad/s"), ("spring.stiffness", "1..2 N:2", "N/m"),
-    ("torsion_spring.stiffness", "1..2 N/m:2", "N*m/rad"), ("lever.inertia", KG, "kg*m**2"),
+    ("crank_length", KG, "m"), ("crank_length", "1..2 kg:2", "m"), ("coupler_length2", KG, "m"),
+    ("slider3.mass", M, "kg"), ("slider.mass", "1..2 m:2", "kg"), ("crank_speed", "1..2 Hz:2", "rad/s"),
+    ("spring.stiffness", "1..2 N:2", "N/m"), ("torsion_spring.stiffness", "1..2 N/m:2", "N*m/rad"),
+    ("lever.inertia", KG, "kg*m**2"),
 ])  # fmt: skip
 def test_a_number_that_machines_have_is_refused_in_a_unit_of_another_dimension(name, given, unit):
     with pytest.raises(ks.ParameterError, match=re.escape(f"parameter '{name} [")) as caught:

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from ...mechanics.quantities import components, of_scene, still
-from ...results.rounding import without_rounding
+from ...mechanics.quantities import components, of_scene, scale, still
+from ...results.rounding import FLOOR, zeroed
 from ..canvas import display, in_sight, ordinary
 from .movement import packed
 from .words import pretty
@@ -39,9 +39,8 @@ def _values(machine, name):
     solution = machine.solution
     if name not in of_scene(solution) or _is_still(solution, of_scene(solution)[name]):
         return None
-    shape = solution.crank_angle.shape
-    parts = np.stack([np.broadcast_to(part, shape) for part in components(solution, name)])
-    return without_rounding(solution, name, parts)
+    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(scale(solution, name)))
+    return zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
 
 
 def _sent(quantity, of_each, text):
