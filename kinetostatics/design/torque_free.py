@@ -35,7 +35,7 @@ from .optimisation import (
     without_ratios,
 )
 from .problem import Problem, chosen, true_value
-from .progress import shown
+from .progress import moving_bar
 from .search import Goal
 
 FEWEST, ENOUGH = 360, 32
@@ -176,7 +176,7 @@ def torque_free_cam(
     _require_within_bound(start, problem, asked, compared, begins[0])
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), asked)
     try:
-        with shown(problem, progress):
+        with moving_bar(problem, progress):
             best, came_to = multiple(problem, goal, plain, begins, asked)
             best = held(problem, goal, plain, best)
     except DesignError as error:

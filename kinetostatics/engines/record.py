@@ -18,6 +18,7 @@ from ..machine.crank import ray
 from ..machine.friction import NONE
 from ..machine.loads import Load, ProcessForce, table_errors
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.gaps import groups_behind, places
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
@@ -124,10 +125,11 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
+    behind = groups_behind(recorder.recorded.mechanism)
     outputs = tuple(
         output
         for name, parts in zip(quantities, found, strict=True)
-        for output in _with_gaps([part.flat[0] for part in parts], name, recorder.recorded)
+        for output in _with_gaps([part.flat[0] for part in parts], name, recorder.recorded, behind)
     )
     known = of_scene(recorder.recorded)
     vectors = tuple(name != "closure" and known[name].vector and not sizes for name in quantities)
@@ -143,13 +145,17 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     )
 
 
-def _with_gaps(outputs, name, scene):
-    """Outputs that hang on no root, as those of a load on the crank, made NaN where the mechanism does not close."""
-    if name in ("closure", *CHECKS) or all(_roots([output]) for output in outputs):
+def _with_gaps(outputs, name, scene, behind):
+    """Outputs made NaN too where groups cannot be assembled they do not hang on, as weights of the crank."""
+    if name in ("closure", *CHECKS):
         return outputs
-    places = [part for joint in scene.placement.joints.values() for part in joint.position]
-    roots = _roots([np.ravel(part)[0] for part in places])
-    return [output if _roots([output]) else reduce(_with_gap, roots, output) for output in outputs]
+    roots = _roots(node for part in places(scene.placement, behind[name]) for node in np.ravel(part))
+    return [reduce(_with_gap, _missing(roots, output), output) for output in outputs]
+
+
+def _missing(roots, output):
+    known = set(needed([output]))
+    return [root for root in roots if root not in known]
 
 
 def _with_gap(output, root):
@@ -157,7 +163,8 @@ def _with_gap(output, root):
 
 
 def _roots(outputs):
-    return [node for node in needed(outputs) if node.operation == "root"]
+    """Operations behind outputs that have no value where a group cannot be assembled."""
+    return [node for node in needed(outputs) if node.operation in ("root", "sqrt")]
 
 
 def recorded(structure):

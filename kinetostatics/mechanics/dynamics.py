@@ -19,6 +19,7 @@ from ..numbers.planar import added, minus, moment, number, plus, product
 from . import contact, energy
 from .friction import Rubbing, driving
 from .friction_laws import larger, smaller
+from .gaps import places
 from .motion import Motion
 from .principal_points import principal_points
 from .pushes import pushed, settled
@@ -134,7 +135,7 @@ class Dynamics(Motion):
         """A force or moment by name, (..., N)."""
         scalars = self.resolved.scalars
         found = self._look_up("quantity", name, scalars)
-        if not hasattr(found, "shape"):  # a constant has the gaps of the others
+        if self.friction.rubs and not hasattr(found, "shape"):  # where friction jams a constant has no value either
             found = found + 0.0 * scalars["balancing_torque"]
         return self._scalar(found)
 
@@ -287,8 +288,8 @@ class Dynamics(Motion):
     @cached_property
     def closed(self):
         """Whether the mechanism closes at each angle."""
-        parts = [part for joint in self.placement.joints.values() for part in joint.position]
-        return np.isfinite(reduce(plus, (np.asarray(part, dtype=float) for part in parts)))
+        parts = (np.asarray(part, dtype=float) for part in places(self.placement, self.mechanism.parts))
+        return np.isfinite(reduce(plus, parts))
 
     def largest(self, part):
         """Largest magnitude over the angles at which the mechanism closes; NaN if there is none."""

@@ -15,7 +15,7 @@ from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, total
 from kinetostatics.studies.methods.enclosures import enclosure
 from support import bounded as bounded_machines
-from support.bounded import FAMILIES, errors, solution
+from support.bounded import FAMILIES, errors, over_worst, solution
 from support.every import every
 
 FINE_TURN = np.linspace(0.0, 2 * np.pi, 180, endpoint=False) + 0.01
@@ -36,15 +36,7 @@ def test_no_value_of_random_machines_is_off_by_more_than_its_bound(flint, family
     assert found.wrong == []
 
 
-@every(
-    "case, variant, most",
-    [
-        ("sawframe_2r63", "plain", 20),
-        ("sawframe_2r63", "cam-cosine", 60),
-        ("chain_unit", "rho-0.5", 150),
-        ("toggle_press", "coining", 100),
-    ],
-)
+@every("case, variant, most", over_worst("double"))
 def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, variant, most):
     scene = ks.load_case(case).variants[variant].scene
     s, bound = bounded(scene, "balancing_torque", FINE_TURN)

@@ -20,6 +20,14 @@ from .shipped import shipped
 BITS = 200
 FAMILIES = "chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped"
 CASES = "sawframe_2r63", "chain_unit", "toggle_press", "mower_drive", "v_twin"
+OVER_WORST = {
+    ("sawframe_2r63", "plain"): {"double": 20, "single": 20},
+    ("sawframe_2r63", "cam-cosine"): {"double": 60, "single": 60},
+    ("chain_unit", "rho-0.5"): {"double": 150, "single": 250},
+    ("toggle_press", "coining"): {"double": 100, "single": 100},
+    ("compressor", "loaded"): {"single": 100},
+}
+"""By case and variant how many times the worst error of a turn the worst bound may be, in each precision."""
 ENGINES: dict[str, Any] = {"numpy": NUMPY, "compiled": COMPILED}
 
 
@@ -30,6 +38,11 @@ class Found(NamedTuple):
     wrong: list
     unbounded: int
     share: float
+
+
+def over_worst(precision):
+    """Rows (case, variant, most) of `OVER_WORST`."""
+    return [(*names, most[precision]) for names, most in OVER_WORST.items() if precision in most]
 
 
 def solution(family, seed, count=5):
