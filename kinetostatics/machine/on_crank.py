@@ -24,7 +24,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, total
-from ..numbers.planar import length, length_and_rest, minus, number, plus, product, subtracted, turned, unturned
+from ..numbers.planar import length, length_and_rest, minus, number, plus, product, quotient, subtracted, turned, unturned
 from .links import present
 
 SMALLEST = 2.0**-100
@@ -129,14 +129,14 @@ def seen(placement, on, pivot, is_close):
     turn, near_by, far_off = spread(placement.ray, start, reach)
     gap, unit = apart(total(ground, rest, -a, minus(None, slack)), 2.0**90 * UNSEEN), reach * reach
     if is_close:
-        along, across = gap / size + 0.5 * a / (unit * size) * near_by, a / (reach * size) * turn
-        d = (
-            plus(product(direction[0], along), product(direction[1], across)),
-            minus(product(direction[1], along), product(direction[0], across)),
-        )
+        along, across = gap + 0.5 * a / unit * near_by, a / reach * turn
+        x, y = (quotient(part, size) for part in direction)
+        d = plus(product(x, along), product(y, across)), minus(product(y, along), product(x, across))
+        near_by = a / ground * (turn * turn) + near_by * (gap / ground + 0.25 * a / (ground * unit) * near_by)
+        square = along * along + across * across
     else:
         d = subtracted(pivot, placement.joints[on].position)
-    square = gap * gap + a * ground / unit * near_by
+        square = gap * gap + a * ground / unit * near_by
     return Seen(a, slack, ground, rest, gap, turn, near_by, far_off, reach, d, square)
 
 
