@@ -24,7 +24,18 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, total
-from ..numbers.planar import length, length_and_rest, minus, number, plus, product, quotient, subtracted, turned, unturned
+from ..numbers.planar import (
+    length,
+    length_and_rest,
+    minus,
+    number,
+    plus,
+    product,
+    quotient,
+    subtracted,
+    turned,
+    unturned,
+)
 from .links import present
 
 SMALLEST = 2.0**-100

@@ -54,7 +54,9 @@ def _toggle(distance):
     crank, coupler, rocker = 0.3, 0.4, 0.2
     with mp.workdps(50):
         ground, reach = _ground(*PIVOT), mp.mpf(coupler) + mp.mpf(rocker)
-        angle = mp.atan2(PIVOT[1], PIVOT[0]) + mp.acos((mp.mpf(crank) ** 2 + ground**2 - reach**2) / (2 * crank * ground))
+        angle = mp.atan2(PIVOT[1], PIVOT[0]) + mp.acos(
+            (mp.mpf(crank) ** 2 + ground**2 - reach**2) / (2 * crank * ground)
+        )
     angles = float(angle) - distance * np.linspace(0.5, 1.0, 20)
     return places._solution(places._chain_unit(crank, coupler, rocker * (1.0 + 2.0**-50), PIVOT), angles)
 
