@@ -128,6 +128,8 @@ class Graph(list):
         factors = [part for part in arguments if isinstance(part, Node) or part != 1.0]
         if operation == "*" and len(factors) == 1:
             return factors[0]
+        if operation == "/" and _is_number(arguments[1], 1.0):
+            return arguments[0]
         key = (operation, *((part.index,) if isinstance(part, Node) else part for part in arguments))
         if key not in self._known:
             varies = max(part.varies for part in arguments if isinstance(part, Node))

@@ -1,6 +1,6 @@
 """Source of programs from recorded arithmetic: a loop for numba, a line of arrays, a line of plain numbers."""
 
-from ..numbers.elementary import LEAST, ROUNDING, SPLIT
+from ..numbers.elementary import ROUNDING, SPLIT
 from .fusing import fused
 from .trace import BY_ANGLE, Node, needed
 
@@ -94,7 +94,7 @@ def rest(length, x, y):
     one, first = squared(x)
     two, second = squared(y)
     three, third = squared(length)
-    return total(one, first, two, second, -three, -third) / (2.0 * length + {LEAST!r})
+    return total(one, first, two, second, -three, -third) / (2.0 * length)
 
 
 """

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import apart, divisor, root, total
+from ..numbers.elementary import UNSEEN, apart, divisor, root, total
 from ..numbers.planar import (
     length,
     length_and_rest,
@@ -42,8 +42,6 @@ SMALLEST = 2.0**-100
 """Roots of closure, sines and cosines, that are not divided by less."""
 CLOSE = 2.0**-5
 """Share of the longest length up to which a length differs little from what others leave it."""
-UNSEEN = 2.0**-400
-"""Distance, m, that gives nothing a direction, and changes no digit of another."""
 TERMS = {
     "ground": ("g", "from O to the pivot"),
     "turn": ("s", "sine of the crank angle from the direction of the pivot, times g if that is inclined"),
@@ -232,10 +230,12 @@ def slotted(placement, on, pivot, offset, assembly):
     return direction, ratio, slope, reach, divided, near / (square + a * a)
 
 
-def distance(pivot):
-    """Distance of a pivot from O, for a look at it."""
+def is_near(throw, offset, pivot):
+    """Whether a pin comes close to a pivot, or to where a slot passes it at an offset, in any design."""
     x, y = pivot
-    return math.hypot(x, y) if type(x) is type(y) is float else np.hypot(x, y)
+    if type(x) is type(y) is float:
+        return is_small(throw, offset, math.hypot(x, y))
+    return all(map(checks.known, pivot)) and is_small(throw, offset, np.hypot(x, y))
 
 
 def is_small(throw, offset, length):

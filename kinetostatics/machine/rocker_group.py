@@ -197,7 +197,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
 
     def comes_close(self, throw):
         """Whether the pin comes close to the pivot."""
-        return on_crank.is_small(throw, 0.0, on_crank.distance(self.pivot))
+        return on_crank.is_near(throw, 0.0, self.pivot)
 
     @property
     def start(self):

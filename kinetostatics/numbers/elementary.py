@@ -60,8 +60,8 @@ ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
 SPLIT = 2.0**27 + 1.0
 """Factor by which a number is split into two of half as many digits."""
-LEAST = 2.0**-1000
-"""What is added to a length that may be zero, to divide by it."""
+UNSEEN = 2.0**-400
+"""Distance, m, that gives nothing a direction, and changes no digit of another."""
 APART = 2.0**-90
 """Distance, in its unit, that counts as nothing but still has a direction."""
 
@@ -139,7 +139,7 @@ def rest(length, x, y):
         return recorded.rest_with(length, x, y)
     if not _are_floats((length, x, y)):
         return None
-    return total(*_square(x), *_square(y), *(-part for part in _square(length))) / (2.0 * length + LEAST)
+    return total(*_square(x), *_square(y), *(-part for part in _square(length))) / (2.0 * length)
 
 
 def _square(a):
