@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..numbers.elementary import ROUNDING, total
+from ..numbers.elementary import ROUNDING, rest, total
 
 
 def _plain_root(square, unit):
@@ -39,8 +39,9 @@ def _plain_total(*terms):
         return total(*terms)
 
 
-def _total_of(one, two, three, four, out):
-    np.copyto(out, total(one, two, three, four))
+def _total_of(*terms):
+    *terms, out = terms
+    np.copyto(out, total(*terms))
 
 
 def _sqrt(square):
@@ -58,6 +59,7 @@ PLAIN = {
     "divisor": _plain_divisor,
     "fma": lambda one, other, more: one * other + more,
     "total": _plain_total,
+    "rest": rest,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -72,6 +74,7 @@ BY_DESIGN = {
     "divisor": np.maximum,
     "fma": lambda one, other, more: one * other + more,
     "total": total,
+    "rest": rest,
     "nan": math.nan,
     "inf": math.inf,
 }

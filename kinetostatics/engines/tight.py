@@ -60,7 +60,8 @@ class _Local(Bounds):
             part for node in nodes if node.varies == BY_ANGLE for part in node.arguments if isinstance(part, Node)
         )
         for node in nodes:
-            after = not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
+            by_angle = node.varies == BY_ANGLE  # adjoints go no further than to what a design fixes
+            after = by_angle and not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
             error = self._found(node) if after else coarse.error(node)
             self._errors[node] = error
             if after:

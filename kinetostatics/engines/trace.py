@@ -93,7 +93,11 @@ class Node:
 
     def total_with(self, terms):
         """Called by `elementary.total`."""
-        return self.graph.node("total", *terms, *[0.0] * (4 - len(terms)))
+        return self.graph.node("total", *terms)
+
+    def rest_with(self, length, x, y):
+        """Called by `elementary.rest`."""
+        return self.graph.node("rest", length, x, y)
 
     def _unknown(self, other=None):
         raise TypeError("the value of a recorded number is not known yet: kernels must not branch on values")
@@ -124,6 +128,8 @@ class Graph(list):
         factors = [part for part in arguments if isinstance(part, Node) or part != 1.0]
         if operation == "*" and len(factors) == 1:
             return factors[0]
+        if operation == "/" and _is_number(arguments[1], 1.0):
+            return arguments[0]
         key = (operation, *((part.index,) if isinstance(part, Node) else part for part in arguments))
         if key not in self._known:
             varies = max(part.varies for part in arguments if isinstance(part, Node))
@@ -159,9 +165,9 @@ class LeanGraph(Graph):
             return self._quotient(*arguments)
         if operation == "*":
             left, right = arguments
-            if _is_negative(left):
+            if is_negative(left):
                 return -self.node("*", left.arguments[0], right)
-            if _is_negative(right):
+            if is_negative(right):
                 return -self.node("*", left, right.arguments[0])
             for one, other in ((left, right), (right, left)):
                 if isinstance(one, Node) and one.operation == "*":
@@ -189,7 +195,7 @@ class LeanGraph(Graph):
         if not isinstance(part, Node):
             return 1.0 / part
         arguments = part.arguments
-        if _is_negative(part):
+        if is_negative(part):
             return -self._over(arguments[0])
         if part.operation == "/":
             above, below = arguments
@@ -238,14 +244,14 @@ def _is_number(part, number):
 def _with_signs_taken_in(operation, *arguments):
     """The same sum or difference, to the last bit, without operations that only turn a sign."""
     *left, right = arguments
-    if _is_negative(right):
+    if is_negative(right):
         operation, right = "-" if operation == "+" else "+", right.arguments[0]
-    if left and _is_negative(left[0]) and operation == "+":
+    if left and is_negative(left[0]) and operation == "+":
         return "-", (right, left[0].arguments[0])
     return operation, (*left, right)
 
 
-def _is_negative(part):
+def is_negative(part):
     return isinstance(part, Node) and part.operation == "-" and len(part.arguments) == 1
 
 

@@ -1,6 +1,6 @@
 """Source of programs from recorded arithmetic: a loop for numba, a line of arrays, a line of plain numbers."""
 
-from ..numbers.elementary import ROUNDING
+from ..numbers.elementary import ROUNDING, SPLIT
 from .fusing import fused
 from .trace import BY_ANGLE, Node, needed
 
@@ -59,7 +59,7 @@ SPREAD = f"""            for place in range(results.shape[1]):
                 for k in range(count):
                     row[k] = block[{AT_ONCE} * place + k]"""
 
-TOTAL = """@njit(**options)
+TOTAL = f"""@njit(**options)
 def summed(a, b):
     whole = a + b
     part = whole - a
@@ -67,14 +67,34 @@ def summed(a, b):
 
 
 @njit(**options)
-def total(one, two, three, four):
+def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
     whole, first = summed(one, two)
     whole, second = summed(whole, three)
     whole, third = summed(whole, four)
+    whole, fourth = summed(whole, five)
+    whole, fifth = summed(whole, six)
     lost, first = summed(first, second)
     lost, second = summed(lost, third)
-    whole, third = summed(lost, whole)
-    return whole + (first + second + third)
+    lost, third = summed(lost, fourth)
+    lost, fourth = summed(lost, fifth)
+    whole, fifth = summed(lost, whole)
+    return whole + (first + second + third + fourth + fifth)
+
+
+@njit(**options)
+def squared(a):
+    whole, spread = a * a, {SPLIT!r} * a
+    high = spread - (spread - a)
+    low = a - high
+    return whole, ((high * high - whole) + 2.0 * high * low) + low * low
+
+
+@njit(**options)
+def rest(length, x, y):
+    one, first = squared(x)
+    two, second = squared(y)
+    three, third = squared(length)
+    return total(one, first, two, second, -three, -third) / (2.0 * length)
 
 
 """
@@ -110,7 +130,7 @@ def loop(outputs, fuse=True) -> str:
     header = LOOP_HEADER
     if sums or any(node.operation == "fma" for node in nodes):
         header = LOOP_HEADER.replace("\n\n\n@", f"\n{FUSED}@", 1)
-    if any(node.operation == "total" for node in nodes):
+    if any(node.operation in ("total", "rest") for node in nodes):
         head, end = header.rsplit("@njit", 1)
         header = f"{head}{TOTAL}@njit{end}"
     return header + _function(outputs, nodes, sums)
@@ -234,7 +254,7 @@ _OPERATIONS = {
     ("root", 2): "root_of",
     ("divisor", 2): "maximum",
     ("fma", 3): "multiply_add",
-    ("total", 4): "total_of",
+    **{("total", count): "total_of" for count in range(2, 7)},
 }
 """By operation and number of arguments: the array function that takes its result's place as last argument."""
 _IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "divisor")

@@ -5,18 +5,20 @@ and the curvature radius of the pitch curve. Each r is a smooth closed form or s
 the turn.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import namespace, sqrt
+from ..numbers.elementary import namespace, sqrt, total
 from ..numbers.lazy import cached_property
+from ..numbers.planar import length_and_rest, minus
 from .cam import Cam
 from .crank import ray as ray_at
 from .harmonic_cam import Harmonic
 from .law_cam import LawCam, from_law
+from .on_crank import CLOSE, directed, spread
 from .profile import Profile
 from .sampled_cam import Sampled
 
@@ -58,6 +60,7 @@ class Circle(Cam):
 
     pitch_radius: Any
     centre: Any
+    is_close: bool = field(default=False, init=False, repr=False)
 
     ELEMENTWISE = True
     PATHS: ClassVar = {"pitch_radius": "radius"}
@@ -66,6 +69,9 @@ class Circle(Cam):
         object.__setattr__(self, "pitch_radius", radius)
         object.__setattr__(self, "centre", centre)
         self.RULES.admit(self)
+        smallest = self.smallest_radius
+        near = checks.known(smallest) and smallest < CLOSE * self.pitch_radius
+        object.__setattr__(self, "is_close", bool(np.any(near) if np.ndim(near) else near))
 
     def _around_origin(self):
         """Say where O lies outside the circle, or on it."""
@@ -100,11 +106,23 @@ class Circle(Cam):
         x, y = self.centre
         along = x * ray[0] + y * ray[1]
         across = y * ray[0] - x * ray[1]
-        root = sqrt((self.pitch_radius - across) * (self.pitch_radius + across))
+        if self.is_close:
+            less, more = self._margins(ray)
+        else:
+            less, more = self.pitch_radius - across, self.pitch_radius + across
+        root = sqrt(less * more)
         r = along + root
         lean = across / root
         slope = lean * r
         return r, slope, lean * slope - along * (1.0 + lean * lean) * r / root
+
+    def _margins(self, ray):
+        """Radius less, and more, what the centre is across the ray: the smallest radius and parts that are positive."""
+        x, y = self.centre
+        (away, rest), (direction, reach) = length_and_rest(self.centre), directed((y, -x))
+        least, share = total(self.pitch_radius, -away, minus(None, rest)), 0.5 * away / (reach * reach)
+        _, near_by, far_off = spread(ray, direction, reach)
+        return least + share * near_by, least + share * far_off
 
 
 @dataclass(frozen=True, eq=False)

@@ -82,7 +82,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..numbers.planar import length
+from ..numbers.planar import length, length_and_rest
 from .links import Wrench
 
 FRAME = "frame"
@@ -159,6 +159,11 @@ class Throw(NamedTuple):
             return self.at[0], None
         radius = length(self.at)
         return radius, (self.at[0] / radius, self.at[1] / radius)
+
+    @property
+    def radius_and_rest(self):
+        """Distance from O, and what rounding took off it."""
+        return (self.at[0], None) if self.ahead else length_and_rest(self.at)
 
 
 @dataclass

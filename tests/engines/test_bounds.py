@@ -12,7 +12,7 @@ from kinetostatics.engines import bounds, loops, programs
 from kinetostatics.engines.compiled import available
 from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
-from kinetostatics.numbers.elementary import UNIT, total
+from kinetostatics.numbers.elementary import UNIT, rest, total
 from kinetostatics.studies.methods.enclosures import enclosure
 from support import bounded as bounded_machines
 from support.bounded import FAMILIES, errors, over_worst, solution
@@ -201,3 +201,29 @@ def test_a_total_of_given_numbers_is_bounded_by_one_rounding_of_itself():
     assert 1e-17 < abs(whole) < 1e-16
     assert abs(whole) * UNIT <= bound < 1.001 * abs(whole) * UNIT
     assert carried == pytest.approx(0.18 * UNIT + abs(0.18 - 0.9) * UNIT, rel=1e-8)
+
+
+def test_a_length_and_its_rest_are_bounded_together_where_they_are_taken_so():
+    graph = Graph()
+    x, y, other = map(graph.parameter, range(3))
+    length = (x * x + y * y).sqrt()
+    lost = rest(length, x, y)
+    sums = total(length, -other, lost), total(other, -length, -lost), total(length, -other), total(length, -other, -lost)
+    values = [0.3, 0.4, 0.5]
+    ahead, back, alone, against = bounds_of(graph, sums, values)
+    (off,) = bounds_of(graph, [lost], values)
+    exact = abs(rest(math.hypot(0.3, 0.4), 0.3, 0.4))
+    assert exact < 0.5 * UNIT
+    assert ahead == back < 1.001 * exact * UNIT + 5.0 * UNIT * UNIT
+    assert 0.5 * UNIT < alone < 2.0 * UNIT
+    assert against > alone
+    assert off == pytest.approx(exact, rel=1e-8)
+
+
+def test_parts_of_a_length_that_are_rounded_count_in_its_rest():
+    graph = Graph()
+    x, y, other = map(graph.parameter, range(3))
+    rounded = x * y
+    length = (rounded * rounded + y * y).sqrt()
+    (bound,) = bounds_of(graph, [total(length, -other, rest(length, rounded, y))], [3.0, 0.1, 0.3])
+    assert bound > 0.3 * UNIT

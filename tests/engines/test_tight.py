@@ -38,6 +38,15 @@ def test_errors_of_what_is_used_twice_cancel():
     assert tight == pytest.approx(1.6 * UNIT, rel=0.01, abs=0.0)
 
 
+def test_what_a_design_fixes_has_the_errors_of_all_that_it_is_computed_from():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    lost = (one + other) - one  # computed 0, truly 2^-54
+    rounded = lost * graph.angle() + lost * graph.angle().sin() + (3000.0 * lost) * graph.angle().cos()
+    _, tight = found(graph, rounded, 1.0, 1.0, 2.0**-54)
+    assert tight >= 2.0**-54 * (1.0 + np.sin(1.0) + 3000.0 * np.cos(1.0))
+
+
 def test_errors_that_count_in_second_order_alone_are_bounded():
     graph = Graph()
     other, tiny = map(graph.parameter, range(2))

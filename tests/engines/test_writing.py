@@ -85,3 +85,18 @@ def test_a_total_loses_nothing_in_any_engine():
     wanted = [[math.fsum(values)] * 2, [math.fsum((0.3, angle, -values[3])) for angle in angles]]
     for compute in (program.by_numpy, program.by_loop):
         np.testing.assert_array_equal(compute(angles, values, (), angles.shape), wanted)
+
+
+@pytest.mark.slow_start
+def test_a_rest_is_the_same_in_any_engine():
+    pytest.importorskip("numba")
+    graph = Graph()
+    x, y, length = parts = [graph.parameter(place) for place in range(3)]
+    whole, values = (x * x + y * y).sqrt(), [0.3, 0.4, 0.5000000000000001]
+    outputs = elementary.rest(whole, x, y), elementary.total(whole, -length, elementary.rest(whole, x, y))
+    program = programs.Program(Recording((), outputs, (), (), tuple(parts), (), graph))
+    least = np.sqrt(0.3 * 0.3 + 0.4 * 0.4)
+    lost = elementary.rest(least, 0.3, 0.4)
+    for compute in (program.by_numpy, program.by_loop):
+        found = compute(np.zeros(1), values, (), (1,))
+        np.testing.assert_array_equal(found[:, 0], [lost, math.fsum((least, -values[2], lost))])
