@@ -197,6 +197,17 @@ class Told(Dynamics):
                     pushes[item.on] = plus(pushes.get(item.on), push)
         return pushes
 
+    @property
+    def acting(self):
+        """Loads by link and forces along guides by slider as groups resolve them."""
+        with self.names.under("Inertia and springs along guides"):
+            return super().acting
+
+    def departure(self, item):
+        """Second derivative of a slider's coordinate plus the elongation of a spring on it, m; None if not known."""
+        words = f"second derivative of the coordinate of the {item.on} plus the elongation of its spring"
+        return self.names.number(super().departure(item), Symbol("w", "", item.on), words, "m")
+
     @cached_property
     def powers(self):
         """Power of each load divided by the crank speed."""
@@ -229,9 +240,9 @@ class _Telling(Rubbing):
         with names.under(_carrying(part)):
             loads, along = dict(loads), dict(along)
             for name in part.links:
-                loads[name] = self._total(loads[name], name)
+                loads[name] = self._total(loads[name], name, name in along)
                 if name in along:
-                    words = f"all that acts on the {name} along its guide"
+                    words = f"what acts on the {name} along its guide besides"
                     along[name] = names.number(along[name], Symbol("F", "s", name), words, "N")
             names.reading, self.laws = not any(name in self.acting for name in part.pairs), []
             resolved = self._named(super().__call__(part, placement, loads, along), part)
@@ -241,8 +252,8 @@ class _Telling(Rubbing):
                 names.satisfies(node_of(amount), node_of(size))
         return resolved
 
-    def _total(self, wrench, name):
-        words = f"acts on the {name}, with its inertia and what hangs on it"
+    def _total(self, wrench, name, apart):
+        words = f"acts on the {name}, {'but for what is told apart' if apart else 'with its inertia and what hangs on it'}"
         return Wrench(
             self.names.vector(wrench.force, Symbol("F", "", name), f"force that {words}", "N"),
             self.names.number(wrench.moment, Symbol("M", "", name), f"moment that {words}", "N m"),

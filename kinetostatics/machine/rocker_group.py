@@ -18,7 +18,7 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
 from . import change_points, on_crank, passing
 from .friction import Turning
-from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
+from .group import FRAME, Bar, Group, Output, Point, Resolved, Swing, joint_reaction, separation
 from .links import Joint, Link, LinkMotion, Wrench, between, tip
 
 SMALLEST = 2.0**-53
@@ -270,6 +270,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         placement.joints[self.pivot_name] = motion.rocker.joint
         placement.links[self._coupler] = motion.coupler
         placement.links[self._rocker] = motion.rocker
+        placement.swings[self.pin] = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
         placement.details[self._rocker] = motion
 
     def closure(self, placement):

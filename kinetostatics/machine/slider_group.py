@@ -14,7 +14,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import divisor, root
+from ..numbers.elementary import divisor, root, sign
 from ..numbers.planar import (
     added,
     cross,
@@ -43,6 +43,8 @@ TERMS = {
     "second": ("p''", "second derivative by phi of that"),
     "across": ("d", "from the inner joint across to the guide"),
     "along": ("w", "reach of the coupler along the guide"),
+    "drawn_in": ("z", "what the coupler's turning takes from the second derivative of that reach"),
+    "departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
     "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
     "resolve.across": ("V", "force of the pin on the slider across the guide"),
@@ -54,7 +56,8 @@ class SliderMotion(NamedTuple):
     """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
 
     `divisor` is the cosine to divide by, which never vanishes; on a branch through change points in two factors, of
-    which the second is smallest there, and `closure` leaves that out.
+    which the second is smallest there, and `closure` leaves that out. `drawn_in` is what the coupler's turning takes from
+    the second derivative of the travel; None where that was not found so.
     """
 
     coupler: LinkMotion
@@ -64,6 +67,7 @@ class SliderMotion(NamedTuple):
     divisor: Any
     closure: Any
     travel: Joint
+    drawn_in: Any = None
 
 
 class SliderForces(NamedTuple):
@@ -106,15 +110,11 @@ def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, rat
     """Coupler and slider, from the coupler's reach along the guide and across it and its rate."""
     position, first, second = along_guide
     sine, cosine = across / coupler_length, along / coupler_length
-    lag = ratio * ratio
-    travel = Joint(
-        position[0] + along,
-        first[0] - ratio * across,
-        second[0] - plus(product(ratio_slope, across), lag * along),
-    )
+    drawn_in = plus(product(ratio_slope, across), ratio * ratio * along)
+    travel = Joint(position[0] + along, first[0] - ratio * across, second[0] - drawn_in)
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = slid(joint.position, (along, across), travel, guide)
-    return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel)
+    return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel, drawn_in)
 
 
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
@@ -306,14 +306,40 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
     def elongation(self, placement, free_position):
         """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate.
 
-        The coupler reaches its length along the guide less l (1 - cos) = l sin^2 / (1 + cos), all small beside it.
+        The coupler reaches its length along the guide less l (1 - cos) = l sin^2 / (1 + cos), small beside it; so does
+        a link that swings the inner joint about a fixed place, this way or the other.
         """
-        motion = placement.details[self._slider]
         if self.passage:
-            return motion.travel.position - free_position
-        along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
-        shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
-        return along + (self.side * self.coupler_length - free_position - self.side * shortfall)
+            return placement.travels[self._slider].position - free_position
+        direction = self.guide.line.direction
+        if self.on not in placement.swings:
+            along = unturned(placement.joints[self.on].position, direction)[0]
+            return along + (self.side * self.coupler_length - free_position - self._shortfall(placement))
+        swing = placement.swings[self.on]
+        cosine, sine = unturned(swing.direction, direction)
+        way = sign(cosine)
+        ahead = unturned(swing.centre, direction)[0] + self.side * self.coupler_length - free_position
+        inner = way * swing.radius * sine * sine / (1.0 + abs(cosine))
+        return ahead + way * swing.radius - (inner + self._shortfall(placement))
+
+    def departure(self, placement, position):
+        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large.
+
+        What of both is the inner joint's cancels if that is a pin of the crank, and is known of a roller on a cam.
+        """
+        drawn_in = placement.details[self._slider].drawn_in
+        if self.passage or drawn_in is None or not placement.departs(self.on):
+            return None
+        inner, departing = placement.departures.get(self.on), None
+        if inner is not None:
+            departing = unturned(inner, self.guide.line.direction)[0]
+        return minus(departing, drawn_in) + (self.side * self.coupler_length - position - self._shortfall(placement))
+
+    def _shortfall(self, placement):
+        """By how much the coupler's reach along the guide falls short of its length."""
+        motion = placement.details[self._slider]
+        cosine = self.side * motion.cosine
+        return self.side * self.coupler_length * motion.sine * motion.sine / (1.0 + cosine)
 
     def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)

@@ -15,7 +15,7 @@ from ..machine.crank import ORIGIN, ray
 from ..machine.group import FRAME, MEMBERS, Placement
 from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
 from ..numbers import checks
-from ..numbers.planar import length, number, product, subtracted, turned, vector, work
+from ..numbers.planar import added, length, number, product, stretched, subtracted, turned, vector, work
 
 TOLERANCE = 1e-6
 """Largest relative error that passes; right groups reach 1e-10, a wrong term is of the order of 1."""
@@ -188,6 +188,17 @@ def _of_shape(stage):
         free = 0.7 * stage.size
         elongation = group.elongation(placement, free)
         errors[f"elongation of {name}"] = _error(elongation, travel.position - free, stage.size)
+        departure = group.departure(placement, free) if hasattr(group, "departure") else None
+        if departure is not None:
+            errors[f"departure of {name}"] = _error(departure, travel.second + travel.position - free, stage.size)
+    for name in group.joints:
+        joint = placement.joints[name]
+        if name in placement.departures:
+            departure = added(vector(joint.second), joint.position)
+            errors[f"departure of {name}"] = _error(placement.departures[name], departure, stage.size)
+        if name in placement.swings:
+            centre, radius, direction = placement.swings[name]
+            errors[f"swing of {name}"] = _error(added(centre, stretched(radius, direction)), joint.position, stage.size)
     return errors
 
 
