@@ -200,6 +200,7 @@ class Told(Dynamics):
     @property
     def acting(self):
         """Loads by link and forces along guides by slider as groups resolve them."""
+        self.link_loads, self.pushes  # noqa: B018  told before
         with self.names.under("Inertia and springs along guides"):
             return super().acting
 
@@ -240,7 +241,8 @@ class _Telling(Rubbing):
         with names.under(_carrying(part)):
             loads, along = dict(loads), dict(along)
             for name in part.links:
-                loads[name] = self._total(loads[name], name, name in along)
+                how = "but for what is told apart" if name in along else "with its inertia and what hangs on it"
+                loads[name] = self._total(loads[name], name, f"acts on the {name}, {how}")
                 if name in along:
                     words = f"what acts on the {name} along its guide besides"
                     along[name] = names.number(along[name], Symbol("F", "s", name), words, "N")
@@ -252,8 +254,7 @@ class _Telling(Rubbing):
                 names.satisfies(node_of(amount), node_of(size))
         return resolved
 
-    def _total(self, wrench, name, apart):
-        words = f"acts on the {name}, {'but for what is told apart' if apart else 'with its inertia and what hangs on it'}"
+    def _total(self, wrench, name, words):
         return Wrench(
             self.names.vector(wrench.force, Symbol("F", "", name), f"force that {words}", "N"),
             self.names.number(wrench.moment, Symbol("M", "", name), f"moment that {words}", "N m"),

@@ -56,10 +56,7 @@ class RollerForces(NamedTuple):
 
 
 def place(ray, radius, slope, curvature):
-    """Roller centre A on the ray, from r, r' and r'' (kernel).
-
-    The place itself is part of its second derivative, so that its rounding cancels where a spring balances inertia.
-    """
+    """Roller centre A on the ray, from r, r' and r'' (kernel)."""
     x, y = ray
     along, across = radius * x, radius * y
     return Joint(

@@ -48,9 +48,7 @@ derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`n
 (x, y). Put into ``placement.joints`` each joint of `joints`, into ``placement.links`` a `LinkMotion` for each link: its
 reference joint, its direction (unit vector), d theta / d phi and the slope of that (None: it never turns); into
 ``placement.travels`` for each slider its coordinate along its guide with both derivatives; into ``placement.details``
-what `resolve` wants to find again; into ``placement.departures``, where it is known by itself, by joint the second
-derivative plus the position, both of which it may be small beside; into ``placement.swings`` each joint that a link
-swings about a fixed place, as a `Swing`.
+what `resolve` wants to find again. A group may put its joints into ``placement.departures`` and ``placement.swings``.
 
 *resolve.* A pure function from what acts on its links to what it finds: nothing is written to, and nothing is kept.
 ``loads`` holds by link the wrench on it, inertia, weight and all that groups further out ask of it, a force and its
@@ -164,22 +162,14 @@ class Throw(NamedTuple):
         return radius, (self.at[0] / radius, self.at[1] / radius)
 
 
-class Swing(NamedTuple):
-    """A fixed place, and from there the length of a link, and its direction, to the joint that it swings."""
-
-    centre: Any
-    radius: Any
-    direction: Any
-
-
 @dataclass
 class Placement:
     """The mechanism at its crank angles: motion flows outward from the crank into these tables.
 
     `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
-    to find again; `throws` by joint the pins of the crank, each a `Throw`; `departures` by joint how far it is from moving
-    like one of these, whose second derivative is minus its position: the sum of both; `swings` by joint what swings it
-    about a fixed place, a `Swing`.
+    to find again; `throws` by joint the pins of the crank, each a `Throw`, whose second derivative is minus its
+    position; `departures` by other joints the sum of both, where it is known by itself; `swings` by joint what swings
+    it about a fixed place, a `Swing`.
     """
 
     angle: Any
@@ -191,10 +181,6 @@ class Placement:
     throws: dict = field(default_factory=dict)
     departures: dict = field(default_factory=dict)
     swings: dict = field(default_factory=dict)
-
-    def departs(self, joint):
-        """Whether it is known how a joint departs from the motion of a pin of the crank."""
-        return joint in self.throws or joint in self.departures
 
 
 class Group:

@@ -18,8 +18,8 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
 from . import change_points, on_crank, passing
 from .friction import Turning
-from .group import FRAME, Bar, Group, Output, Point, Resolved, Swing, joint_reaction, separation
-from .links import Joint, Link, LinkMotion, Wrench, between, tip
+from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
+from .links import Joint, Link, LinkMotion, Swing, Wrench, between, tip
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import divisor, root, sign
+from ..numbers.elementary import divisor, root
 from ..numbers.planar import (
     added,
     cross,
@@ -29,7 +29,7 @@ from ..numbers.planar import (
     unturned,
     vector,
 )
-from . import change_points, on_crank, passing
+from . import change_points, elongation, on_crank, passing
 from .friction import Slide, Sliding, Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction
 from .guide import Guide, guide_outputs, slid
@@ -44,7 +44,6 @@ TERMS = {
     "across": ("d", "from the inner joint across to the guide"),
     "along": ("w", "reach of the coupler along the guide"),
     "drawn_in": ("z", "what the coupler's turning takes from the second derivative of that reach"),
-    "departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
     "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
     "resolve.across": ("V", "force of the pin on the slider across the guide"),
@@ -56,8 +55,8 @@ class SliderMotion(NamedTuple):
     """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
 
     `divisor` is the cosine to divide by, which never vanishes; on a branch through change points in two factors, of
-    which the second is smallest there, and `closure` leaves that out. `drawn_in` is what the coupler's turning takes from
-    the second derivative of the travel; None where that was not found so.
+    which the second is smallest there, and `closure` leaves that out. `drawn_in` is what the coupler's turning takes
+    from the second derivative of the travel; None where that was not found so.
     """
 
     coupler: LinkMotion
@@ -304,42 +303,23 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
         return placement.details[self._slider].closure
 
     def elongation(self, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate.
-
-        The coupler reaches its length along the guide less l (1 - cos) = l sin^2 / (1 + cos), small beside it; so does
-        a link that swings the inner joint about a fixed place, this way or the other.
-        """
+        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
         if self.passage:
             return placement.travels[self._slider].position - free_position
-        direction = self.guide.line.direction
-        if self.on not in placement.swings:
-            along = unturned(placement.joints[self.on].position, direction)[0]
-            return along + (self.side * self.coupler_length - free_position - self._shortfall(placement))
-        swing = placement.swings[self.on]
-        cosine, sine = unturned(swing.direction, direction)
-        way = sign(cosine)
-        ahead = unturned(swing.centre, direction)[0] + self.side * self.coupler_length - free_position
-        inner = way * swing.radius * sine * sine / (1.0 + abs(cosine))
-        return ahead + way * swing.radius - (inner + self._shortfall(placement))
+        return elongation.elongation(placement, *self._from(free_position, placement))
 
     def departure(self, placement, position):
-        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large.
-
-        What of both is the inner joint's cancels if that is a pin of the crank, and is known of a roller on a cam.
-        """
+        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large."""
         drawn_in = placement.details[self._slider].drawn_in
-        if self.passage or drawn_in is None or not placement.departs(self.on):
+        if self.passage or drawn_in is None:
             return None
-        inner, departing = placement.departures.get(self.on), None
-        if inner is not None:
-            departing = unturned(inner, self.guide.line.direction)[0]
-        return minus(departing, drawn_in) + (self.side * self.coupler_length - position - self._shortfall(placement))
+        return elongation.departure(placement, drawn_in, *self._from(position, placement))
 
-    def _shortfall(self, placement):
-        """By how much the coupler's reach along the guide falls short of its length."""
-        motion = placement.details[self._slider]
-        cosine = self.side * motion.cosine
-        return self.side * self.coupler_length * motion.sine * motion.sine / (1.0 + cosine)
+    def _from(self, position, placement):
+        """What reaches from a position on, as `elongation` takes it."""
+        motion, length, side = placement.details[self._slider], self.coupler_length, self.side
+        short = side * elongation.shortfall(length, motion.sine, side * motion.cosine)
+        return self.on, self.guide.line.direction, side * length - position, short
 
     def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)

@@ -48,7 +48,8 @@ class Dynamics(Motion):
     def resolved(self):
         """All reactions and other forces, as the groups find them."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = self.mechanism.resolve(self.placement, *self.acting, self.rubbing)
+            loads, along = self.acting
+            found = self.mechanism.resolve(self.placement, loads, along, self.rubbing)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
         if self.mechanism.passes:  # the crank's equilibrium has reactions that grow without bound

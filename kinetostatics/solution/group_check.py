@@ -130,6 +130,7 @@ class _Stage(NamedTuple):
             turned_by = angle + 0.3 * turn + 0.4 * turn * turn
             links[name] = LinkMotion(self._joint(1, turn, way), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
         placement = Placement(angle, direction, joints, links)
+        placement.departures.update({name: added(joints[name].second, joints[name].position) for name in self.hung})
         with np.errstate(all="ignore"):
             try:
                 self.group.place(placement)

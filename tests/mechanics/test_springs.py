@@ -44,7 +44,10 @@ MACHINES = {
     "rocker": ks.Mechanism(
         "rocker",
         ks.Crank(0.1),
-        (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.SliderGroup(1.0, INCLINED, slider=SLIDER, on="B", pin="C", label="2")),
+        (
+            ks.RockerGroup(0.4, 0.3, (0.35, 0.1)),
+            ks.SliderGroup(1.0, INCLINED, slider=SLIDER, on="B", pin="C", label="2"),
+        ),
     ),
     "follower": ks.Mechanism(
         "follower", ks.Crank(None), (ks.RollerFollower(ks.laws.cosine(0.1, 0.3), follower=ks.Link(MASS)),)

@@ -19,8 +19,8 @@ flint = pytest.importorskip("flint", reason="python-flint is not installed (extr
 TURN = np.linspace(0.0, 2 * np.pi, 72, endpoint=False) + 0.01
 ERROR, BOUND = 5e-15, 2e-13
 VANISHING = 0.01
-"""Support O of both saws balanced by design, 0.3 and 0.9 % of the spring's force: one rounding of the cam's r' makes 4e-15
-of it.
+"""So is O of the two saws that are balanced by design, 0.3 and 0.9 % of their springs' force: one rounding of r' of the
+cam makes 4e-15 of it.
 """
 STEEP = {
     ("shaper", "cutting"): dict.fromkeys(("balancing_torque", "O", "A", "C", "D", "O2"), (4e-14, 7e-13)),
