@@ -3,15 +3,17 @@
 With s the coordinate of a slider, e its elongation from where a spring of rate c is free, and m its mass, inertia and
 spring give
 
-    - m omega^2 s'' - c e = - c (s'' + e) + (c - m omega^2) s''
+    - m omega^2 s'' - c e = - m omega^2 (s'' + e) + (m omega^2 - c) e
 
-A group that knows the departure s'' + e by itself leaves nothing on the right that cancels where c is m omega^2.
+and with several springs each takes its share of inertia so. A group that knows the departure s'' + e by itself leaves
+nothing on the right that cancels where c is near m omega^2. Where it is not, no term is larger than inertia or springs
+by more than elongations are larger than the stroke; at rest inertia is out of it.
 """
 
 from functools import reduce
 
 from ..machine.links import Wrench
-from ..numbers.planar import added, minus, plus, product, stretched
+from ..numbers.planar import added, plus, product, stretched
 from .pushes import pushed
 
 
@@ -34,18 +36,18 @@ def _held(dynamics, slider):
     if mass is None:
         return None
     square, alpha = dynamics.accelerating
-    force, rates = None, []
-    for item in (item for item in dynamics.loads if getattr(item, "on", None) == slider and hasattr(item, "push")):
-        if not hasattr(item, "spring_rate"):
-            force = plus(force, pushed(item, dynamics))
-            continue
-        departure = dynamics.departure(item)
-        if departure is None:
-            return None
-        rates.append(item.spring_rate(dynamics))
-        force = minus(force, rates[-1] * departure)
-    force = plus(force, (reduce(plus, rates) - mass * square) * travel.second)
-    return minus(force, product(product(mass, alpha), travel.first))
+    items = [item for item in dynamics.loads if getattr(item, "on", None) == slider and hasattr(item, "push")]
+    springs = [item for item in items if hasattr(item, "spring_rate")]
+    departures = [dynamics.departure(item) for item in springs]
+    if any(part is None for part in departures):
+        return None
+    share = mass * square / len(springs)
+    force = product(product(mass, alpha), travel.first)
+    for item, departure in zip(springs, departures, strict=True):
+        force = plus(force, share * departure)
+        force = force - (share - item.spring_rate(dynamics)) * dynamics.elongation(item.free_position, slider)
+    others = (pushed(item, dynamics) for item in items if not hasattr(item, "spring_rate"))
+    return reduce(plus, others, -force)
 
 
 def _without_inertia(dynamics, slider):

@@ -1,6 +1,7 @@
 """Inertia of sliders together with springs that nearly balance it."""
 
 import numpy as np
+import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.engines import NUMPY
@@ -114,3 +115,13 @@ def test_what_a_balancing_spring_leaves_is_near_the_exact(name, flint):
     errors = [float(flint.arb(float(one)) - other) for one, other in zip(found, exact, strict=True)]
     spring = MASS * SPEED * SPEED * 0.3
     assert np.max(np.abs(errors)) < 1.7e-16 * spring
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("speed", [0.0, 1e-12])
+def test_a_slow_machine_at_a_limit_position_keeps_its_spring(speed):
+    """There the slider's second derivative is a million times its elongation, and nothing of it counts."""
+    close = plain(length=0.3 * (1.0 + 1e-13))
+    run = ks.Scene(close, speed, 0.0, SPRINGS["balancing"]).solve(np.pi / 2 + np.array([-1e-7, 0.0, 1e-7])).dynamics
+    assert np.min(np.abs(run.placement.travels["slider"].second)) > 1e5
+    assert np.allclose(springs.acting(run)[1]["slider"], run.pushes["slider"], rtol=3e-16, atol=0.0)
