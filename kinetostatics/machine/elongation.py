@@ -5,7 +5,7 @@ l sin^2 / (1 + cos), which is small beside it near a dead centre, as is what is 
 """
 
 from ..numbers.elementary import sign
-from ..numbers.planar import minus, unturned
+from ..numbers.planar import unturned
 
 TERMS = {
     "elongation.cosine": ("c", "cosine of the angle from the guide to what swings the inner joint"),
@@ -46,4 +46,4 @@ def departure(placement, drawn_in, joint, direction, reach, short):
     if joint not in placement.departures:
         return None
     departing = unturned(placement.departures[joint], direction)[0]
-    return minus(departing, drawn_in) + (reach - short)
+    return departing - drawn_in + (reach - short)
