@@ -19,7 +19,7 @@ from ..numbers.planar import added, cross, dot, number, quotient, stretched, sub
 from . import change_points, on_crank, passing
 from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
-from .links import Joint, Link, LinkMotion, Wrench, between, tip
+from .links import Joint, Link, LinkMotion, Swing, Wrench, between, tip
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
@@ -275,6 +275,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         placement.joints[self.pivot_name] = motion.rocker.joint
         placement.links[self._coupler] = motion.coupler
         placement.links[self._rocker] = motion.rocker
+        placement.swings[self.pin] = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
         placement.details[self._rocker] = motion
 
     def closure(self, placement):

@@ -16,7 +16,7 @@ from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
 from ..numbers.planar import added, minus, moment, number, plus, product
-from . import contact, energy
+from . import contact, energy, springs
 from .friction import Rubbing, driving
 from .friction_laws import larger, smaller
 from .gaps import places
@@ -49,13 +49,24 @@ class Dynamics(Motion):
     def resolved(self):
         """All reactions and other forces, as the groups find them."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = self.mechanism.resolve(self.placement, self.link_loads, self.pushes, self.rubbing)
+            loads, along = self.acting
+            found = self.mechanism.resolve(self.placement, loads, along, self.rubbing)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
         if self.mechanism.passes:  # the crank's equilibrium has reactions that grow without bound
             rubbed = {} if self.rubbing is None else self.rubbing.found
             found.scalars["balancing_torque"] = self._torque_with(rubbed)
         return found
+
+    @property
+    def acting(self):
+        """Loads by link and forces along guides by slider as groups resolve them."""
+        return springs.acting(self)
+
+    def departure(self, item):
+        """Second derivative of a slider's coordinate plus the elongation of a spring on it, m; None if not known."""
+        group = next(group for group in self.mechanism.groups if item.on in group.links)
+        return group.departure(self.placement, item.free_position) if hasattr(group, "departure") else None
 
     @cached_property
     def rubbing(self):

@@ -247,7 +247,13 @@ class Table:
     def read(self, motion, pieces):
         """Values at a motion of whatever numbers that runs through these pieces."""
         start, value, slope = pieces
-        return value + slope * (self.place(motion) - start)
+        return value + slope * self._from(start, motion)
+
+    def _from(self, start, motion):
+        """How far what it is read by is beyond the start of a piece; where a slider is, without its own rounding."""
+        if self.over == "angle":
+            return motion.crank_angle - start
+        return motion.elongation(start, self._slider(motion))
 
     def _slider(self, motion):
         return self.slider or next(iter(motion.mechanism.guides))
