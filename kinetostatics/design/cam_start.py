@@ -111,7 +111,7 @@ def begun(
     DesignError
         A stroke that no coupler can make.
     """
-    group, links = _parts(given)
+    group, links = parts_of(given)
     low, high = _ends(given, ends)
     half, mean, law = (high - low) / 2, (high + low) / 2, CosineLaw((high - low) / 2, (high + low) / 2)
     offset = group.guide.guide_offset if guide_offset is None else float(guide_offset)
@@ -142,8 +142,8 @@ def begun(
     return Start(Machine(scene, share), (float(low), float(high)), vary, first, weight, unit)
 
 
-def _parts(given):
-    """Slider group of a crank-slider, and its links by name."""
+def parts_of(given):
+    """Slider group of a scene that is a crank-slider, and its links by name; all else is refused."""
     mechanism = given.mechanism
     roller, slider = crank_slider_parts(mechanism) or (None, None)
     if slider is None or slider.assembly != 1:

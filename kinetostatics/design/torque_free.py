@@ -244,7 +244,7 @@ def bound(start, scene, reference):
     if reference is None or not start.weight:
         return np.inf
     solution = scene.solve(720)
-    guide = scene.mechanism.groups[-1].guide
+    guide = scene.mechanism.guides[scene.mechanism.slider]
     x, y = solution.position("A")
     height = np.abs(np.cos(guide.guide_angle) * y - np.sin(guide.guide_angle) * x).max()
     plain = true_value(wanted(f"mean_absolute {TORQUE}", reference), reference)
