@@ -39,8 +39,8 @@ def _plain_total(*terms):
         return total(*terms)
 
 
-def _total_of(*terms):
-    *terms, out = terms
+def _total_of(*terms_and_out):
+    *terms, out = terms_and_out
     np.copyto(out, total(*terms))
 
 

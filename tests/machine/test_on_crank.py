@@ -137,8 +137,8 @@ def test_what_jax_traces_is_no_known_length_and_has_derivatives(double):
         bars = (ks.Mechanism("bars", ks.Crank(0.1), (group,)) for group in (lever, rocker))
         return sum(ks.solve(each, angle, crank_speed=9.0, on_gap="nan").balancing_torque[0] for each in bars)
 
-    slope, step = double.grad(torque)(0.35), 1e-6
-    assert slope == pytest.approx((torque(0.35 + step) - torque(0.35 - step)) / (2 * step), rel=1e-7)
+    slope, step = float(double.grad(torque)(0.35)), 1e-6
+    assert slope == pytest.approx(float(torque(0.35 + step) - torque(0.35 - step)) / (2 * step), rel=1e-7)
 
 
 def counted(structure):
