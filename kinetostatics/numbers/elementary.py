@@ -139,10 +139,11 @@ def rest(length, x, y):
         return recorded.rest_with(length, x, y)
     if not _are_floats((length, x, y)):
         return None
-    return total(*_square(x), *_square(y), *(-part for part in _square(length))) / (2.0 * length)
+    (one, first), (two, second), (three, third) = map(squared, (x, y, length))
+    return total(one, first, two, second, -three, -third) / (2.0 * length)
 
 
-def _square(a):
+def squared(a):
     """Square of a number, rounded, and what that lost."""
     whole, spread = a * a, SPLIT * a
     high = spread - (spread - a)
