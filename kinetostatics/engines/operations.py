@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..numbers.elementary import ROUNDING, rest, total
+from ..numbers.elementary import ROUNDING, rest, squared, total
 
 
 def _plain_root(square, unit):
@@ -39,8 +39,13 @@ def _plain_total(*terms):
         return total(*terms)
 
 
-def _total_of(*terms):
-    *terms, out = terms
+def _plain_rest(length, x, y):
+    (one, first), (two, second), (three, third) = map(squared, (x, y, length))
+    return _plain_total(one, first, two, second, -three, -third) / (2.0 * length)
+
+
+def _total_of(*terms_and_out):
+    *terms, out = terms_and_out
     np.copyto(out, total(*terms))
 
 
@@ -59,7 +64,7 @@ PLAIN = {
     "divisor": _plain_divisor,
     "fma": lambda one, other, more: one * other + more,
     "total": _plain_total,
-    "rest": rest,
+    "rest": _plain_rest,
     "nan": math.nan,
     "inf": math.inf,
 }

@@ -107,22 +107,25 @@ class Circle(Cam):
         along = x * ray[0] + y * ray[1]
         across = y * ray[0] - x * ray[1]
         if self.is_close:
-            less, more = self._margins(ray)
-        else:
-            less, more = self.pitch_radius - across, self.pitch_radius + across
-        root = sqrt(less * more)
+            return self._close(along, across, ray)
+        root = sqrt((self.pitch_radius - across) * (self.pitch_radius + across))
         r = along + root
         lean = across / root
         slope = lean * r
         return r, slope, lean * slope - along * (1.0 + lean * lean) * r / root
 
-    def _margins(self, ray):
-        """Radius less, and more, what the centre is across the ray: the smallest radius and parts that are positive."""
-        x, y = self.centre
+    def _close(self, along, across, ray):
+        """The same with O close to the circle: margins by the smallest radius and parts that are positive.
+
+        There r, along and the root are such that r (root - along) is the product of the smallest and largest radius.
+        """
+        (x, y), radius = self.centre, self.pitch_radius
         (away, rest), (direction, reach) = length_and_rest(self.centre), directed((y, -x))
-        least, share = total(self.pitch_radius, -away, minus(None, rest)), 0.5 * away / (reach * reach)
+        least, share = total(radius, -away, minus(None, rest)), 0.5 * away / (reach * reach)
         _, near_by, far_off = spread(ray, direction, reach)
-        return least + share * near_by, least + share * far_off
+        root = sqrt((least + share * near_by) * (least + share * far_off))
+        r = along + root
+        return r, across / root * r, radius * radius * least * (radius + away) / (root * root * root) - r
 
 
 @dataclass(frozen=True, eq=False)

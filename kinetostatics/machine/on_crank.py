@@ -8,7 +8,8 @@ coupler b, rocker h and ground d the root of two factors, with e from A to O2 (H
     2 b h near = e^2 - (b-h)^2 = ((d-a)^2 - (b-h)^2) C + ((d+a)^2 - (b-h)^2) S
 
 All that stands in brackets are products of sums of given lengths, each rounded as if once: where a factor vanishes, at
-a limit position or change point, its error is no more than what one rounding of the crank angle makes. So are rates,
+a limit position or change point, its error is no more than what one rounding of the crank angle makes. A length that is
+a root itself, of an inclined pivot or a pin beside the crank ray, goes with what rounding took off it. So are rates,
 
     theta' = 1/2 - (d^2 - a^2) / (2 e^2) -+ (1 -+ (b^2 - h^2) / e^2) R,    R = a d sin(psi) / (2 b h sine)
 

@@ -175,7 +175,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     passage: str = field(default="", init=False, repr=False)
     is_close: bool = field(default=False, init=False, repr=False)
 
-    TRUSTED = may_come_close = True
+    TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot"}
     RULES = checks.Rules(
         "rocker group",

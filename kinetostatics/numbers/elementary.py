@@ -119,13 +119,13 @@ def total(*terms):
     What each sum loses is found exactly, twice (Ogita, Rump and Oishi 2005, *Accurate sum and dot product*, SumK).
     Absent numbers are none. Enclosures and others of any precision need no help from rounding.
     """
-    terms = [term for term in terms if term is not None]
-    recorded = next((term for term in terms if hasattr(term, "total_with")), None)
+    present = [term for term in terms if term is not None]
+    recorded = next((term for term in present if hasattr(term, "total_with")), None)
     if recorded is not None:
-        return recorded.total_with(terms)
-    if not _are_floats(terms):
-        return sum(terms)
-    *lost, whole = _summed(_summed(terms))
+        return recorded.total_with(present)
+    if not _are_floats(present):
+        return sum(present)
+    *lost, whole = _summed(_summed(present))
     return whole + sum(lost)
 
 
@@ -139,10 +139,11 @@ def rest(length, x, y):
         return recorded.rest_with(length, x, y)
     if not _are_floats((length, x, y)):
         return None
-    return total(*_square(x), *_square(y), *(-part for part in _square(length))) / (2.0 * length)
+    (one, first), (two, second), (three, third) = map(squared, (x, y, length))
+    return total(one, first, two, second, -three, -third) / (2.0 * length)
 
 
-def _square(a):
+def squared(a):
     """Square of a number, rounded, and what that lost."""
     whole, spread = a * a, SPLIT * a
     high = spread - (spread - a)

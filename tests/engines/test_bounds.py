@@ -208,7 +208,12 @@ def test_a_length_and_its_rest_are_bounded_together_where_they_are_taken_so():
     x, y, other = map(graph.parameter, range(3))
     length = (x * x + y * y).sqrt()
     lost = rest(length, x, y)
-    sums = total(length, -other, lost), total(other, -length, -lost), total(length, -other), total(length, -other, -lost)
+    sums = (
+        total(length, -other, lost),
+        total(other, -length, -lost),
+        total(length, -other),
+        total(length, -other, -lost),
+    )
     values = [0.3, 0.4, 0.5]
     ahead, back, alone, against = bounds_of(graph, sums, values)
     (off,) = bounds_of(graph, [lost], values)

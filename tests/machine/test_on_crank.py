@@ -17,6 +17,7 @@ from support.every import every
 
 TURN = np.linspace(-7.0, 7.0, 41)
 SIDES = (1, -1)
+CLOSE_PIVOTS = (0.51, 0.0), (0.3, 0.4), (np.array([[0.3], [2.0]]), 0.4)
 
 
 def placed(crank, ahead=None):
@@ -120,8 +121,24 @@ def test_lengths_that_differ_little_from_what_others_leave_them_are_told(given, 
 def test_ordinary_sliders_and_levers_are_placed_as_ever_and_close_ones_with_care():
     ordinary = ks.crank_slider(0.3, 2.0, guide_offset=0.1), ks.slotted_lever(0.1, pivot=(0.0, -0.2), offset=0.02)
     close = ks.crank_slider(0.3, 0.41, guide_offset=0.1), ks.slotted_lever(0.1, pivot=(0.0, -0.2), offset=0.099)
+    ordinary = *ordinary, ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
+    close = *close, *(ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=pivot) for pivot in CLOSE_PIVOTS)
     assert not any(mechanism.groups[-1].is_close for mechanism in ordinary)
     assert all(mechanism.groups[-1].is_close for mechanism in close)
+
+
+def test_what_jax_traces_is_no_known_length_and_has_derivatives(double):
+    body = ks.Link(3.0, 0.1, 0.1)
+
+    def torque(x):
+        lever = ks.LeverGroup((x, 0.13), lever=body)
+        rocker = ks.RockerGroup(0.4, 0.3, (x, 0.1), rocker=body)
+        angle = double.numpy.array([0.4])
+        bars = (ks.Mechanism("bars", ks.Crank(0.1), (group,)) for group in (lever, rocker))
+        return sum(ks.solve(each, angle, crank_speed=9.0, on_gap="nan").balancing_torque[0] for each in bars)
+
+    slope, step = float(double.grad(torque)(0.35)), 1e-6
+    assert slope == pytest.approx(float(torque(0.35 + step) - torque(0.35 - step)) / (2 * step), rel=1e-7)
 
 
 def counted(structure):

@@ -17,7 +17,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from kinetostatics.errors import KinetostaticsError
-from support.bounded import FAMILIES, errors, other_numbers, solution
+from support.bounded import AT_PLACES, FAMILIES, errors, other_numbers, solution
 
 ANGLES = 40
 SETS = 12
@@ -36,7 +36,7 @@ def solutions(family, kind):
     """Solutions of a family without end, each structure with several sets of numbers."""
     bases = (base for seed in count() if (base := solution(family, seed, ANGLES)) is not None)
     numbers, few = count(), []
-    if kind == "compiled" and family != "place":  # places have few structures, and exact numbers
+    if kind == "compiled" and family not in AT_PLACES:
         few = list(islice(bases, COMPILED))
         yield from few
         sets = cycle(few)
