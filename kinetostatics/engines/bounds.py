@@ -239,8 +239,10 @@ def is_zero(part):
 
 
 def _is_scaling(part):
-    """Whether a factor is a power of two near one: it loses no digit but of dust."""
-    return not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
+    """Whether a factor is a sign, or a power of two near one: it loses no digit but of dust."""
+    if isinstance(part, Node):
+        return part.operation == "sign"
+    return math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
 
 
 # What a result has of the errors of its arguments, and some more

@@ -29,6 +29,7 @@ TERMS = {
     "root": ("w", "root of the pitch curve"),
     "singular": ("c0", "cosine of the singular angle"),
     "excess": ("d", "that root less the coordinate of the slider"),
+    "share": ("f", "amplitude times the cosine of the singular angle"),
 }
 """What hand calculations call lines of the kernels, and what they are."""
 
@@ -141,9 +142,10 @@ class CosineLaw(checks.Checked, Cam):
 
     Nor do x_B cos(phi) and w, both much larger than r, have to be subtracted: with b c* = a - 2 a c*^2
 
-        r = c* root - c d,   d = root - x_B = a^2 (2 c* c + 3 - 5 c*^2) / (root + x_B)
+        r = c* root - c d,   d = root - x_B = g + a c*
+        g = (a^2 (2 + c* c - 3 c*^2) - a c* root) / (root + x_B)
 
-    in which nothing cancels. So do the derivatives by c, with g = d - a c*, k = a / root and w = k (c - c*):
+    of which only a half cancels in g. So do the derivatives by c, with k = a / root and w = k (c - c*):
 
         dr/dc = (w - 1) g,   d2r/dc2 = k g (2 - w (2 - g / root))
 
@@ -238,8 +240,10 @@ class CosineLaw(checks.Checked, Cam):
         square, p, q = self._quadratic
         root = sqrt((square * c + p) * c + q)
         singular = self._cosine
-        excess = square * (2.0 * singular * c + 3.0 - 5.0 * singular * singular) / (root + b + a * c)
-        g, k = excess - a * singular, a / root
+        share = a * singular
+        above = square * singular * c + square * (2.0 - 3.0 * singular * singular) - share * root
+        g = above / (root + b + a * c)
+        excess, k = g + share, a / root
         w = k * (c - singular)
         by_c = (w - 1.0) * g
         by_c_twice = k * g * (2.0 - w * (2.0 - g / root))

@@ -64,6 +64,14 @@ def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_ha
     np.testing.assert_allclose(values, wanted, rtol=1e-8)
 
 
+@every("tight", [False, True])
+def test_a_sign_is_no_rounding_of_what_it_multiplies(tight):
+    graph = Graph()
+    one, two = graph.parameter(0), graph.parameter(1)
+    (bound,) = bounds_of(graph, [one.sign() * (one * two)], [-3.0, 0.7], tight)
+    assert bound == pytest.approx(2.1 * UNIT, rel=1e-8)
+
+
 def test_where_a_divisor_may_vanish_or_a_root_be_clamped_there_is_no_bound():
     folded = ks.crank_slider(0.5, 0.5, coupler=ks.Link(1.0), slider=ks.Link(1.0))
     with pytest.warns(ConditionWarning):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.engines import programs
 from kinetostatics.engines.engines import NUMPY
 from kinetostatics.mechanics import springs
 from kinetostatics.mechanics.quantities import components
@@ -25,8 +26,16 @@ CAMS = {
 LEVEL, INCLINED = ks.Guide.at(), ks.Guide.at(0.7, -0.04)
 
 
-def saw(cam, length, guide=LEVEL):
-    rod = ks.SliderGroup(length, guide, coupler=ROD, slider=SLIDER)
+class Apart(ks.SliderGroup):
+    """A slider group that does not tell how its slider departs."""
+
+    def departure(self, placement, position):
+        """Not known."""
+        return
+
+
+def saw(cam, length, guide=LEVEL, kind=ks.SliderGroup):
+    rod = kind(length, guide, coupler=ROD, slider=SLIDER)
     return ks.Mechanism("saw", ks.Crank(link=ks.Link(40.0, 0.1, 1.0)), (ks.CamRoller(cam), rod))
 
 
@@ -104,6 +113,16 @@ def test_without_springs_or_mass_nothing_is_done():
         assert all(
             taken is given for taken, given in zip(springs.acting(run), (run.link_loads, run.pushes), strict=True)
         )
+
+
+@every("name, guide", [(name, guide) for name in CAMS for guide in (LEVEL, INCLINED)])
+def test_together_they_take_hardly_more_operations_than_apart(name, guide):
+    counts = []
+    for kind in (ks.SliderGroup, Apart):
+        run = ks.Scene(saw(*CAMS[name], guide, kind), SPEED, 0.0, SPRINGS["balancing"]).solve(TURN).dynamics
+        program, _ = programs.of(run, ("B", "balancing_torque"))
+        counts.append(program.recording.operations)
+    assert counts[0] <= 1.02 * counts[1]
 
 
 @every("name", CAMS)
