@@ -4,8 +4,11 @@ By coefficients c of the computed values the error of a node is, exactly, the su
 operation itself adds, and q, of second order (-e e' of a product). The error of an output is thus the sum of
 a (own + q) over all nodes, with adjoints a by the same coefficients (Linnainmaa 1976, *BIT* 16, 146; Langlois 2001,
 *BIT* 41, 606). Where values are used once their own errors add up as forward; only what is used more than once and made
-of sums, where errors may cancel, is cut off and has an adjoint. Forward bounds with q taken ``STRETCH`` times as large
-hold ``STRETCH`` times the sum of all |a| q, and far more than what the rounding of the adjoints makes.
+of sums, where errors may cancel, is cut off and has an adjoint. That is a bound F but for q. A forward bound C with
+q taken ``STRETCH`` times as large exceeds F by ``STRETCH`` times the sum of all |a| q, and by all that cancels. So the
+mean (1 - 1 / STRETCH) F + C / STRETCH is a bound, with what the rounding of the adjoints makes in it: that is a few
+thousand `UNIT` of what does not cancel, which `bounds.SAFE` holds where little cancels, and C where much does. Where
+nothing cancels it is the forward bound itself.
 """
 
 from collections import Counter
@@ -13,7 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..numbers.planar import plus
-from .bounds import EXACT, Bounds, size, whole
+from .bounds import DUST, EXACT, Bounds, size, whole
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 STRETCH = 2.0**16
@@ -21,24 +24,24 @@ SEED = 2.0**900
 """Adjoint of the output, so large that no adjoint that counts is too small for a double."""
 
 
-def tight_bound(graph, inputs, output):
+def tight_bound(graph, inputs, output, dust=DUST):
     """A bound on the error of one output, as `Bounds.of` gives it; NaN or infinite where that is to be asked."""
     if not isinstance(output, Node):
         return 0.0
-    coarse = Bounds(graph, inputs, STRETCH)
+    coarse = Bounds(graph, inputs, STRETCH, dust)
     coarse.of([output])
-    local = _Local(graph, coarse, output)
+    local = _Local(graph, coarse, output, dust)
     total = None
     slopes = _adjoints(graph, output, local.cut)
     for node, (_, slope) in slopes.items():
         if node in local.cut:
             total = local.fused(abs(slope), local.cut[node], total)
     first = plus(None if total is None else total * (1.0 / SEED), local.total(output))
-    remainder = coarse.total(output)
-    if remainder is None:
+    most = coarse.total(output)
+    if most is None:
         return 0.0
-    dust = 4.0 * len(slopes) * 2.0**-50 / SEED
-    return whole(plus(local.fused(2.0 / STRETCH, remainder, first), dust))
+    mean = local.fused(1.0 / STRETCH, most, None if first is None else (1.0 - 1.0 / STRETCH) * first)
+    return whole(mean if dust is None else plus(mean, 4.0 * len(slopes) * 2.0**-50 / SEED))
 
 
 class _Local(Bounds):
@@ -50,8 +53,8 @@ class _Local(Bounds):
         Bounds on the errors, so counted, of values where they may cancel.
     """
 
-    def __init__(self, graph, coarse, output):
-        super().__init__(graph)
+    def __init__(self, graph, coarse, output, dust):
+        super().__init__(graph, dust=dust)
         self.coarse, self.cut = coarse, {}
         behind: set[Node] = set()
         nodes = needed([output])

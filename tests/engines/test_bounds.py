@@ -43,6 +43,7 @@ def test_no_value_of_random_machines_is_off_by_more_than_its_bound(flint, family
         ("sawframe_2r63", "cam-cosine", 60),
         ("chain_unit", "rho-0.5", 150),
         ("toggle_press", "coining", 100),
+        ("pumpjack", "weights", 40),
     ],
 )
 def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, variant, most):

@@ -1,5 +1,7 @@
 """Tight bounds on rounding errors: never less than the true error, and smaller where errors cancel."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,9 @@ from kinetostatics.studies.places import PLACES
 from support.bounded import FAMILIES, errors, solution
 from support.every import every
 from support.shipped import shipped
+
+MORE = 1.0 + 1e-12
+"""For the rounding of bounds themselves."""
 
 
 def found(graph, output, angle, *values):
@@ -65,8 +70,34 @@ def test_tight_bounds_of_values_of_every_size_are_finite_and_no_larger():
         pump = ks.crank_slider(0.05 * size, 0.2 * size, slider=ks.Link(mass=1e-12), coupler=ks.Link(1e9, 0.1 * size))
         s = ks.solve(pump, np.linspace(0.1, 6.0, 40), crank_speed=1e-3)
         tight, forward = s.error_bound("balancing_torque", tight=True), s.error_bound("balancing_torque")
-        assert np.all(tight <= 1.001 * forward)
+        assert np.all(tight <= MORE * forward)
         assert np.all(tight > 0.0)
+
+
+@every("family", FAMILIES)
+def test_a_tight_bound_is_never_larger_than_the_plain_one(family):
+    made = next(found for found in (solution(family, seed, 40) for seed in range(9)) if found is not None)
+    names = ("balancing_torque", "O")
+    plain, tight = (NUMPY.with_bounds(made.dynamics, names, way)[1] for way in (False, True))
+    for name in names:
+        known = np.isfinite(plain[name])
+        assert np.all(tight[name][known] <= MORE * plain[name][known])
+
+
+def test_where_no_errors_cancel_the_tight_bound_is_the_plain_one():
+    """Steps of a table at dead centres among them, where a force is zero by one side."""
+    s = shipped("yoke_pump").variants["pumping"].scene.solve(np.pi / 4 * np.arange(8))
+    for name in ("O", "A", "guide"):
+        np.testing.assert_allclose(s.error_bound(name, tight=True), s.error_bound(name), rtol=1e-12, atol=0.0)
+
+
+def test_what_is_exactly_zero_has_no_tight_bound_but_zero_by_numpy():
+    graph = Graph()
+    one = graph.parameter(0)
+    recording = SimpleNamespace(graph=graph, inputs={})
+    program = programs.Program(recording, (one * one * graph.angle(),)).bounded(tight=True)
+    found = program.by_numpy(np.zeros(3), [1.7], [], (3,))
+    assert found.tolist() == [[0.0] * 3] * 2
 
 
 @every(
