@@ -221,7 +221,7 @@ def describe(item):
         return {"over": item.over, f"x [{x}]": item.x.tolist(), "y": item.y.tolist(), **back}
     if is_dataclass(item):
         rules = item.RULES.rules
-        names = [field.name for field in fields(item) if getattr(item, field.name) is not None]
+        names = [field.name for field in fields(item) if field.init and getattr(item, field.name) is not None]
         return {"type": type(item).__name__} | {
             name + _unit(rules.get(name), getattr(item, name)): describe(getattr(item, name)) for name in names
         }

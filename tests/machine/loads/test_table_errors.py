@@ -47,6 +47,24 @@ def test_no_value_by_angle_is_off_by_more_than_its_rounding(first, turns):
             assert abs(Fraction(float(value)) - exactly(table, angle)) <= Fraction(most)
 
 
+def test_pieces_of_a_table_are_exact_in_exact_numbers():
+    """Slopes among them, so that an enclosure holds what the rows say."""
+    number = np.frompyfunc(Fraction, 1, 1)
+    by_angle = ks.Table([0.1, 0.7, 3.0, 4.0], [0.1, 0.7, -0.3, 1e-3])
+    rows = [0.14, 0.19, 0.26], [0.1, 0.7, -0.3]
+    by_travel = ks.Table(*rows, over="travel", back=[0.3, 0.1, 0.9], slider="slider")
+    motion = ks.solve(ks.crank_slider(0.05, 0.2), [0.3, 2.0, 3.5, 6.0, -20.0], crank_speed=1.0)
+    start, value, slope = by_angle.pieces(motion, number)
+    found = value + slope * (number(motion.crank_angle) - start)
+    assert found.tolist() == [exactly(by_angle, angle) for angle in motion.crank_angle]
+    start, value, slope = by_travel.pieces(motion, number)
+    for column, back in enumerate(by_travel.returns(motion)):
+        y = [*map(Fraction, by_travel.back if back else by_travel.y)]
+        row = [*map(Fraction, by_travel.x)].index(start[column])
+        assert value[column] == y[row]
+        assert slope[column] == (y[row + 1] - y[row]) / (Fraction(rows[0][row + 1]) - Fraction(rows[0][row]))
+
+
 def test_on_level_pieces_of_a_table_nothing_is_rounded():
     table = ks.Table([0.0, 1.0, 3.0, 4.0], [0.3, 0.3, 0.7, 0.7])
     motion = ks.solve(ks.crank_slider(0.05, 0.2), [0.5, 2.0, 3.5], crank_speed=1.0, loads=ks.ProcessForce(table))
