@@ -4,11 +4,11 @@ By coefficients c of the computed values the error of a node is, exactly, the su
 operation itself adds, and q, of second order (-e e' of a product). The error of an output is thus the sum of
 a (own + q) over all nodes, with adjoints a by the same coefficients (Linnainmaa 1976, *BIT* 16, 146; Langlois 2001,
 *BIT* 41, 606). Where values are used once their own errors add up as forward; only what is used more than once and made
-of sums, where errors may cancel, is cut off and has an adjoint. That is a bound F but for q. A forward bound C with
-q taken ``STRETCH`` times as large exceeds F by ``STRETCH`` times the sum of all |a| q, and by all that cancels. So the
-mean (1 - 1 / STRETCH) F + C / STRETCH is a bound, with what the rounding of the adjoints makes in it: that is a few
-thousand `UNIT` of what does not cancel, which `bounds.SAFE` holds where little cancels, and C where much does. Where
-nothing cancels it is the forward bound itself.
+of sums, where errors may cancel, is cut off and has an adjoint. That is a bound F but for q, and for what is too small
+for a double. A forward bound C with both taken ``STRETCH`` times as large exceeds F by ``STRETCH`` times their sum over
+all nodes, by |a|, and by what cancels. So the mean (1 - 1 / STRETCH) F + C / STRETCH is a bound. It holds the rounding
+of the adjoints too, some thousand `UNIT` of what F would be if nothing cancelled: `bounds.SAFE` does where little
+cancels, and C where much does. Where nothing cancels it is the forward bound itself.
 """
 
 from collections import Counter
@@ -28,9 +28,9 @@ def tight_bound(graph, inputs, output, dust=DUST):
     """A bound on the error of one output, as `Bounds.of` gives it; NaN or infinite where that is to be asked."""
     if not isinstance(output, Node):
         return 0.0
-    coarse = Bounds(graph, inputs, STRETCH, dust)
+    coarse = Bounds(graph, inputs, STRETCH, None if dust is None else STRETCH * dust)
     coarse.of([output])
-    local = _Local(graph, coarse, output, dust)
+    local = _Local(graph, coarse, output)
     total = None
     slopes = _adjoints(graph, output, local.cut)
     for node, (_, slope) in slopes.items():
@@ -47,14 +47,16 @@ def tight_bound(graph, inputs, output, dust=DUST):
 class _Local(Bounds):
     """Errors of first order that come from operations after the last cuts; what is before them counts as exact.
 
+    Nothing is too small for a double here: the coarse bound has that.
+
     Attributes
     ----------
     cut : dict of Node to node
         Bounds on the errors, so counted, of values where they may cancel.
     """
 
-    def __init__(self, graph, coarse, output, dust):
-        super().__init__(graph, dust=dust)
+    def __init__(self, graph, coarse, output):
+        super().__init__(graph, dust=None)
         self.coarse, self.cut = coarse, {}
         behind: set[Node] = set()
         nodes = needed([output])
@@ -74,6 +76,12 @@ class _Local(Bounds):
                 self.cut[node] = self.total(node)
                 self._errors[node], self._totals[node] = EXACT, None
                 behind.add(node)
+
+    def _found(self, node):
+        found = super()._found(node)
+        if node.operation in ("sqrt", "root") and self.is_dust(node.arguments[0]):  # of dust, which is not counted else
+            return found._replace(rest=self.coarse.error(node).rest)
+        return found
 
     def own(self, node):
         return EXACT if node.operation in ("divisor", "sign") else super().own(node)
