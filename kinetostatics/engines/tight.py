@@ -15,8 +15,8 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-from ..numbers.planar import plus
-from .bounds import DUST, EXACT, Bounds, size, whole
+from ..numbers.elementary import UNIT
+from .bounds import DUST, EXACT, SAFE, Bounds, size
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 STRETCH = 2.0**16
@@ -31,17 +31,17 @@ def tight_bound(graph, inputs, output, dust=DUST):
     coarse = Bounds(graph, inputs, STRETCH, None if dust is None else STRETCH * dust)
     coarse.of([output])
     local = _Local(graph, coarse, output)
-    total = None
-    slopes = _adjoints(graph, output, local.cut)
-    for node, (_, slope) in slopes.items():
-        if node in local.cut:
-            total = local.fused(abs(slope), local.cut[node], total)
-    first = plus(None if total is None else total * (1.0 / SEED), local.total(output))
-    most = coarse.total(output)
+    most, slopes, cancelling = coarse.total(output), _adjoints(graph, output, local.cut), None
     if most is None:
         return 0.0
-    mean = local.fused(1.0 / STRETCH, most, None if first is None else (1.0 - 1.0 / STRETCH) * first)
-    return whole(mean if dust is None else plus(mean, 4.0 * len(slopes) * 2.0**-50 / SEED))
+    for node, (_, slope) in slopes.items():
+        if node in local.cut:
+            cancelling = local.fused(abs(slope), local.cut[node], cancelling)
+    unit, share = SAFE * UNIT, 1.0 - 1.0 / STRETCH
+    mean = local.fused(unit / STRETCH, most, None if dust is None else unit * 4.0 * len(slopes) * 2.0**-50 / SEED)
+    for weight, part in ((unit * share, local.total(output)), (unit * share / SEED, cancelling)):
+        mean = mean if part is None else local.fused(weight, part, mean)
+    return mean
 
 
 class _Local(Bounds):
@@ -66,11 +66,11 @@ class _Local(Bounds):
         )
         for node in nodes:
             after = not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
-            error = self._found(node) if after else coarse.error(node)
-            self._errors[node] = error
+            is_own = after or (coarse.is_dust(node) and node.operation not in INPUTS)
+            self._errors[node] = error = self._found(node) if is_own else coarse.error(node)
             if after:
                 behind.add(node)
-            else:
+            elif not is_own:
                 self._totals[node] = coarse.total(node)
             if uses[node] > 1 and node is not output and isinstance(error.rest, Node):
                 self.cut[node] = self.total(node)
