@@ -334,4 +334,4 @@ def _of_pieces(pieces, within, travel, rate):
         jumps = plus(jumps, 0.0 / bounds.above(near, bounds.total(travel)))
         return Error(0.0, bounds.fused(steepest, bounds.total(travel), jumps))
 
-    return {value: of_value, slope: lambda bounds: Error(4.0, None)}
+    return {value: of_value, slope: lambda bounds: Error(3.0, None)}

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines.engines import NUMPY
-from kinetostatics.mechanics.quantities import components, scale
-from kinetostatics.studies.methods.enclosures import on_arb
+from kinetostatics.mechanics.quantities import scale
+from support.enclosed import ordinary_angles, worst
 from support.every import every
 from support.shipped import shipped
 
-flint = pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
+pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 
 TURN = np.linspace(0.0, 2 * np.pi, 72, endpoint=False) + 0.01
 ERROR, BOUND = 5e-15, 2e-13
@@ -22,6 +21,7 @@ VANISHING = 0.01
 """So is O of the two saws that are balanced by design, 0.3 and 0.9 % of their springs' force: one rounding of r' of the
 cam makes 4e-15 of it.
 """
+PLAIN, TIGHT = 150.0, 20.0
 STEEP = {
     ("shaper", "cutting"): dict.fromkeys(("balancing_torque", "O", "A", "C", "D", "O2"), (4e-14, 7e-13)),
     ("toggle_press", "coining"): dict.fromkeys(
@@ -39,34 +39,28 @@ the cube of its elongation; A bears 20 kN of that: one rounding of the elongatio
 """
 
 
+VARIANTS = [(case, variant) for case in ks.shipped_cases() for variant in shipped(case).variants]
+
+
 @pytest.mark.slow
-@every("case, variant", [(case, variant) for case in ks.shipped_cases() for variant in shipped(case).variants])
+@every("case, variant", VARIANTS)
 def test_torque_and_reactions_are_near_the_exact_ones_and_bounded(case, variant):
     s = shipped(case).variants[variant].scene.solve(TURN)
-    names = ("balancing_torque", *s.reactions)
-    found, bounds = NUMPY.with_bounds(s.dynamics, names)
-    with flint.ctx.workprec(200):
-        exact = on_arb(flint.arb, s)
-        for name in names:
-            pairs = zip(_rows(found[name]), components(exact, name), strict=True)
-            error = _length([_differences(*pair) for pair in pairs])
-            size = np.nanmax(_length(_rows(found[name])))
-            largest = scale(s, name)
-            if name == "balancing_torque" or size < VANISHING * largest:
-                size = max(size, largest)
-            most = STEEP.get((case, variant), {}).get(name, (ERROR, BOUND))
-            assert np.nanmax(error) <= most[0] * size, name
-            assert np.nanmax(_length(_rows(bounds[name]))) <= most[1] * size, name
+    for name, found in worst(s).items():
+        size, largest = found.size, scale(s, name)
+        if name == "balancing_torque" or size < VANISHING * largest:
+            size = max(size, largest)
+        error, bound = STEEP.get((case, variant), {}).get(name, (ERROR, BOUND))
+        assert found.error <= error * size, name
+        assert found.plain <= bound * size, name
 
 
-def _rows(values):
-    return np.atleast_2d(values)
-
-
-def _length(rows):
-    return np.sqrt(np.sum(np.square(rows), axis=0))
-
-
-def _differences(values, truth):
-    truth = np.broadcast_to(np.asarray(truth, dtype=object), values.shape)
-    return [float(flint.arb(float(value)) - part) for value, part in zip(values, truth, strict=True)]
+@pytest.mark.slow
+@every("case, variant", VARIANTS)
+def test_worst_bounds_are_not_much_more_than_worst_errors(case, variant):
+    """`ratios_of_bounds.py` prints all."""
+    scene = shipped(case).variants[variant].scene
+    for name, found in worst(scene.solve(ordinary_angles(scene, 360, 20), on_gap="nan")).items():
+        assert found.error <= found.tight <= found.plain * (1.0 + 1e-12), name
+        assert found.plain <= PLAIN * found.error, name
+        assert found.tight <= TIGHT * found.error, name

@@ -4,18 +4,26 @@ import numpy as np
 
 from ...numbers.elementary import UNIT
 
+MORE = 1.0 + 1e-9
+"""What a bound is enlarged by for products of roundings."""
+TINY = 2.0**-1000
+"""More than what a product or quotient too small for a double loses."""
+
 
 def rounding(table, motion):
     """Bound on the error of values read by crank angle, N or N m.
 
-    Outside of its rows a turn more or less is rounded too, and with it where the last piece ends.
+    A slope has three roundings, the rise along it two more, the sum with the row's value one; a level piece has none.
+    The end of the last piece is rounded as well, and a turn more or less moves every row.
     """
     angle, (start, value, slope) = np.asarray(motion.crank_angle), table.pieces(motion)
-    x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
-    steepest = np.max(np.abs(np.diff(y) / np.diff(x)))
-    inside = (angle >= table.x[0]) & (angle <= table.x[-1])
-    turned = np.where(inside, 0.0, steepest * (np.abs(angle) + table.period))
-    return 8 * UNIT * (np.abs(slope * (angle - start)) + np.abs(value) + turned)
+    end, rise = table.x[0] + table.period, slope * (angle - start)
+    slopes = np.diff(np.append(table.y, table.y[0])) / np.diff(np.append(table.x, end))
+    ending = 0.0 if table.x[0] == 0.0 else 2.0 * np.abs(slopes[-1] * end)
+    turned = 8.0 * np.max(np.abs(slopes)) * (np.abs(angle) + table.period)
+    inside = np.where(angle < table.x[-1], 0.0, ending)
+    moved = np.where(np.floor((angle - table.x[0]) / table.period) == 0.0, inside, turned)
+    return MORE * UNIT * (5.0 * np.abs(rise) + np.where(slope == 0.0, 0.0, np.abs(value + rise)) + moved) + TINY
 
 
 def kinks_within(table, motion):
