@@ -6,7 +6,6 @@ recorded arithmetic holds for all scenes of that structure, whatever their numbe
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import reduce
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -18,7 +17,6 @@ from ..machine.crank import ray
 from ..machine.friction import NONE
 from ..machine.loads import Load, ProcessForce, table_errors
 from ..mechanics.dynamics import Dynamics
-from ..mechanics.gaps import groups_behind, places
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
@@ -27,7 +25,11 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from ..numbers.planar import plus
 from .bounds import Error
+from .gaping import Gaps
 from .trace import Graph, LeanGraph, Node, needed, operations
+
+WITHOUT_GAPS = ("closure", *CHECKS)
+"""Quantities that tell of gaps themselves."""
 
 
 class Table(NamedTuple):
@@ -125,11 +127,11 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
-    behind = groups_behind(recorder.recorded.mechanism)
+    gaps = Gaps(recorder.graph, recorder.recorded)
     outputs = tuple(
-        output
+        part.flat[0] if name in WITHOUT_GAPS else gaps.added(part.flat[0], name)
         for name, parts in zip(quantities, found, strict=True)
-        for output in _with_gaps([part.flat[0] for part in parts], name, recorder.recorded, behind)
+        for part in parts
     )
     known = of_scene(recorder.recorded)
     vectors = tuple(name != "closure" and known[name].vector and not sizes for name in quantities)
@@ -143,28 +145,6 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
         recorder.graph,
         recorder.inputs,
     )
-
-
-def _with_gaps(outputs, name, scene, behind):
-    """Outputs made NaN too where groups cannot be assembled they do not hang on, as weights of the crank."""
-    if name in ("closure", *CHECKS):
-        return outputs
-    roots = _roots(node for part in places(scene.placement, behind[name]) for node in np.ravel(part))
-    return [reduce(_with_gap, _missing(roots, output), output) for output in outputs]
-
-
-def _missing(roots, output):
-    known = set(needed([output]))
-    return [root for root in roots if root not in known]
-
-
-def _with_gap(output, root):
-    return output + 0.0 * root.held()
-
-
-def _roots(outputs):
-    """Operations behind outputs that have no value where a group cannot be assembled."""
-    return [node for node in needed(outputs) if node.operation in ("root", "sqrt")]
 
 
 def recorded(structure):

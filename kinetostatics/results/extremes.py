@@ -13,7 +13,7 @@ from ..numbers import checks
 from ..numbers.elementary import UNIT
 from ..numbers.lazy import cached_property
 from ..numbers.shown import number
-from .rounding import FLOOR, Known, without_rounding
+from .rounding import FLOOR, known_values
 from .turn import SAME, require_single, runs
 
 CALM = 1e6
@@ -92,14 +92,8 @@ class Extremes:
         return len(self.angle)
 
     def __repr__(self):
-        values, errors = self.value, np.full(len(self), np.nan)
-        if self.solution is not None:
-            errors = Known(self.solution, {self.quantity: self}).errors(self.quantity)
-            values = without_rounding(self.solution, self.quantity, values, errors)
-        rows = (
-            f"{np.degrees(angle):12.6f} deg  {number(value, bound=error):>11}"
-            for angle, value, error in zip(self.angle, values, errors, strict=True)
-        )
+        known = zip(self.angle, *known_values(self), strict=True)
+        rows = (f"{np.degrees(angle):12.6f} deg  {number(value, bound=error):>11}" for angle, value, error in known)
         return "\n".join([f"{len(self)} extremes of {self.quantity}", *rows])
 
 

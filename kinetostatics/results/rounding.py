@@ -98,6 +98,15 @@ def without_rounding(solution, name, values, bound=0.0):
     return zeroed(values, np.where(np.isfinite(bound), np.fmax(floor, bound), floor))
 
 
+def known_values(extremes):
+    """Values of extremes, rounding as 0, and bounds on their errors, NaN where nothing is proven."""
+    solution, name = extremes.solution, extremes.quantity
+    if solution is None:
+        return extremes.value, np.full(len(extremes), np.nan)
+    errors = Known(solution, {name: extremes}).errors(name)
+    return without_rounding(solution, name, extremes.value, errors), errors
+
+
 def zeroed(values, floor):
     """Values, 0 where they are no larger than a floor."""
     return np.where(np.abs(values) <= floor, 0.0, values)
