@@ -200,7 +200,7 @@ class Told(Dynamics):
     @property
     def acting(self):
         """Loads by link and forces along guides by slider as groups resolve them."""
-        self.link_loads, self.pushes  # noqa: B018  told before
+        self.placement, self.link_loads, self.pushes  # noqa: B018  told before
         with self.names.under("Inertia and springs along guides"):
             return super().acting
 

@@ -38,6 +38,7 @@ TERMS = {
     "place.radius": ("r", "radius of the pitch curve"),
     "place.slope": ("r'", "its first derivative by phi"),
     "place.curvature": ("r''", "its second derivative by phi"),
+    "departing": ("b", "second derivative of the roller centre plus its place"),
     "resolve.force": ("Q", "all that acts on the block, with friction"),
     "resolve.lean": ("tau", "tangent of the pressure angle"),
     "resolve.outward": ("N", "force on the block along the ray"),
@@ -70,7 +71,8 @@ def departure(ray, slope, curvature):
     """Second derivative of the roller centre plus its place, r'' along the ray and 2 r' across it (kernel)."""
     x, y = ray
     sideways = 2.0 * slope
-    return (curvature * x - sideways * y, curvature * y + sideways * x)
+    departing = (curvature * x - sideways * y, curvature * y + sideways * x)
+    return departing
 
 
 def resolve(ray, radius, slope, load):

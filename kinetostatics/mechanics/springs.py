@@ -13,7 +13,7 @@ by more than elongations are larger than the stroke; at rest inertia is out of i
 from functools import reduce
 
 from ..machine.links import Wrench
-from ..numbers.planar import added, plus, product, stretched
+from ..numbers.planar import added, minus, plus, product, stretched
 from .pushes import pushed
 
 
@@ -41,13 +41,15 @@ def _held(dynamics, slider):
     departures = [dynamics.departure(item) for item in springs]
     if any(part is None for part in departures):
         return None
-    share = mass * square / len(springs)
-    force = product(product(mass, alpha), travel.first)
+    share = mass * square
+    if len(springs) > 1:
+        share = share / len(springs)
+    force = minus(None, product(product(mass, alpha), travel.first))
     for item, departure in zip(springs, departures, strict=True):
-        force = plus(force, share * departure)
-        force = force - (share - item.spring_rate(dynamics)) * dynamics.elongation(item.free_position, slider)
+        force = minus(force, share * departure)
+        force = force + (share - item.spring_rate(dynamics)) * dynamics.elongation(item.free_position, slider)
     others = (pushed(item, dynamics) for item in items if not hasattr(item, "spring_rate"))
-    return reduce(plus, others, -force)
+    return reduce(plus, others, force)
 
 
 def _without_inertia(dynamics, slider):
