@@ -34,7 +34,7 @@ def exactly(table, angle):
 
 
 @pytest.mark.parametrize("turns", [1, 2])
-@pytest.mark.parametrize("first", [0.0, 0.1, -2.7])
+@pytest.mark.parametrize("first", [0.0, 0.1, -2.7, -777.3])
 def test_no_value_by_angle_is_off_by_more_than_its_rounding(first, turns):
     rng, period = np.random.default_rng(7), 2 * np.pi * turns
     for _ in range(8):
