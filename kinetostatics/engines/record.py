@@ -285,7 +285,7 @@ class _Tabled:
 
 # What is known of inputs that are not exact
 
-ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""))
+ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""), ("error", 3, ""))
 """Names of rows that only bounds need."""
 
 
@@ -306,12 +306,13 @@ def _unproven(what):
 def _of_pieces(pieces, within, travel, rate):
     """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
     _, value, slope = pieces
-    steepest, jump, near = within
+    change, jump, near, distance = within
 
     def of_value(bounds):
         bounds.of((travel, rate))
         jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
-        jumps = plus(jumps, 0.0 / bounds.above(near, bounds.total(travel)))
-        return Error(0.0, bounds.fused(steepest, bounds.total(travel), jumps))
+        off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
+        jumps = plus(jumps, 0.0 / bounds.above(near, off))
+        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps))
 
     return {value: of_value, slope: lambda bounds: Error(3.0, None)}

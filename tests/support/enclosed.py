@@ -75,4 +75,4 @@ def ordinary_angles(scene, even, between):
     kinks = np.unique(np.concatenate([np.mod(np.concatenate(table.kinks(motion)), period) for table in tables] or [[]]))
     for start, end in zip(kinks, np.append(kinks[1:], kinks[:1] + period), strict=True):
         angles.append(start + (np.arange(between) + 0.5) / between * (end - start))
-    return np.concatenate(angles)
+    return np.mod(np.concatenate(angles), period)

@@ -7,6 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.loads import table_errors
+from kinetostatics.studies.methods.enclosures import enclosure
 
 
 def test_a_steep_last_piece_of_a_table_by_angle_is_off_by_no_more_than_its_rounding():
@@ -33,7 +34,7 @@ def exactly(table, angle):
 
 
 @pytest.mark.parametrize("turns", [1, 2])
-@pytest.mark.parametrize("first", [0.0, 0.1, -2.7])
+@pytest.mark.parametrize("first", [0.0, 0.1, -2.7, -777.3])
 def test_no_value_by_angle_is_off_by_more_than_its_rounding(first, turns):
     rng, period = np.random.default_rng(7), 2 * np.pi * turns
     for _ in range(8):
@@ -77,10 +78,26 @@ def test_kinks_and_jumps_are_told_beside_rows_and_ends_of_strokes_only():
     pump = ks.crank_slider(0.05, 0.2)
     table = ks.Table([0.15, 0.2, 0.25], [-900.0, -500.0, -100.0], over="travel", back=[0.0, 0.0, 0.0], slider="slider")
     s = ks.solve(pump, [0.0, 1.0, np.pi], crank_speed=100.0, loads=ks.ProcessForce(table))
-    kinks, jumps, near = table_errors.kinks_within(table, s)
+    kinks, jumps, near, distance = table_errors.kinks_within(table, s)
     assert np.flatnonzero(jumps).tolist() == [0, 2]
     assert kinks[1] == 0.0
     assert 0.0 < near < 1e-6
+    np.testing.assert_allclose(distance, np.min(np.abs(s.slider_position - table.x[:, None]), axis=0), atol=1e-16)
+
+
+def test_beside_a_row_the_slope_beyond_counts_as_far_as_rounding_reaches(flint):
+    """Where the travel rounded lies before a kink, and the exact one behind it, or the other way round."""
+    pump, angle = ks.crank_slider(0.05, 0.2), 1.1
+    row = float(ks.solve(pump, angle, crank_speed=1.0).slider_position)
+    force = ks.ProcessForce(ks.Table([0.14, row, 0.26], [0.0, 0.0, 7e4], over="travel"))
+    near = angle + np.spacing(angle) * np.arange(-20, 21)
+    s = ks.solve(pump, np.append(near, angle + 1e-12), crank_speed=1.0, loads=force)
+    (travel,) = enclosure(s, "slider_position").exact
+    exact = [max(0.0, 7e4 * float(part - row) / (0.26 - row)) for part in travel]
+    error, bound = np.abs(np.abs(s.reaction("B")[0]) - exact), s.error_bound("B")[0]
+    assert np.all(error <= bound)
+    assert np.max(error) > 1e-12
+    assert bound[-1] < 1e-200
 
 
 @pytest.mark.parametrize("beside", [0.0, 5e-8, -5e-8])
