@@ -60,7 +60,7 @@ def test_torque_and_reactions_are_near_the_exact_ones_and_bounded(case, variant)
 def test_worst_bounds_are_not_much_more_than_worst_errors(case, variant):
     """`ratios_of_bounds.py` prints all."""
     scene = shipped(case).variants[variant].scene
-    for name, found in worst(scene.solve(ordinary_angles(scene, 360, 20), on_gap="nan")).items():
+    for name, found in worst(scene.solve(ordinary_angles(scene, 3600, 40), on_gap="nan")).items():
         assert found.error <= found.tight <= found.plain * (1.0 + 1e-12), name
         assert found.plain <= PLAIN * found.error, name
         assert found.tight <= TIGHT * found.error, name
