@@ -5,6 +5,7 @@ and the curvature radius of the pitch curve. Each r is a smooth closed form or s
 the turn.
 """
 
+import math
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -70,9 +71,15 @@ class Circle(Cam):
         object.__setattr__(self, "pitch_radius", radius)
         object.__setattr__(self, "centre", centre)
         self.RULES.admit(self)
+        object.__setattr__(self, "is_close", self._comes_close())
+
+    def _comes_close(self):
+        """Whether O lies close to the circle, in any design."""
+        (x, y), radius = self.centre, self.pitch_radius
+        if type(x) is type(y) is type(radius) is float:
+            return radius - math.hypot(x, y) < CLOSE * radius
         smallest = self.smallest_radius
-        near = checks.known(smallest) and smallest < CLOSE * self.pitch_radius
-        object.__setattr__(self, "is_close", bool(np.any(near) if np.ndim(near) else near))
+        return checks.known(smallest) and bool(np.any(smallest < CLOSE * radius))
 
     def _around_origin(self):
         """Say where O lies outside the circle, or on it."""

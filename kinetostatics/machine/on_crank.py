@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import UNSEEN, apart, divisor, root, total
+from ..numbers.elementary import APART, UNSEEN, apart, divisor, root, total
 from ..numbers.planar import (
     length,
     length_and_rest,
@@ -111,12 +111,13 @@ def directed(start):
         return (_sign(number(x)), None), 1.0
     if x is None:
         return (None, _sign(y)), 1.0
-    start = x + UNSEEN, y
+    start = apart(x, UNSEEN), y
     return start, length(start)
 
 
 def _sign(part):
-    return (part + UNSEEN) / abs(part + UNSEEN)
+    part = apart(part, UNSEEN)
+    return part / abs(part)
 
 
 def spread(ray, direction, reach):
@@ -137,7 +138,7 @@ def seen(placement, on, pivot, is_close):
     a, slack = throw.radius_and_rest
     start, reach = (direction, size) if throw.ahead else directed(unturned(pivot, throw.at))
     turn, near_by, far_off = spread(placement.ray, start, reach)
-    gap, unit = apart(total(ground, rest, -a, minus(None, slack)), 2.0**90 * UNSEEN), reach * reach
+    gap, unit = apart(total(ground, rest, -a, minus(None, slack)), UNSEEN), reach * reach
     if is_close:
         along, across = gap + 0.5 * a / unit * near_by, a / reach * turn
         x, y = (quotient(part, size) for part in direction)
@@ -158,7 +159,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_clos
     (a, slack, ground, rest), near_by, far_off = line[:4], line.near_by, line.far_off
     (less, short), unit = (minus(None, rest), minus(None, slack)), 4.0 * product * line.reach * line.reach
     near_c = total(ground, h, -a, -b, rest, short) * total(ground, b, -a, -h, rest, short)
-    near_c = apart(near_c, 2.0**90 * UNSEEN * UNSEEN) / unit  # where A meets the pivot
+    near_c = apart(near_c, APART * UNSEEN * UNSEEN) / unit  # where A meets the pivot
     near_s = total(ground, a, h, -b, rest, slack) * total(ground, a, b, -h, rest, slack) / unit
     far_c = total(a, b, h, -ground, less, slack) * total(ground, b, h, -a, rest, short) / unit
     far_s = total(b, h, -ground, -a, less, short) * (both + ground + a) / unit

@@ -60,8 +60,8 @@ ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
 SPLIT = 2.0**27 + 1.0
 """Factor by which a number is split into two of half as many digits."""
-UNSEEN = 2.0**-400
-"""Distance, m, that gives nothing a direction, and changes no digit of another."""
+UNSEEN = 2.0**-310
+"""Unit, m, of which what counts as nothing changes no digit of any other distance."""
 APART = 2.0**-90
 """Distance, in its unit, that counts as nothing but still has a direction."""
 
@@ -107,9 +107,11 @@ def held(x):
 
 
 def apart(distance, unit):
-    """A distance moved off zero by nothing that counts, so that it has a direction."""
+    """A distance moved off zero by nothing that counts, so that it has a direction; an enclosure is left alone."""
     if _holds_objects(distance):
         return _each("moved_apart", distance, unit, lambda distance: distance)
+    if not isinstance(distance, float | int) and not hasattr(distance, "dtype"):
+        return distance.moved_apart(unit) if hasattr(distance, "moved_apart") else distance
     return distance + APART * unit
 
 

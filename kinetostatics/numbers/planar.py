@@ -4,7 +4,7 @@ A vector is a pair (x, y) of numbers or arrays. `None` stands for what is absent
 is left out of sums. All functions are kernels: no branching on values, no writing in place, no array library by name.
 """
 
-from .elementary import UNSEEN, rest, sqrt
+from .elementary import UNSEEN, apart, rest, sqrt
 from .nothing import absent
 
 
@@ -26,7 +26,7 @@ def length_and_rest(a):
     x, y = map(absent, a)
     if x is None or y is None:
         return abs(number(y if x is None else x)), None
-    whole = length((x + UNSEEN, y))
+    whole = length((apart(x, UNSEEN), y))
     return whole, rest(whole, x, y)
 
 

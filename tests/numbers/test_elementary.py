@@ -1,6 +1,7 @@
 """Elementary functions of whatever number the caller brought."""
 
 import math
+from fractions import Fraction
 
 import mpmath as mp
 import numpy as np
@@ -101,3 +102,8 @@ def test_a_total_has_the_slopes_of_a_sum():
     found = total(Dual(np.array(0.1), np.array([[1.0], [0.0]])), 0.2, -Dual(np.array(0.3), np.array([[0.0], [2.0]])))
     assert found.value == math.fsum((0.1, 0.2, -0.3))
     np.testing.assert_array_equal(found.slopes, [[1.0], [-2.0]])
+
+
+def test_numbers_of_any_precision_are_not_moved_off_zero():
+    assert apart(Fraction(0), 1.0) == 0
+    assert apart(0, 1.0) == apart(0.0, 1.0) == APART
