@@ -5,9 +5,8 @@ import os
 import sys
 from functools import cache
 from importlib.machinery import ModuleSpec
-from types import FunctionType, ModuleType
+from types import ModuleType
 
-import numpy as np
 import pytest
 
 gc.set_threshold(20_000, 20, 20)  # modules and thousands of tests live to the end: seldom look for garbage among them
@@ -34,26 +33,12 @@ def programs(tmp_path_factory):
         yield
 
 
-def by_arrays(line):
-    """What `vectors.over_angles` writes, by NumPy."""
-    from kinetostatics.engines.operations import BY_DESIGN
-
-    computed = FunctionType(line.__code__, BY_DESIGN)
-
-    def at_angles(angle, sine, cosine, tables, results, first, table, design, numbers):
-        with np.errstate(all="ignore"):
-            found = computed(angle[first], sine[first], cosine[first], tables[:, table], numbers)
-        for place, output in enumerate(found):
-            results[design, place] = output
-
-    return at_angles
-
-
 @pytest.fixture
 def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
-    from kinetostatics.engines import compiled, loops, machine_code, programs, split, vectors
+    from kinetostatics.engines import compiled, loops, machine_code, programs, split
     from kinetostatics.numbers import kinds
+    from support import by_arrays
 
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function
@@ -63,7 +48,7 @@ def interpreted(monkeypatch):
     numba.extending.intrinsic = lambda function: lambda one, other, more: one * other + more  # there is one: fma
     monkeypatch.setitem(sys.modules, "numba", numba)
     monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
-    monkeypatch.setattr(vectors, "over_angles", by_arrays)
+    by_arrays.stand_in(monkeypatch)
     loaded = cache(machine_code.load)
     for module in (compiled, loops, programs, split):
         monkeypatch.setattr(module, "loaded", loaded)

@@ -11,7 +11,7 @@ from functools import cache
 from hashlib import sha256
 from types import FunctionType
 
-from ..numbers.elementary import ROUNDING
+from ..numbers.elementary import ROUNDING, sum_and_rest
 from ..version import __version__
 
 WIDTHS = {"+avx512f": 8, "+avx": 4}
@@ -58,7 +58,7 @@ def over_angles(line):
             kind, lanes = context.get_data_type(results.dtype), lanes_of(line)
 
             def from_angle(start, count):
-                writer = _Writer(builder, kind, count)
+                writer = Writer(builder, kind, count)
                 turn = (writer.loaded(rows.of_turn(place, start)) for place in range(3))
                 found = FunctionType(line.__code__, writer.scope)(
                     *turn, _Tables(writer, rows, start), [writer.spread(part) for part in fixed]
@@ -135,7 +135,7 @@ class _Tables:
         return self._writer.loaded(self._rows.of_table(row, self._start))
 
 
-class _Writer:
+class Writer:
     """Writes operations of numbers of a kind, as many at once as told.
 
     Attributes
@@ -186,26 +186,25 @@ class _Writer:
         """In one operation where the processor has it; in single precision never, as NumPy has it."""
         return self._built_in("fmuladd")(one, other, more) if self._is_double else one * other + more
 
-    def total(self, one, two, three, four):
+    def total(self, *terms):
         """See `elementary.total`."""
-        parts, lost = [one, two, three, four], []
-        for _ in range(2):
-            whole, *others = parts
-            lost = []
-            for part in others:
-                whole, rest = self._summed(whole, part)
-                lost.append(rest)
-            parts = [*lost, whole]
+        *lost, whole = self._summed(self._summed(terms))
         return whole + sum(lost[1:], lost[0])
 
     @staticmethod
-    def _summed(one, other):
-        whole = one + other
-        part = whole - one
-        return whole, (one - (whole - part)) + (other - part)
+    def _summed(terms):
+        whole, lost = terms[0], []
+        for term in terms[1:]:
+            whole, rest = sum_and_rest(whole, term)
+            lost.append(rest)
+        return *lost, whole
+
+    def holds(self, sign, one, other):
+        """Whether operands compare so, a bit for each lane; not if one is no number."""
+        return self.builder.fcmp_ordered(sign, self.held(one), self.held(other))
 
     def _chosen(self, sign, one, other, here, there):
-        holds = self.builder.fcmp_ordered(sign, self.held(one), self.held(other))
+        holds = self.holds(sign, one, other)
         return _Lanes(self, self.builder.select(holds, self.held(here), self.held(there)))
 
     @property
