@@ -149,7 +149,7 @@ def peaks(values, side, words, places):
 
 @njit(**options)
 def peak(values, side, words, places):
-    """Highest peak of values times a sign, where, in samples, and about how far it is off; none of what is no number."""
+    """Highest peak of values times a sign, where, in samples, and about how far off; none if a value is no number."""
     found, whole = peaks(values, side, words, places)
     if not whole:
         return nan, nan, 0.0
