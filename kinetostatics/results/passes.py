@@ -45,9 +45,16 @@ def _nested(series):
 
 
 def _through_samples():
-    """Lines that find the place of the top of the polynomial through samples, by two of Newton's steps."""
-    for name, row in zip(SERIES, THROUGH.tolist(), strict=True):
-        yield f"{name} = {' + '.join(f'{part!r} * {sample}' for part, sample in zip(row, CURVE, strict=True) if part)}"
+    """Lines that find the place of the top of the polynomial through samples, by two of Newton's steps.
+
+    Even powers come from sums of samples as far on either side, odd ones from differences.
+    """
+    for k in range(1, REACH + 1):
+        before, after = CURVE[REACH - k], CURVE[REACH + k]
+        yield f"sum{k}, less{k} = {after} + {before}, {after} - {before}"
+    for power, (name, row) in enumerate(zip(SERIES, THROUGH[:, REACH:].tolist(), strict=True)):
+        own = [CURVE[REACH], *(f"{'less' if power % 2 else 'sum'}{k}" for k in range(1, REACH + 1))]
+        yield f"{name} = {' + '.join(f'{part!r} * {sample}' for part, sample in zip(row, own, strict=True) if part)}"
     for above, below in ((SERIES, SLOPE), (SLOPE, CHANGE)):
         yield from (f"{name} = {above[k]} * {k}.0" for k, name in enumerate(below, 1))
     yield from [SQUARE, f"place -= {_polynomial(SLOPE)} / {_polynomial(CHANGE)}"] * 2
