@@ -6,8 +6,7 @@ design is written for it alone, so that it does not matter which designs come to
 
 import numpy as np
 
-from ..engines import calling, compiled
-from ..engines.writing import FILLED, GIVEN
+from ..engines import compiled
 from ..numbers.elementary import ROUNDING
 from .peaks import INNER, REACH, THROUGH, TINY
 from .reductions import MEAN, PEAK
@@ -67,7 +66,7 @@ SOURCE = f'''"""Written by kinetostatics; may be deleted at any time."""
 from math import inf, nan, pi, sqrt
 
 import numpy as np
-from kinetostatics.engines import calling, scanning
+from kinetostatics.engines import scanning
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
@@ -75,7 +74,6 @@ rising = scanning.bits_where(scanning.rising, 3)
 falling = scanning.bits_where(scanning.falling, 3)
 changing = scanning.bits_where(scanning.changing, 2)
 lowest = scanning.lowest_bit()
-call = calling.calling()
 plain = scanning.summing(lambda value: value)
 sizes = scanning.summing(abs)
 squares = scanning.summing(lambda value: value * value)
@@ -260,85 +258,79 @@ def estimated(values, kind, turns, words, places):
 
 
 @njit(**options)
-def reduced(values, rows, kinds, turns, words, places, numbers, rough, design):
-    for k in range(rows.size):
-        if kinds[k] >= 0:
-            numbers[k, design], rough[k, design] = estimated(values[rows[k]], kinds[k], turns, words, places)
+def reduced(results, rows, kinds, turns, numbers, rough, start):
+    designs, count = results.shape[0], results.shape[2]
+    words, places = np.empty(count // 64 + 1, np.uint64), np.empty(count, np.int64)
+    for design in range(designs):
+        for k in range(rows.size):
+            if kinds[k] >= 0:
+                values = results[design, rows[k]]
+                numbers[k, start + design], rough[k, start + design] = estimated(
+                    values, kinds[k], turns, words, places
+                )
 
 
 @njit(**options)
-def closed(values, first, angle, gaps, nearest, design):
-    rows, count = values.shape
-    close = False
-    for row in range(first, rows):
+def closed(results, first, angle, gaps, nearest, start):
+    designs, count = results.shape[0], results.shape[2]
+    for design in range(designs):
+        close = False
+        for row in range(first, results.shape[1]):
+            for i in range(count):
+                close |= not results[design, row, i] >= {NEAR!r}
+        if not close:
+            continue
+        gaping, least = 0, inf
         for i in range(count):
-            close |= not values[row, i] >= {NEAR!r}
-    if not close:
-        return
-    gaping, least = 0, inf
-    for i in range(count):
-        closes = True
-        for row in range(first, rows):
-            value = values[row, i]
-            closes &= value >= {-ROUNDING!r}
-            if value < least:
-                least = value
-                nearest[design] = angle[i]
-        gaping += not closes
-    gaps[design] = gaping
-    if gaping:
-        nearest[design] = nan
+            closes = True
+            for row in range(first, results.shape[1]):
+                value = results[design, row, i]
+                closes &= value >= {-ROUNDING!r}
+                if value < least:
+                    least = value
+                    nearest[start + design] = angle[i]
+            gaping += not closes
+        gaps[start + design] = gaping
+        if gaping:
+            nearest[start + design] = nan
 
 
-@njit("void(int64, {", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)}, int64[::1], int64[::1], int64, int64,"
-      "float64[:, ::1], boolean[:, ::1], int64[::1], float64[::1], int64)", cache=KEEP, **options)
-def passes(loop, angle, sine, cosine, parameters, tables, results, rows, kinds, first, turns, numbers, rough, gaps,
-           nearest, start):
-    count = results.shape[2]
-    words, places = np.empty(count // 64 + 1, np.uint64), np.empty(count, np.int64)
-    for design in range(results.shape[0]):
-        own, filled = parameters[design : design + 1], results[design : design + 1]
-        if tables.shape[1] > 1:
-            call(loop, angle, sine, cosine, own, np.ascontiguousarray(tables[:, design : design + 1]), filled)
-        else:
-            call(loop, angle, sine, cosine, own, tables, filled)
-        reduced(results[design], rows, kinds, turns, words, places, numbers, rough, start + design)
-        closed(results[design], first, angle[0], gaps, nearest, start + design)
+@njit("void(Array(float64, 3, 'C'), int64[::1], int64[::1], int64, float64[::1], int64, float64[:, ::1],"
+      "boolean[:, ::1], int64[::1], float64[::1], int64)", cache=KEEP, **options)
+def passes(results, rows, kinds, first, angle, turns, numbers, rough, gaps, nearest, start):
+    reduced(results, rows, kinds, turns, numbers, rough, start)
+    closed(results, first, angle, gaps, nearest, start)
 '''
 
 
 class Passes:
-    """Outputs of designs, computed and reduced one after the other.
+    """Outputs reduced from blocks of values.
 
     Parameters
     ----------
-    program : Program
     outputs : sequence of Output
     rows : sequence of int
         Row of the quantity of each.
     first : int
         Row where closure begins, which goes on to the last.
-    turn : sequence of array (1, N)
-        Crank angles, their sines and cosines.
+    angle : array (N,)
     turns : int
     """
 
-    def __init__(self, program, outputs, rows, first, turn, turns):
+    def __init__(self, outputs, rows, first, angle, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
-        self._loop, self._turn, self._turns = program.loop, turn, turns
-        self._passes = compiled.loaded(SOURCE).passes
+        self._passes, self._turns = compiled.loaded(SOURCE).passes, turns
         places, numbers = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64)
-        self._told = places, numbers, int(first), turns
+        self._given = places, numbers, int(first), np.array(angle), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
-    def __call__(self, parameters, tables, results, start, numbers, rough, gaps, nearest):
-        """Compute results (designs, rows, N), and fill in, from a design on, what they tell.
+    def __call__(self, results, start, numbers, rough, gaps, nearest):
+        """Fill in, from a design on, what results (designs, rows, N) tell.
 
         That is numbers (outputs, designs), whether so many angles do not tell them, at how many angles a design does
         not close, and the angle at which it is nearest to a limit position, left as it is where it is not near.
         """
-        given = calling.address_of(self._loop), *self._turn, parameters, tables, results
-        self._passes(*given, *self._told, numbers, rough, gaps, nearest, start)
+        self._passes(results, *self._given, numbers, rough, gaps, nearest, start)
         for k, item, row in self._others:
             part = slice(start, start + len(results))
             numbers[k, part], rough[k, part] = item.estimated(results[:, row], self._turns)

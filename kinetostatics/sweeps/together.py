@@ -24,8 +24,8 @@ from ..solution.scene import unchecked
 
 VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
-BLOCK = 120_000
-"""Values of all quantities over designs and angles that a compiled loop leaves at a time: half of a core's cache."""
+BLOCK = 40_000
+"""Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""
 
 
 def quantities(outputs):
@@ -81,18 +81,18 @@ def _each(fill, starts):
 def _by_loop(solution, outputs, count, found):
     """Function that fills in what is found of a block of designs, from its first on, and how many are a block.
 
-    Each design is computed and reduced by machine code, in memory that the same thread takes again.
+    Each block is computed and reduced by machine code, in memory that the same thread takes again.
     """
     state, names = solution.dynamics, quantities(outputs)
     program, leaves = programs.of(state, (*names, "closure"), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
+    sine, cosine = loops.turn(angle)
     tables = loops.table_of_rows(program.rows(state, leaves), solution.shape)
     parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
     first = np.cumsum([0, *program.recording.widths])
     rows = [first[names.index(item.quantity)] for item in outputs]
     held, size = threading.local(), len(program.outputs)
-    turn = angle, *loops.turn(angle)
-    passes = Passes(program, outputs, rows, first[len(names)], turn, round(solution.period / TURN))
+    passes = Passes(outputs, rows, first[len(names)], angle[0], round(solution.period / TURN))
     step = max(1, BLOCK // (size * angle.shape[1]))
 
     def fill(start):
@@ -101,7 +101,9 @@ def _by_loop(solution, outputs, count, found):
         if not hasattr(held, "results"):
             held.results = np.empty((step, size, angle.shape[1]))
         shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
-        passes(parameters[block], shared, held.results[:designs], start, *found)
+        results = held.results[:designs]
+        loops.run(program.loop, angle, sine, cosine, parameters[block], shared, results)
+        passes(results, start, *found)
 
     return fill, step
 

@@ -6,9 +6,6 @@ import numpy as np
 import pytest
 
 from kinetostatics.engines import compiled
-from kinetostatics.engines.programs import Program
-from kinetostatics.engines.record import Recording
-from kinetostatics.engines.trace import Graph
 from kinetostatics.results.passes import KINDS, Passes
 from kinetostatics.results.reductions import parsed
 
@@ -16,9 +13,6 @@ pytestmark = [
     pytest.mark.slow,  # all reductions as one compiled loop
     pytest.mark.skipif(not compiled.available(), reason="numba is not installed (extra: fast)"),
 ]
-GRAPH = Graph()
-TAKEN = Program(Recording((), (GRAPH.row(0), GRAPH.row(1)), (), (), (), (), GRAPH))
-"""A program whose outputs are rows of its tables."""
 OUTPUTS = [parsed(f"{kind} O") for kind in (*KINDS, "harmonic_2", "swing")]
 
 
@@ -54,18 +48,16 @@ def signals(count):
 
 
 def reduced(values, closure=None, turns=1):
-    """What `Passes` finds of values (designs, N), and of closure, which the loop takes from tables."""
+    """What `Passes` finds of values (designs, N), and of closure."""
     closure = np.ones_like(values) if closure is None else closure
-    tables = np.array([values, closure])
+    results = np.ascontiguousarray(np.stack([values, closure], axis=1))
     count, shape = len(values), (len(OUTPUTS), len(values))
     numbers, rough = np.empty(shape), np.zeros(shape, dtype=bool)
     gaps, nearest = np.zeros(count, dtype=int), np.full(count, np.nan)
-    angle = np.linspace(0, 6, values.shape[1])[None]
-    passes = Passes(TAKEN, OUTPUTS, [0] * len(OUTPUTS), 1, (angle, np.sin(angle), np.cos(angle)), turns)
+    passes = Passes(OUTPUTS, [0] * len(OUTPUTS), 1, np.linspace(0, 6, values.shape[1]), turns)
     half = count // 2
-    for start, stop in ((0, half), (half, count)):
-        results, parameters = np.empty((stop - start, 2, angle.size)), np.zeros((stop - start, 0))
-        passes(parameters, tables[:, start:stop].copy(), results, start, numbers, rough, gaps, nearest)
+    for part, start in ((results[:half], 0), (results[half:], half)):
+        passes(part.copy(), start, numbers, rough, gaps, nearest)
     return numbers, rough, gaps, nearest
 
 

@@ -44,21 +44,9 @@ def lowest_bit():
     return lambda word: (int(word) & -int(word)).bit_length() - 1
 
 
-def calling():
-    return lambda loop, *given: loop(*given)
-
-
-def address_of(loop):
-    return loop
-
-
 def stand_in(patch):
     """Put these in place of what is written for numba."""
-    from kinetostatics.engines import calling as calls
     from kinetostatics.engines import scanning, vectors
-
-    for own in (calling, address_of):
-        patch.setattr(calls, own.__name__, own)
 
     patch.setattr(vectors, "over_angles", over_angles)
     for own in (bits_where, summing, lowest_bit):
