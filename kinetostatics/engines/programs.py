@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import NotGivenError, QuantityError
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import Leaves
+from ..numbers.leaves import FLOATS, Leaves
 from . import loops, writing
 from .bounds import Bounds
 from .compiled import available, loaded
@@ -255,6 +255,8 @@ class _Watched(Program):
 
 
 def _plain_numbers(numbers):
+    if FLOATS.issuperset(map(type, numbers)):
+        return numbers
     return [number.item() if type(number) is np.ndarray else number for number in numbers]
 
 

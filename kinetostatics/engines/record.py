@@ -84,14 +84,14 @@ class Recording:
 
     def named(self, rows):
         """Results by name from rows (outputs, ...): (...) of a number, (rows, ...) of a vector and the closure."""
-        return {name: rows[place] for name, place in self._places}
+        return dict(zip(self.quantities, map(rows.__getitem__, self._places), strict=True))
 
     @cached_property
     def _places(self):
-        """Row or rows of each quantity, by name."""
+        """Row or rows of each quantity."""
         ends = accumulate(self.widths)
         return [
-            (name, end - 1 if width == 1 and not vector and name != "closure" else slice(end - width, end))
+            end - 1 if width == 1 and not vector and name != "closure" else slice(end - width, end)
             for name, end, width, vector in zip(self.quantities, ends, self.widths, self.vectors, strict=True)
         ]
 

@@ -210,7 +210,6 @@ class Passer:
     passage: Any
     on: str
     is_close = False
-    may_come_close: bool
     through: bool
     found_on: Any
     start: Any
@@ -222,8 +221,9 @@ class Passer:
 
     def on_crank(self, throws):
         passage = self.found_on(throws) if self.through else ""
-        is_close = not passage and self.may_come_close and self.on in throws and self.comes_close(throws[self.on])
-        if (passage, is_close) == (self.passage, self.is_close):
+        throw = throws.get(self.on)
+        is_close = not passage and throw is not None and self.comes_close(throw)
+        if passage == self.passage and is_close is self.is_close:
             return self
         return with_fields(self, passage=passage, is_close=is_close)
 

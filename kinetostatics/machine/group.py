@@ -204,7 +204,7 @@ class Group:
     @property
     def names(self):
         """What its names come from."""
-        return [value for value in vars(self).values() if type(value) is str]
+        return [value for value in self.__dict__.values() if value.__class__ is str]
 
     @property
     def hangs_on(self: Any):
@@ -287,9 +287,6 @@ class Group:
     """What a curve in its field `cam` gives: its letter, and unit."""
     passage = ""
     """How it passes change points, which belongs to its structure; "" where there are none."""
-
-    may_come_close = False
-    """Whether its kind has other formulas where it only just clears a limit position."""
 
     @property
     def passes(self):

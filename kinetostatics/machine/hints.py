@@ -30,7 +30,8 @@ def sizes(mechanism):
     arms = []
     for bar, _ in _on_arms(mechanism):
         _, along, across = mechanism.joints[bar.start]
-        arms.append((bar.length, sqrt(along * along + across * across) - bar.length))
+        away = abs(along) if present(across) is None else sqrt(along * along + across * across)
+        arms.append((bar.length, away - bar.length))
     return mechanism.extent, reaches, [bar.length for bar in mechanism.bars], bodies, arms
 
 

@@ -183,7 +183,7 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
     passage: str = field(default="", init=False, repr=False)
     is_close: bool = field(default=False, init=False, repr=False)
 
-    TRUSTED = may_come_close = True
+    TRUSTED = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset"}
     RULES = checks.Rules(
         "lever group",

@@ -59,14 +59,13 @@ class Mechanism(Batched):
 
     def __post_init__(self):
         self.RULES.admit(self)
-        if any(group.through or group.passes or group.may_come_close for group in self.groups):
-            throws = self.throws
-            object.__setattr__(self, "groups", tuple(group.on_crank(throws) for group in self.groups))
-        trusted = tuple((type(part), *part.names) for part in self.parts) if self.trusted else None
-        if trusted is None or trusted not in _NAMED_WELL:
+        throws = self.throws
+        vars(self)["groups"] = tuple([group.on_crank(throws) for group in self.groups])
+        names = tuple([(part.__class__, *part.names) for part in self.parts]) if self.trusted else None
+        if names is None or names not in _NAMED_WELL:
             checks.require(self.name, *_name_problems(self.parts))
-            if trusted is not None:
-                _NAMED_WELL.add(trusted)
+            if names is not None:
+                _NAMED_WELL.add(names)
 
     @property
     def parts(self):
@@ -78,10 +77,14 @@ class Mechanism(Batched):
         """Whether crank and groups are the library's own, whose forces are known to balance."""
         return all(part.trusted for part in self.parts)
 
-    @property
+    @cached_property
     def throws(self):
         """Pins of the crank by joint, each a `Throw`."""
-        return self._collected("throws")
+        found = self.crank.throws
+        for group in self.groups:
+            if group.throws:
+                found = found | group.throws
+        return found
 
     @cached_property
     def turns(self):
@@ -199,11 +202,8 @@ class Mechanism(Batched):
     @cached_property
     def extent(self):
         """Sum of all lengths, places of mass centres among them, m."""
-        found = 0.0
-        for part in self.parts:
-            for length in part.lengths:
-                found = found + abs(length)
-        return found
+        found = [abs(length) for part in self.parts for length in part.lengths if present(length) is not None]
+        return sum(found[1:], found[0]) if found else 0.0
 
     @cached_property
     def proportion(self):

@@ -194,7 +194,7 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
     passage: str = field(default="", init=False, repr=False)
     is_close: bool = field(default=False, init=False, repr=False)
 
-    TRUSTED = may_come_close = True
+    TRUSTED = True
     PATHS: ClassVar = {"guide": ""}
     RULES = checks.Rules(
         "slider group",

@@ -55,8 +55,7 @@ def surely_well(solution, margins):
         least *= min(margin.min(), 1.0)
     if not least > 0.0:
         return False
-    angle = solution.crank_angle.ravel()
-    return least >= _enough(solution, math.sqrt(angle.dot(angle))) or least >= _enough(solution)
+    return least >= _enough(solution, solution.farthest) or least >= _enough(solution)
 
 
 def _enough(solution, farthest=None):

@@ -1,8 +1,11 @@
 """Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link."""
 
+import math
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
+
+import numpy as np
 
 from ..errors import QuantityError
 from ..machine.friction import NONE, Frictions
@@ -86,6 +89,15 @@ class Motion:
             *self.loads,
             self.friction,
         )
+
+    @cached_property
+    def farthest(self):
+        """A bound of the crank angles, rad; infinite or NaN where they are not finite, or cannot be looked at."""
+        angle = self.crank_angle
+        if not isinstance(angle, np.ndarray) or angle.dtype == object:
+            return math.inf
+        row = angle.ravel()
+        return math.sqrt(row.dot(row))  # costs a quarter of asking for the largest
 
     @cached_property
     def placement(self):

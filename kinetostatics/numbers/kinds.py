@@ -2,7 +2,6 @@
 
 import itertools
 import threading
-from collections import OrderedDict
 from typing import Any
 
 from .lazy import cached_property
@@ -24,10 +23,12 @@ class Kind:
     structure : tuple
     known : dict
         Whatever was found to hold for all of them, by the question.
+    used : int
+        When it was last asked for, counted in such questions.
     """
 
     def __init__(self, structure):
-        self.structure, self.known = structure, {}
+        self.structure, self.known, self.used = structure, {}, 0
 
     def __reduce__(self):
         return Kind, (self.structure,)
@@ -45,21 +46,29 @@ class Kind:
         return self.known[question]
 
 
-_kinds: OrderedDict[Any, Kind] = OrderedDict()
+_kinds: dict[Any, Kind] = {}
 _lock = threading.Lock()
+_uses = itertools.count()
 
 
 def of(structure) -> Kind:
     """Kind of a structure that tells all."""
-    found = _kinds.get(structure) or Kind(structure)
+    found = _kinds.get(structure) or _added(structure)
+    found.used = next(_uses)
+    return found
+
+
+def _added(structure):
+    """A new kind, or that which another thread has added meanwhile."""
     with _lock:
-        _kinds[structure] = found
-        _kinds.move_to_end(structure)
+        found = _kinds.setdefault(structure, Kind(structure))
         while len(_kinds) > MOST:
-            _kinds.popitem(last=False)
+            idle = min((kind for kind in _kinds.values() if kind is not found), key=lambda kind: kind.used)
+            del _kinds[idle.structure]
     return found
 
 
 def forget():
     """Find all anew."""
-    _kinds.clear()
+    with _lock:
+        _kinds.clear()

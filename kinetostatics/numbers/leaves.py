@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from .content import LIBRARY, key_of, of_class
+from .lazy import cached_property
 
 
 class _Mark:
@@ -55,12 +56,10 @@ class Leaves:
         Whether the structure tells all else; False with objects of the user's that may change unseen.
     """
 
-    __slots__ = ("lasting", "numbers", "parts", "tables")
-
     def __init__(self):
         self.numbers, self.tables, self.parts, self.lasting = [], [], [], True
 
-    @property
+    @cached_property
     def are_plain(self):
         """Whether all are plain numbers, and the structure tells all else."""
         return self.lasting and not self.tables and FLOATS.issuperset(map(type, self.numbers))
@@ -155,6 +154,13 @@ def mapped(item, number, special=None):
     if isinstance(item, int | float | np.number) and item == 0:
         return item
     return number(item) if isinstance(item, int | float | np.number | np.ndarray) else item
+
+
+def made(kind: Any, /, **values):
+    """Item of a dataclass with values in its fields, nothing checked."""
+    whole = object.__new__(kind)
+    whole.__dict__.update(values)
+    return whole
 
 
 def with_fields(item, **changes):
@@ -252,10 +258,6 @@ def _passing(item, leaves):
     return Opaque(item, (id(item),))
 
 
-def _structural(item, leaves):
-    return item if type(item) in _AS_THEY_ARE else _by_content(item, leaves)
-
-
 _TAKERS: dict[type, Callable] = {
     int: _number,
     bool: _as_it_is,
@@ -267,7 +269,7 @@ _TAKERS: dict[type, Callable] = {
     Kept: _kept,
     FunctionType: _by_content,
 }
-_AS_THEY_ARE = (bool, int, float, str, type(None))
+_AS_THEY_ARE = frozenset((bool, int, float, str, type(None)))
 
 
 def _taker(kind):
@@ -289,27 +291,38 @@ def _of_dataclass(kind):
     over_angles = getattr(kind, "OVER_ANGLES", ())
     lines = ["def taker(item, leaves):", "    append = leaves.numbers.append"]
     for place, (name, structural) in enumerate(_kinds(kind)):
-        array = "taken_apart" if name in over_angles else "constants"
-        lines.append(f"    v{place} = item.{name}")
+        array, value = "taken_apart" if name in over_angles else "constants", f"v{place}"
+        lines.append(f"    {value} = item.{name}")
         if structural:
-            lines.append(f"    if v{place}.__class__ is not str: v{place} = structural(v{place}, leaves)")
+            lines.append(f"    if {value}.__class__ not in as_they_are: {value} = structural({value}, leaves)")
         else:
             lines += [
-                f"    if v{place}.__class__ is float:",
-                f"        if v{place} != 0.0:",
-                f"            append(v{place})",
-                f"            v{place} = NUMBER",
-                f"        else: v{place} = 0.0",
-                f"    elif v{place} is not None:",
-                f"        kind = type(v{place})",
-                f"        if kind is array: v{place} = {array}(v{place}, leaves)",
-                f"        else: v{place} = (takers.get(kind) or taker_of(kind))(v{place}, leaves)",
+                f"    if {value}.__class__ is float:",
+                *_of_float(value, 8),
+                f"    elif {value}.__class__ is pair and len({value}) == 2:",
+                f"        first, second = {value}",
+                "        if first.__class__ is second.__class__ is float:",
+                *_of_float("first", 12),
+                *_of_float("second", 12),
+                f"            {value} = pair, first, second",
+                f"        else: {value} = taken_apart({value}, leaves)",
+                f"    elif {value} is not None:",
+                f"        kind = type({value})",
+                f"        if kind is array: {value} = {array}({value}, leaves)",
+                f"        else: {value} = (takers.get(kind) or taker_of(kind))({value}, leaves)",
             ]
     lines.append(f"    return (whole, {' '.join(f'v{place},' for place in range(len(fields(kind))))})")
-    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "array": np.ndarray}
-    scope |= {"structural": _structural, "takers": _TAKERS, "taker_of": _taker}
+    scope = {"whole": kind, "NUMBER": NUMBER, "taken_apart": taken_apart, "constants": _constants, "pair": tuple}
+    scope |= {"structural": _by_content, "as_they_are": _AS_THEY_ARE, "array": np.ndarray}
+    scope |= {"takers": _TAKERS, "taker_of": _taker}
     exec("\n".join(lines), scope)
     return scope["taker"] if kind.__module__.partition(".")[0] == LIBRARY else _with_its_class(kind, scope["taker"])
+
+
+def _of_float(value, indent):
+    """Lines that take a float."""
+    lines = f"if {value} != 0.0:", f"    append({value})", f"    {value} = NUMBER", f"else: {value} = 0.0"
+    return [" " * indent + line for line in lines]
 
 
 def _with_its_class(kind, taker):

@@ -26,7 +26,7 @@ def crank_angles(given, owner="solve"):
 
 def problems(angle):
     """What is wrong with crank angles, as far as they can be looked at."""
-    if not math.prod(angle.shape):
+    if not (angle.size if isinstance(angle, np.ndarray) else math.prod(angle.shape)):
         return "there are no crank angles"
     if not isinstance(angle, np.ndarray) or angle.dtype == object:
         return None

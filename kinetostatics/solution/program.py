@@ -17,7 +17,7 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.quantities import CHECKS
 from ..numbers import checks
 from ..numbers.elementary import read_only
-from ..numbers.leaves import with_fields
+from ..numbers.leaves import made, with_fields
 from .angles import crank_angles, problems
 from .parameters import fixed, is_judged_together, keeping, leaves_of, require_free, shaping
 from .scene import unchecked
@@ -240,9 +240,7 @@ class Program:
             state = Dynamics(scene.mechanism, angle, *_drive(scene))
             checks.require("program", *refusals(state))
             return state, leaves
-        state = object.__new__(Dynamics)
-        vars(state).update(self._fields, crank_angle=angle, shape=shape)
-        return state, leaves
+        return made(Dynamics, **{**self._fields, "crank_angle": angle, "shape": shape}), leaves
 
     def _numbers_with(self, values):
         """All numbers, in their order, with some values in place of their own."""

@@ -16,6 +16,7 @@ from ..machine import hints
 from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
+from ..numbers.leaves import made
 from .angles import crank_angles, problems
 from .checked import checked
 from .drive_and_loads import in_a_line
@@ -214,9 +215,14 @@ def solve(
     >>> bool(s.power_residual < 1e-14)  # two ways to the torque agree
     True
     """
-    scene = object.__new__(Scene)
-    vars(scene).update(mechanism=mechanism, crank_speed=crank_speed, crank_acceleration=crank_acceleration, loads=loads)
-    vars(scene).update(friction=friction)
+    scene = made(
+        Scene,
+        mechanism=mechanism,
+        crank_speed=crank_speed,
+        crank_acceleration=crank_acceleration,
+        loads=loads,
+        friction=friction,
+    )
     scene._admit("solve")
     return checked(_begun(scene, crank_angle, on_gap, engine), on_gap)
 
@@ -233,14 +239,23 @@ def _begun(scene, crank_angle, on_gap, engine):
 def unchecked(scene, crank_angle, engine=None):
     """What `solve` returns, before a look at where the mechanism closes and where digits are lost."""
     angle, mechanism = crank_angles(crank_angle), scene.mechanism
-    checks.require("solve", problems(angle), None if engine is None else checks.choice("engine", engine, ENGINES))
+    solution = made(
+        Solution,
+        mechanism=mechanism,
+        crank_angle=angle,
+        crank_speed=scene.crank_speed,
+        crank_acceleration=scene.crank_acceleration,
+        loads=scene.loads,
+        friction=scene.friction,
+    )
+    wrong = None if 0.0 < solution.farthest < math.inf else problems(angle)
+    checks.require("solve", wrong, None if engine is None else checks.choice("engine", engine, ENGINES))
     if angle.dtype == "float32":
         warnings.warn(
             "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
             stacklevel=4,
         )
-    solution = Solution(mechanism, angle, scene.crank_speed, scene.crank_acceleration, scene.loads, scene.friction)
     _, leaves = solution.apart
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))

@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from ..mechanics.motion import Motion
 from ..mechanics.quantities import all_found, scale, values
 from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property
+from ..numbers.leaves import made
 from ..results.turn import Turn
 from . import contents
 from .angles import crank_angles
@@ -29,7 +30,6 @@ from .explained import Explained
 
 SHARE = 100_000
 """Values over designs and angles up to which all forces are computed together."""
-SCENE = tuple(field.name for field in fields(Motion))
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,8 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         702 N
         """
         found = self._force("reaction", joint, True)
-        self._warn_of_growth(joint, found)
+        if self.mechanism.passes:
+            self._warn_of_growth(joint, found)
         return found
 
     @property
@@ -132,7 +133,8 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
     def scalar(self, name):
         """A force or moment by name, (..., N): "guide_force", "guide_moment", "cam_force", "slot_force" ..."""
         found = self._force("quantity", name, False)
-        self._warn_of_growth(name, found)
+        if self.mechanism.passes:
+            self._warn_of_growth(name, found)
         return found
 
     @property
@@ -268,17 +270,20 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
     @cached_property
     def dynamics(self):
         """The scene at its crank angles, as engines take it and kernels compute it."""
-        own = vars(self)
-        made = object.__new__(Dynamics)
-        vars(made).update(
-            {name: own[name] for name in SCENE},
+        return made(
+            Dynamics,
+            mechanism=self.mechanism,
+            crank_angle=self.crank_angle,
+            crank_speed=self.crank_speed,
+            crank_acceleration=self.crank_acceleration,
+            loads=self.loads,
+            friction=self.friction,
             apart=self.apart,
             loads_are_given=self.loads_are_given,
             kind=self.kind,
             shape=self.shape,
+            way=getattr(self.engine, "way", None),
         )
-        vars(made).update(way=getattr(self.engine, "way", None))
-        return made
 
     @property
     def closed(self):
@@ -301,7 +306,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
 
     def _warn_of_growth(self, name, values):
         """Say once that forces grow without bound at a change point that is passed."""
-        if not self.mechanism.passes or self.silent or not self.mechanism.grows(name):
+        if self.silent or not self.mechanism.grows(name):
             return
         if not isinstance(values, np.ndarray) or values.dtype != float:
             return
@@ -312,9 +317,9 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
 
     def _force(self, kind, name, vector):
         """A force by name; all are computed together if they are not too many."""
-        if name not in self._values:
-            names = self.reactions if vector else self.scalars
-            self._look_up(kind, name, dict.fromkeys(names))
+        if name in self._values:
+            return self._values[name]
+        self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
         return self._found(name)
 
     def _found(self, name):

@@ -10,9 +10,9 @@ class Rules:
     """What the fields of a dataclass must be, field -> rule; `also` finds problems of several fields together."""
 
     def __init__(self, owner, also=None, **rules):
-        """`are_plain(values)` tells of a mapping whether all values are well and kept as they are."""
+        """`are_well(values)` tells of a mapping if all values are surely well, and puts in what is kept of them."""
         self.owner, self.also, self.rules = owner, also, rules
-        self.are_plain = _look(rules)
+        self.are_well = _look(rules)
 
     def admit(self, item):
         """Put into the fields what is to be kept of them, or raise `ParameterError`."""
@@ -22,31 +22,26 @@ class Rules:
 
     def keep(self, values, owner):
         """The same in a mapping of field to value."""
-        if self.are_plain(values):
-            return
-        for field, rule in self.rules.items():
-            found = rule.quick(values[field])
-            if found is UNSURE:
-                values.update(examined(owner, self.rules, values))
-                return
-            values[field] = found
+        if not self.are_well(values):
+            values.update(examined(owner, self.rules, values))
 
 
 def _look(rules):
-    """Function that tells of values by field whether all are kept as they are, written for the rules in one line."""
-    scope: dict[str, Any] = {}
-    lines = [f"    {field} = values[{field!r}]" for field in rules]
-    conditions = []
+    """Function for values by field that are mostly well, written for the rules as a hand would write it."""
+    scope: dict[str, Any] = {"UNSURE": UNSURE}
+    lines = ["def look(values):"]
     for field, rule in rules.items():
-        condition, objects = rule.plainly(field) if hasattr(rule, "plainly") else _quickly(rule, field)
-        scope |= objects
-        conditions.append(condition)
-    exec("\n".join(["def look(values):", *lines, f"    return {' and '.join(conditions) or 'True'}"]), scope)
+        condition, objects = rule.plainly(field) if hasattr(rule, "plainly") else ("False", {})
+        scope |= objects | {f"quick_at_{field}": rule.quick}
+        lines += [
+            f"    {field} = values[{field!r}]",
+            f"    if not ({condition}):",
+            f"        kept = quick_at_{field}({field})",
+            "        if kept is UNSURE: return False",
+            f"        if kept is not {field}: values[{field!r}] = kept",
+        ]
+    exec("\n".join([*lines, "    return True"]), scope)
     return scope["look"]
-
-
-def _quickly(rule, value):
-    return f"quick_at_{value}({value}) is {value}", {f"quick_at_{value}": rule.quick}
 
 
 class Checked:
@@ -56,7 +51,7 @@ class Checked:
 
     def __post_init__(self):
         rules = self.RULES
-        if rules.also is not None or not rules.are_plain(self.__dict__):
+        if rules.also is not None or not rules.are_well(self.__dict__):
             rules.admit(self)
 
 

@@ -30,8 +30,8 @@ def shown(value):
 
 def require(owner, *problems):
     """Raise one `ParameterError` that lists every problem found."""
-    found = [text for text in problems if text]
-    if found:
+    if any(problems):
+        found = [text for text in problems if text]
         masks: list[Any] = [getattr(text, "designs", None) for text in found]
         designs = None if any(mask is None for mask in masks) else np.any(np.broadcast_arrays(*masks), axis=0)
         raise ParameterError(f"{owner}: " + "; ".join(found), designs)
