@@ -96,7 +96,8 @@ def test_the_secant_of_a_leaning_root_is_no_root_of_its_own(lean):
 
 def test_what_is_zero_at_every_crank_angle_is_left_out_but_not_what_may_be_a_gap(lean):
     sine, cosine, length, _ = lean
-    assert 0.0 * sine == 0.0 and cosine * 0.0 == 0.0
+    assert 0.0 * sine == 0.0
+    assert cosine * 0.0 == 0.0
     assert length * sine + 0.0 * cosine is length * sine
     assert told(0.0 * cosine - length * sine) == ["sin", "*", "-"]
     gap = 0.0 * cosine.sqrt()
