@@ -163,8 +163,18 @@ class LeanGraph(Graph):
     def node(self, operation, *arguments):
         if operation == "/":
             return self._quotient(*arguments)
+        if operation in "+-" and len(arguments) == 2:
+            left, right = arguments
+            if _is_number(right, 0.0) and _counts(left):
+                return left
+            if _is_number(left, 0.0) and _counts(right):
+                return right if operation == "+" else -right
+        if operation == "sqrt" and (secant := _secant(*arguments)):
+            return abs(secant[0]) * self._over(secant[1])
         if operation == "*":
             left, right = arguments
+            if _is_none_of_turn(left, right) or _is_none_of_turn(right, left):
+                return 0.0
             if is_negative(left):
                 return -self.node("*", left.arguments[0], right)
             if is_negative(right):
@@ -179,6 +189,8 @@ class LeanGraph(Graph):
         return super().node(operation, *arguments)
 
     def _quotient(self, above, below):
+        if _is_negative(above):
+            return -self.node("/", above.arguments[0], below)
         if _varies(below) == BY_ANGLE:
             if isinstance(above, Node) and above.operation == "*":
                 left, right = above.arguments
@@ -235,6 +247,50 @@ def _is_over(part, other):
         and part.arguments[1] is other
         and _is_number(part.arguments[0], 1.0)
     )
+
+
+def _is_none_of_turn(part, other):
+    """Whether a part is zero and the other the sine or cosine of the crank angle, which is finite."""
+    return (
+        _is_number(part, 0.0)
+        and isinstance(other, Node)
+        and other.operation in ("sin", "cos")
+        and other.arguments[0].operation == "angle"
+    )
+
+
+def _counts(part):
+    """Whether a part at each crank angle is more than zero times another, which may say that there is no value."""
+    return _varies(part) == BY_ANGLE and not any(_is_number(factor, 0.0) for factor in part.arguments)
+
+
+def _secant(square):
+    """Where a square is 1 + x^2 / h^2 with h the root of (a - x) (a + x): a and h, for its root is |a| / h."""
+    one, power = _parts(square, "+")
+    if not _is_number(one, 1.0):
+        one, power = power, one
+    tangent, same = _parts(power, "*")
+    if not _is_number(one, 1.0) or tangent is not same:
+        return None
+    for x, over in _either_way(tangent, "*"):
+        above, root = _parts(over, "/")
+        if _is_number(above, 1.0) and isinstance(root, Node) and root.operation == "sqrt":
+            for less, more in _either_way(root.arguments[0], "*"):
+                a, other = _parts(less, "-")
+                if other is x and any(one is a and two is x for one, two in _either_way(more, "+")):
+                    return a, root
+    return None
+
+
+def _parts(part, operation):
+    """Both arguments of an operation, or nothing twice."""
+    is_one = isinstance(part, Node) and part.operation == operation and len(part.arguments) == 2
+    return part.arguments if is_one else (None, None)
+
+
+def _either_way(part, operation):
+    left, right = _parts(part, operation)
+    return ((left, right), (right, left))
 
 
 def _is_number(part, number):
