@@ -189,7 +189,7 @@ class LeanGraph(Graph):
         return super().node(operation, *arguments)
 
     def _quotient(self, above, below):
-        if _is_negative(above):
+        if is_negative(above):
             return -self.node("/", above.arguments[0], below)
         if _varies(below) == BY_ANGLE:
             if isinstance(above, Node) and above.operation == "*":
