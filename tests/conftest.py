@@ -38,6 +38,7 @@ def interpreted(monkeypatch):
     """Programs run by Python as they are written, without numba: the same arithmetic, and nothing to compile."""
     from kinetostatics.engines import compiled, loops, machine_code, programs, split
     from kinetostatics.numbers import kinds
+    from support import by_arrays
 
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function
@@ -47,6 +48,7 @@ def interpreted(monkeypatch):
     numba.extending.intrinsic = lambda function: lambda one, other, more: one * other + more  # there is one: fma
     monkeypatch.setitem(sys.modules, "numba", numba)
     monkeypatch.setitem(sys.modules, "numba.extending", numba.extending)
+    by_arrays.stand_in(monkeypatch)
     loaded = cache(machine_code.load)
     for module in (compiled, loops, programs, split):
         monkeypatch.setattr(module, "loaded", loaded)

@@ -1,8 +1,12 @@
-"""Every module has a file of tests that is found by its name: kinetostatics/ROOM/x.py has tests/ROOM/test_x.py."""
+"""Every module has a file of tests of its name, kinetostatics/ROOM/x.py has tests/ROOM/test_x.py, and knows its own."""
 
+import ast
 from pathlib import Path
 
 import pytest
+
+import kinetostatics as ks
+from kinetostatics.machine.group import Group
 
 TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent / "kinetostatics"
@@ -45,3 +49,27 @@ def test_exceptions_are_modules_without_a_file_and_the_proof_is_there():
         assert module in modules(), f"{module} is no module any longer"
         assert not file_of_tests(module).exists(), f"{module} has its own file of tests and needs no exception"
         assert (TESTS / proof).exists(), f"{module} is said to be proven in {proof}, which is not there"
+
+
+MAY_NAME_GROUPS = ("machine/", "casefile/schema/", "studies/methods/", "__init__.py")
+"""Where kinds of groups are made, read from case files, computed in another way to compare with, or handed out."""
+
+
+def named_in(path, kinds):
+    """Those of some names that a module's code, not its texts, takes from elsewhere or asks for."""
+    text = path.read_text(encoding="utf-8")
+    if not any(kind in text for kind in kinds):
+        return set()
+    tree = ast.parse(text)
+    found = {alias.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for alias in node.names}
+    return kinds & (found | {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)})
+
+
+def test_no_module_outside_the_machine_knows_a_kind_of_group():
+    """Whoever needs something of a group asks what groups declare, or the builders."""
+    public = {name: getattr(ks, name) for name in ks.__all__}
+    kinds = {name for name, kind in public.items() if isinstance(kind, type) and issubclass(kind, Group)}
+    assert {"SliderGroup", "CamRoller", "Pin", "RollerFollower"} <= kinds
+    paths = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob("*.py")}
+    knowing = {name: named_in(path, kinds) for name, path in paths.items() if not name.startswith(MAY_NAME_GROUPS)}
+    assert not {name: found for name, found in knowing.items() if found}

@@ -210,7 +210,7 @@ def owned(mechanism, name):
 
 
 def describe(item):
-    """A part as a mapping of its fields, numbers with their units."""
+    """A part as a mapping of the fields that it is made of, numbers with their units."""
     if isinstance(item, Guide):
         exact = {"guide_angle [rad]": item.angle, "direction, rounded [1]": list(item.direction)}
         through = {"direction (length does not count) [1]": list(item.direction)}
@@ -221,7 +221,7 @@ def describe(item):
         return {"over": item.over, f"x [{x}]": item.x.tolist(), "y": item.y.tolist(), **back}
     if is_dataclass(item):
         rules = item.RULES.rules
-        names = [field.name for field in fields(item) if getattr(item, field.name) is not None]
+        names = [field.name for field in fields(item) if field.init and getattr(item, field.name) is not None]
         return {"type": type(item).__name__} | {
             name + _unit(rules.get(name), getattr(item, name)): describe(getattr(item, name)) for name in names
         }

@@ -127,8 +127,7 @@ def _problems(table, source, reference):
     scene, vary, varied = source.scene, table.vary, source
     if isinstance(table, schema.TorqueFreeCamTable):
         try:
-            cosine, sine, ends, *others = (getattr(table, name) for name in CAM)
-            start = begun(scene, cosine, sine, ends, True, *others)
+            start = begun(scene, **{name: getattr(table, name) for name in CAM})
         except DesignError:  # the search says so, with the numbers
             return
         except KinetostaticsError as error:

@@ -1,8 +1,9 @@
 """What designs may vary: paths into a variant of a case file, as in scenes: "spring.stiffness", "slider2.mass"."""
 
 import typing
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from ..numbers import paths as tree
 from .schema import MADE_OF, Table
 
 PARTS = {"x": 0, "y": 1, "along": 0, "across": 1}
@@ -101,16 +102,7 @@ def value(table, steps):
 
 def with_values(table, values: dict):
     """Copy of a validated table with values by steps, as they are: numbers or arrays of designs."""
-    if () in values:
-        return values[()]
-    inner: dict[Any, dict] = {}
-    for (first, *rest), value in values.items():
-        inner.setdefault(first, {})[tuple(rest)] = value
-    if isinstance(table, tuple):
-        return tuple(with_values(part, inner[place]) if place in inner else part for place, part in enumerate(table))
-    if isinstance(table, dict):
-        return table | {name: with_values(table[name], own) for name, own in inner.items()}
-    return table.model_copy(update={name: with_values(getattr(table, name), own) for name, own in inner.items()})
+    return tree.with_values(table, values, lambda part, **fields: part.model_copy(update=fields))
 
 
 def files(table, keys=()):

@@ -12,7 +12,7 @@ import pydantic
 from ..errors import CaseError, ParameterError
 from ..numbers import checks
 from ..numbers.files import read_text
-from ..numbers.units import shown
+from ..numbers.units import quoted
 from . import schema
 
 LARGEST_CASE = 300_000
@@ -43,7 +43,7 @@ def shipped_cases():
 def place(path):
     """Path of the case file that is meant."""
     if not isinstance(path, str | os.PathLike):
-        raise ParameterError(f"load_case: takes a path or the name of a shipped case, got {shown(path)}")
+        raise ParameterError(f"load_case: takes a path or the name of a shipped case, got {quoted(path)}")
     shipped = shipped_cases()
     if not isinstance(path, str) or path not in shipped:
         found = Path(path)
@@ -135,17 +135,17 @@ def _sentence(model, item, place):
     if item["type"] == "kind":
         allowed = schema.kinds(item["msg"])
         if not isinstance(found, dict):
-            return f"{path} must be a table with a kind, of {', '.join(map(repr, allowed))}, found {shown(found)}"
+            return f"{path} must be a table with a kind, of {', '.join(map(repr, allowed))}, found {quoted(found)}"
         if "kind" not in found:
             return f"{path}.kind is missing; allowed: {', '.join(map(repr, allowed))}"
         return checks.choice(f"{path}.kind", found["kind"], allowed)
     if item["type"] == "literal_error" and keys[-1] == "kind":
         return checks.choice(path, found, schema.kinds(item["loc"][-2]))
     if item["type"] in NO_TABLE:
-        return f"{path} must be a table of keys and values, found {shown(found)}"
+        return f"{path} must be a table of keys and values, found {quoted(found)}"
     if item["type"] == "value_error":
         return f"{path} {item['ctx']['error']}"
-    return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {shown(found)}"
+    return f"{path}: {item['msg'][0].lower()}{item['msg'][1:]}, found {quoted(found)}"
 
 
 def key_path(keys):

@@ -7,17 +7,13 @@ Full balancing makes all static moments vanish; partial balancing, with one coun
                                    1/2: least overall, by the mower study (Kotov 2024)
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from ..errors import ParameterError
 from ..mechanics.principal_points import principal_points
-from ..mechanics.quantities import magnitude
 from ..numbers import checks
-from ..results.extremes import extremes
-from ..solution.solution import Solution
-from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
+from .counterweights import Balanced, Counterweight, counterweight, guide_direction
+from .least_shaking import Search, least
 from .shapes import crank_sliders, four_bar
 
 __all__ = ["Balanced", "Counterweight", "counterweight", "full", "optimal", "partial"]
@@ -171,48 +167,10 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
         None if paired else f"weights must be a pair (force, moment), got {checks.shown(weights)}",
         *_search_problems(mechanism, counterweights),
     )
-    weights = tuple(found.values())
     if norm in ("along", "across"):
         guide_direction(mechanism)
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
-    size = 2 if phase else 1
-
-    def balanced(unknowns):
-        result = Balanced(mechanism, mechanism)
-        for (name, weight), unbalance in zip(counterweights.items(), unknowns.reshape(-1, size), strict=True):
-            step = _added(result.mechanism, name, np.append(unbalance, 0.0)[:2], weight)
-            result = Balanced(mechanism, step.mechanism, {**result.counterweights, **step.counterweights})
-        return result
-
-    def solved(unknowns):
-        return Solution(balanced(unknowns * scale).mechanism, turn, 1.0, 0.0)
-
-    def sizes(unknowns):
-        return _sizes(solved(unknowns), norm)
-
-    def value(unknowns):
-        if norm == "weighted":
-            return _weighted(solved(unknowns), weights)
-        return (np.mean if norm == "mean" else np.max)(sizes(unknowns))
-
-    def objective(unknowns):
-        return value(unknowns) / reference
-
-    scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
-    zero = np.zeros(size * len(counterweights))
-    reference = value(zero) or 1.0
-    kept_out = any(weight.keep_out for weight in counterweights.values())  # two sides of a hole to search
-    starts = (zero - 0.5, zero + 0.5) if kept_out else (zero,)
-    best = min((_searched(objective, start) for start in starts), key=objective)
-    if norm not in ("largest", "along", "across"):
-        return balanced(best * scale)
-    for _ in range(8):  # what is largest between the angles joins them
-        best = min(best, _levelled(lambda unknowns: sizes(unknowns) / reference, best), key=objective)
-        peaks = extremes(solved(best), lambda solution: _sizes(solution, norm))
-        if peaks.range[1] <= value(best) + 1e-10 * reference:
-            break
-        turn = np.append(turn, peaks.angle)
-    return balanced(best * scale)
+    return least(Search.of(mechanism, norm, tuple(found.values()), counterweights, 2 if phase else 1, turn))
 
 
 def _search_problems(mechanism, counterweights):
@@ -227,57 +185,6 @@ def _search_problems(mechanism, counterweights):
                 f"{name}: optimal balancing adds counterweights to links; with the ratio or unbalance found, use "
                 "partial or counterweight for a whole link"
             )
-
-
-def _searched(objective, start):
-    """Minimum by Nelder and Mead, begun anew where it stops."""
-    from scipy.optimize import minimize
-
-    options = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000}
-    for _ in range(2):
-        start = minimize(objective, start, method="Nelder-Mead", options=options, callback=_stop_at_zero).x
-    return start
-
-
-def _stop_at_zero(intermediate_result):
-    if intermediate_result.fun < 1e-11:
-        raise StopIteration
-
-
-def _levelled(sizes, start):
-    """Minimum of the largest of many sizes: of a level that none of them exceeds (SLSQP)."""
-    from scipy.optimize import minimize
-
-    found = minimize(
-        lambda unknowns: unknowns[-1],
-        np.append(start, np.max(sizes(start))),
-        jac=lambda unknowns: np.append(np.zeros(start.size), 1.0),
-        constraints={"type": "ineq", "fun": lambda unknowns: unknowns[-1] - sizes(unknowns[:-1])},
-        method="SLSQP",
-        options={"ftol": 1e-15, "maxiter": 200},
-    )
-    return found.x[:-1]
-
-
-def _sizes(solution, norm):
-    """What the norm looks at, at each crank angle: the shaking force or a component of it."""
-    if norm in ("along", "across"):
-        return np.abs((along_guide if norm == "along" else across_guide)(solution))
-    return magnitude(solution.shaking_force)
-
-
-def _weighted(solution, weights):
-    force, moment = weights[0] * magnitude(solution.shaking_force), weights[1] * solution.shaking_moment
-    return np.sqrt(np.mean(force * force + moment * moment))
-
-
-def _added(mechanism, link, unbalance, weight):
-    """A counterweight of that unbalance, on whichever side, reduced to its limits."""
-    size = float(np.hypot(*unbalance))
-    smallest, largest = weight.unbalances()
-    kept = unbalance * (min(max(size, smallest), largest) / size) if size else np.array([-smallest, 0.0])
-    sided = weight if weight.arm is None else replace(weight, arm=float(np.copysign(weight.arm, kept[0])))
-    return counterweight(mechanism, link, kept, sided)
 
 
 def _weight_problem(name, weight):

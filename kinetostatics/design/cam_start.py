@@ -5,13 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import DesignError, ParameterError
-from ..machine.builders import cam_crank_slider, crank_slider
-from ..machine.cam_roller import CamRoller
+from ..machine.builders import cam_crank_slider, crank_slider, crank_slider_parts
 from ..machine.cams import CosineLaw
 from ..machine.guide import Guide
 from ..machine.harmonic_cam import Harmonic
 from ..machine.loads import Gravity, Spring, TorsionSpring
-from ..machine.slider_group import SliderGroup
 from ..results.extremes import extrema
 from ..solution.scene import Scene
 
@@ -92,7 +90,18 @@ class Start:
         return found
 
 
-def begun(given, cosine, sine, ends, gravity, offset, coupler_spring, counterweight, cubic) -> Start:
+def begun(
+    given,
+    cosine,
+    sine,
+    *,
+    ends=None,
+    gravity=True,
+    guide_offset=None,
+    coupler_spring=None,
+    counterweight=None,
+    cubic=None,
+) -> Start:
     """The machine that a search begins with, made of the links and loads of a scene.
 
     Raises
@@ -102,76 +111,95 @@ def begun(given, cosine, sine, ends, gravity, offset, coupler_spring, counterwei
     DesignError
         A stroke that no coupler can make.
     """
-    group, links = _parts(given)
+    group, links = parts_of(given)
+    low, high = _ends(given, ends)
+    half, mean, law = (high - low) / 2, (high + low) / 2, CosineLaw((high - low) / 2, (high + low) / 2)
+    offset = group.guide.guide_offset if guide_offset is None else float(guide_offset)
+    guide = Guide(group.guide.guide_angle, offset)
+    share = group.coupler.centre[0] / group.coupler_length
+    links["coupler"] = _of_length(group.coupler, law.coupler_length, share)
+    rate = group.slider.mass * given.crank_speed * given.crank_speed
+    loads = (*_kept(given.loads, gravity), Spring(rate, mean))
+    carried = group.coupler.mass * (1.0 - share)
+    weight = carried * (_across(loads, guide) if gravity else 0.0)
+    vary = _bounds(cosine, sine, half, mean, law.coupler_length, rate)
+    first = frozenset(vary)
+    if cubic is not None:
+        vary["spring.cubic"] = cubic
+    if coupler_spring is not None:
+        found = _carrying(weight * law.coupler_length, float(coupler_spring))
+        loads += (found,)
+        vary[SPRING] = (0.5 * found.stiffness, 1.5 * found.stiffness)
+    if counterweight is not None:
+        arm = -carried * half / counterweight
+        links["crank"] = replace(links["crank"], mass=float(counterweight), centre=(arm, 0.0))
+        first |= {OFFSET}
+        near, reach = WEIGHT_REACH * arm, REACH * half
+        vary |= {WEIGHT[0]: (arm + near, arm - near), WEIGHT[1]: (near, -near), OFFSET: (-reach, reach)}
+    mechanism = cam_crank_slider(_cam(law, group.guide, cosine, sine), law.coupler_length, guide=guide, **links)
+    scene = Scene(mechanism, given.crank_speed, loads=loads)
+    unit = _mean_torque(half, mean, _of_length(links["coupler"], mean, share), group.slider, given.crank_speed)
+    return Start(Machine(scene, share), (float(low), float(high)), vary, first, weight, unit)
+
+
+def parts_of(given):
+    """Slider group of a scene that is a crank-slider, and its links by name; all else is refused."""
+    mechanism = given.mechanism
+    roller, slider = crank_slider_parts(mechanism) or (None, None)
+    if slider is None or slider.assembly != 1:
+        raise ParameterError(
+            "torque-free cam: takes a crank-slider, plain or with a cam, whose slider is ahead of A (assembly +1), "
+            f"got {mechanism.name}"
+        )
+    links = {"crank": mechanism.crank.link, "coupler": slider.coupler, "slider": slider.slider}
+    return slider, links | ({"block": roller.block} if roller else {})
+
+
+def _ends(given, ends):
+    """Extreme positions of the slider: those of the scene unless told."""
     low, high = extrema(given.solve(12), "slider_position").range if ends is None else map(float, ends)
-    half, mean = (high - low) / 2, (high + low) / 2
     if not (0 < low < high):
         raise DesignError(
             f"torque-free cam: the slider must stay ahead of O between two ends, but is to run from {low:.6g} m to "
             f"{high:.6g} m; lengthen the coupler or shorten the stroke"
         )
-    law = CosineLaw(half, mean)
-    length, centre = law.coupler_length, group.coupler.centre
-    share = centre[0] / group.coupler_length
-    angle = np.linspace(0.0, 2 * np.pi, 1024, endpoint=False)
-    series = np.fft.rfft(law.radius(angle)[0]).real / angle.size
-    guide = Guide(group.guide.guide_angle, group.guide.guide_offset if offset is None else float(offset))
-    cam = Harmonic((series[0], *2 * series[1 : cosine + 1]), (0.0,) * sine, group.guide.guide_angle)
-    links["coupler"] = replace(links["coupler"], centre=(share * length, centre[1]))
-    mass, speed = group.slider.mass, given.crank_speed
-    loads = tuple(
-        item for item in given.loads if not isinstance(item, Spring) and (gravity or not isinstance(item, Gravity))
-    )
-    rate = mass * speed * speed
-    loads += (Spring(rate, mean),)
-    across = _across(loads, guide) if gravity else 0.0
-    weight = group.coupler.mass * (1.0 - share) * across
+    return low, high
+
+
+def _of_length(coupler, length, share):
+    """The coupler with its mass centre at a share of a length."""
+    return replace(coupler, centre=(share * length, coupler.centre[1]))
+
+
+def _kept(loads, gravity):
+    """Loads that stay: springs are found anew, weight acts if it shall."""
+    return (item for item in loads if not isinstance(item, Spring) and (gravity or not isinstance(item, Gravity)))
+
+
+def _bounds(cosine, sine, half, mean, length, rate):
+    """Bounds of the cam, the coupler and the linear spring, by path, about where the search begins."""
     reach = REACH * half
     vary = {"cam.cosine.0": (half - reach, half + reach)}
     vary |= {f"cam.cosine.{order}": (-reach, reach) for order in range(1, cosine + 1)}
     vary |= {f"cam.sine.{order}": (-reach, reach) for order in range(1, sine + 1)}
     vary |= {"coupler_length": (length - reach, length + reach), "spring.stiffness": (0.0, STIFFEST * rate)}
-    vary |= {"spring.free_position": (mean - reach, mean + reach)}
-    first = frozenset(vary)
-    if cubic is not None:
-        vary["spring.cubic"] = cubic
-    if coupler_spring is not None:
-        found = _carrying(weight * length, float(coupler_spring))
-        loads += (found,)
-        vary[SPRING] = (0.5 * found.stiffness, 1.5 * found.stiffness)
-    if counterweight is not None:
-        arm = -group.coupler.mass * (1.0 - share) * half / counterweight
-        crank = links["crank"]
-        links["crank"] = replace(crank, mass=float(counterweight), centre=(arm, 0.0))
-        first |= {OFFSET}
-        near = WEIGHT_REACH * arm
-        vary |= {WEIGHT[0]: (arm + near, arm - near), WEIGHT[1]: (near, -near), OFFSET: (-reach, reach)}
-    mechanism = cam_crank_slider(cam, length, guide=guide, **links)
-    scene = Scene(mechanism, speed, loads=loads)
-    plain = crank_slider(
-        half, mean, coupler=replace(links["coupler"], centre=(share * mean, centre[1])), slider=group.slider
-    )
-    unit = float(np.mean(np.abs(Scene(plain, speed).solve(360).balancing_torque)))
-    if not unit:
+    return vary | {"spring.free_position": (mean - reach, mean + reach)}
+
+
+def _cam(law, guide, cosine, sine):
+    """First harmonics of the cam for the cosine law."""
+    angle = np.linspace(0.0, 2 * np.pi, 1024, endpoint=False)
+    series = np.fft.rfft(law.radius(angle)[0]).real / angle.size
+    return Harmonic((series[0], *2 * series[1 : cosine + 1]), (0.0,) * sine, guide.guide_angle)
+
+
+def _mean_torque(crank_length, coupler_length, coupler, slider, speed):
+    """Mean torque of a plain crank-slider, N m."""
+    plain = crank_slider(crank_length, coupler_length, coupler=coupler, slider=slider)
+    found = float(np.mean(np.abs(Scene(plain, speed).solve(360).balancing_torque)))
+    if not found:
         raise DesignError("torque-free cam: without masses or at rest the machine needs no torque to begin with")
-    return Start(Machine(scene, share), (float(low), float(high)), vary, first, weight, unit)
-
-
-def _parts(given):
-    """Slider group of a crank-slider, and its links by name."""
-    groups, mechanism = given.mechanism.groups, given.mechanism
-    *before, last = groups
-    rollers = [group for group in before if isinstance(group, CamRoller)]
-    fits = isinstance(last, SliderGroup) and last.on == "A" and not last.label and len(before) == len(rollers) <= 1
-    if not fits or last.assembly != 1:
-        raise ParameterError(
-            "torque-free cam: takes a crank-slider, plain or with a cam, whose slider is ahead of A (assembly +1), "
-            f"got {mechanism.name}"
-        )
-    links = {"crank": mechanism.crank.link, "coupler": last.coupler, "slider": last.slider}
-    if rollers:
-        links["block"] = rollers[0].block
-    return last, links
+    return found
 
 
 def _across(loads, guide):

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import FileError, ParameterError
-from ..machine.cam_roller import CamRoller
+from ..machine.builders import crank_slider_parts
 from ..machine.cams import Circle, CosineLaw, Sampled
 from ..machine.guide import Guide
 from ..machine.harmonic_cam import Harmonic
@@ -21,7 +21,6 @@ from ..machine.loads import KINDS, TURN, Gravity, Table
 from ..machine.loads.places import Between, Place
 from ..machine.loads.tables import OVER, VALUES
 from ..machine.roller import Roller
-from ..machine.slider_group import SliderGroup
 from ..numbers import checks
 from ..numbers.files import written_whole
 
@@ -138,18 +137,16 @@ def _columns(columns):
 
 def _mechanism(mechanism, cam_file):
     """Keys of a mechanism, and its tables; a cam from a table stands in a file."""
-    *before, last = mechanism.groups
     crank = _link(mechanism.crank.link)
     keys: dict[str, str] = {}
     tables = [("crank", crank)] if crank else []
     if mechanism.crank.length is not None:
         keys["crank_length"] = _number(mechanism.crank.length, "m", "crank_length")
-    rollers = [group for group in before if isinstance(group, CamRoller)]
-    usual = isinstance(last, SliderGroup) and (last.on, last.pin, last.label) == ("A", "B", "")
-    if usual and len(before) == len(rollers) <= 1:
-        own = _keys(last) | (_keys(rollers[0], cam_file) if rollers else {})
+    roller, slider = crank_slider_parts(mechanism) or (None, None)
+    if slider is not None and slider.pin == "B":
+        own = _keys(slider) | (_keys(roller, cam_file) if roller else {})
         kept = {key: value for key, value in own.items() if key not in ("on", "pin", "label")}
-        return {"mechanism": _quoted("cam-crank-slider" if rollers else "crank-slider"), **keys, **kept}, tables
+        return {"mechanism": _quoted("cam-crank-slider" if roller else "crank-slider"), **keys, **kept}, tables
     tables += [
         ("[groups]", {"kind": _quoted(_group_word(group)), **_keys(group, cam_file)}) for group in mechanism.groups
     ]

@@ -10,6 +10,9 @@ from .cam_contact import UNITS, Contact
 from .cam_rollers import Roller
 
 SIZE = {"low": 0.0}
+PARTS = ("roller", "cam")
+MATERIAL = {"youngs_modulus": ("Pa", POSITIVE), "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12})}
+"""Unit and bounds of what is told of each part's material."""
 
 
 def contact(
@@ -76,37 +79,47 @@ def contact(
     told |= {"poissons_ratio": poissons_ratio}
     if groups:
         told = _with_roller(told, groups[0].roller)
-    roller_radius, width = told["roller_radius"], told["width"]
-    pairs = [
-        value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
-        for value in (told["youngs_modulus"], told["poissons_ratio"])
-    ]
-    given = {"roller_radius": (roller_radius, "m", POSITIVE), "width": (width, "m", POSITIVE)}
-    for part, E, nu in zip(("roller", "cam"), *pairs, strict=True):
-        given |= {f"youngs_modulus of the {part}": (E, "Pa", POSITIVE)}
-        given |= {f"poissons_ratio of the {part}": (nu, "1", {"low": 0.0, "high": 0.5 + 1e-12})}
-    given |= {"roller_mass": (roller_mass, "kg", SIZE), "life_exponent": (life_exponent, "1", POSITIVE)}
-    optional = (("roller_inertia", roller_inertia, "kg*m**2", SIZE), ("load_rating", load_rating, "N", POSITIVE))
-    given |= {name: (value, *rule) for name, value, *rule in optional if value is not None}
-    known = {name: limits[name] for name in UNITS if isinstance(limits, dict) and name in limits}
-    given |= {f"limit {name!r}": (value, UNITS[name], POSITIVE) for name, value in known.items()}
+    limits = {} if limits is None else limits
+    own = {"roller_mass": (roller_mass, "kg", SIZE), "life_exponent": (life_exponent, "1", POSITIVE)}
+    optional = {"roller_inertia": (roller_inertia, "kg*m**2", SIZE), "load_rating": (load_rating, "N", POSITIVE)}
+    own |= {name: item for name, item in optional.items() if item[0] is not None}
     values = checks.singles(
         "contact",
         None if groups else _no_roller(solution.mechanism),
-        *_limit_problems({} if limits is None else limits, load_rating),
-        **given,
+        *_limit_problems(limits, load_rating),
+        **_contact_rules(told),
+        **own,
+        **_limit_rules(limits),
     )
-    materials = [
-        (values[f"youngs_modulus of the {part}"], values[f"poissons_ratio of the {part}"]) for part in ("roller", "cam")
-    ]
-    radius, mass = values["roller_radius"], values["roller_mass"]
+    cam, radius, mass = groups[0].cam, values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
-    roller = Roller(groups[0].cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
-    known = {name: values[f"limit {name!r}"] for name in known}
-    found = Contact(solution, groups[0].cam, radius, values["width"], hertz.modulus(*materials), roller, known)
+    roller = Roller(cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
+    materials = [[values[f"{name} of the {part}"] for name in MATERIAL] for part in PARTS]
+    kept = {name: values[f"limit {name!r}"] for name in UNITS if name in limits}
+    found = Contact(solution, cam, radius, values["width"], hertz.modulus(*materials), roller, kept)
     for side in found.sides:
-        working_curve(found.cam, radius, 8, side)
+        working_curve(cam, radius, 8, side)
     return found
+
+
+def _contact_rules(told):
+    """Values and rules of what is told of a contact, a material of roller and cam each."""
+    rules = {name: (told[name], "m", POSITIVE) for name in ("roller_radius", "width")}
+    pairs = [
+        value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
+        for value in map(told.get, MATERIAL)
+    ]
+    for part, *both in zip(PARTS, *pairs, strict=True):
+        rules |= {
+            f"{name} of the {part}": (value, *rule) for (name, rule), value in zip(MATERIAL.items(), both, strict=True)
+        }
+    return rules
+
+
+def _limit_rules(limits):
+    """Values and rules of the limits that there are."""
+    known = {name: limits[name] for name in UNITS if isinstance(limits, dict) and name in limits}
+    return {f"limit {name!r}": (value, UNITS[name], POSITIVE) for name, value in known.items()}
 
 
 def _with_roller(told, roller):

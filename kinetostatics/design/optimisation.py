@@ -13,7 +13,7 @@ from .demands import Demand, demands, wanted
 from .derived import scene_of
 from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
-from .progress import shown
+from .progress import moving_bar
 from .robust import Sampled
 from .search import KEPT, Goal, Reached, better, missed, scale, searched
 from .spread import not_spread
@@ -109,7 +109,7 @@ def optimise(
     problem = Problem(source, vary, [item.quantity for item in asked], reference, angles, engine)
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
     begins = starting(problem, starts, seed, begin)
-    with shown(problem, progress):
+    with moving_bar(problem, progress):
         best, ends = multiple(problem, goal, plain, begins, limits)
         best = held(problem, goal, plain, best)
     return found_of(

@@ -7,7 +7,7 @@ SHOWN_AFTER = 1.0
 
 
 @contextmanager
-def shown(problem, wanted=True, label=None):
+def moving_bar(problem, wanted=True, label=None):
     """Within the block, steps of searches of a problem move a bar, if one is wanted."""
     from tqdm import tqdm
 

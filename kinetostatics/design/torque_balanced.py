@@ -1,12 +1,12 @@
 """What a torque-balancing cam gives and costs: the machine with it, what is left of the unevenness, contact, angles."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..machine.loads import Spring
 from ..machine.profile import Peak, highest, lowest
-from ..machine.roller_follower import RollerFollower
 from ..numbers.lazy import cached_property
 from ..solution.scene import Scene
 from .followers import lifted
@@ -50,7 +50,7 @@ class TorqueBalancing:
 
     scene: Scene
     reference: Scene
-    follower: RollerFollower
+    follower: Any
     spring: Spring
     mean_torque: float
     energy: float

@@ -10,13 +10,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import ParameterError
+from ..machine.builders import with_roller_follower
 from ..machine.guide import Guide
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
-from ..machine.mechanism import Mechanism
 from ..machine.panel_law import PanelLaw
 from ..machine.profile import POSITIVE
-from ..machine.roller_follower import RollerFollower
 from ..numbers import checks
 from ..numbers.panels import Panels
 from ..numbers.planar import dot
@@ -32,6 +31,7 @@ CORNER = 1e-6
 """Jump of the torque across its mean, relative to the largest, that counts as one."""
 BESIDE = 1e-9
 SWITCHES = {"switches": checks.Number("rad", table=True)}
+OPTIONAL = ("stiffness", "base_radius", "roller_radius")
 STEEP, STEEPEST = np.radians(30.0), np.radians(85.0)
 
 
@@ -95,47 +95,50 @@ def torque_balancing_cam(
     >>> found.remaining < 1e-9, found.lifts_off
     (True, ())
     """
-    given = {
-        "stiffness": (stiffness, "N/m", POSITIVE),
-        "base_radius": (base_radius, "m", POSITIVE),
-        "roller_radius": (roller_radius, "m", POSITIVE),
-    }
-    values = checks.singles(
-        OWNER,
-        _scene_problem(scene),
-        **{name: item for name, item in given.items() if item[0] is not None},
-        mass=(mass, "kg", POSITIVE),
-        travel=(travel, "m", POSITIVE),
-        pressure_angle=(pressure_angle, "rad", POSITIVE | {"high": STEEPEST}),
-        guide_angle=(guide_angle, "rad", {}),
-        guide_offset=(guide_offset, "m", {}),
-    )
+    given = {"stiffness": stiffness, "base_radius": base_radius, "roller_radius": roller_radius, "mass": mass}
+    given |= {"travel": travel, "pressure_angle": pressure_angle}
+    values = _checked(scene, given | {"guide_angle": guide_angle, "guide_offset": guide_offset})
     if np.size(switches):
         switches = np.atleast_1d(checks.examined(OWNER, SWITCHES, {"switches": switches})["switches"])
     torque, energy = _energy(scene, switches)
-    guide = Guide.at(values["guide_angle"], values["guide_offset"])
     moving = values["mass"] * float(scene.crank_speed) ** 2
     swing, peak, lows = _swing(torque, energy)
     stiffness, least = _spring(values, swing)
     level = peak + 0.5 * stiffness * least * least
+    reserve = _reserve(values, energy, lows, level, moving, stiffness)
+    stretch = spring_follower.stretched(energy, level, moving, stiffness)
+    shift = _base(stretch, least, values) - least
+    guide = Guide.at(values["guide_angle"], values["guide_offset"])
+    law, link = PanelLaw(stretch.plus(shift)), Link(values["mass"])
+    name = f"{scene.mechanism.name} with torque-balancing cam"
+    mechanism = with_roller_follower(scene.mechanism, name, law, guide, link, pin, label)
+    follower = mechanism.groups[-1]
+    if roller_radius is not None:
+        follower.disk.profile(values["roller_radius"], 360)
+    weight = sum(float(dot(guide.direction, item.vector)) for item in scene.loads if isinstance(item, Gravity))
+    spring = Spring(stiffness, shift - values["mass"] * weight / stiffness, on="follower" + label)
+    loaded = replace(scene, mechanism=mechanism, loads=(*scene.loads, spring))
+    ends = least, least + values["travel"]
+    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve)
+
+
+def _checked(scene, given):
+    """Values of what is given, by name."""
+    rules = dict.fromkeys(("base_radius", "roller_radius", "travel"), ("m", POSITIVE))
+    rules |= {"stiffness": ("N/m", POSITIVE), "mass": ("kg", POSITIVE)}
+    rules |= {"pressure_angle": ("rad", POSITIVE | {"high": STEEPEST}), "guide_angle": ("rad", {})}
+    rules |= {"guide_offset": ("m", {})}
+    told = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
+    return checks.singles(OWNER, _scene_problem(scene), **{name: (value, *rules[name]) for name, value in told.items()})
+
+
+def _reserve(values, energy, lows, level, moving, stiffness):
+    """Times the force that contact needs with which the spring pulls, the least; refused where that does not do."""
     reserves = {low: spring_follower.reserve(energy, low, level, moving, stiffness) for low in lows}
     reserve = min(reserves.values())
     if reserve <= 1.0:
         raise ParameterError(_no_contact(values, min(reserves, key=reserves.__getitem__), reserve))
-    stretch = spring_follower.stretched(energy, level, moving, stiffness)
-    base = _base(stretch, least, values)
-    shift = base - least
-    weight = sum(float(dot(guide.direction, item.vector)) for item in scene.loads if isinstance(item, Gravity))
-    spring = Spring(stiffness, shift - values["mass"] * weight / stiffness, on="follower" + label)
-    link = Link(values["mass"])
-    follower = RollerFollower(PanelLaw(stretch.plus(shift)), guide, link, pin=pin, label=label)
-    if roller_radius is not None:
-        follower.disk.profile(values["roller_radius"], 360)
-    old = scene.mechanism
-    mechanism = Mechanism(f"{old.name} with torque-balancing cam", old.crank, (*old.groups, follower))
-    loaded = replace(scene, mechanism=mechanism, loads=(*scene.loads, spring))
-    ends = least, least + values["travel"]
-    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve)
+    return reserve
 
 
 def _scene_problem(scene):

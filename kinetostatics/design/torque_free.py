@@ -10,13 +10,16 @@ a symmetric machine is odd, so that no symmetric cam can balance it: sine terms,
 counterweight on the crank with an offset guide can, each at a price.
 """
 
+from contextlib import contextmanager
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import DesignError
 from ..machine.loads import Gravity
 from ..numbers import checks
+from ..results.reductions import Output
 from ..solution.scene import Scene
 from .cam_start import begun
 from .demands import demands, wanted
@@ -35,21 +38,18 @@ from .optimisation import (
     without_ratios,
 )
 from .problem import Problem, chosen, true_value
-from .progress import shown
+from .progress import moving_bar
 from .search import Goal
+from .torque_squares import POSITION, TORQUE, least_squares
 
+OWNER = "torque-free cam"
 FEWEST, ENOUGH = 360, 32
 """Crank angles at least, and for each harmonic of the cam."""
 MOST_HARMONICS = 64
 """With which a search still ends within a minute; eight leave nothing that a workshop could cut."""
-PASSES = ((2.0, 1.0), (2e3, 0.0))
-"""Passes of the least squares, one after the other: what ends of the stroke count, a miss by half of it as so many mean
-torques, and what the bends of the cam do. From far away the first finds the way, the second keeps to the ends."""
-STEPS = 100
 NEARLY = 1.05
 """How far beyond the bound of symmetric cams a limit is refused at once: the bound moves a little with the cam."""
 ENDS = {"ends": checks.Optional(checks.Pair("m", parts=("low", "high")))}
-TORQUE, POSITION = "balancing_torque", "slider_position"
 SHOWN = (
     "ratio mean_absolute balancing_torque",
     "mean_absolute balancing_torque",
@@ -140,61 +140,92 @@ def torque_free_cam(
     5.25e+04
     """
     source, reference = chosen(source, variant, reference)
-    optional = {
-        "guide_offset": (guide_offset, "m", {}),
-        "counterweight": (counterweight, "kg", {"low": 0.0, "strict": True}),
-        "coupler_spring": (coupler_spring, "rad", {}),
-    }
+    own = {"guide_offset": guide_offset, "counterweight": counterweight, "coupler_spring": coupler_spring}
+    ends, own = _checked(cosine, sine, ends, own, gravity, vary, starts, seed)
+    given = _weighted(scene_of(source), gravity)
+    compared = None if reference is None else _weighted(scene_of(reference), gravity)
+    start = begun(given, cosine, sine, ends=ends, gravity=gravity, cubic=cubic, **own)
+    aims = _aims(start, compared, minimise, maximise, limits)
+    problem = _problem(start, compared, aims, max(cosine, sine), dict(vary or {}), engine)
+    generator = np.random.default_rng(seed)
+    begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
+    begins = [least_squares(problem, start, values) for values in begins]
+    _require_within_bound(start, problem, aims.limits, compared, begins[0])
+    goal, plain = without_ratios(problem, aimed(problem, aims.output, aims.sign, robust), aims.limits)
+    with _advised(start, problem, compared, aims.limits, begins[0]), moving_bar(problem, progress):
+        best, came_to = multiple(problem, goal, plain, begins, aims.limits)
+        best = held(problem, goal, plain, best)
+    found = found_of(
+        problem,
+        goal if robust is not None else Goal(aims.output, aims.sign),
+        aims.limits,
+        best,
+        _shown(start.scene, compared, aims.outputs),
+        label(aims.sign, aims.text, robust),
+        evaluations=problem.evaluations,
+        starts=as_asked(problem, aims.output, goal, came_to),
+    )
+    return replace(found, before=given, bound=bound(start, found.scene, compared))
+
+
+def _checked(cosine, sine, ends, own, gravity, vary, starts, seed):
+    """Ends of the stroke or None, and what else the machine may have of its own, None where it is not given."""
+    rules = {"guide_offset": ("m", {}), "counterweight": ("kg", {"low": 0.0, "strict": True})}
+    rules |= {"coupler_spring": ("rad", {})}
     given = checks.singles(
-        "torque-free cam",
+        OWNER,
         _harmonics_problem("cosine", cosine),
         _harmonics_problem("sine", sine) if sine or sine is False else None,
         *searches(starts, seed),
         None if isinstance(gravity, bool) else f"gravity must be True or False, got {checks.shown(gravity)}",
         None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}",
-        **{name: item for name, item in optional.items() if item[0] is not None},
+        **{name: (value, *rules[name]) for name, value in own.items() if value is not None},
     )
-    ends = checks.examined("torque-free cam", ENDS, {"ends": ends})["ends"]
-    guide_offset, counterweight, coupler_spring = map(given.get, optional)
-    given = _weighted(scene_of(source), gravity)
-    compared = None if reference is None else _weighted(scene_of(reference), gravity)
-    start = begun(given, cosine, sine, ends, gravity, guide_offset, coupler_spring, counterweight, cubic)
+    return checks.examined(OWNER, ENDS, {"ends": ends})["ends"], {name: given.get(name) for name in own}
+
+
+class _Aims(NamedTuple):
+    """What is to be least or greatest, by its text and its output, and the limits, ends of the stroke among them."""
+
+    sign: float
+    text: str
+    output: Output
+    limits: tuple
+
+    @property
+    def outputs(self):
+        return (self.output, *(limit.output for limit in self.limits))
+
+
+def _aims(start, compared, minimise, maximise, limits):
     sign, text = (1.0, f"mean_absolute {TORQUE}") if minimise is maximise is None else aim(minimise, maximise)
     low, high = start.ends
     kept = demands([f"smallest {POSITION} = {low!r} m", f"largest {POSITION} = {high!r} m"], start.scene)
-    output, asked = wanted(text, start.scene), (*kept, *demands(limits, start.scene))
-    require_reference(compared, output, asked)
-    outputs = (output, *(limit.output for limit in asked))
-    angles = max(FEWEST, ENOUGH * max(cosine, sine))
-    require_resolved(angles, outputs)
-    quantities = (TORQUE, POSITION, *(item.quantity for item in outputs))
-    problem = Problem(start.machine, start.vary | dict(vary or {}), quantities, compared, angles, engine)
+    aims = _Aims(sign, text, wanted(text, start.scene), (*kept, *demands(limits, start.scene)))
+    require_reference(compared, aims.output, aims.limits)
+    return aims
+
+
+def _problem(start, compared, aims, order, vary, engine):
+    """The problem at enough crank angles for the highest order of the cam; refused where no coupler can solve it."""
+    angles = max(FEWEST, ENOUGH * order)
+    require_resolved(angles, aims.outputs)
+    quantities = (TORQUE, POSITION, *(item.quantity for item in aims.outputs))
+    problem = Problem(start.machine, start.vary | vary, quantities, compared, angles, engine)
     _require_possible(problem, start)
-    generator = np.random.default_rng(seed)
-    begins = [problem.start, *(start.random(problem.names, problem.start, generator) for _ in range(starts - 1))]
-    begins = [least_squares(problem, start, values) for values in begins]
-    _require_within_bound(start, problem, asked, compared, begins[0])
-    goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), asked)
+    return problem
+
+
+@contextmanager
+def _advised(start, problem, compared, limits, first):
+    """Where the search fails and the torque is limited, say what else may balance weight."""
     try:
-        with shown(problem, progress):
-            best, came_to = multiple(problem, goal, plain, begins, asked)
-            best = held(problem, goal, plain, best)
+        yield
     except DesignError as error:
-        nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
-        torque = any(item.output.quantity == TORQUE for item in asked)
+        nearest = first if error.values is None else np.array(list(error.values.values()))
+        torque = any(limit.output.quantity == TORQUE for limit in limits)
         advice = _advice(start, problem, compared, nearest) if torque else ""
         raise DesignError(f"{error}{advice}", error.values) from None
-    found = found_of(
-        problem,
-        goal if robust is not None else Goal(output, sign),
-        asked,
-        best,
-        _shown(start.scene, compared, outputs),
-        label(sign, text, robust),
-        evaluations=problem.evaluations,
-        starts=as_asked(problem, output, goal, came_to),
-    )
-    return replace(found, before=given, bound=bound(start, found.scene, compared))
 
 
 def _harmonics_problem(name, value):
@@ -205,57 +236,6 @@ def _harmonics_problem(name, value):
     return f"{name} must be at most {MOST_HARMONICS}, got {value}"
 
 
-def least_squares(problem, start, values):
-    """Design of least squares of the torque, with the ends of the stroke among them, by Gauss and Newton's steps.
-
-    Numbers besides those of the cam, the coupler and the linear spring stay as they are.
-    """
-    columns = [place for place, name in enumerate(problem.names) if name in start.first]
-    for weight, smooth in PASSES:
-        values = _squared(problem, start, values, columns, weight, smooth)
-    return np.clip(values, problem.low, problem.high)
-
-
-def _squared(problem, start, values, columns, weight, smooth):
-    """Least squares by some of the numbers, with weights of the ends of the stroke and of the waves of the cam."""
-    from scipy import optimize
-
-    waves = smooth * np.array([wave(problem.names[place]) for place in columns]) / start.half
-    ends = np.array(start.ends)
-    reach = (problem.high - problem.low)[columns]
-    count = problem.angles
-
-    def placed(steps):
-        found = values.copy()
-        found[columns] += reach * steps
-        return found
-
-    def residuals(steps):
-        curves = problem.curves(placed(steps))
-        torque, place = curves[TORQUE].values, curves[POSITION].values
-        missed = (np.array([place.min(), place.max()]) - ends) / start.half
-        found = [torque / (start.unit * np.sqrt(count)), weight * missed, waves * placed(steps)[columns]]
-        return np.nan_to_num(np.concatenate(found), nan=1e3)
-
-    def slopes(steps):
-        curves = problem.curves(placed(steps))
-        place = curves[POSITION]
-        extreme = place.slopes[:, [place.values.argmin(), place.values.argmax()]]
-        rows = np.hstack([curves[TORQUE].slopes / (start.unit * np.sqrt(count)), weight * extreme / start.half])
-        return np.nan_to_num(np.vstack([rows[columns].T, np.diag(waves)]) * reach)
-
-    found = optimize.least_squares(
-        residuals, np.zeros(len(columns)), slopes, method="lm", x_scale=1.0, xtol=1e-12, ftol=1e-12, max_nfev=STEPS
-    )
-    return placed(found.x)
-
-
-def wave(name):
-    """How much a harmonic of the cam bends it: the square of its order, from the second on."""
-    kind, _, order = name.rpartition(".")
-    return float(order) ** 2 if kind in ("cam.cosine", "cam.sine") and int(order) > 1 else 0.0
-
-
 def bound(start, scene, reference):
     """Greatest ratio of mean torques that a symmetric cam reaches: the coupler's weight stays.
 
@@ -264,7 +244,7 @@ def bound(start, scene, reference):
     if reference is None or not start.weight:
         return np.inf
     solution = scene.solve(720)
-    guide = scene.mechanism.groups[-1].guide
+    guide = scene.mechanism.guides[scene.mechanism.slider]
     x, y = solution.position("A")
     height = np.abs(np.cos(guide.guide_angle) * y - np.sin(guide.guide_angle) * x).max()
     plain = true_value(wanted(f"mean_absolute {TORQUE}", reference), reference)

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..machine.loads import Gravity
 from ..numbers import checks
+from .cam_start import parts_of
 from .derived import scene_of
 from .problem import chosen
 from .torque_free import TORQUE, torque_free_cam
@@ -34,7 +35,7 @@ def weight_options(source, cosine=8, *, variant=None, reference=None, counterwei
     Raises
     ------
     ParameterError
-        The source is neither a case nor a scene.
+        The source is neither a case nor a scene, or no crank-slider.
     DesignError
         The machine has no masses.
 
@@ -58,7 +59,7 @@ def weight_options(source, cosine=8, *, variant=None, reference=None, counterwei
     )["counterweight"]
     given, compared = chosen(source, variant, reference)
     scene = scene_of(given)
-    group = scene.mechanism.groups[-1]
+    group, _ = parts_of(scene)
     pulls = [
         item.acceleration * np.sin(item.direction - group.guide.guide_angle)
         for item in scene.loads

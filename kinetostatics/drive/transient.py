@@ -206,6 +206,20 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     """The motion from an angle and speed until a time, a standstill, or a target speed."""
     if isinstance(driven, RubbingDriven):
         return _rubbing(driven, scene, angle, speed, until, target, one_way)
+    end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
+    found = _integrated(driven, angle, speed, end, _ends(driven, until, target, one_way))
+    if found.status < 0 or not np.isfinite(found.y).all():
+        raise _lost(driven, found.t[-1], *found.y[:2, -1])
+    if found.status == 0 and not isinstance(until, float):
+        raise _never(driven, target, end)
+    time, (angles, speeds, work) = found.t, found.y
+    if driven.motor is not None:
+        require_known(driven, speeds)
+    return _trajectory(driven, scene, time, (angles, speeds, work), tuple(_events(found, until)), found.sol)
+
+
+def _integrated(driven, angle, speed, end, events):
+    """Angle, speed and work over the time, by an explicit method of order 8 that meets the events."""
     from scipy.integrate import solve_ivp
 
     evaluations = itertools.count()
@@ -213,13 +227,20 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     def change(time, state):
         if next(evaluations) > MOST_EVALUATIONS:
             raise DriveError(
-                f"{scene.mechanism.name}: the motion is too long to follow: {time:.6g} s, to crank angle "
+                f"{driven.scene.mechanism.name}: the motion is too long to follow: {time:.6g} s, to crank angle "
                 f"{math.degrees(state[0]):.6g} deg, took {MOST_EVALUATIONS} evaluations; give an earlier time as until",
                 crank_angle=float(state[0]),
             )
         angle, speed = float(state[0]), float(state[1])
         inertia, slope, spare = driven.here(angle, speed)
         return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed
+
+    span, start = (0.0, end), (angle, speed, 0.0)
+    return solve_ivp(change, span, start, "DOP853", rtol=RELATIVE, atol=ABSOLUTE, dense_output=True, events=events)
+
+
+def _ends(driven, until, target, one_way):
+    """Events of a motion: standstill, which may end it, and the speed that does."""
 
     def still(time, state):
         return state[1]
@@ -229,43 +250,17 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
 
     vars(still).update(terminal=until == "standstill" or one_way, direction=-driven.direction if one_way else 0)
     vars(ready)["terminal"] = True
-    events = [still] if target is None else [still, ready]
-    end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
-    found = solve_ivp(
-        change,
-        (0.0, end),
-        (angle, speed, 0.0),
-        "DOP853",
-        rtol=RELATIVE,
-        atol=ABSOLUTE,
-        dense_output=True,
-        events=events,
-    )
-    if found.status < 0 or not np.isfinite(found.y).all():
-        raise _lost(driven, found.t[-1], *found.y[:2, -1])
-    if found.status == 0 and not isinstance(until, float):
-        raise _never(driven, target, end)
-    time, (angles, speeds, work) = found.t, found.y
-    if driven.motor is not None:
-        require_known(driven, speeds)
+    return [still] if target is None else [still, ready]
+
+
+def _trajectory(driven, scene, time, rows, events, path):
+    """What was found, with how much energy was lost or won by rounding on the way."""
+    angles, speeds, work = rows
     energy = 0.5 * driven.inertia(angles) * speeds * speeds
     drift = float(np.abs(energy - energy[0] - work).max())
-    for array in (time, angles, speeds):
-        read_only(array)
+    time, angles, speeds = map(read_only, (time, angles, speeds))
     alpha = read_only(driven.acceleration_along(angles, speeds))
-    return Trajectory(
-        scene,
-        driven.motor,
-        driven.flywheel,
-        time,
-        angles,
-        speeds,
-        alpha,
-        tuple(_events(found, until)),
-        drift,
-        driven,
-        found.sol,
-    )
+    return Trajectory(scene, driven.motor, driven.flywheel, time, angles, speeds, alpha, events, drift, driven, path)
 
 
 def _events(found, until):
@@ -284,21 +279,16 @@ def _rubbing(driven, scene, angle, speed, until, target, one_way):
     driven.prepare(max(abs(speed), abs(target or 0.0)))
     end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
     found = followed(driven, angle, speed, end, target, until == "standstill" or one_way)
-    time, (angles, speeds, work, _) = found.time, map(read_only, found.rows)
+    time, (angles, speeds, work, _) = found.time, found.rows
     if found.end == "lost":
         raise _lost(driven, time[-1], angles[-1], speeds[-1])
     if found.end == "end" and not isinstance(until, float):
         raise _never(driven, target, end)
-    energy = 0.5 * driven.inertia(angles) * speeds * speeds
-    drift = float(np.abs(energy - energy[0] - work).max())
     stopped = "reversal" if one_way else "standstill"
     last = stopped if found.end in ("standstill", "stuck") else "end"
     turns = (Event("reversal", *turn) for turn in found.reversals)
     named = Event("start", 0.0, angle), *turns, Event(last, float(time[-1]), float(angles[-1]))
-    alpha = read_only(driven.acceleration_along(angles, speeds))
-    return Trajectory(
-        scene, driven.motor, driven.flywheel, read_only(time), angles, speeds, alpha, named, drift, driven, found.path
-    )
+    return _trajectory(driven, scene, time, (angles, speeds, work), named, found.path)
 
 
 def _lost(driven, time, angle, speed):

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .trace import INPUTS, Node, needed
+from .trace import INPUTS, Node, is_negative, needed
 
 SAFE = 1.0 + 1e-9
 """What a bound is enlarged by for the rounding of its own arithmetic, each time by a few `UNIT` of it."""
@@ -99,7 +99,7 @@ class Bounds:
         if kind in ("*", "/"):
             return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, self._dust)
         if kind == "total":
-            return Error(1.0, (216.0 * UNIT * UNIT) * reduce(add, map(size, arguments)))
+            return Error(1.0, ((2.0 * (len(arguments) - 1)) ** 3 * UNIT * UNIT) * reduce(add, map(size, arguments)))
         if kind in ("+", "-"):
             return Error(1.0, None) if len(arguments) == 2 else EXACT
         if kind == "divisor":  # none is proven where the guard may act
@@ -131,6 +131,11 @@ class Bounds:
         """Rest of a product whose left factor has a rest that is a node, beside what else it has."""
         self._parts[node] = left, own, right, across
         return self.fused(size(right), own, across)
+
+    def of_two_parts(self, whole, x, y):
+        """Bound on the error of a length and its rest together, those of its components among it."""
+        own = plus((9.0 * UNIT) * whole, None if self._dust is None else self._dust / whole)
+        return reduce(plus, map(self.total, (x, y)), own)
 
     def uses(self, part):
         """How often a part is used."""
@@ -234,8 +239,10 @@ def is_zero(part):
 
 
 def _is_scaling(part):
-    """Whether a factor is a power of two near one: it loses no digit but of dust."""
-    return not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
+    """Whether a factor is a sign, or a power of two near one: it loses no digit but of dust."""
+    if isinstance(part, Node):
+        return part.operation == "sign"
+    return math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
 
 
 # What a result has of the errors of its arguments, and some more
@@ -246,6 +253,25 @@ def _of_sum(bounds, more, node, *parts):
     if len(others) < 2 and more is None:
         return bounds.error(others[0]) if others else EXACT
     return Error(0.0, reduce(plus, map(bounds.total, others), more))
+
+
+def _of_total(bounds, more, node, *parts):
+    """Sum of the errors; of a length and its rest, one taken with the other, only what the rest is off."""
+    signed = [_signed(part) for part in parts if isinstance(part, Node)]
+    places = [(sign, part.index) for sign, part in signed]
+    paired = set()
+    for place, (sign, part) in enumerate(signed):
+        whole = (sign, part.arguments[0].index) if part.operation == "rest" else None
+        if whole in places and places.index(whole) not in paired:
+            paired |= {place, places.index(whole)}
+            more = plus(bounds.of_two_parts(*part.arguments), more)
+    others = (bounds.total(part) for place, (_, part) in enumerate(signed) if place not in paired)
+    return Error(0.0, reduce(plus, others, more))
+
+
+def _signed(part):
+    """Sign, and the part that it is the sign of."""
+    return (-1, part.arguments[0]) if isinstance(part, Node) and is_negative(part) else (1, part)
 
 
 def _of_product(bounds, more, node, left, right):
@@ -300,7 +326,8 @@ def _as_of_argument(bounds, more, node, argument, unit=None):
 
 
 _CARRIED: dict[str, Callable[..., Error]] = {
-    "total": _of_sum,
+    "total": _of_total,
+    "rest": lambda bounds, more, node, *arguments: Error(0.0, size(node) * (1.0 / UNIT)),
     "+": _of_sum,
     "-": _of_sum,
     "*": _of_product,

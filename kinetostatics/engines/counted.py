@@ -34,12 +34,12 @@ class Counted:
     graph : Graph
     inputs : mapping of Node to function
         ``input(bounds) -> Error`` of inputs that are not exact.
-    dust : float
-        What a product or quotient may lose if it is too small for a double; 0 if none is.
+    dust : float or None
+        What a product or quotient may lose if it is too small for a double; None if none is.
     """
 
-    def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float):
-        self._graph, self._inputs, self._dust = graph, inputs or {}, dust
+    def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
+        self._graph, self._inputs, self._dust = graph, inputs or {}, dust or 0.0
         self._relative: dict[Node, Relative | None] = {}
         self._pivots: dict[Node, Any] = {}
         self._guards: dict[Node, dict[Node, None]] = {}

@@ -84,7 +84,7 @@ def _division(graph, node, above, below):
 _RULES: dict[str, Callable[..., tuple]] = {
     "+": lambda graph, node, left, right: (1.0, 1.0),
     "-": lambda graph, node, *parts: (1.0, -1.0) if len(parts) == 2 else (-1.0,),
-    "total": lambda graph, node, *parts: (1.0, 1.0, 1.0, 1.0),
+    "total": lambda graph, node, *parts: (1.0,) * len(parts),
     "*": lambda graph, node, left, right: (right, left),
     "/": _division,
     "sin": lambda graph, node, angle: (graph.node("cos", angle),),

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import NotGivenError
-from ..mechanics.quantities import all_found, of_scene
+from ..mechanics.gaps import gap, groups_behind
+from ..mechanics.quantities import CHECKS, all_found, of_scene
 from ..numbers.elementary import read_only, stack
+from ..numbers.planar import plus
 from . import programs
 from .bounds import CAP
 
@@ -26,7 +28,8 @@ class Kernels:
         """Values by name; None for closure and all that the groups find."""
         state = state if self.way is None else replace(state, way=self.way)
         names = all_found(state) if names is None else names
-        return {name: self._values(state, name) for name in names}
+        behind = groups_behind(state.mechanism)
+        return {name: self._values(state, name, behind) for name in names}
 
     def with_bounds(self, state, names, tight=False):
         raise NotGivenError(
@@ -34,10 +37,11 @@ class Kernels:
             "kernels themselves, or in another way; solve it with plain numbers"
         )
 
-    def _values(self, state, name):
+    def _values(self, state, name, behind):
         if name == "closure":
             return read_only(stack(state.closure))
-        return of_scene(state)[name].read(state)
+        found = of_scene(state)[name].read(state)
+        return found if name in CHECKS else read_only(plus(found, gap(state.placement, behind[name])))
 
 
 KERNELS = Kernels()

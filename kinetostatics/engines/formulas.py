@@ -158,6 +158,7 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
     "*": _product,
     "/": _quotient,
     "total": lambda *parts: reduce(_sum, parts),
+    "rest": lambda *parts: ZERO,
     "held": lambda part: part,
     "divisor": lambda part, unit: part,
     **{name: (lambda part, *unit, name=name: _call(CALLS[name], part)) for name in CALLS},

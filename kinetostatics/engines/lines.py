@@ -15,7 +15,7 @@ from .formulas import formula, names_in
 from .naming import Named, Symbol
 from .programs import Program
 from .record import Recording
-from .trace import INPUTS, Node, needed
+from .trace import INPUTS, Node, is_negative, needed
 
 LONGEST = 12
 """Named numbers and constants in one formula; with more it is parted."""
@@ -169,7 +169,7 @@ def _parts(names, node):
         law = names.laws[node]
         return [names.stands_for.get(law, law)] if isinstance(law, Node) else []
     own = names.stands_for.get(node.arguments[0]) is node if node.operation == "held" else False
-    nodes = (part for part in node.arguments if isinstance(part, Node))
+    nodes = (part for part in node.arguments if isinstance(part, Node) and part.operation != "rest")
     return [part if own else names.stands_for.get(part, part) for part in nodes]
 
 
@@ -226,8 +226,12 @@ def _size(node, values, sizes):
     value, kind = values[node], node.operation
     if kind in INPUTS:
         return abs(value)
+    if kind == "rest":
+        return abs(value)
     if kind == "total":
-        return abs(value) + sum(sizes[part] - abs(values[part]) for part in node.arguments if isinstance(part, Node))
+        parts = {part.arguments[0] if is_negative(part) else part for part in node.arguments if isinstance(part, Node)}
+        exact = {part.arguments[0] for part in parts if part.operation == "rest"}
+        return abs(value) + sum(sizes[part] - abs(values[part]) for part in parts if part not in exact)
     (a, x), (b, y) = [
         (values[part], sizes[part]) if isinstance(part, Node) else (part, 0.0) for part in (*node.arguments, 0.0)[:2]
     ]

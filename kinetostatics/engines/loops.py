@@ -1,7 +1,7 @@
 """Compiled loops: recorded arithmetic over designs and crank angles, made machine code by numba (extra `fast`).
 
-Sines and cosines of the crank angle come first, in a loop of their own, and are shared by all designs; what is left has
-no calls, so the compiler vectorises it. Many values are shared out to threads.
+Sines and cosines of the crank angle come first, in a loop of their own, and are shared by all designs; what is left is
+written as vectors (`vectors`). Many values are shared out to threads.
 """
 
 import math

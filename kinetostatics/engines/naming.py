@@ -107,7 +107,7 @@ class Names:
             base, words = terms.get(f"{kernel}.{variable}") or terms.get(variable) or (variable, "")
             kind = "term" if words else "line"
             for path, axis, node in _flat(value):
-                if node.operation in INPUTS or self._is_better(node, kind, path):
+                if node.operation in (*INPUTS, "rest") or self._is_better(node, kind, path):
                     continue
                 stem = base.rstrip("'")
                 symbol = Symbol(".".join((stem, *path)), axis, primes=len(base) - len(stem))

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..numbers.elementary import ROUNDING, total
+from ..numbers.elementary import ROUNDING, rest, squared, total
 
 
 def _plain_root(square, unit):
@@ -34,8 +34,14 @@ def _plain_total(*terms):
         return total(*terms)
 
 
-def _total_of(one, two, three, four, out):
-    np.copyto(out, total(one, two, three, four))
+def _plain_rest(length, x, y):
+    (one, first), (two, second), (three, third) = map(squared, (x, y, length))
+    return _plain_total(one, first, two, second, -three, -third) / (2.0 * length)
+
+
+def _total_of(*terms_and_out):
+    *terms, out = terms_and_out
+    np.copyto(out, total(*terms))
 
 
 def _sqrt(square):
@@ -53,6 +59,7 @@ PLAIN = {
     "divisor": _plain_divisor,
     "fma": lambda one, other, more: one * other + more,
     "total": _plain_total,
+    "rest": _plain_rest,
     "nan": math.nan,
     "inf": math.inf,
 }
@@ -67,6 +74,7 @@ BY_DESIGN = {
     "divisor": np.maximum,
     "fma": lambda one, other, more: one * other + more,
     "total": total,
+    "rest": rest,
     "nan": math.nan,
     "inf": math.inf,
 }

@@ -80,13 +80,7 @@ class Program:
             Code of the user's that could not be recorded, or a cam made of samples, is behind the outputs.
         """
         if tight not in self._bounded:
-            given = self.recording.graph, self.recording.inputs
-            found = (
-                [tight_bound(*given, part) for part in self.outputs]
-                if tight
-                else RunningBounds(*given).of(self.outputs)
-            )
-            self._bounded[tight] = _Bounded(self.recording, (*self.outputs, *found), len(self.outputs), tight)
+            self._bounded[tight] = _Bounded(self.recording, self.outputs, tight)
         return self._bounded[tight]
 
     @cached_property
@@ -224,28 +218,30 @@ class _Bounded(Program):
 
     Attributes
     ----------
-    values : int
-        How many of the outputs are values.
+    values : tuple of Node or float
     tight : bool
     """
 
-    def __init__(self, recording, outputs, values, tight):
-        super().__init__(recording, outputs)
+    def __init__(self, recording, values, tight):
         self.values, self.tight = values, tight
+        super().__init__(recording, (*values, *_bounds(recording, values, tight)))
 
     @cached_property
     def _without_dust(self):
-        values, recording = self.outputs[: self.values], self.recording
-        bounds = RunningBounds(recording.graph, recording.inputs, dust=0.0).of(values)
-        return _Watched(recording, (*values, *bounds))
+        return _Watched(self.recording, (*self.values, *_bounds(self.recording, self.values, self.tight, dust=None)))
 
     def by_numpy(self, angle, numbers, rows, shape):
-        if not self.tight:
-            try:
-                return self._without_dust.by_numpy(angle, numbers, rows, shape)
-            except FloatingPointError:
-                pass
-        return super().by_numpy(angle, numbers, rows, shape)
+        try:
+            return self._without_dust.by_numpy(angle, numbers, rows, shape)
+        except FloatingPointError:
+            return super().by_numpy(angle, numbers, rows, shape)
+
+
+def _bounds(recording, values, tight, **dust):
+    graph, inputs = recording.graph, recording.inputs
+    if tight:
+        return [tight_bound(graph, inputs, part, **dust) for part in values]
+    return RunningBounds(graph, inputs, **dust).of(values)
 
 
 class _Watched(Program):

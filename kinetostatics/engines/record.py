@@ -6,7 +6,6 @@ recorded arithmetic holds for all scenes of that structure, whatever their numbe
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import reduce
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -26,7 +25,11 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from ..numbers.planar import plus
 from .bounds import Error
+from .gaping import Gaps
 from .trace import Graph, LeanGraph, Node, needed, operations
+
+WITHOUT_GAPS = ("closure", *CHECKS)
+"""Quantities that tell of gaps themselves."""
 
 
 class Table(NamedTuple):
@@ -124,10 +127,11 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
+    gaps = Gaps(recorder.graph, recorder.recorded)
     outputs = tuple(
-        output
+        part.flat[0] if name in WITHOUT_GAPS else gaps.added(part.flat[0], name)
         for name, parts in zip(quantities, found, strict=True)
-        for output in _with_gaps([part.flat[0] for part in parts], name, recorder.recorded)
+        for part in parts
     )
     known = of_scene(recorder.recorded)
     vectors = tuple(name != "closure" and known[name].vector and not sizes for name in quantities)
@@ -141,23 +145,6 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
         recorder.graph,
         recorder.inputs,
     )
-
-
-def _with_gaps(outputs, name, scene):
-    """Outputs that hang on no root, as those of a load on the crank, made NaN where the mechanism does not close."""
-    if name in ("closure", *CHECKS) or all(_roots([output]) for output in outputs):
-        return outputs
-    places = [part for joint in scene.placement.joints.values() for part in joint.position]
-    roots = _roots([np.ravel(part)[0] for part in places])
-    return [output if _roots([output]) else reduce(_with_gap, roots, output) for output in outputs]
-
-
-def _with_gap(output, root):
-    return output + 0.0 * root.held()
-
-
-def _roots(outputs):
-    return [node for node in needed(outputs) if node.operation == "root"]
 
 
 def recorded(structure):
@@ -298,7 +285,7 @@ class _Tabled:
 
 # What is known of inputs that are not exact
 
-ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""))
+ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""), ("error", 3, ""))
 """Names of rows that only bounds need."""
 
 
@@ -319,12 +306,13 @@ def _unproven(what):
 def _of_pieces(pieces, within, travel, rate):
     """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
     _, value, slope = pieces
-    steepest, jump, near = within
+    change, jump, near, distance = within
 
     def of_value(bounds):
         bounds.of((travel, rate))
         jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
-        jumps = plus(jumps, 0.0 / bounds.above(near, bounds.total(travel)))
-        return Error(0.0, bounds.fused(steepest, bounds.total(travel), jumps))
+        off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
+        jumps = plus(jumps, 0.0 / bounds.above(near, off))
+        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps))
 
-    return {value: of_value, slope: lambda bounds: Error(4.0, None)}
+    return {value: of_value, slope: lambda bounds: Error(3.0, None)}

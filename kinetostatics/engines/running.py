@@ -53,8 +53,8 @@ class RunningBounds(Counted):
     graph : Graph
     inputs : mapping of Node to function
         ``input(bounds) -> Error`` of inputs that are not exact, as for `bounds.Bounds`.
-    dust : float
-        What a product or quotient may lose if it is too small for a double; 0 if none is.
+    dust : float or None
+        What a product or quotient may lose if it is too small for a double; None if none is.
     """
 
     def __init__(self, graph, inputs=None, dust=DUST):
@@ -124,8 +124,9 @@ class RunningBounds(Counted):
             else:
                 terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), self.size(part)))
                 terms.append((1.0, found.dust))
-        if node.operation == "total":  # three sums without loss, and what they lose
-            terms += [(216.0 * UNIT * UNIT, self.size(part)) for part in parts]
+        if node.operation == "total":  # sums without loss, and what those of their losses lose
+            lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT
+            terms += [(lost, self.size(part)) for part in parts]
         return Absolute(terms, MORE if is_charged else reserve)
 
     def _of_product(self, node):

@@ -15,47 +15,6 @@ from .operations import BY_DESIGN
 from .programs import Program
 from .trace import BY_ANGLE, Graph, Node, needed
 
-HEADER = '''"""Written by kinetostatics; may be deleted at any time."""
-
-from math import atan, copysign as as_signed, cos, inf, nan, sin, sqrt
-
-import numpy as np
-from numba import njit
-from numpy import float32, uint64
-
-options = dict(error_model="numpy", nogil=True)
-ROUNDING, NAN, ZERO, ONE = float32({rounding!r}), float32(nan), float32(0.0), float32(1.0)
-
-
-@njit(**options)
-def root(square, unit):
-    return sqrt(max(square, ZERO)) if square > -ROUNDING * unit else NAN
-
-
-@njit(**options)
-def divisor(root, unit):
-    return root if root != root else max(root, unit)
-
-
-@njit(**options)
-def copysign(one, value):
-    return as_signed(ONE, value)
-
-
-@njit(**options)
-def empty(count):
-    return np.empty(count, np.float32)
-
-
-@njit(**options)
-def fma(one, other, more):
-    return one * other + more
-
-
-@njit("void({types})", cache=KEEP, **options)
-'''
-"""What a compiled loop in single precision has before it: functions without a number in double."""
-
 
 class Given(NamedTuple):
     """What is handed over: arrays of one dtype, and numbers that NumPy takes to be of the same.
@@ -143,9 +102,7 @@ class Split:
     @cached_property
     def _loop(self):
         """The loop compiled for single precision."""
-        types = ", ".join([writing.GIVEN] * 5 + [writing.FILLED]).format(2, 2, 2, 2, 3, 3)
-        header = HEADER.format(rounding=writing.ROUNDING, types=types.replace("float64", "float32"))
-        return loaded(header + writing.loop_alone(self.at_angles.outputs)).loop
+        return loaded(writing.loop(self.at_angles.outputs, fuse=False, kind="float32")).loop
 
 
 def _of_type(part, dtype):

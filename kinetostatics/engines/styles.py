@@ -69,10 +69,10 @@ def _written(tree, style, name):
 
 
 def _hold_of(value):
-    return NEGATIVE if value < 0 else PRODUCT if "e" in shown(value) else ATOM
+    return NEGATIVE if value < 0 else PRODUCT if "e" in in_digits(value) else ATOM
 
 
-def shown(value, exactly=False):
+def in_digits(value, exactly=False):
     """A number to 6 digits, or as short as tells it exactly."""
     if exactly:
         return repr(value).removesuffix(".0")
@@ -97,7 +97,7 @@ GREEK = {
 
 
 def _latex_number(value, exactly=False):
-    digits, found, power = shown(value, exactly).partition("e")
+    digits, found, power = in_digits(value, exactly).partition("e")
     return rf"{digits} \cdot 10^{{{int(power)}}}" if found else digits
 
 
@@ -118,7 +118,7 @@ def _below(symbol):
 
 
 def _mathml_number(value, exactly=False):
-    digits, found, power = shown(value, exactly).replace("-", "−").partition("e")
+    digits, found, power = in_digits(value, exactly).replace("-", "−").partition("e")
     if found:
         power = int(power.replace("−", "-"))
         return (
@@ -139,7 +139,7 @@ def _mathml_symbol(symbol):
 
 
 TEXT = Style(
-    shown,
+    in_digits,
     lambda symbol: symbol.text,
     " + ",
     " - ",

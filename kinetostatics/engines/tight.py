@@ -4,16 +4,19 @@ By coefficients c of the computed values the error of a node is, exactly, the su
 operation itself adds, and q, of second order (-e e' of a product). The error of an output is thus the sum of
 a (own + q) over all nodes, with adjoints a by the same coefficients (Linnainmaa 1976, *BIT* 16, 146; Langlois 2001,
 *BIT* 41, 606). Where values are used once their own errors add up as forward; only what is used more than once and made
-of sums, where errors may cancel, is cut off and has an adjoint. Forward bounds with q taken ``STRETCH`` times as large
-hold ``STRETCH`` times the sum of all |a| q, and far more than what the rounding of the adjoints makes.
+of sums, where errors may cancel, is cut off and has an adjoint. That is a bound F but for q, and for what is too small
+for a double. A forward bound C with both taken ``STRETCH`` times as large exceeds F by ``STRETCH`` times their sum over
+all nodes, by |a|, and by what cancels. So the mean (1 - 1 / STRETCH) F + C / STRETCH is a bound. It holds the rounding
+of the adjoints too, some thousand `UNIT` of what F would be if nothing cancelled: `bounds.SAFE` does where little
+cancels, and C where much does. Where nothing cancels it is the forward bound itself.
 """
 
 from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-from ..numbers.planar import plus
-from .bounds import EXACT, Bounds, size, whole
+from ..numbers.elementary import UNIT
+from .bounds import DUST, EXACT, SAFE, Bounds, size
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 STRETCH = 2.0**16
@@ -21,28 +24,30 @@ SEED = 2.0**900
 """Adjoint of the output, so large that no adjoint that counts is too small for a double."""
 
 
-def tight_bound(graph, inputs, output):
+def tight_bound(graph, inputs, output, dust=DUST):
     """A bound on the error of one output, as `Bounds.of` gives it; NaN or infinite where that is to be asked."""
     if not isinstance(output, Node):
         return 0.0
-    coarse = Bounds(graph, inputs, STRETCH)
+    coarse = Bounds(graph, inputs, STRETCH, None if dust is None else STRETCH * dust)
     coarse.of([output])
     local = _Local(graph, coarse, output)
-    total = None
-    slopes = _adjoints(graph, output, local.cut)
+    most, slopes, cancelling = coarse.total(output), _adjoints(graph, output, local.cut), None
+    if most is None:
+        return 0.0
     for node, (_, slope) in slopes.items():
         if node in local.cut:
-            total = local.fused(abs(slope), local.cut[node], total)
-    first = plus(None if total is None else total * (1.0 / SEED), local.total(output))
-    remainder = coarse.total(output)
-    if remainder is None:
-        return 0.0
-    dust = 4.0 * len(slopes) * 2.0**-50 / SEED
-    return whole(plus(local.fused(2.0 / STRETCH, remainder, first), dust))
+            cancelling = local.fused(abs(slope), local.cut[node], cancelling)
+    unit, share = SAFE * UNIT, 1.0 - 1.0 / STRETCH
+    mean = local.fused(unit / STRETCH, most, None if dust is None else unit * 4.0 * len(slopes) * 2.0**-50 / SEED)
+    for weight, part in ((unit * share, local.total(output)), (unit * share / SEED, cancelling)):
+        mean = mean if part is None else local.fused(weight, part, mean)
+    return mean
 
 
 class _Local(Bounds):
     """Errors of first order that come from operations after the last cuts; what is before them counts as exact.
+
+    Nothing is too small for a double here: the coarse bound has that.
 
     Attributes
     ----------
@@ -51,7 +56,7 @@ class _Local(Bounds):
     """
 
     def __init__(self, graph, coarse, output):
-        super().__init__(graph)
+        super().__init__(graph, dust=None)
         self.coarse, self.cut = coarse, {}
         behind: set[Node] = set()
         nodes = needed([output])
@@ -60,17 +65,24 @@ class _Local(Bounds):
             part for node in nodes if node.varies == BY_ANGLE for part in node.arguments if isinstance(part, Node)
         )
         for node in nodes:
-            after = not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
-            error = self._found(node) if after else coarse.error(node)
-            self._errors[node] = error
+            by_angle = node.varies == BY_ANGLE  # adjoints go no further than to what a design fixes
+            after = by_angle and not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
+            is_own = after or (coarse.is_dust(node) and node.operation not in INPUTS)
+            self._errors[node] = error = self._found(node) if is_own else coarse.error(node)
             if after:
                 behind.add(node)
-            else:
+            elif not is_own:
                 self._totals[node] = coarse.total(node)
             if uses[node] > 1 and node is not output and isinstance(error.rest, Node):
                 self.cut[node] = self.total(node)
                 self._errors[node], self._totals[node] = EXACT, None
                 behind.add(node)
+
+    def _found(self, node):
+        found = super()._found(node)
+        if node.operation in ("sqrt", "root") and self.is_dust(node.arguments[0]):  # of dust, which is not counted else
+            return found._replace(rest=self.coarse.error(node).rest)
+        return found
 
     def own(self, node):
         return EXACT if node.operation in ("divisor", "sign") else super().own(node)

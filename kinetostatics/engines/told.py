@@ -197,6 +197,18 @@ class Told(Dynamics):
                     pushes[item.on] = plus(pushes.get(item.on), push)
         return pushes
 
+    @property
+    def acting(self):
+        """Loads by link and forces along guides by slider as groups resolve them."""
+        self.placement, self.link_loads, self.pushes  # noqa: B018  told before
+        with self.names.under("Inertia and springs along guides"):
+            return super().acting
+
+    def departure(self, item):
+        """Second derivative of a slider's coordinate plus the elongation of a spring on it, m; None if not known."""
+        words = f"second derivative of the coordinate of the {item.on} plus the elongation of its spring"
+        return self.names.number(super().departure(item), Symbol("w", "", item.on), words, "m")
+
     @cached_property
     def powers(self):
         """Power of each load divided by the crank speed."""
@@ -229,9 +241,10 @@ class _Telling(Rubbing):
         with names.under(_carrying(part)):
             loads, along = dict(loads), dict(along)
             for name in part.links:
-                loads[name] = self._total(loads[name], name)
+                how = "but for what is told apart" if name in along else "with its inertia and what hangs on it"
+                loads[name] = self._total(loads[name], name, f"acts on the {name}, {how}")
                 if name in along:
-                    words = f"all that acts on the {name} along its guide"
+                    words = f"what acts on the {name} along its guide besides"
                     along[name] = names.number(along[name], Symbol("F", "s", name), words, "N")
             names.reading, self.laws = not any(name in self.acting for name in part.pairs), []
             resolved = self._named(super().__call__(part, placement, loads, along), part)
@@ -241,8 +254,7 @@ class _Telling(Rubbing):
                 names.satisfies(node_of(amount), node_of(size))
         return resolved
 
-    def _total(self, wrench, name):
-        words = f"acts on the {name}, with its inertia and what hangs on it"
+    def _total(self, wrench, name, words):
         return Wrench(
             self.names.vector(wrench.force, Symbol("F", "", name), f"force that {words}", "N"),
             self.names.number(wrench.moment, Symbol("M", "", name), f"moment that {words}", "N m"),

@@ -93,7 +93,11 @@ class Node:
 
     def total_with(self, terms):
         """Called by `elementary.total`."""
-        return self.graph.node("total", *terms, *[0.0] * (4 - len(terms)))
+        return self.graph.node("total", *terms)
+
+    def rest_with(self, length, x, y):
+        """Called by `elementary.rest`."""
+        return self.graph.node("rest", length, x, y)
 
     def _unknown(self, other=None):
         raise TypeError("the value of a recorded number is not known yet: kernels must not branch on values")
@@ -124,6 +128,8 @@ class Graph(list):
         factors = [part for part in arguments if isinstance(part, Node) or part != 1.0]
         if operation == "*" and len(factors) == 1:
             return factors[0]
+        if operation == "/" and _is_number(arguments[1], 1.0):
+            return arguments[0]
         key = (operation, *((part.index,) if isinstance(part, Node) else part for part in arguments))
         if key not in self._known:
             varies = max(part.varies for part in arguments if isinstance(part, Node))
@@ -157,11 +163,21 @@ class LeanGraph(Graph):
     def node(self, operation, *arguments):
         if operation == "/":
             return self._quotient(*arguments)
+        if operation in "+-" and len(arguments) == 2:
+            left, right = arguments
+            if _is_number(right, 0.0) and _counts(left):
+                return left
+            if _is_number(left, 0.0) and _counts(right):
+                return right if operation == "+" else -right
+        if operation == "sqrt" and (secant := _secant(*arguments)):
+            return abs(secant[0]) * self._over(secant[1])
         if operation == "*":
             left, right = arguments
-            if _is_negative(left):
+            if _is_none_of_turn(left, right) or _is_none_of_turn(right, left):
+                return 0.0
+            if is_negative(left):
                 return -self.node("*", left.arguments[0], right)
-            if _is_negative(right):
+            if is_negative(right):
                 return -self.node("*", left, right.arguments[0])
             for one, other in ((left, right), (right, left)):
                 if isinstance(one, Node) and one.operation == "*":
@@ -173,6 +189,8 @@ class LeanGraph(Graph):
         return super().node(operation, *arguments)
 
     def _quotient(self, above, below):
+        if is_negative(above):
+            return -self.node("/", above.arguments[0], below)
         if _varies(below) == BY_ANGLE:
             if isinstance(above, Node) and above.operation == "*":
                 left, right = above.arguments
@@ -189,7 +207,7 @@ class LeanGraph(Graph):
         if not isinstance(part, Node):
             return 1.0 / part
         arguments = part.arguments
-        if _is_negative(part):
+        if is_negative(part):
             return -self._over(arguments[0])
         if part.operation == "/":
             above, below = arguments
@@ -231,6 +249,50 @@ def _is_over(part, other):
     )
 
 
+def _is_none_of_turn(part, other):
+    """Whether a part is zero and the other the sine or cosine of the crank angle, which is finite."""
+    return (
+        _is_number(part, 0.0)
+        and isinstance(other, Node)
+        and other.operation in ("sin", "cos")
+        and other.arguments[0].operation == "angle"
+    )
+
+
+def _counts(part):
+    """Whether a part at each crank angle is more than zero times another, which may say that there is no value."""
+    return _varies(part) == BY_ANGLE and not any(_is_number(factor, 0.0) for factor in part.arguments)
+
+
+def _secant(square):
+    """Where a square is 1 + x^2 / h^2 with h the root of (a - x) (a + x): a and h, for its root is |a| / h."""
+    one, power = _parts(square, "+")
+    if not _is_number(one, 1.0):
+        one, power = power, one
+    tangent, same = _parts(power, "*")
+    if not _is_number(one, 1.0) or tangent is not same:
+        return None
+    for x, over in _either_way(tangent, "*"):
+        above, root = _parts(over, "/")
+        if _is_number(above, 1.0) and isinstance(root, Node) and root.operation == "sqrt":
+            for less, more in _either_way(root.arguments[0], "*"):
+                a, other = _parts(less, "-")
+                if other is x and any(one is a and two is x for one, two in _either_way(more, "+")):
+                    return a, root
+    return None
+
+
+def _parts(part, operation):
+    """Both arguments of an operation, or nothing twice."""
+    is_one = isinstance(part, Node) and part.operation == operation and len(part.arguments) == 2
+    return part.arguments if is_one else (None, None)
+
+
+def _either_way(part, operation):
+    left, right = _parts(part, operation)
+    return ((left, right), (right, left))
+
+
 def _is_number(part, number):
     return not isinstance(part, Node) and part == number
 
@@ -238,14 +300,14 @@ def _is_number(part, number):
 def _with_signs_taken_in(operation, *arguments):
     """The same sum or difference, to the last bit, without operations that only turn a sign."""
     *left, right = arguments
-    if _is_negative(right):
+    if is_negative(right):
         operation, right = "-" if operation == "+" else "+", right.arguments[0]
-    if left and _is_negative(left[0]) and operation == "+":
+    if left and is_negative(left[0]) and operation == "+":
         return "-", (right, left[0].arguments[0])
     return operation, (*left, right)
 
 
-def _is_negative(part):
+def is_negative(part):
     return isinstance(part, Node) and part.operation == "-" and len(part.arguments) == 1
 
 

@@ -1,13 +1,10 @@
 """Source of programs from recorded arithmetic: a loop for numba, a line of arrays, a line of plain numbers."""
 
-from ..numbers.elementary import ROUNDING
+from ..numbers.elementary import ROUNDING, SPLIT
 from .fusing import fused
 from .trace import BY_ANGLE, Node, needed
+from .vectors import edition
 
-ROWS_AT_ONCE = 12
-"""Outputs written to as many rows; beyond fifteen the compiler gives up vectorising, unless all go to one memory."""
-AT_ONCE = 64
-"""Crank angles whose outputs go to one memory and from there to their rows."""
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
 """Arrays of so many axes that a loop reads, which may be locked, and that it writes, as numba names them."""
 TURN = f'''"""Written by kinetostatics; may be deleted at any time."""
@@ -24,12 +21,12 @@ def shared(angle, sine, cosine):
         sine[i] = sin(angle[i])
 '''
 """Module that computes sines and cosines of crank angles."""
-LOOP_HEADER = f'''"""Written by kinetostatics; may be deleted at any time."""
+LOOP_HEADER = f'''"""Written by kinetostatics, edition {{edition}}; may be deleted at any time."""
 
 from math import atan, copysign, cos, inf, nan, sin, sqrt
 
+from kinetostatics.engines.vectors import over_angles
 from numba import njit
-from numpy import empty, uint64
 
 options = dict(error_model="numpy", nogil=True)
 
@@ -44,22 +41,19 @@ def divisor(root, unit):
     return unit if root < unit else root
 
 
-@njit("void({", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})", cache=KEEP, **options)
 '''
-LOOP_HEAD = "def loop(angle, sine, cosine, parameters, tables, results):"
-LOOP = """    for design in range(parameters.shape[0]):
+LOOP_TYPE = f"""at_angles = over_angles(line)
+
+
+@njit("void({", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})", cache=KEEP, **options)
+"""
+LOOP_HEAD = """def loop(angle, sine, cosine, parameters, tables, results):
+    for design in range(parameters.shape[0]):
         first = design * (angle.shape[0] > 1)
         table = design * (tables.shape[1] > 1)"""
-BLOCKS = f"""        for start in range(0, angle.shape[1], {AT_ONCE}):
-            count = min(angle.shape[1] - start, {AT_ONCE})
-            for k in range(count):
-                i = uint64(start + k)"""
-SPREAD = f"""            for place in range(results.shape[1]):
-                row = results[design, place, start:]
-                for k in range(count):
-                    row[k] = block[{AT_ONCE} * place + k]"""
+LOOP = "        at_angles(angle, sine, cosine, tables, results, first, table, design, ({}))"
 
-TOTAL = """@njit(**options)
+TOTAL = f"""@njit(**options)
 def summed(a, b):
     whole = a + b
     part = whole - a
@@ -67,14 +61,34 @@ def summed(a, b):
 
 
 @njit(**options)
-def total(one, two, three, four):
+def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
     whole, first = summed(one, two)
     whole, second = summed(whole, three)
     whole, third = summed(whole, four)
+    whole, fourth = summed(whole, five)
+    whole, fifth = summed(whole, six)
     lost, first = summed(first, second)
     lost, second = summed(lost, third)
-    whole, third = summed(lost, whole)
-    return whole + (first + second + third)
+    lost, third = summed(lost, fourth)
+    lost, fourth = summed(lost, fifth)
+    whole, fifth = summed(lost, whole)
+    return whole + (first + second + third + fourth + fifth)
+
+
+@njit(**options)
+def squared(a):
+    whole, spread = a * a, {SPLIT!r} * a
+    high = spread - (spread - a)
+    low = a - high
+    return whole, ((high * high - whole) + 2.0 * high * low) + low * low
+
+
+@njit(**options)
+def rest(length, x, y):
+    one, first = squared(x)
+    two, second = squared(y)
+    three, third = squared(length)
+    return total(one, first, two, second, -three, -third) / (2.0 * length)
 
 
 """
@@ -100,50 +114,39 @@ def fma(typing, one, other, more):
 """What a loop with fused products and sums has before all else; two operations where the processor has not the one."""
 
 
-def loop(outputs, fuse=True) -> str:
+def loop(outputs, fuse=True, kind="float64") -> str:
     """Source of a module with ``loop(angle, sine, cosine, parameters, tables, results)``.
 
     It takes angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
-    designs, N), and fills results (designs, outputs, N). Sums are fused with products, see `fusing`, unless told.
+    designs, N), and fills results (designs, outputs, N), all of a kind of numbers. Sums are fused with products, see
+    `fusing`, unless told.
     """
-    nodes, sums = _computed(outputs, fuse)
-    header = LOOP_HEADER
-    if sums or any(node.operation == "fma" for node in nodes):
-        header = LOOP_HEADER.replace("\n\n\n@", f"\n{FUSED}@", 1)
-    if any(node.operation == "total" for node in nodes):
-        head, end = header.rsplit("@njit", 1)
-        header = f"{head}{TOTAL}@njit{end}"
-    return header + _function(outputs, nodes, sums)
-
-
-def loop_alone(outputs) -> str:
-    """Source of the same function without what stands before it."""
-    return _function(outputs, *_computed(outputs))
-
-
-def _computed(outputs, fuse=True):
-    """What is computed for outputs, in order, and the sums among it that are fused."""
     nodes = needed(outputs)
-    if not fuse:
-        return nodes, {}
-    sums = fused(nodes)
-    return _still_needed(nodes, outputs, sums), sums
-
-
-def _function(outputs, nodes, sums):
-    by_design = [f"        {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
-    by_angle = [
-        _fused(node, sums[node]) if node in sums else _defined(node) for node in nodes if _is_computed_by_angle(node)
+    sums = fused(nodes) if fuse else {}
+    if sums:
+        nodes = _still_needed(nodes, outputs, sums)
+    by_design = [node for node in nodes if node.varies < BY_ANGLE]
+    by_angle = [node for node in nodes if _is_computed_by_angle(node)]
+    used = {part for node in by_angle for part in _parts(node, sums)}
+    used.update(part for part in outputs if isinstance(part, Node))
+    fixed = "".join(f"{_name(node)}, " for node in by_design if node in used)
+    operations = {node.operation for node in by_design}
+    lines = [
+        "def line(angle, sine, cosine, tables, numbers):",
+        f"    {fixed}= numbers" if fixed else "",
+        *(f"    {_fused(node, sums[node]) if node in sums else _defined(node)}" for node in by_angle),
+        f"    return ({' '.join(f'{_name(part)},' for part in outputs)})\n\n\n",
     ]
-    if len(outputs) <= ROWS_AT_ONCE:
-        rows = [f"        row_{place} = results[design, {place}]" for place in range(len(outputs))]
-        ends = [f"row_{place}[i] = {_name(part)}" for place, part in enumerate(outputs)]
-        inner = ["        for i in range(angle.shape[1]):", *(f"            {each}" for each in by_angle + ends)]
-        return "\n".join([LOOP_HEAD, LOOP, *by_design, *rows, *inner]) + "\n"
-    ends = [f"block[uint64({place * AT_ONCE} + k)] = {_name(part)}" for place, part in enumerate(outputs)]
-    memory = f"    block = empty({len(outputs) * AT_ONCE})"
-    inner = [BLOCKS, *(f"                {each}" for each in by_angle + ends), SPREAD]
-    return "\n".join([LOOP_HEAD, memory, LOOP, *by_design, *inner]) + "\n"
+    header = LOOP_HEADER.format(edition=edition())
+    header += (FUSED if "fma" in operations else "") + ("" if operations.isdisjoint(("total", "rest")) else TOTAL)
+    body = [LOOP_HEAD, *(f"        {_defined(node, _BY_DESIGN)}" for node in by_design), LOOP.format(fixed)]
+    return header + "\n".join(filter(None, lines)) + LOOP_TYPE.replace("float64", kind) + "\n".join(body) + "\n"
+
+
+def _parts(node, sums):
+    """What a node is computed from, as it is or as a product and the rest."""
+    parts = (sums[node].one, sums[node].other, sums[node].rest) if node in sums else node.arguments
+    return [part for part in parts if isinstance(part, Node)]
 
 
 def _still_needed(nodes, outputs, sums):
@@ -151,13 +154,12 @@ def _still_needed(nodes, outputs, sums):
     wanted = {part for part in outputs if isinstance(part, Node)}
     for node in reversed(nodes):
         if node in wanted:
-            parts = (sums[node].one, sums[node].other, sums[node].rest) if node in sums else node.arguments
-            wanted.update(part for part in parts if isinstance(part, Node))
+            wanted.update(_parts(node, sums))
     return [node for node in nodes if node in wanted]
 
 
 def _fused(node, parts):
-    one, other, rest = map(_name, (parts.one, parts.other, parts.rest))
+    one, other, rest = (_name(part) for part in (parts.one, parts.other, parts.rest))
     signs = ["-" if sign < 0 else "" for sign in (parts.sign, parts.rest_sign)]
     return f"v{node.index} = fma({signs[0]}{one}, {other}, {signs[1]}{rest})"
 
@@ -168,8 +170,8 @@ def line(outputs, argument_names="angle, sine, cosine, parameters, tables") -> s
     Of plain numbers; of arrays too, each operation with new memory.
     """
     lines = [f"def line({argument_names}):"]
-    lines += [f"    {_defined(node, _PLAIN)}" for node in needed(outputs) if node.operation != "angle"]
-    lines.append(f"    return ({' '.join(f'{_name(part, _PLAIN)},' for part in outputs)})")
+    lines += [f"    {_defined(node)}" for node in needed(outputs) if node.operation != "angle"]
+    lines.append(f"    return ({' '.join(f'{_name(part)},' for part in outputs)})")
     return "\n".join(lines) + "\n"
 
 
@@ -187,7 +189,7 @@ def buffered_line(outputs) -> tuple[str, int]:
         else:
             copies.append((place, part))
     last = {argument: node for node in nodes for argument in node.arguments if isinstance(argument, Node)}
-    source = [f"    {_defined(node, _PLAIN)}" for node in nodes if node.varies < BY_ANGLE]
+    source = [f"    {_defined(node)}" for node in nodes if node.varies < BY_ANGLE]
     free: list[str] = []
     place_of: dict[Node, str] = {}
     count = 0
@@ -197,7 +199,7 @@ def buffered_line(outputs) -> tuple[str, int]:
         if _is_given(node):
             place_of[node] = _expression(node, _PLAIN)
             continue
-        names = [place_of.get(part) or _name(part, _PLAIN) for part in node.arguments]
+        names = [place_of.get(part) or _name(part) for part in node.arguments]
         spent = {part for part in node.arguments if isinstance(part, Node) and last[part] is node and part not in rows}
         released = [place_of[part] for part in spent if place_of.get(part, "").startswith("b")]
         if node in rows:
@@ -215,7 +217,7 @@ def buffered_line(outputs) -> tuple[str, int]:
             source.append(f"    multiply({', '.join([*factors, target])}); add({target}, {more}, {target})")
         else:
             source.append(f"    {_OPERATIONS[node.operation, len(names)]}({', '.join([*names, target])})")
-    source += [f"    r{place}[...] = {place_of.get(part) or _name(part, _PLAIN)}" for place, part in copies]
+    source += [f"    r{place}[...] = {place_of.get(part) or _name(part)}" for place, part in copies]
     heads = ["def line(angle, sine, cosine, parameters, tables, buffers, results):"]
     heads += [f"    {', '.join(f'b{k}' for k in range(count))}, = buffers"] if count else []
     heads += [f"    {', '.join(f'r{k}' for k in range(len(outputs)))}, = results"] if outputs else []
@@ -237,7 +239,7 @@ _OPERATIONS = {
     ("held", 1): "positive",
     ("root", 2): "root_of",
     ("divisor", 2): "maximum",
-    ("total", 4): "total_of",
+    **{("total", count): "total_of" for count in range(2, 7)},
 }
 """By operation and number of arguments: the array function that takes its result's place as last argument."""
 _IN_PLACE = ("+", "-", "*", "/", "abs", "sqrt", "divisor")
@@ -256,22 +258,22 @@ def _is_of_angle(node):
     return node.operation in ("sin", "cos") and node.arguments[0].operation == "angle"
 
 
-_COMPILED = {"angle": "angle[first, i]", "parameter": "parameters[design, {}]", "table": "tables[{}, table, i]"}
-_COMPILED |= {"sin": "sine[first, i]", "cos": "cosine[first, i]"}
 _PLAIN = {"angle": "angle", "parameter": "parameters[{}]", "table": "tables[{}]", "sin": "sine", "cos": "cosine"}
 """What inputs, and sine and cosine of the crank angle, are called."""
+_BY_DESIGN = {"parameter": "parameters[design, {}]"}
+"""The same in the part of a loop that a design fixes."""
 _CALLS = {"held": "{}", "sign": "copysign(1.0, {})"}
 """Operations that are no function of the same name."""
 
 
-def _defined(node, inputs=_COMPILED):
+def _defined(node, inputs=_PLAIN):
     return f"v{node.index} = {_expression(node, inputs)}"
 
 
-def _name(part, inputs=_COMPILED):
+def _name(part):
     if not isinstance(part, Node):
         return repr(part.item() if hasattr(part, "item") else part)  # a number of NumPy as a plain one
-    return inputs["angle"] if part.operation == "angle" else f"v{part.index}"
+    return "angle" if part.operation == "angle" else f"v{part.index}"
 
 
 def _expression(node, inputs):
@@ -280,7 +282,7 @@ def _expression(node, inputs):
         return inputs[kind].format(*node.arguments)
     if _is_of_angle(node):
         return inputs[kind]
-    names = [_name(part, inputs) for part in node.arguments]
+    names = [_name(part) for part in node.arguments]
     if kind in ("+", "-", "*", "/"):
         return f" {kind} ".join(names) if len(names) == 2 else f"{kind}{names[0]}"
     return _CALLS.get(kind, f"{kind}({', '.join(names)})").format(*names)

@@ -13,6 +13,7 @@ from .lever_group import LeverGroup
 from .links import Link, present
 from .mechanism import Mechanism
 from .rocker_group import RockerGroup
+from .roller_follower import RollerFollower
 from .slider_group import SliderGroup
 from .yoke_group import YokeGroup
 
@@ -118,6 +119,24 @@ def cam_crank_slider(
     if isinstance(cam, CosineLaw | LawCam):
         _warn_off_law(cam, group)
     return Mechanism("cam-balanced crank-slider", Crank(None, crank), (CamRoller(cam, block, roller), group))
+
+
+def crank_slider_parts(mechanism):
+    """Cam roller, None without a cam, and slider group of what `crank_slider` or `cam_crank_slider` makes; else None.
+
+    The slider's pin may have any name.
+    """
+    *before, last = mechanism.groups or (None,)
+    rollers = [group for group in before if isinstance(group, CamRoller)]
+    if not isinstance(last, SliderGroup) or (last.on, last.label) != ("A", "") or not len(before) == len(rollers) <= 1:
+        return None
+    return (rollers[0] if rollers else None), last
+
+
+def with_roller_follower(mechanism, name, law, guide, follower, pin, label):
+    """A machine under another name with a cam on its crank that moves a roller follower, the last of its groups."""
+    added = RollerFollower(law, guide, follower, pin=pin, label=label)
+    return Mechanism(name, mechanism.crank, (*mechanism.groups, added))
 
 
 def four_bar(

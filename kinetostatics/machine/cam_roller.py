@@ -13,7 +13,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import atan, sqrt
-from ..numbers.planar import cross, dot, minus, polar_curvature, vector
+from ..numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
 from .crank import ray
 from .declared import Led, Slot
 from .friction import Rolling, Slide, Sliding
@@ -38,6 +38,7 @@ TERMS = {
     "place.radius": ("r", "radius of the pitch curve"),
     "place.slope": ("r'", "its first derivative by phi"),
     "place.curvature": ("r''", "its second derivative by phi"),
+    "departing": ("b", "second derivative of the roller centre plus its place"),
     "resolve.force": ("Q", "all that acts on the block, with friction"),
     "resolve.lean": ("tau", "tangent of the pressure angle"),
     "resolve.outward": ("N", "force on the block along the ray"),
@@ -56,18 +57,22 @@ class RollerForces(NamedTuple):
 
 
 def place(ray, radius, slope, curvature):
-    """Roller centre A on the ray, from r, r' and r'' (kernel).
-
-    The place itself is part of its second derivative, so that its rounding cancels where a spring balances inertia.
-    """
+    """Roller centre A on the ray, from r, r' and r'' (kernel)."""
     x, y = ray
     along, across = radius * x, radius * y
-    sideways = 2.0 * slope
     return Joint(
         (along, across),
         (slope * x - across, slope * y + along),
-        (curvature * x - sideways * y - along, curvature * y + sideways * x - across),
+        subtracted(departure(ray, slope, curvature), (along, across)),
     )
+
+
+def departure(ray, slope, curvature):
+    """Second derivative of the roller centre plus its place, r'' along the ray and 2 r' across it (kernel)."""
+    x, y = ray
+    sideways = 2.0 * slope
+    departing = (curvature * x - sideways * y, curvature * y + sideways * x)
+    return departing
 
 
 def resolve(ray, radius, slope, load):
@@ -202,6 +207,7 @@ class CamRoller(checks.Checked, Group):
     def place(self, placement):
         polar = self.cam.polar(placement.angle, placement.ray)
         self._set(placement, place(placement.ray, *polar), polar)
+        placement.departures["A"] = departure(placement.ray, *polar[1:])
 
     def closure(self, placement):
         """Squared cosine of the pressure angle, negative where the radius is."""

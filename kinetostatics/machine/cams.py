@@ -5,18 +5,21 @@ and the curvature radius of the pitch curve. Each r is a smooth closed form or s
 the turn.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import namespace, sqrt
+from ..numbers.elementary import namespace, sqrt, total
 from ..numbers.lazy import cached_property
+from ..numbers.planar import length_and_rest, minus
 from .cam import Cam
 from .crank import ray as ray_at
 from .harmonic_cam import Harmonic
 from .law_cam import LawCam, from_law
+from .on_crank import CLOSE, directed, spread
 from .profile import Profile
 from .sampled_cam import Sampled
 
@@ -27,6 +30,7 @@ TERMS = {
     "root": ("w", "root of the pitch curve"),
     "singular": ("c0", "cosine of the singular angle"),
     "excess": ("d", "that root less the coordinate of the slider"),
+    "share": ("f", "amplitude times the cosine of the singular angle"),
 }
 """What hand calculations call lines of the kernels, and what they are."""
 
@@ -58,6 +62,7 @@ class Circle(Cam):
 
     pitch_radius: Any
     centre: Any
+    is_close: bool = field(default=False, init=False, repr=False)
 
     ELEMENTWISE = True
     PATHS: ClassVar = {"pitch_radius": "radius"}
@@ -66,6 +71,15 @@ class Circle(Cam):
         object.__setattr__(self, "pitch_radius", radius)
         object.__setattr__(self, "centre", centre)
         self.RULES.admit(self)
+        object.__setattr__(self, "is_close", self._comes_close())
+
+    def _comes_close(self):
+        """Whether O lies close to the circle, in any design."""
+        (x, y), radius = self.centre, self.pitch_radius
+        if type(x) is type(y) is type(radius) is float:
+            return radius - math.hypot(x, y) < CLOSE * radius
+        smallest = self.smallest_radius
+        return checks.known(smallest) and bool(np.any(smallest < CLOSE * radius))
 
     def _around_origin(self):
         """Say where O lies outside the circle, or on it."""
@@ -100,11 +114,26 @@ class Circle(Cam):
         x, y = self.centre
         along = x * ray[0] + y * ray[1]
         across = y * ray[0] - x * ray[1]
+        if self.is_close:
+            return self._close(along, across, ray)
         root = sqrt((self.pitch_radius - across) * (self.pitch_radius + across))
         r = along + root
         lean = across / root
         slope = lean * r
         return r, slope, lean * slope - along * (1.0 + lean * lean) * r / root
+
+    def _close(self, along, across, ray):
+        """The same with O close to the circle: margins by the smallest radius and parts that are positive.
+
+        There r, along and the root are such that r (root - along) is the product of the smallest and largest radius.
+        """
+        (x, y), radius = self.centre, self.pitch_radius
+        (away, rest), (direction, reach) = length_and_rest(self.centre), directed((y, -x))
+        least, share = total(radius, -away, minus(None, rest)), 0.5 * away / (reach * reach)
+        _, near_by, far_off = spread(ray, direction, reach)
+        root = sqrt((least + share * near_by) * (least + share * far_off))
+        r = along + root
+        return r, across / root * r, radius * radius * least * (radius + away) / (root * root * root) - r
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,9 +149,10 @@ class CosineLaw(checks.Checked, Cam):
 
     Nor do x_B cos(phi) and w, both much larger than r, have to be subtracted: with b c* = a - 2 a c*^2
 
-        r = c* root - c d,   d = root - x_B = a^2 (2 c* c + 3 - 5 c*^2) / (root + x_B)
+        r = c* root - c d,   d = root - x_B = g + a c*
+        g = (a^2 (2 + c* c - 3 c*^2) - a c* root) / (root + x_B)
 
-    in which nothing cancels. So do the derivatives by c, with g = d - a c*, k = a / root and w = k (c - c*):
+    of which only a half cancels in g. So do the derivatives by c, with k = a / root and w = k (c - c*):
 
         dr/dc = (w - 1) g,   d2r/dc2 = k g (2 - w (2 - g / root))
 
@@ -217,8 +247,10 @@ class CosineLaw(checks.Checked, Cam):
         square, p, q = self._quadratic
         root = sqrt((square * c + p) * c + q)
         singular = self._cosine
-        excess = square * (2.0 * singular * c + 3.0 - 5.0 * singular * singular) / (root + b + a * c)
-        g, k = excess - a * singular, a / root
+        share = a * singular
+        above = square * singular * c + square * (2.0 - 3.0 * singular * singular) - share * root
+        g = above / (root + b + a * c)
+        excess, k = g + share, a / root
         w = k * (c - singular)
         by_c = (w - 1.0) * g
         by_c_twice = k * g * (2.0 - w * (2.0 - g / root))

@@ -4,12 +4,13 @@ The slotted lever turned inside out: rod and cylinder point at each other, so th
 offset; only the couple of the pair is taken about the pivot.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from ..numbers import checks
+from ..numbers.leaves import with_fields
 from ..numbers.planar import number, stretched
-from . import lever_group
+from . import lever_group, on_crank
 from .declared import Slot
 from .friction import Slide, Sliding, Turning
 from .group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
@@ -60,6 +61,7 @@ class CylinderGroup(checks.Checked, Group):
     cylinder: Link = Link()
     pivot_name: str = "O2"
     label: str = ""
+    is_close: bool = field(default=False, init=False, repr=False)
 
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "cylinder_pivot"}
@@ -133,9 +135,18 @@ class CylinderGroup(checks.Checked, Group):
     def motion(self, name, placement):
         return placement.details[self._cylinder].reach
 
+    def on_crank(self, throws):
+        """The group as it is on the pins of a crank: whether its pin comes close to the pivot."""
+        throw = throws.get(self.on)
+        is_close = throw is not None and on_crank.is_near(throw, 0.0, self.pivot)
+        return self if is_close is self.is_close else with_fields(self, is_close=is_close)
+
     def place(self, placement):
         """Add the pivot, rod and cylinder."""
-        motion = lever_group.place(placement.joints[self.on], self.pivot, None, 1)
+        if self.is_close:
+            motion = lever_group.passed(placement, self.on, self.pivot, None, on_crank.slotted, 1)
+        else:
+            motion = lever_group.place(placement.joints[self.on], self.pivot, None, 1)
         placement.joints[self.pivot_name] = motion.lever.joint
         placement.links[self._rod] = motion.block._replace(direction=stretched(-1.0, motion.block.direction))
         placement.links[self._cylinder] = motion.lever

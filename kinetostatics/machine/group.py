@@ -28,10 +28,11 @@ frozen dataclass derived from `Group`. It declares, by name,
     follow(placement, joints)         its links where the joints it adds are known: for methods under study
     motion(name, placement)           a quantity of `motions`
     elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
+    departure(placement, position)    second derivative of that coordinate plus the elongation, in the same way, or None
     sliding(name, placement)          direction and rate of a sliding pair: a `friction.Slide`
     relative_radius(name, placement, side)  of both curvatures of a contact together, by the sign of its force
 
-The last five may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
+The last six may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
 not be arithmetic: engines then tabulate it.
 
 How to write one
@@ -47,7 +48,7 @@ derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`n
 (x, y). Put into ``placement.joints`` each joint of `joints`, into ``placement.links`` a `LinkMotion` for each link: its
 reference joint, its direction (unit vector), d theta / d phi and the slope of that (None: it never turns); into
 ``placement.travels`` for each slider its coordinate along its guide with both derivatives; into ``placement.details``
-what `resolve` wants to find again.
+what `resolve` wants to find again. A group may put its joints into ``placement.departures`` and ``placement.swings``.
 
 *resolve.* A pure function from what acts on its links to what it finds: nothing is written to, and nothing is kept.
 ``loads`` holds by link the wrench on it, inertia, weight and all that groups further out ask of it, a force and its
@@ -82,7 +83,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..numbers.planar import length
+from ..numbers.planar import length, length_and_rest
 from .links import Wrench
 
 FRAME = "frame"
@@ -160,13 +161,20 @@ class Throw(NamedTuple):
         radius = length(self.at)
         return radius, (self.at[0] / radius, self.at[1] / radius)
 
+    @property
+    def radius_and_rest(self):
+        """Distance from O, and what rounding took off it."""
+        return (self.at[0], None) if self.ahead else length_and_rest(self.at)
+
 
 @dataclass
 class Placement:
     """The mechanism at its crank angles: motion flows outward from the crank into these tables.
 
     `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
-    to find again; `throws` by joint the pins of the crank, each a `Throw`.
+    to find again; `throws` by joint the pins of the crank, each a `Throw`, whose second derivative is minus its
+    position; `departures` by other joints the sum of both, where it is known by itself; `swings` by joint what swings
+    it about a fixed place, a `Swing`.
     """
 
     angle: Any
@@ -176,6 +184,8 @@ class Placement:
     travels: dict = field(default_factory=dict)
     details: dict = field(default_factory=dict)
     throws: dict = field(default_factory=dict)
+    departures: dict = field(default_factory=dict)
+    swings: dict = field(default_factory=dict)
 
 
 class Group:

@@ -8,6 +8,7 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.lazy import cached_property
+from ..numbers.leaves import Axis
 from ..numbers.planar import added, number, turned
 from .group import Output
 from .links import Joint, LinkMotion, present
@@ -67,6 +68,11 @@ class Guide(checks.Checked):
         guide_offset=checks.Number("m"),
         exact=checks.Optional(checks.Pair("1", "direction")),
     )
+
+    def __post_init__(self):
+        super().__post_init__()
+        if self.exact is not None:
+            object.__setattr__(self, "exact", Axis.of(self.exact))
 
     @classmethod
     def at(cls, guide_angle=0.0, guide_offset=0.0):

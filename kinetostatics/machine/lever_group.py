@@ -203,7 +203,7 @@ class LeverGroup(checks.Checked, change_points.Passer, Group):
 
     def comes_close(self, throw):
         """Whether the pin comes close to the pivot, or the block to the foot of the pivot on the slot."""
-        return on_crank.is_small(throw, self.offset, np.hypot(*self.pivot))
+        return on_crank.is_near(throw, self.offset, self.pivot)
 
     @property
     def start(self):

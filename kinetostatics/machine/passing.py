@@ -5,8 +5,8 @@ Which change points there are, and the notation, is told in `change_points`.
 
 from typing import Any, NamedTuple
 
-from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt
-from ..numbers.planar import added, cross, dot, minus, number, stretched, subtracted, turned, unturned
+from ..numbers.elementary import apart, cos, divisor, root, sin, sqrt, total
+from ..numbers.planar import added, cross, dot, length_and_rest, minus, number, stretched, subtracted, turned, unturned
 from .change_points import BOTH, FAR, KITE, MEETING, NEAR, PARALLEL, TWICE, parted
 from .links import Joint, LinkMotion, present, tip
 
@@ -76,19 +76,26 @@ def _quarter(angle, pivot, ground, facing):
 
 def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     """Coupler and rocker for the pin `on` of the crank, on the branch that is open (+1) or crossed (-1) (kernel)."""
-    a, direction = placement.throws[on].polar
+    throw, (d, rest) = placement.throws[on], length_and_rest(pivot)
+    (a, direction), slack = throw.polar, throw.radius_and_rest[1]
     b, h, fixed, pivot = coupler_length, rocker_length, pivot, unturned(pivot, direction)
-    d = sqrt(dot(pivot, pivot))
+    less, short = minus(None, rest), minus(None, slack)
+    m = total(d, -a, rest, short)
     kind, facing = parted(passage)
     if kind in TWICE:
         half = _half(placement.angle, pivot, d, facing)
-        found = _meeting(half, a, b, h, d, side) if kind == MEETING else _single(half, kind, a, b, h, d, side)
+        if kind == FAR:
+            constant = total(d, h, -a, -b, rest, short) * total(d, b, -a, -h, rest, short)
+        else:
+            constant = total(b, h, -d, -a, less, short) * (b + h + d + a)
+        lengths = a, b, h, d, constant
+        found = _meeting(half, *lengths, side) if kind == MEETING else _single(half, kind, *lengths, m, side)
     elif side > 0 and kind != KITE:
         found = _translated(placement.ray, pivot, d)
     elif side < 0 and kind != PARALLEL:
         found = _folded(placement.ray, pivot, d)
     else:
-        found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, side)
+        found = _mirrored(_half(placement.angle, pivot, d, facing), kind, a, d, m, side)
     coupler, rocker, *rest = found
     coupler, rocker = ((turned(link[0], direction), *link[1:]) for link in (coupler, rocker))
     return _placed(placement.joints[on], fixed, h, coupler, rocker, *rest)
@@ -113,7 +120,8 @@ def slid(placement, on, coupler_length, guide, passage, side):
     sin(psi/2) ("near") vanishes. What to divide by is a factor and the distance from the change points.
     """
     kind, facing = parted(passage)
-    a, direction = placement.throws[on].polar
+    throw = placement.throws[on]
+    (a, direction), slack = throw.polar, throw.radius_and_rest[1]
     b, e = coupler_length, number(guide.offset)
     x, y = unturned((1.0, 0.0) if guide.direction is None else guide.direction, direction)
     if kind == BOTH:
@@ -121,7 +129,7 @@ def slid(placement, on, coupler_length, guide, passage, side):
         ratio = -1.0 if side > 0 else 1.0
         return side * a * along, ratio, None, (float(side), apart(along, UNSEEN)), 1.0
     half = _half(placement.angle, (y, -x), 1.0, facing)
-    constant = b + e - a if kind == NEAR else b - e - a
+    constant = total(b, e if kind == NEAR else -e, -a, minus(None, slack))
     passed, other = (half.cosine, half.sine) if kind == FAR else (half.sine, half.cosine)
     square, size = constant + 2.0 * a * other * other, 2.0 * b
     height = root(square, size)
@@ -148,7 +156,7 @@ def slotted(placement, on, pivot, offset, passage, side):
     """
     kind, facing = parted(passage)
     a, ahead = placement.throws[on].polar
-    d, pivot = sqrt(dot(pivot, pivot)), unturned(pivot, ahead)
+    d, pivot = length_and_rest(pivot)[0], unturned(pivot, ahead)
     half = _half(placement.angle, pivot, d, facing)
     if kind == MEETING:
         direction, lag, slope, factor, closure = (0.0, float(side)), None, None, 2.0 * side * a, 1.0
@@ -187,10 +195,10 @@ def _folded(ray, pivot, ground):
     return ((-ray[0], -ray[1]), 1.0, None), (back, None, None), 1.0, 1.0, cross(back, ray)
 
 
-def _mirrored(half, kind, a, d, side):
+def _mirrored(half, kind, a, d, m, side):
     """Antiparallelogram or open kite: the folded kite, or the parallelogram, mirrored in the line A O2."""
     cosine, sine, frame = half
-    m, n = d - a, d + a
+    n = d + a
     x, y = m * cosine, n * sine
     square = x * x + y * y
     mirror = ((x * x - y * y) / square, -2.0 * x * y / square)
@@ -222,11 +230,10 @@ def _swung(kind, half, a, d, size, constant, side):
     return height, square / size, rate, bend if kind == FAR else -bend, side * reach / (0.25 * size) * divided, passed
 
 
-def _single(half, kind, a, b, h, d, side):
+def _single(half, kind, a, b, h, d, constant, m, side):
     """One change point, with A clear of O2."""
     cosine, sine, frame = half
-    m, n, gap, both = d - a, d + a, b - h, b + h
-    constant = (m - gap) * (m + gap) if kind == FAR else (both - n) * (both + n)
+    n, gap, both = d + a, b - h, b + h
     height, closure, rate, bend, factor, passed = _swung(kind, half, a, d, 4.0 * b * h, constant, side)
     x, y = m * cosine, n * sine
     square = x * x + y * y
@@ -251,11 +258,10 @@ def _single(half, kind, a, b, h, d, side):
     return coupler, rocker, closure, factor, passed
 
 
-def _meeting(half, a, b, h, d, side):
+def _meeting(half, a, b, h, d, constant, side):
     """Deltoid of equal crank and ground: A meets O2, but B goes on."""
-    n, both = d + a, b + h
-    height, closure, rate, bend, factor, passed = _swung(NEAR, half, a, d, 4.0 * b * h, (both - n) * (both + n), side)
-    x, y = side * height, n * half.sine
+    height, closure, rate, bend, factor, passed = _swung(NEAR, half, a, d, 4.0 * b * h, constant, side)
+    x, y = side * height, (d + a) * half.sine
     coupler = turned((x / (2.0 * b), -y / (2.0 * b)), half.frame), 0.5 - rate, -bend
     rocker = turned((x / (2.0 * h), y / (2.0 * h)), half.frame), 0.5 + rate, bend
     return coupler, rocker, closure, factor, passed

@@ -19,7 +19,7 @@ from ..numbers.planar import added, cross, dot, number, quotient, stretched, sub
 from . import change_points, on_crank, passing
 from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
-from .links import Joint, Link, LinkMotion, Wrench, between, tip
+from .links import Joint, Link, LinkMotion, Swing, Wrench, between, tip
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
@@ -97,9 +97,9 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
 
 
-def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly):
-    """The same for a pin of the crank (kernel)."""
-    coupler, rocker, *rest = on_crank.place(placement, on, coupler_length, rocker_length, pivot, assembly)
+def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly, is_close):
+    """The same for a pin of the crank, which may come close to the pivot (kernel)."""
+    coupler, rocker, *rest = on_crank.place(placement, on, coupler_length, rocker_length, pivot, assembly, is_close)
     pin, fixed = tip(pivot, rocker_length, *rocker), Joint(pivot, None, None)
     return RockerMotion(LinkMotion(placement.joints[on], *coupler), LinkMotion(fixed, *rocker), pin, *rest)
 
@@ -173,6 +173,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     pivot_name: str = "O2"
     label: str = ""
     passage: str = field(default="", init=False, repr=False)
+    is_close: bool = field(default=False, init=False, repr=False)
 
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot"}
@@ -193,6 +194,10 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     def found_on(self, throws):
         """How it passes its change points on a crank with these throws."""
         return change_points.of_rocker_group(self, throws)
+
+    def comes_close(self, throw):
+        """Whether the pin comes close to the pivot."""
+        return on_crank.is_near(throw, 0.0, self.pivot)
 
     @property
     def start(self):
@@ -252,7 +257,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         if self.passage:
             motion = passing.place(placement, self.on, *given, self.passage, self.side)
         elif self.on in placement.throws:
-            motion = turned_by_crank(placement, self.on, *given, self.side)
+            motion = turned_by_crank(placement, self.on, *given, self.side, self.is_close)
         else:
             motion = place(placement.joints[self.on], *given, self.side)
         self._set(placement, motion)
@@ -270,6 +275,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         placement.joints[self.pivot_name] = motion.rocker.joint
         placement.links[self._coupler] = motion.coupler
         placement.links[self._rocker] = motion.rocker
+        placement.swings[self.pin] = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
         placement.details[self._rocker] = motion
 
     def closure(self, placement):

@@ -29,7 +29,7 @@ from ..numbers.planar import (
     unturned,
     vector,
 )
-from . import change_points, on_crank, passing
+from . import change_points, elongation, on_crank, passing
 from .friction import Slide, Sliding, Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction
 from .guide import Guide, guide_outputs, slid
@@ -43,6 +43,8 @@ TERMS = {
     "second": ("p''", "second derivative by phi of that"),
     "across": ("d", "from the inner joint across to the guide"),
     "along": ("w", "reach of the coupler along the guide"),
+    "short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
+    "drawn_in": ("z", "what the coupler's turning takes from the second derivative of that reach"),
     "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
     "resolve.across": ("V", "force of the pin on the slider across the guide"),
@@ -54,7 +56,8 @@ class SliderMotion(NamedTuple):
     """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
 
     `divisor` is the cosine to divide by, which never vanishes; on a branch through change points in two factors, of
-    which the second is smallest there, and `closure` leaves that out.
+    which the second is smallest there, and `closure` leaves that out. `drawn_in` is what the coupler's turning takes
+    from the second derivative of the travel; None where that was not found so.
     """
 
     coupler: LinkMotion
@@ -64,6 +67,7 @@ class SliderMotion(NamedTuple):
     divisor: Any
     closure: Any
     travel: Joint
+    drawn_in: Any = None
 
 
 class SliderForces(NamedTuple):
@@ -106,15 +110,11 @@ def _placed(joint, coupler_length, guide, along_guide, across, along, ratio, rat
     """Coupler and slider, from the coupler's reach along the guide and across it and its rate."""
     position, first, second = along_guide
     sine, cosine = across / coupler_length, along / coupler_length
-    lag = ratio * ratio
-    travel = Joint(
-        position[0] + along,
-        first[0] - ratio * across,
-        second[0] - plus(product(ratio_slope, across), lag * along),
-    )
+    drawn_in = plus(product(ratio_slope, across), ratio * ratio * along)
+    travel = Joint(position[0] + along, first[0] - ratio * across, second[0] - drawn_in)
     coupler = LinkMotion(joint, turned((cosine, sine), guide.direction), ratio, ratio_slope)
     slider = slid(joint.position, (along, across), travel, guide)
-    return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel)
+    return SliderMotion(coupler, slider, sine, cosine, divided, closure, travel, drawn_in)
 
 
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
@@ -304,16 +304,23 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
         return placement.details[self._slider].closure
 
     def elongation(self, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate.
-
-        The coupler reaches its length along the guide less l (1 - cos) = l sin^2 / (1 + cos), all small beside it.
-        """
-        motion = placement.details[self._slider]
+        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
         if self.passage:
-            return motion.travel.position - free_position
-        along = unturned(placement.joints[self.on].position, self.guide.line.direction)[0]
-        shortfall = self.coupler_length * motion.sine * motion.sine / (1.0 + abs(motion.cosine))
-        return along + (self.side * self.coupler_length - free_position - self.side * shortfall)
+            return placement.travels[self._slider].position - free_position
+        return elongation.elongation(placement, *self._from(free_position, placement))
+
+    def departure(self, placement, position):
+        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large."""
+        drawn_in = placement.details[self._slider].drawn_in
+        if self.passage or drawn_in is None:
+            return None
+        return elongation.departure(placement, drawn_in, *self._from(position, placement))
+
+    def _from(self, position, placement):
+        """What reaches from a position on, as `elongation` takes it."""
+        motion, length, side = placement.details[self._slider], self.coupler_length, self.side
+        short = side * elongation.shortfall(length, motion.sine, side * motion.cosine)
+        return self.on, self.guide.line.direction, side * length - position, short
 
     def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)

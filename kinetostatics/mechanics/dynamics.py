@@ -16,9 +16,10 @@ from ..machine.links import Wrench, load, virtual_work
 from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
 from ..numbers.planar import added, minus, moment, number, plus, product
-from . import contact, energy
+from . import contact, energy, springs
 from .friction import Rubbing, driving
 from .friction_laws import larger, smaller
+from .gaps import places
 from .motion import Motion
 from .principal_points import principal_points
 from .pushes import pushed, settled
@@ -48,13 +49,24 @@ class Dynamics(Motion):
     def resolved(self):
         """All reactions and other forces, as the groups find them."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = self.mechanism.resolve(self.placement, self.link_loads, self.pushes, self.rubbing)
+            loads, along = self.acting
+            found = self.mechanism.resolve(self.placement, loads, along, self.rubbing)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
         if self.mechanism.passes:  # the crank's equilibrium has reactions that grow without bound
             rubbed = {} if self.rubbing is None else self.rubbing.found
             found.scalars["balancing_torque"] = self._torque_with(rubbed)
         return found
+
+    @property
+    def acting(self):
+        """Loads by link and forces along guides by slider as groups resolve them."""
+        return springs.acting(self)
+
+    def departure(self, item):
+        """Second derivative of a slider's coordinate plus the elongation of a spring on it, m; None if not known."""
+        group = next(group for group in self.mechanism.groups if item.on in group.links)
+        return group.departure(self.placement, item.free_position) if hasattr(group, "departure") else None
 
     @cached_property
     def rubbing(self):
@@ -134,7 +146,7 @@ class Dynamics(Motion):
         """A force or moment by name, (..., N)."""
         scalars = self.resolved.scalars
         found = self._look_up("quantity", name, scalars)
-        if not hasattr(found, "shape"):  # a constant has the gaps of the others
+        if self.friction.rubs and not hasattr(found, "shape"):  # where friction jams a constant has no value either
             found = found + 0.0 * scalars["balancing_torque"]
         return self._scalar(found)
 
@@ -287,8 +299,8 @@ class Dynamics(Motion):
     @cached_property
     def closed(self):
         """Whether the mechanism closes at each angle."""
-        parts = [part for joint in self.placement.joints.values() for part in joint.position]
-        return np.isfinite(reduce(plus, (np.asarray(part, dtype=float) for part in parts)))
+        parts = (np.asarray(part, dtype=float) for part in places(self.placement, self.mechanism.parts))
+        return np.isfinite(reduce(plus, parts))
 
     def largest(self, part):
         """Largest magnitude over the angles at which the mechanism closes; NaN if there is none."""

@@ -2,23 +2,23 @@
 
 import math
 from dataclasses import dataclass
-from functools import reduce
 from typing import Any
 
 import numpy as np
 
 from ..errors import QuantityError
 from ..machine.friction import NONE, Frictions
-from ..machine.group import FRAME
+from ..machine.group import FRAME, RATES
 from ..machine.links import Joint, Spot, accelerated, angular_acceleration, arm, present
 from ..machine.loads import is_given
 from ..machine.loads.places import PLACE
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, kinds
-from ..numbers.elementary import held, namespace, read_only, stack
+from ..numbers.elementary import namespace, read_only, stack
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves, taken_apart, wider
 from ..numbers.planar import number, plus, product, stretched, vector
+from .gaps import gap, groups_behind
 from .quantities import of_mechanism
 
 
@@ -124,20 +124,19 @@ class Motion:
     def rate(self, link):
         """Angular velocity of a link, (..., N), rad/s."""
         found = self._link(link)
-        return self._scalar(self._with_gaps(product(self.crank_speed, found.ratio), found))
+        return self._scalar(self._with_gaps(product(self.crank_speed, found.ratio), link))
 
     def angular_acceleration(self, link):
         """Angular acceleration of a link, (..., N), rad/s2."""
         found = self._link(link)
         rate = angular_acceleration(found.ratio, found.ratio_slope, *self.accelerating)
-        return self._scalar(self._with_gaps(rate, found))
+        return self._scalar(self._with_gaps(rate, link))
 
     def _with_gaps(self, rate, link):
-        """The rate of a link; of one that turns evenly NaN too where the mechanism does not close."""
-        if hasattr(link.ratio, "shape"):
+        """The rate of a link; of one that turns evenly NaN too where it cannot be there."""
+        if hasattr(self.placement.links[link].ratio, "shape"):
             return rate
-        places = [part for joint in self.placement.joints.values() for part in joint.position if hasattr(part, "shape")]
-        return plus(rate, product(0.0, held(reduce(plus, places, None))))
+        return plus(rate, gap(self.placement, groups_behind(self.mechanism)[link + RATES[0]]))
 
     def travel(self, slider=None):
         """Coordinate of a slider's pin along its guide (B . guide direction), (..., N), m.

@@ -4,7 +4,7 @@ from functools import reduce
 
 import numpy as np
 
-from .elementary import APART, ROUNDING, total
+from .elementary import APART, ROUNDING, rest, total
 from .nothing import Nothing
 
 OTHERS = (np.ndarray, Nothing)
@@ -109,6 +109,10 @@ class Dual:
         """Called by `elementary.total`."""
         parts = [dual(term) for term in terms]
         return Dual(total(*(part.value for part in parts)), reduce(_sum, (part.slopes for part in parts)))
+
+    def rest_with(self, length, x, y):
+        """Called by `elementary.rest`."""
+        return Dual(rest(*(dual(part).value for part in (length, x, y))))
 
     def _one(self):
         if np.size(self.value) != 1:

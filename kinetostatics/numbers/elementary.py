@@ -58,6 +58,10 @@ UNIT = 2.0**-53
 """Largest relative error of one rounding in double precision."""
 ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
+SPLIT = 2.0**27 + 1.0
+"""Factor by which a number is split into two of half as many digits."""
+UNSEEN = 2.0**-310
+"""Unit, m, of which what counts as nothing changes no digit of any other distance."""
 APART = 2.0**-90
 """Distance, in its unit, that counts as nothing but still has a direction."""
 
@@ -103,25 +107,54 @@ def held(x):
 
 
 def apart(distance, unit):
-    """A distance moved off zero by nothing that counts, so that it has a direction."""
+    """A distance moved off zero by nothing that counts, so that it has a direction; an enclosure is left alone."""
     if _holds_objects(distance):
         return _each("moved_apart", distance, unit, lambda distance: distance)
+    if not isinstance(distance, float | int) and not hasattr(distance, "dtype"):
+        return distance.moved_apart(unit) if hasattr(distance, "moved_apart") else distance
     return distance + APART * unit
 
 
 def total(*terms):
-    """Sum of up to four numbers, rounded as if once: what cancels leaves the digits that the numbers have.
+    """Sum of up to six numbers, rounded as if once: what cancels leaves the digits that the numbers have.
 
     What each sum loses is found exactly, twice (Ogita, Rump and Oishi 2005, *Accurate sum and dot product*, SumK).
-    Enclosures and others of any precision need no help from rounding.
+    Absent numbers are none. Enclosures and others of any precision need no help from rounding.
     """
-    recorded = next((term for term in terms if hasattr(term, "total_with")), None)
+    present = [term for term in terms if term is not None]
+    recorded = next((term for term in present if hasattr(term, "total_with")), None)
     if recorded is not None:
-        return recorded.total_with(terms)
-    if not all(isinstance(term, float) or getattr(term, "dtype", _OBJECT) != _OBJECT for term in terms):
-        return sum(terms)
-    *lost, whole = _summed(_summed(terms))
+        return recorded.total_with(present)
+    if not _are_floats(present):
+        return sum(present)
+    *lost, whole = _summed(_summed(present))
     return whole + sum(lost)
+
+
+def rest(length, x, y):
+    """What rounding took off the length of a vector: with it in a `total` that is as if exact.
+
+    In exact arithmetic there is none, so it has no derivatives. The squares are taken in two parts (Veltkamp, Dekker).
+    """
+    recorded = next((part for part in (length, x, y) if hasattr(part, "rest_with")), None)
+    if recorded is not None:
+        return recorded.rest_with(length, x, y)
+    if not _are_floats((length, x, y)):
+        return None
+    (one, first), (two, second), (three, third) = map(squared, (x, y, length))
+    return total(one, first, two, second, -three, -third) / (2.0 * length)
+
+
+def squared(a):
+    """Square of a number, rounded, and what that lost."""
+    whole, spread = a * a, SPLIT * a
+    high = spread - (spread - a)
+    low = a - high
+    return whole, ((high * high - whole) + 2.0 * high * low) + low * low
+
+
+def _are_floats(parts):
+    return all(isinstance(part, float) or getattr(part, "dtype", _OBJECT) != _OBJECT for part in parts)
 
 
 def _summed(terms):

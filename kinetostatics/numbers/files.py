@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import CaseError, FileError
 from . import checks
 from .headings import parted
-from .units import NUMBER, factor, shown
+from .units import NUMBER, factor, quoted
 
 LARGEST_TABLE = 10_000_000
 """Bytes that a table may have: half a million rows."""
@@ -113,7 +113,7 @@ def _column(headings, rows, name, wanted):
         raise ValueError(f"column {heading!r}: {error}") from None
     for line, cells in rows:
         if not _is_number(cells[place]):
-            raise ValueError(f"column {heading!r}, line {line}: not a number: {shown(cells[place])}")
+            raise ValueError(f"column {heading!r}, line {line}: not a number: {quoted(cells[place])}")
     return np.array([cells[place] for _, cells in rows], dtype=float) * scale
 
 

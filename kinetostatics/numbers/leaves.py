@@ -33,13 +33,20 @@ class _Mark:
 NUMBER, TABLE, PART = _Mark("NUMBER"), _Mark("TABLE"), _Mark("PART")
 STRUCTURAL = (bool, int, str)
 """Types of dataclass fields that are no numbers: an assembly, a name; others may say so, by their metadata."""
-
-
 FLOATS = frozenset((float,))
 
 
 class Kept(float):
     """A zero that stays a leaf, so that it can be given another value."""
+
+
+class Axis(tuple):
+    """Unit vector along an axis, which belongs to the structure, so that what it turns is known to be exact."""
+
+    @staticmethod
+    def of(pair):
+        """A pair, as an axis if it is one of plain numbers."""
+        return Axis(pair) if set(map(type, pair)) == FLOATS and sorted(map(abs, pair)) == [0.0, 1.0] else pair
 
 
 class Leaves:
@@ -263,6 +270,7 @@ _TAKERS: dict[type, Callable] = {
     bool: _as_it_is,
     str: _as_it_is,
     type(None): _as_it_is,
+    Axis: _as_it_is,
     tuple: _tuple,
     list: _tuple,
     np.ndarray: _array,

@@ -65,18 +65,6 @@ def _of_value(value, rule, path, label):
     return places(value, f"{path}." if path else "", label)
 
 
-def with_values(item, values: dict):
-    """Copy of a tree with other values, by steps; every part that holds one is checked anew."""
-    if () in values:
-        return values[()]
-    inner: dict[Any, dict] = {}
-    for (first, *rest), value in values.items():
-        inner.setdefault(first, {})[tuple(rest)] = value
-    if isinstance(item, tuple):
-        return tuple(with_values(part, inner[place]) if place in inner else part for place, part in enumerate(item))
-    return changed(item, **{name: with_values(getattr(item, name), parts) for name, parts in inner.items()})
-
-
 def changed(item, **values):
     """Copy of a dataclass with other values in some fields, checked as its constructor does."""
     made = object.__new__(type(item))
@@ -87,6 +75,27 @@ def changed(item, **values):
     elif hasattr(made, "RULES"):
         made.RULES.admit(made)
     return made
+
+
+def with_values(item, values: dict, changed=changed):
+    """Copy of a tree with other values, by steps; ``changed(part, **fields)`` copies a part: checked anew, unless told.
+
+    A tree is made of tuples, mappings, and parts with fields.
+    """
+    if () in values:
+        return values[()]
+    inner: dict[Any, dict] = {}
+    for (first, *rest), value in values.items():
+        inner.setdefault(first, {})[tuple(rest)] = value
+
+    def anew(place, part):
+        return with_values(part, inner[place], changed) if place in inner else part
+
+    if isinstance(item, tuple):
+        return tuple(anew(place, part) for place, part in enumerate(item))
+    if isinstance(item, dict):
+        return {name: anew(name, part) for name, part in item.items()}
+    return changed(item, **{name: anew(name, getattr(item, name)) for name in inner})
 
 
 def _is_number(value):

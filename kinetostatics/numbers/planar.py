@@ -4,7 +4,8 @@ A vector is a pair (x, y) of numbers or arrays. `None` stands for what is absent
 is left out of sums. All functions are kernels: no branching on values, no writing in place, no array library by name.
 """
 
-from .elementary import sqrt
+from .elementary import UNSEEN, apart, rest, sqrt
+from .nothing import absent
 
 
 def dot(a, b):
@@ -18,6 +19,15 @@ def cross(a, b):
 
 def length(a):
     return sqrt(dot(a, a))
+
+
+def length_and_rest(a):
+    """Length of a vector, never zero, and what rounding took off it; along an axis nothing, and as it is."""
+    x, y = map(absent, a)
+    if x is None or y is None:
+        return abs(number(y if x is None else x)), None
+    whole = length((apart(x, UNSEEN), y))
+    return whole, rest(whole, x, y)
 
 
 def curvature(first, second):

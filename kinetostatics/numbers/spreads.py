@@ -9,7 +9,7 @@ import re
 import numpy as np
 
 from . import checks
-from .units import LONGEST, NUMBER, base_factor, factor, of_quantity, respelled, shown
+from .units import LONGEST, NUMBER, base_factor, factor, of_quantity, quoted, respelled
 
 LARGEST = 50_000_000
 """Values that a table of designs may hold."""
@@ -66,7 +66,7 @@ def read(spreads, reader):
         try:
             found[name] = reader(given)
         except ValueError as error:
-            problems.append(f"cannot read {shown(given)} for {name}: {error}")
+            problems.append(f"cannot read {quoted(given)} for {name}: {error}")
     if any(_OTHER in problem for problem in problems):
         problems.append(f"write {_HELP}")
     checks.require("designs", *problems)
@@ -159,10 +159,7 @@ def _other(text):
 
 def _known(unit):
     """The unit, if it is one."""
-    try:
-        base_factor(unit)
-    except ValueError:
-        raise ValueError(f'unit "{unit}" is not known') from None
+    base_factor(unit)
     return unit
 
 

@@ -18,7 +18,7 @@ _NUMBER_AND_UNIT = re.compile(
 )
 _USUAL = {"rad": ("90", "deg"), "rad/s": ("300", "rpm")}
 """What engineers write for a unit of SI, for advice."""
-_FACTOR = re.compile(r"([^\W\d_][A-Za-z_]*|[°%])(?:(?:\^|\*\*)?([-+]?[1-9])|([²³]))?")
+_FACTOR = re.compile(r"([^\W\d_][A-Za-z_]*|°[CF]?|%)(?:(?:\^|\*\*)?([-+]?[1-9])|([²³]))?")
 _BETWEEN = re.compile(r"\s*(?:[*/·⋅]|\bper\b)\s*|\s+")
 _DIGITS = re.compile(r"[-+−–]?\d(?:[\d.,'’_\s]*\d)?")
 _SEPARATOR = re.compile(r"[.,'’_\s]")
@@ -55,7 +55,7 @@ def to_si(text, unit):
     if found is None:
         advice = respelled(text, _NUMBER_AND_UNIT.fullmatch) if readable else ""
         raise ValueError(
-            f"must be text of a number and a unit that converts to {unit}, found {shown(text)}"
+            f"must be text of a number and a unit that converts to {unit}, found {quoted(text)}"
             + (advice or f'; write for example "{" ".join(_USUAL.get(unit, ("1.5", unit)))}"')
         )
     number, given = found[1], found[2] or found[3]
@@ -99,11 +99,19 @@ def _base(given, unit):
 
     registry = _registry()
     try:
-        scale, base = registry.get_base_units(registry.parse_units(_spelled_for_pint(given)))
+        units = registry.parse_units(_spelled_for_pint(given))
+        scale, base = registry.get_base_units(units)
+        nothing = registry.Quantity(0.0, units).to_base_units().magnitude
     except (pint.PintError, ValueError, TypeError, AttributeError):
         scale = None
     if scale is None or not 0 < scale < math.inf:
-        raise ValueError(f'unit "{shown(given)[1:-1]}" is not known; give one that converts to "{unit}"')
+        remedy = "" if given == unit else f'; give one that converts to "{unit}"'
+        raise ValueError(f'unit "{quoted(given)[1:-1]}" is not known{remedy}')
+    if nothing != 0.0:
+        raise ValueError(
+            f'unit "{given}" has a zero of its own, so that twice its number is not twice as much; give a unit whose '
+            "zero is nothing, as K, or delta_degC for a difference"
+        )
     return scale, base
 
 
@@ -134,7 +142,7 @@ def _spelled_for_pint(text):
     return "".join(spelled)
 
 
-def shown(value, most=80):
+def quoted(value, most=80):
     """The value as Python writes it, cut if it is long."""
     if isinstance(value, dict | list | tuple | set):
         return f"a {type(value).__name__}"

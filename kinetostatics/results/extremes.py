@@ -12,10 +12,10 @@ from ..mechanics.quantities import scale, unit_of, values
 from ..numbers import checks
 from ..numbers.elementary import UNIT
 from ..numbers.lazy import cached_property
+from ..numbers.shown import number
+from .rounding import FLOOR, known_values
 from .turn import SAME, require_single, runs
 
-FLOOR = 1e-13
-"""Rise and fall, relative to the terms a quantity is made of, below which it is rounding and no extremum."""
 CALM = 1e6
 """Condition up to which values are of ordinary size, and rounding is small beside them."""
 CONTINUED = 1e-4
@@ -92,7 +92,8 @@ class Extremes:
         return len(self.angle)
 
     def __repr__(self):
-        rows = (f"{np.degrees(a):12.6f} deg  {v: .9g}" for a, v in zip(self.angle, self.value, strict=True))
+        known = zip(self.angle, *known_values(self), strict=True)
+        rows = (f"{np.degrees(angle):12.6f} deg  {number(value, bound=error):>11}" for angle, value, error in known)
         return "\n".join([f"{len(self)} extremes of {self.quantity}", *rows])
 
 

@@ -26,7 +26,7 @@ from ..mechanics.pushes import title_of
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number
 from .extremes import extrema
-from .means import FLOOR, PRECISE, closed_turn, means
+from .means import PRECISE, ROUNDED, closed_turn, means
 from .rounding import PLACED, zeroed
 
 NOTHING = 1e-12
@@ -183,7 +183,7 @@ def losses(solution) -> Losses:
         return np.array([np.ones(angle.shape), *(power(there) for power in powers)]) / speed
 
     sizes = np.abs(by_angle(turn.angle)).max(axis=-1)
-    floor = FLOOR * np.array([sizes[0], *[max(at.largest_torque_term, *sizes[1:])] * len(powers)])
+    floor = ROUNDED * np.array([sizes[0], *[max(at.largest_torque_term, *sizes[1:])] * len(powers)])
     found, wrong = means(by_angle, turn, floor)
     if np.any(wrong > PRECISE * sizes + floor):
         error = np.max(wrong[1:]) / found[0]

@@ -35,7 +35,7 @@ WORK = 2**17
 SUMMED = NODES.size + 4
 """Roundings, at most, that a value meets on its way into a mean: of its weight, in the sum of its panel, of the product
 with its width, in the sum of all, which is rounded once, and of the quotient by the period."""
-FLOOR = 1e-14
+ROUNDED = 1e-14
 """Share of the largest term of a sum that is its rounding."""
 
 
@@ -119,7 +119,7 @@ def _mean_of_absolute_torque(turn):
     def torque(angle):
         return _torque(turn, angle)
 
-    floor = FLOOR * turn.at.at(turn.angle[turn.usable]).largest_torque_term
+    floor = ROUNDED * turn.at.at(turn.angle[turn.usable]).largest_torque_term
     grid = _grid(turn)
     samples = torque(grid)
     change = np.flatnonzero(samples[:-1] * samples[1:] < 0)
@@ -140,7 +140,7 @@ def energy_per_turn(solution):
     """
     turn = closed_turn(solution, "energy per turn")
     at = turn.at.at(turn.angle[turn.usable])
-    floor = FLOOR * at.largest_torque_term
+    floor = ROUNDED * at.largest_torque_term
     (mean,), _ = means(lambda angle: turn.at.at(turn.clear(angle)).balancing_torque[None], turn, floor)
     return TURN * float(mean) * (-1.0 if np.any(np.asarray(at.crank_speed) < 0) else 1.0)
 

@@ -17,30 +17,6 @@ KINDS = (*EXTREMES, "mean", "mean_absolute", "rms")
 """Reductions that are there, by their number; harmonics and the swing are not."""
 
 
-LANES = 64
-"""Sums that go side by side, in vectors: the order is written out, so that the compiler cannot choose another."""
-
-
-def _summing(name, term):
-    """Function that sums a term of every other value, and of those between."""
-    return f"""
-@njit(**options)
-def {name}(values, sums):
-    lanes = sums.size
-    sums[:] = 0.0
-    for start in range(0, values.size, lanes):
-        for k in range(min(lanes, values.size - start)):
-            value = values[np.uint64(start + k)]
-            sums[k] += {term}
-    while lanes > 2:
-        lanes //= 2
-        for k in range(lanes):
-            sums[k] += sums[lanes + k]
-    return sums[0], sums[1]
-
-"""
-
-
 CURVE, SERIES, SLOPE, CHANGE = (
     [f"{name}{k}" for k in range(2 * REACH + 1 - less)]
     for name, less in (("curve", 0), ("series", 0), ("slope", 1), ("change", 2))
@@ -53,31 +29,55 @@ def _lines(lines, indent=4):
 
 
 def _polynomial(series):
-    """Expression of a polynomial at `place`, from names or numbers of its coefficients."""
+    """Expression of a polynomial at `place`, from names or numbers of its coefficients.
+
+    Even and odd powers apart, which wait for each other half as long.
+    """
+    even, odd = (_nested(series[first::2]) for first in (0, 1))
+    return f"({even} + {odd} * place)"
+
+
+def _nested(series):
     *others, value = series
     for number in reversed(others):
-        value = f"({number} + {value} * place)"
+        value = f"({number} + {value} * square)"
     return value
 
 
 def _through_samples():
-    """Lines that find the place of the top of the polynomial through samples, by two of Newton's steps."""
-    for name, row in zip(SERIES, THROUGH.tolist(), strict=True):
-        yield f"{name} = {' + '.join(f'{part!r} * {sample}' for part, sample in zip(row, CURVE, strict=True) if part)}"
+    """Lines that find the place of the top of the polynomial through samples, by two of Newton's steps.
+
+    Even powers come from sums of samples as far on either side, odd ones from differences.
+    """
+    for k in range(1, REACH + 1):
+        before, after = CURVE[REACH - k], CURVE[REACH + k]
+        yield f"sum{k}, less{k} = {after} + {before}, {after} - {before}"
+    for power, (name, row) in enumerate(zip(SERIES, THROUGH[:, REACH:].tolist(), strict=True)):
+        own = [CURVE[REACH], *(f"{'less' if power % 2 else 'sum'}{k}" for k in range(1, REACH + 1))]
+        yield f"{name} = {' + '.join(f'{part!r} * {sample}' for part, sample in zip(row, own, strict=True) if part)}"
     for above, below in ((SERIES, SLOPE), (SLOPE, CHANGE)):
         yield from (f"{name} = {above[k]} * {k}.0" for k, name in enumerate(below, 1))
-    yield from [f"place -= {_polynomial(SLOPE)} / {_polynomial(CHANGE)}"] * 2
+    yield from [SQUARE, f"place -= {_polynomial(SLOPE)} / {_polynomial(CHANGE)}"] * 2
 
 
+SQUARE = "square = place * place"
 SOURCE = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import inf, nan, pi, sqrt
 
 import numpy as np
+from kinetostatics.engines import scanning
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
-ALL = np.uint64(0x0101010101010101)
+rising = scanning.bits_where(scanning.rising, 3)
+falling = scanning.bits_where(scanning.falling, 3)
+changing = scanning.bits_where(scanning.changing, 2)
+lowest = scanning.lowest_bit()
+plain = scanning.summing(lambda value: value)
+sizes = scanning.summing(abs)
+squares = scanning.summing(lambda value: value * value)
+ONE = np.uint64(1)
 
 
 @njit(**options)
@@ -89,6 +89,7 @@ def wrapped(values, i):
 def through({", ".join(CURVE)}, place):
     """Top of the polynomial through samples, where it is, and how much lower it is with two samples fewer."""
     {_lines(_through_samples())}
+    {SQUARE}
     top = {_polynomial(SERIES)}
     return place, top, {_polynomial(INNER.coef.tolist())} * ({SERIES[-2]} + {SERIES[-1]} * place)
 
@@ -122,50 +123,45 @@ def between(values, at, side):
 
 
 @njit(**options)
-def marked(values, marks):
-    """Mark the samples where values turn, or are none, which no comparison holds for."""
-    count = values.size
-    for i in range(1, count - 1):
-        before, here, after = values[i - 1], values[i], values[i + 1]
-        marks[i] = ((here > before) == (after <= here)) | ((here < before) == (after >= here))
-    for i in (0, count - 1):
-        marks[i] = True
+def peaks(values, side, words, places):
+    """How many peaks values times a sign have, whose places it fills in, and whether all values are numbers.
 
-
-@njit(**options)
-def turned(values, marks, words, places):
-    """Places of tops, from the first on, and of bottoms, from the last back; how many each, and where one is no number.
-
-    There is at least one of each: of what is constant the first sample.
+    There is at least one, of what is constant the first sample.
     """
-    count, tops, bottoms = values.size, 0, 0
-    for word in range(words.size):
-        if words[word] == 0:
-            continue
-        for i in range(8 * word, min(8 * word + 8, count)):
-            if marks[i]:
-                before, after = values[i - 1 if i else count - 1], values[i + 1 if i + 1 < count else 0]
-                here = values[i]
-                if here != here:
-                    return 0, 0, False
-                if here > before and not after > here:
-                    places[tops] = i
-                    tops += 1
-                if here < before and not after < here:
-                    bottoms += 1
-                    places[places.size - bottoms] = i
-    if tops == 0:
+    if side > 0.0:
+        rising(values, words)
+    else:
+        falling(values, words)
+    count, found = values.size, 0
+    first, second, last = side * values[0], side * values[1], side * values[count - 1]
+    whole = first == first and last == last
+    if first > last and not second > first:
         places[0] = 0
-        places[places.size - 1] = 0
-        return 1, 1, True
-    return tops, bottoms, True
+        found = 1
+    for k in range((count + 61) // 64):
+        word = words[k]
+        while word:
+            places[found] = 64 * k + lowest(word) + 1
+            whole &= values[places[found]] == values[places[found]]
+            found += 1
+            word &= word - ONE
+    if last > side * values[count - 2] and not first > last:
+        places[found] = count - 1
+        found += 1
+    if found == 0:
+        places[0] = 0
+        found = 1
+    return found, whole
 
 
 @njit(**options)
-def peak(values, side, places, start, stop):
-    """Highest peak of values times a sign among some of the places, where, in samples, and about how far it is off."""
+def peak(values, side, words, places):
+    """Highest peak of values times a sign, where, in samples, and about how far off; none if a value is no number."""
+    found, whole = peaks(values, side, words, places)
+    if not whole:
+        return nan, nan, 0.0
     count, bound, best = values.size, -inf, -inf
-    for k in range(start, stop):
+    for k in range(found):
         i = places[k]
         before, after = side * values[i - 1 if i else count - 1], side * values[i + 1 if i + 1 < count else 0]
         here = side * values[i]
@@ -175,8 +171,8 @@ def peak(values, side, places, start, stop):
     if around:  # a plateau goes on across the end of the turn, and its first sample counts too
         bound = max(bound, best - abs(side * values[1] - best))
     highest, where, worst = -inf, nan, 0.0
-    for k in range(start, stop + around):
-        i = places[k] if k < stop else 0
+    for k in range(found + around):
+        i = places[k] if k < found else 0
         before, after = side * values[i - 1 if i else count - 1], side * values[i + 1 if i + 1 < count else 0]
         here = side * values[i]
         if here + abs(before - 2.0 * here + after) < bound:
@@ -189,9 +185,6 @@ def peak(values, side, places, start, stop):
     return highest, where, worst
 
 
-{_summing("plain", "value")}
-{_summing("sizes", "abs(value)")}
-{_summing("squares", "value * value")}
 @njit(**options)
 def kink(values, i, j):
     """What the sum of sizes is too large by if the sign changes from one sample to another (`reductions._kinks`)."""
@@ -203,29 +196,29 @@ def kink(values, i, j):
 
 
 @njit(**options)
-def kinks(values, marks, words):
+def kinks(values, words):
     """The same of all samples, and of every other."""
-    for i in range(values.size):
-        marks[i] = values[i] < 0.0
-    whole, half, before = 0.0, 0.0, marks[values.size - 1]
-    for word in range(words.size):
-        if words[word] == before * ALL:
-            continue
-        for i in range(8 * word, min(8 * word + 8, values.size)):
-            if marks[i] != before:
-                before = marks[i]
-                whole += kink(values, i - 1, i)
-                half += kink(values, i - 1, i + 1) if i % 2 else kink(values, i - 2, i)
+    changing(values, words)
+    count, whole, half = values.size, 0.0, 0.0
+    if (values[0] < 0.0) != (values[count - 1] < 0.0):
+        whole, half = kink(values, -1, 0), kink(values, -2, 0)
+    for k in range((count + 62) // 64):
+        word = words[k]
+        while word:
+            i = 64 * k + lowest(word) + 1
+            word &= word - ONE
+            whole += kink(values, i - 1, i)
+            half += kink(values, i - 1, i + 1) if i % 2 else kink(values, i - 2, i)
     return whole, half
 
 
 @njit(**options)
-def averaged(values, power, marks, words, sums):
+def averaged(values, power, words):
     """Mean, of sizes or squares too, and how far that of every other value is from it."""
-    even, odd = plain(values, sums) if power == 0 else sizes(values, sums) if power == 1 else squares(values, sums)
+    even, odd = plain(values) if power == 0 else sizes(values) if power == 1 else squares(values)
     whole, half = even + odd, even
     if power == 1:
-        more, some = kinks(values, marks, words)
+        more, some = kinks(values, words)
         whole, half = whole - more, half - some
     whole, half = whole / values.size, half / (values.size // 2)
     if power == 2:
@@ -234,25 +227,21 @@ def averaged(values, power, marks, words, sums):
 
 
 @njit(**options)
-def estimated(values, kind, turns, marks, words, places, sums):
+def estimated(values, kind, turns, words, places):
     """Number, and whether so many samples do not tell it."""
     if kind >= 6:
-        found, error = averaged(values, kind - 6, marks, words, sums)
+        found, error = averaged(values, kind - 6, words)
         if not error > {MEAN!r} * abs(found):
             return found, False
         size = 0.0
         for value in values:
             size = max(size, abs(value))
         return found, error > {MEAN / 10!r} * size
-    marked(values, marks)
-    tops, bottoms, whole = turned(values, marks, words, places)
-    if not whole:
-        return nan, False
     high, low, above, below, at, under = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if kind <= 1 or kind >= 4:
-        high, at, above = peak(values, 1.0, places, 0, tops)
+        high, at, above = peak(values, 1.0, words, places)
     if kind >= 2:
-        low, under, below = peak(values, -1.0, places, places.size - bottoms, places.size)
+        low, under, below = peak(values, -1.0, words, places)
         low = -low
     error = max(above, below)
     if kind == 1 or kind == 3:
@@ -271,14 +260,13 @@ def estimated(values, kind, turns, marks, words, places, sums):
 @njit(**options)
 def reduced(results, rows, kinds, turns, numbers, rough, start):
     designs, count = results.shape[0], results.shape[2]
-    words = np.zeros((count + 7) // 8, np.uint64)
-    marks, places, sums = words.view(np.uint8), np.empty(2 * count, np.int64), np.empty({LANES})
+    words, places = np.empty(count // 64 + 1, np.uint64), np.empty(count, np.int64)
     for design in range(designs):
         for k in range(rows.size):
             if kinds[k] >= 0:
                 values = results[design, rows[k]]
                 numbers[k, start + design], rough[k, start + design] = estimated(
-                    values, kinds[k], turns, marks, words, places, sums
+                    values, kinds[k], turns, words, places
                 )
 
 

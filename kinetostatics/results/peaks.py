@@ -15,7 +15,9 @@ _own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
 _POWERS = np.arange(_AROUND.size)[:, None]
 INNER = polynomial.Polynomial.fromroots(_AROUND[1:-1])
-THROUGH = np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True))
+_WHOLE = math.factorial(2 * REACH)
+THROUGH = np.round(np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True)) * _WHOLE) / _WHOLE
+"""Coefficients of the polynomial through samples, from them; whole numbers over a factorial, so the nearest to them."""
 
 
 def peak(values, sign=1.0):

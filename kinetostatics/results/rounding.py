@@ -11,8 +11,9 @@ from ..engines.engines import NUMPY
 from ..errors import NotGivenError
 from ..mechanics.quantities import of_scene, scale
 from ..numbers.lazy import cached_property
-from .extremes import FLOOR, Extremes
 
+FLOOR = 1e-13
+"""Size, relative to the terms that a quantity is made of, below which it is rounding: neither a value nor a rise."""
 PLACED = 1e-7
 """Crank angle, rad, below which the place of an extremum is 0: values about it agree to all digits."""
 AT_JUMP = 1e-6
@@ -40,7 +41,7 @@ class Known:
     """
 
     solution: Any
-    found: Mapping[str, Extremes]
+    found: Mapping[str, Any]
 
     def errors(self, name):
         """Proven bounds on the rounding errors of a quantity's extrema, (K,); NaN where nothing is proven."""
@@ -90,11 +91,20 @@ def without_rounding(solution, name, values, bound=0.0):
 
     Numbers by which a machine is balanced are rounded themselves, so what is 0 by them may be more than its bound.
     """
-    terms = [scale(solution, name), *np.abs(values)]
+    terms = np.append(np.abs(values), scale(solution, name))
     # a pressure is a root of a force
     floor = np.sqrt(FLOOR) if of_scene(solution)[name].kind == "contact" else FLOOR
-    floor = floor * max((float(term) for term in terms if np.isfinite(term)), default=0.0)
+    floor = floor * np.max(terms, where=np.isfinite(terms), initial=0.0)
     return zeroed(values, np.where(np.isfinite(bound), np.fmax(floor, bound), floor))
+
+
+def known_values(extremes):
+    """Values of extremes, rounding as 0, and bounds on their errors, NaN where nothing is proven."""
+    solution, name = extremes.solution, extremes.quantity
+    if solution is None:
+        return extremes.value, np.full(len(extremes), np.nan)
+    errors = Known(solution, {name: extremes}).errors(name)
+    return without_rounding(solution, name, extremes.value, errors), errors
 
 
 def zeroed(values, floor):

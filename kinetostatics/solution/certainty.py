@@ -1,5 +1,6 @@
 """How sure each value of a solution is: proven bounds on rounding, and what uncertain inputs do."""
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,10 +10,11 @@ import numpy as np
 from ..engines import programs
 from ..engines.backends import Backend
 from ..engines.bounds import of_magnitude, where_known
-from ..errors import QuantityError
+from ..errors import ConditionWarning, QuantityError
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.elementary import read_only
+from . import second_order
 from .parameters import Parameters, fixed, keeping, leaves_of, require_free
 from .slopes import slopes
 
@@ -64,9 +66,11 @@ class Uncertainty:
 class Certainty(Parameters):
     """Bounds and uncertainties of a solution's values."""
 
+    crank_angle: Any
     dynamics: Any
     engine: Any
     mechanism: Any
+    shape: Any
 
     def error_bound(self, quantity, tight=False):
         """Proven bound on the rounding error of each value of a quantity, by running error analysis.
@@ -118,8 +122,8 @@ class Certainty(Parameters):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
 
         To first order in the inputs, by exact derivatives (JCGM 100:2008, *Guide to the expression of uncertainty in
-        measurement*, section 5.1); see `tolerances` for spreads of any size and kind. Where the inputs may move a limit
-        position or toggle across the crank angle, first order says nothing: vary the inputs there.
+        measurement*, section 5.1); see `tolerances` for spreads of any size and kind. Near limit positions and
+        toggles, which the inputs move, first order says too little, and a warning tells where.
 
         Parameters
         ----------
@@ -141,6 +145,12 @@ class Certainty(Parameters):
         ParameterError
             There is no such number, or an uncertainty is negative or not finite.
 
+        Warns
+        -----
+        ConditionWarning
+            At some crank angle the second order is more than a tenth of the first, or there is no value with an input
+            larger or smaller by its uncertainty.
+
         Examples
         --------
         >>> import kinetostatics as ks
@@ -157,19 +167,27 @@ class Certainty(Parameters):
         inputs = checks.singles("uncertainty", **given)
         name = self._inner(quantity)
         rounding = self.error_bound(quantity)
-        found = self._slopes(name, inputs) if inputs else {}
+        found = self._slopes(name, inputs, rounding) if inputs else {}
         if name != quantity:
             vector = quantities.components(self, name)
             found = {path: _of_magnitude(vector, slope) for path, slope in found.items()}
         return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in found.items()}, rounding)
 
-    def _slopes(self, name, by):
-        """Derivatives of a quantity by numbers of the scene, by path."""
-        state = keeping(self, self.places, by).dynamics
+    def _slopes(self, name, inputs, rounding):
+        """Derivatives of a quantity by numbers of the scene, by path; a warning where they change with the inputs."""
+        state = keeping(self, self.places, inputs).dynamics
         program, leaves = programs.of(state, (name,))
-        found = leaves_of(self.places, state)
+        known = leaves_of(self.places, state)
+        by = {path: known[path] for path in inputs}
         backend = Backend("compiled" if self.engine.compiled else "numpy")
-        return slopes(program, {path: found[path] for path in by}, state, leaves, backend)[name]
+        found = slopes(program, by, state, leaves, backend)[name]
+        first = {path: np.reshape(found[path] * inputs[path], (-1, *self.shape)) for path in by}
+        second = second_order.seconds(lambda leaves: backend.run(program, state, leaves), leaves, by, inputs)
+        beyond = second_order.beyond(self.crank_angle, first, second, np.reshape(rounding, (-1, *self.shape)))
+        if beyond is not None:
+            text = beyond.told(name, quantities.unit_of(self, name), inputs)
+            warnings.warn(f"{self.mechanism.name}: {text}", ConditionWarning, stacklevel=3)
+        return found
 
     def _with_bounds(self, name, tight=False):
         """Values of a quantity, and bounds on their errors."""

@@ -6,7 +6,8 @@ vector has (x, y) as its first axis: (2, ..., N).
 
 A group's `label` ends the names of its links and forces: "coupler2", "slider2", "guide_force2" of a `SliderGroup` with
 ``label="2"``; its joints are called as its `pin` and `pivot_name` say. `reactions` and `scalars` list the names that
-there are. Where the mechanism does not close, `solve` raises, or with ``on_gap="nan"`` all is NaN there.
+there are. Where the mechanism does not close, `solve` raises, or with ``on_gap="nan"`` all is NaN there that hangs on
+a group in its gap or carries its forces.
 
 Attributes
 ----------

@@ -12,10 +12,11 @@ from ..engines.lines import lines
 from ..engines.naming import node_of
 from ..engines.styles import LATEX, MATHML, TEXT, written
 from ..engines.told import result, told
-from ..errors import ParameterError, QuantityError
+from ..errors import NotGivenError, ParameterError, QuantityError
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.leaves import mapped
+from ..results.rounding import without_rounding
 from .angles import crank_angles
 from .checked import checked
 from .drive_and_loads import over_the_angles
@@ -30,12 +31,14 @@ def explain(solution, quantity, angle, design=None):
     numbered = {int(number): path for path, number in leaves_of(state.places, state.dynamics).items()}
     units = {path: place.rule.unit for path, place in state.places.items()}
     made, recorder = told(state.dynamics, numbered, units)
-    nodes = [part for part in map(node_of, result(made, quantity, found)) if part is not None]
-    steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics)) if nodes else {}
-    results, angle = tuple(steps[node] for node in nodes), float(state.crank_angle)
+    nodes = list(map(node_of, result(made, quantity, found)))
     with np.errstate(all="ignore"):
-        value = quantities.components(state.dynamics, quantity)
-    value = np.array(value) if found.vector else float(value[0])
+        parts = np.array(quantities.components(state.dynamics, quantity), dtype=float)
+    rounded = zip(nodes, _without_rounding(state, quantity, parts), strict=True)
+    zeros, nodes = {node for node, part in rounded if part == 0.0}, [node for node in nodes if node is not None]
+    steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics), zeros) if nodes else {}
+    results, angle = tuple(steps[node] for node in nodes), float(state.crank_angle)
+    value = parts if found.vector else float(parts[0])
     return Explanation(
         state.mechanism.name, quantity, found.label, angle, tuple(steps.values()), results, value, found.unit
     )
@@ -49,10 +52,19 @@ def _quantity(solution, name):
     return known[name]
 
 
-def _steps(names, found):
-    """Steps by node, in order."""
+def _without_rounding(state, quantity, parts):
+    """Components of a quantity, 0 where tables say so."""
+    try:
+        bounds = state.error_bound(quantity)
+    except NotGivenError:
+        bounds = np.nan
+    return without_rounding(state, quantity, parts, bounds)
+
+
+def _steps(names, found, zeros):
+    """Steps by node, in order; values of some nodes are known to be zero but for rounding."""
     symbols = {node.index: symbol for node, symbol in names.symbols([line.node for line in found]).items()}
-    values = {line.node.index: 0.0 if line.is_noise else line.value for line in found}
+    values = {line.node.index: 0.0 if line.is_noise or line.node in zeros else line.value for line in found}
     steps = {}
     for line in found:
         symbol, value = symbols[line.node.index], values[line.node.index]

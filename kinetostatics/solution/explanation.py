@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines.styles import shown
+from ..engines.styles import in_digits
 from ..numbers.lazy import cached_property
 from . import explanation_pages
 
@@ -84,19 +84,18 @@ class Explanation:
     @property
     def title(self):
         """Mechanism, quantity and crank angle."""
-        return (
-            f"{self.mechanism}: {self.label} at crank angle {shown(self.angle)} rad = {shown(degrees(self.angle))} deg"
-        )
+        angle = f"{in_digits(self.angle)} rad = {in_digits(degrees(self.angle))} deg"
+        return f"{self.mechanism}: {self.label} at crank angle {angle}"
 
     @property
     def conclusion(self):
         """The quantity and its value, of a vector the magnitude too."""
-        values = [step.shown for step in self.results] or [shown(float(part)) for part in np.ravel(self.value)]
+        values = [step.shown for step in self.results] or [in_digits(float(part)) for part in np.ravel(self.value)]
         unit = "" if self.unit == "1" else f" {self.unit}"
         if np.ndim(self.value):
-            size = shown(hypot(*self.value))
+            size = in_digits(hypot(*self.value))
             return f"{self.quantity} = ({', '.join(values)}){unit}, magnitude {size}{unit}"
-        angle = f" = {shown(degrees(self.value))} deg" if self.unit == "rad" else ""
+        angle = f" = {in_digits(degrees(self.value))} deg" if self.unit == "rad" else ""
         return f"{self.quantity} = {values[-1]}{unit}{angle}"
 
     @cached_property

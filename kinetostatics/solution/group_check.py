@@ -15,7 +15,7 @@ from ..machine.crank import ORIGIN, ray
 from ..machine.group import FRAME, MEMBERS, Placement
 from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
 from ..numbers import checks
-from ..numbers.planar import length, number, product, subtracted, turned, vector, work
+from ..numbers.planar import added, length, number, product, stretched, subtracted, turned, vector, work
 
 TOLERANCE = 1e-6
 """Largest relative error that passes; right groups reach 1e-10, a wrong term is of the order of 1."""
@@ -130,6 +130,7 @@ class _Stage(NamedTuple):
             turned_by = angle + 0.3 * turn + 0.4 * turn * turn
             links[name] = LinkMotion(self._joint(1, turn, way), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
         placement = Placement(angle, direction, joints, links)
+        placement.departures.update({name: added(joints[name].second, joints[name].position) for name in self.hung})
         with np.errstate(all="ignore"):
             try:
                 self.group.place(placement)
@@ -188,6 +189,17 @@ def _of_shape(stage):
         free = 0.7 * stage.size
         elongation = group.elongation(placement, free)
         errors[f"elongation of {name}"] = _error(elongation, travel.position - free, stage.size)
+        departure = group.departure(placement, free) if hasattr(group, "departure") else None
+        if departure is not None:
+            errors[f"departure of {name}"] = _error(departure, travel.second + travel.position - free, stage.size)
+    for name in group.joints:
+        joint = placement.joints[name]
+        if name in placement.departures:
+            departure = added(vector(joint.second), joint.position)
+            errors[f"departure of {name}"] = _error(placement.departures[name], departure, stage.size)
+        if name in placement.swings:
+            centre, radius, direction = placement.swings[name]
+            errors[f"swing of {name}"] = _error(added(centre, stretched(radius, direction)), joint.position, stage.size)
     return errors
 
 

@@ -169,7 +169,9 @@ def solve(
         that the crank acceleration begins.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
-        give NaN there and exact values elsewhere (as needed under ``jax.jit``).
+        give NaN there and exact values elsewhere (as needed under ``jax.jit``). Of several groups one may be open: NaN
+        are then its motion and that of what hangs on it, their forces, those of what carries them, and all that is of
+        the crank or of the mechanism as a whole (torque, "O", shaking, inertia, energies); the rest stays.
     engine : "numpy" or "compiled"
         "compiled" runs the same kernels as one loop made by numba (extra `fast`), for each quantity when it is asked
         for: the first time takes about a second, then machine code is kept on disk. Unless told, it is taken for a

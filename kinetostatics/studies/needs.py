@@ -160,6 +160,21 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     >>> ks.needs(ks.load_case("sawframe_2r63"), "O", within=0.05).smallest.name
     'no gravity, two-mass coupler'
     """
+    solution, within = _asked(scene, quantity, within, variant)
+    runs = _Runs(solution, quantity)
+    parts = ingredients(solution.mechanism).values()
+    alone = {choice: made for choices in parts for choice in choices if (made := runs.of((choice,)))}
+    options = _options(parts, alone, runs.left_out)
+    combinations = (tuple(filter(None, picked)) for picked in itertools.product(*options))
+    models = [made for choices in _shown(combinations, options, progress) if (made := runs.of(choices))]
+    allowed = [made for made in models if made.error <= within]
+    smallest = min(allowed, key=lambda made: (made.operations, -len(made.simplifications), made.error))
+    ladder, left_out = tuple(_front(models)), runs.left_out
+    return Needs(quantity, within, models[0], tuple(alone.values()), ladder, smallest, len(models), left_out)
+
+
+def _asked(scene, quantity, within, variant):
+    """The solution of one design that is asked about, and the change that is allowed."""
     known = isinstance(scene, Solution) or hasattr(scene, "variants")
     within = checks.singles(
         "needs",
@@ -171,44 +186,58 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True) -> Needs
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
     if len(solution.shape) != 1:
         raise ParameterError(f"needs looks at one design over its crank angles, but this has shape {solution.shape}")
-    exact = np.array(components(solution, quantity))
-    largest = np.linalg.norm(exact, axis=0).max()
-    if not largest > 0:
-        raise ParameterError(f"needs: {quantity} is {largest} in this scene; there is nothing to compare with")
+    return solution, within
 
-    left_out: dict[str, str] = {}
 
-    def model(choices):
-        simplified = solution
-        for choice in choices:
-            try:
-                made = choice.simplified(simplified)
-            except NotGivenError as why:
-                if len(choices) == 1:
-                    left_out[choice.name] = str(why)
-                return None
-            if made is None:
-                return None
-            simplified = made
+class _Runs:
+    """Runs simpler models of a solution.
+
+    Attributes
+    ----------
+    left_out : dict of name to reason
+        Simplifications that the scene does not allow, as far as they were tried.
+    """
+
+    def __init__(self, solution, quantity):
+        self._solution, self._quantity = solution, quantity
+        self._exact = np.array(components(solution, quantity))
+        self._largest = np.linalg.norm(self._exact, axis=0).max()
+        if not self._largest > 0:
+            raise ParameterError(
+                f"needs: {quantity} is {self._largest} in this scene; there is nothing to compare with"
+            )
+        self.left_out: dict[str, str] = {}
+
+    def of(self, choices):
+        """The model with some simplifications; None if the scene does not allow them, or one changes nothing."""
+        simplified = self._simplified(choices)
+        if simplified is None:
+            return None
         names = tuple(choice.name for choice in choices)
         try:
             with np.errstate(all="ignore"):
-                change = np.linalg.norm(np.array(components(simplified, quantity)) - exact, axis=0).max() / largest
+                off = np.array(components(simplified, self._quantity)) - self._exact
+                change = np.linalg.norm(off, axis=0).max() / self._largest
         except ParameterError as why:  # a load has no value where the model goes, as a table over travel
-            left_out[" with ".join(names)] = str(why)
+            self.left_out[" with ".join(names)] = str(why)
             return None
         error = float(change) if math.isfinite(change) else math.inf
-        return Model(names, error, programs.of(simplified.dynamics, (quantity,))[0].recording.operations, simplified)
+        program, _ = programs.of(simplified.dynamics, (self._quantity,))
+        return Model(names, error, program.recording.operations, simplified)
 
-    parts = ingredients(solution.mechanism).values()
-    alone = {choice: made for choices in parts for choice in choices if (made := model((choice,)))}
-    options = _options(parts, alone, left_out)
-    combinations = (tuple(filter(None, picked)) for picked in itertools.product(*options))
-    models = [made for choices in _shown(combinations, options, progress) if (made := model(choices))]
-    ladder = _front(models)
-    allowed = [made for made in models if made.error <= within]
-    smallest = min(allowed, key=lambda made: (made.operations, -len(made.simplifications), made.error))
-    return Needs(quantity, within, models[0], tuple(alone.values()), tuple(ladder), smallest, len(models), left_out)
+    def _simplified(self, choices):
+        """The solution with some simplifications, one after the other; None as for `of`."""
+        simplified = self._solution
+        for choice in choices:
+            try:
+                simplified = choice.simplified(simplified)
+            except NotGivenError as why:
+                if len(choices) == 1:
+                    self.left_out[choice.name] = str(why)
+                return None
+            if simplified is None:
+                return None
+        return simplified
 
 
 def _shown(combinations, options, progress):

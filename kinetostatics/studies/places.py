@@ -36,7 +36,7 @@ class Place:
     >>> import kinetostatics as ks
     >>> place = ks.stability.PLACES[0]
     >>> place.name, place.axis, place.quantity
-    ('dead centres, inclined guide', 'distance from it [rad]', 'slider_position')
+    ('dead centres, inclined guide', 'crank angle from there [rad]', 'slider_position')
     >>> place.scene(1e-6).shape
     (400,)
     """
@@ -170,12 +170,13 @@ def _size(size):
 
 
 def _mass_ratio(ratio):
+    mass = math.sqrt(ratio)
     mechanism = crank_slider(
         0.3,
         2.0,
-        coupler=Link(1e-12 * ratio, 1.0, 1e-13 * ratio),
-        slider=Link(1e12 / ratio),
-        crank=Link(1e-12 * ratio, 0.1),
+        coupler=Link(mass, 1.0, 0.1 * mass),
+        slider=Link(1.0 / mass),
+        crank=Link(mass, 0.1),
     )
     return _solution(mechanism, _turn())
 
@@ -192,13 +193,13 @@ def _nearly_balanced(share):
     return _solution(mechanism, _turn(), [Spring.balancing(600.0, SPEED, 2.0)])
 
 
-_DISTANCE = "distance from it [rad]"
-_EXCESS = "excess of its length [1]"
+_DISTANCE = "crank angle from there [rad]"
+_IN_LINE = "crank angle from all links in line [rad]"
 _SCALES = tuple(10.0**k for k in range(-9, 10))
 PLACES = (
     Place("dead centres, inclined guide", _DISTANCE, DISTANCES, _dead_centre, "slider_position"),
     Place("limit position", _DISTANCE, DISTANCES, _limit_position, "O"),
-    Place("coupler barely long enough", _EXCESS, DISTANCES, _barely_long_enough, "O"),
+    Place("coupler barely long enough", "excess of the coupler's length [1]", DISTANCES, _barely_long_enough, "O"),
     Place("singular angle of the cosine cam", _DISTANCE, DISTANCES, _singular_angle, "cam_force"),
     Place(
         "pressure angle toward 90 deg",
@@ -208,19 +209,25 @@ PLACES = (
         "cam_force",
     ),
     Place("four-bar toggle", _DISTANCE, DISTANCES, _toggle, "O"),
-    Place("four-bar change point", _DISTANCE, DISTANCES, _change_point, "O"),
-    Place("four-bar that only just turns", _EXCESS, DISTANCES[2:], _just_turning, "O"),
-    Place("slotted lever that only just turns", _EXCESS, DISTANCES[2:], _just_sliding, "O"),
-    Place("rhombus", _DISTANCE, DISTANCES, _folding(0.3, 0.3, 0.3, 0.3, 0.0, math.pi), "O"),
-    Place("kite", _DISTANCE, DISTANCES, _folding(0.2, 0.2, 0.5, 0.5, math.pi), "O"),
-    Place("kite, A passing O2", _DISTANCE, DISTANCES, _folding(0.2, 0.5, 0.5, 0.2, 0.0), "balancing_torque"),
-    Place("parallelogram, folded", _DISTANCE, DISTANCES, _folding(0.2, 0.5, 0.2, 0.5, math.pi), "O"),
-    Place("coupler as long as the crank", _DISTANCE, DISTANCES, _equal_links, "O"),
+    Place("four-bar change point", _IN_LINE, DISTANCES, _change_point, "O"),
+    Place("four-bar that only just turns", "excess of the rocker's length [1]", DISTANCES[2:], _just_turning, "O"),
+    Place("slotted lever that only just turns", "what the slot's offset lacks [1]", DISTANCES[2:], _just_sliding, "O"),
+    Place("rhombus", _IN_LINE, DISTANCES, _folding(0.3, 0.3, 0.3, 0.3, 0.0, math.pi), "O"),
+    Place("kite", _IN_LINE, DISTANCES, _folding(0.2, 0.2, 0.5, 0.5, math.pi), "O"),
+    Place(
+        "kite, A passing O2",
+        "crank angle from A on O2 [rad]",
+        DISTANCES,
+        _folding(0.2, 0.5, 0.5, 0.2, 0.0),
+        "balancing_torque",
+    ),
+    Place("parallelogram, folded", _IN_LINE, DISTANCES, _folding(0.2, 0.5, 0.2, 0.5, math.pi), "O"),
+    Place("coupler as long as the crank", _IN_LINE, DISTANCES, _equal_links, "O"),
     Place("size", "size, times the sawframe's [1]", _SCALES, _size, "O"),
     Place(
         "unequal masses",
-        "1e-12 kg and 1e12 kg, nearer by [1]",
-        tuple(10.0**k for k in range(0, 13, 2)),
+        "mass of coupler and crank over slider's [1]",
+        tuple(10.0**k for k in range(-24, 1, 4)),
         _mass_ratio,
         "balancing_torque",
     ),

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import KinetostaticsError
+from ..errors import MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
 from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
@@ -64,7 +64,6 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
     -------
     pandas.DataFrame
         A row for each method and setting: time [ns/angle], largest error over the crank angles relative to the
-        A row for each method and setting: time [ns/angle], largest error over the crank angles relative to the
         quantity's largest value, the bound that the method itself proves for that, NaN where it proves none, the device
         that computes, and for what a method cannot give the reason, with NaN for the three numbers: a motion that is
         too coarse for a table is one.
@@ -101,7 +100,7 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
                 row["device"] = method.device() if method.device else "cpu"
                 row["bound"] = np.max(method.bound(solution, quantity)) / reference.largest if method.bound else np.nan
                 runs[len(rows)] = run
-            except KinetostaticsError as why:
+            except (NotGivenError, MissingLibraryError) as why:
                 row |= {"error": np.nan, "bound": np.nan, "device": "", "not given": str(why)}
             rows.append(row)
     known = declared(solution, quantity)

@@ -7,13 +7,19 @@ high). The unit of a plain number is 1. Quantities of pint will do too: the valu
 """
 
 import math
+import re
+from functools import cache
 
 import numpy as np
 import pandas as pd
 
+from ..machine.builders import crank_slider, four_bar, slotted_lever
+from ..machine.loads import Gravity, Spring, TorsionDamper, TorsionSpring
 from ..numbers import checks
 from ..numbers.headings import heading
 from ..numbers.spreads import LARGEST, axis, distributions, read
+from ..numbers.units import factor
+from ..solution.scene import Scene
 
 __all__ = [
     "distributions",
@@ -42,7 +48,7 @@ def grid(spreads) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, or its unit not known; all of them at once.
+        A spread is of another form, or its unit not known or of another dimension than machines have by that name.
 
     Examples
     --------
@@ -53,7 +59,7 @@ def grid(spreads) -> pd.DataFrame:
     axes = read(spreads, axis)
     _require_room(math.prod(axis.size for axis, _ in axes.values()), len(axes))
     values = np.stack(np.meshgrid(*(axis for axis, _ in axes.values()), indexing="ij"), axis=-1)
-    return pd.DataFrame(values.reshape(-1, len(axes)), columns=columns(axes))
+    return _table(values.reshape(-1, len(axes)), axes)
 
 
 def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
@@ -76,7 +82,8 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, its unit not known, or more designs than a table can hold.
+        A spread is of another form, its unit not known or of another dimension than machines have by that name, or
+        there are more designs than a table can hold.
 
     Examples
     --------
@@ -111,7 +118,8 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, its unit not known, or more designs than a table can hold.
+        A spread is of another form, its unit not known or of another dimension than machines have by that name, or
+        there are more designs than a table can hold.
 
     Examples
     --------
@@ -146,7 +154,8 @@ def random(spreads, count, seed=0) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, its unit not known, or more designs than a table can hold.
+        A spread is of another form, its unit not known or of another dimension than machines have by that name, or
+        there are more designs than a table can hold.
 
     Examples
     --------
@@ -178,7 +187,7 @@ def sample(spreads, uniform) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, or its unit not known; all of them at once.
+        A spread is of another form, or its unit not known or of another dimension than machines have by that name.
 
     Examples
     --------
@@ -193,7 +202,7 @@ def sample(spreads, uniform) -> pd.DataFrame:
     fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
     checks.require("designs", None if fits else f"{len(found)} parameters need as many columns, got {numbers.shape}")
     values = [distribution.ppf(column) for (distribution, _), column in zip(found.values(), numbers.T, strict=True)]
-    return pd.DataFrame(np.transpose(values), columns=columns(found))
+    return _table(np.transpose(values), found)
 
 
 def _require_room(count, parameters):
@@ -207,6 +216,32 @@ def _require_room(count, parameters):
         if whole and count * parameters > LARGEST
         else None,
     )
+
+
+def _table(values, found):
+    """Table of designs; refused if a number that every machine's parts call so is told in what measures another."""
+    problems = []
+    for name, (_, unit) in found.items():
+        usual = _usual_units().get(re.sub(r"[0-9]+(?=\.|$)", "", name))
+        try:
+            factor(unit, usual or unit)
+        except ValueError as error:
+            problems.append(f"parameter {heading(name, unit)!r}: {error}")
+    checks.require("designs", *problems)
+    return pd.DataFrame(values, columns=columns(found))
+
+
+@cache
+def _usual_units():
+    """SI unit of each number of everyday machines, by path without the label of its group."""
+    loads = Gravity(), Spring(1.0, 0.0), TorsionSpring(1.0, 0.0, on="crank"), TorsionDamper(1.0, on="crank")
+    machines = (
+        crank_slider(1.0, 3.0),
+        four_bar(1.0, 3.0, 2.5, rocker_pivot=(3.0, 0.0)),
+        slotted_lever(1.0, pivot=(0.0, -3.0)),
+    )
+    scenes = Scene(machines[0], 1.0, loads=loads), *(Scene(machine, 1.0) for machine in machines[1:])
+    return {path: unit for scene in scenes for path, unit in scene.units.items()}
 
 
 def columns(found):

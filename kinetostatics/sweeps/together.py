@@ -24,8 +24,8 @@ from ..solution.scene import unchecked
 
 VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
-BLOCK = 120_000
-"""Values of all quantities over designs and angles that a compiled loop leaves at a time: half of a core's cache."""
+BLOCK = 40_000
+"""Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""
 
 
 def quantities(outputs):

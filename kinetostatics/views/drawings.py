@@ -1,18 +1,16 @@
-"""The mechanism itself: drawn at given crank angles, with the paths of its mass centre, and in motion."""
+"""The mechanism itself: drawn at given crank angles, with the paths of its mass centre."""
 
 from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..mechanics.principal_points import principal_points
-from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from . import symbols
 from .alike import own_strokes
-from .canvas import ACCENT, FROM_X, INK, NOTHING, axes, closed, display, labelled, single, styled
+from .canvas import ACCENT, FROM_X, INK, NOTHING, axes, closed, labelled, styled
 from .labels import label
 from .shape import Shape, posed, whole_turn
 from .strokes import artist, put
@@ -27,8 +25,6 @@ WEIGHTS = ("counterweight", "bar")
 """Kinds of strokes that counterweights are drawn by."""
 FOOT = 3.0
 """Room for the ground below a fixed pivot, half lengths of a block."""
-MOST = 0.9
-"""Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
 
 
 def mass_centres(solutions, angle=60, ax=None):
@@ -62,7 +58,7 @@ def mass_centres(solutions, angle=60, ax=None):
     paths = {name: principal_points(solution.mechanism).mass_centre(solution) for name, solution in named.items()}
     for name, solution, style in styled(named):
         points = principal_points(solution.mechanism)
-        reach = np.abs(solution.position(_leading(solution.mechanism))).max()
+        reach = np.abs(solution.position(leading(solution.mechanism))).max()
         rests = np.ptp(paths[name], axis=1).max() < NOTHING * reach
         shown = {"marker": "o", "ms": 4, "ls": ""} if rests else {"linestyle": style}
         text = f"{name} (at rest)" if rests else name
@@ -104,7 +100,7 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     checks.require("mechanism", None if angles.ndim == 1 else f"angles must be a row of numbers, got {angles}")
     named, ax = labelled(solutions, ""), axes(ax)
     solution = next(iter(named.values()))
-    shape, poses = _frame(ax, solution), posed(solution, angles)
+    shape, poses = still_parts(ax, solution), posed(solution, angles)
     shades = np.linspace(1.0, 0.3, len(angles))
     strokes = list(shape.strokes(poses))
     once = [stroke for stroke, owners in own_strokes(named, angles[:1]) if len(owners) == len(named)]
@@ -120,9 +116,9 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     for names, point in _together(poses, shape):
         label(ax, ", ".join(names), point, color=INK, fontsize="small")
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
-        label(ax, f"{counted(angle):g}°", poses.position(_leading(poses.mechanism))[:, row], alpha=shade)
+        label(ax, f"{counted(angle):g}°", poses.position(leading(poses.mechanism))[:, row], alpha=shade)
     _draw_own(ax, [(stroke, owners) for stroke, owners in own_strokes(named, angles[:1]) if len(owners) < len(named)])
-    _equal(ax, [point - [0.0, FOOT * shape.unit] for point in shape.grounds(solution.loads)])
+    equal_scales(ax, [point - [0.0, FOOT * shape.unit] for point in shape.grounds(solution.loads)])
     return ax
 
 
@@ -141,113 +137,7 @@ def _draw_own(ax, strokes):
         ax.legend(frameon=False, fontsize="small", loc="upper right")
 
 
-def animation(solution, joints=None, frames=72, interval=50, ax=None):
-    """Animation of the mechanism over the period of its motion and loads, with arrows for the joint reactions.
-
-    Show it in a notebook by ``HTML(animation.to_jshtml())``, or save it by ``animation.save("saw.gif")``.
-
-    Parameters
-    ----------
-    solution : Solution
-    joints : sequence of str, optional
-        Reactions drawn as arrows from the joints that they act at ("guide" at B), of those at O, A and B the ones that
-        it has unless told; the largest of all is as long as the crank. NaN where the mechanism does not close draws
-        nothing.
-    frames : int
-        Poses shown, of the solution's crank angles; where these are less than a period, over the whole of it, unless
-        the solution holds tables over its crank angles.
-    interval : float
-        Time between them, ms.
-    ax : Axes, optional
-
-    Returns
-    -------
-    matplotlib.animation.FuncAnimation
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> import kinetostatics as ks
-    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5).solve(8)
-    >>> film = ks.plots.animation(s, joints=["O"], frames=2)
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     film.save(Path(folder, "saw.gif"), writer="pillow", dpi=40)
-    """
-    from matplotlib.animation import FuncAnimation
-
-    solution, ax = single(solution), axes(ax)
-    if joints is None:
-        joints = [name for name in ("O", "A", "B") if name in solution.mechanism.outputs]
-    joints = (joints,) if isinstance(joints, str) else tuple(joints)
-    interval = checks.singles(
-        "animation",
-        checks.count("frames", frames),
-        None if joints else "joints must name at least one reaction",
-        interval=(interval, "ms", {"low": 0.0, "strict": True}),
-    )["interval"]
-    solution = _whole(solution, frames)
-    count = solution.crank_angle.size
-    steps = np.linspace(0, count, min(frames, count), endpoint=False).astype(int)
-    shape, made = _frame(ax, solution), solution.mechanism
-    strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
-    parts = [artist(ax, stroke, 1.0) for stroke in strokes]
-    moving = [name for name, point in made.joints.items() if point.link != FRAME]
-    spots = [(name, {**PIN, "zorder": 4}) for name in moving]
-    spots += [(name, style) for name in shape.heavy for style in MASS_CENTRE]
-    marks = [ax.plot([], [], **style)[0] for _, style in spots]
-    positions = [solution.position(name) for name, _ in spots]
-    forces = [_cut(solution, joint) for joint in joints]
-    largest = max(_largest(magnitude(force)) for force in forces)
-    length = _largest(magnitude(solution.position(_leading(made))))
-    starts = [solution.position(made.outputs[joint].at or joint) for joint in joints]
-    arrows = ax.quiver(
-        *np.zeros((2, len(joints))),
-        *np.zeros((2, len(joints))),
-        angles="xy",
-        scale_units="xy",
-        scale=(largest or 1.0) / length,
-        color=ACCENT,
-        width=0.005,
-        zorder=5,
-    )
-    factor, shown = display("N", [largest])
-    ax.set_title(f"reactions at {', '.join(joints)}; longest arrow {factor * largest:.4g} {shown}", fontsize="small")
-    caption = ax.text(0.02, 0.94, "", transform=ax.transAxes, fontsize="small")
-    paths = np.concatenate([*positions, *(stroke.points.reshape(2, -1) for stroke in strokes)], axis=1)
-    _equal(ax, paths[:, np.isfinite(paths).all(axis=0)].T)
-
-    def draw(step):
-        for part, stroke in zip(parts, strokes, strict=True):
-            put(part, stroke.points[..., step])
-        for mark, position in zip(marks, positions, strict=True):
-            mark.set_data(position[:, [step]])
-        arrows.set_offsets(np.array([start[:, step] for start in starts]))
-        arrows.set_UVC(*np.array([force[:, step] for force in forces]).T)
-        caption.set_text(f"crank angle {np.degrees(solution.crank_angle[step]):.0f}°")
-        return [*parts, *marks, arrows, caption]
-
-    return FuncAnimation(ax.figure, draw, frames=steps, interval=interval)
-
-
-def _whole(solution, frames):
-    """The solution over its whole period, at its own crank angles if they are enough of it."""
-    angle, period = np.sort(solution.crank_angle), solution.period
-    step = np.median(np.diff(angle)) if angle.size > 1 else 0.0
-    if angle[-1] - angle[0] + 1.5 * step >= period:
-        return solution
-    try:
-        return solution.at(angle[0] + np.linspace(0.0, period, max(frames, 2), endpoint=False))
-    except ParameterError:
-        return solution
-
-
-def _largest(values):
-    finite = values[np.isfinite(values)]
-    return float(np.max(finite, initial=0.0)) or 1.0
-
-
-def _frame(ax, solution):
+def still_parts(ax, solution):
     """What does not move: fixed pivots, guides over the stroke, the pitch curve of the cam or the crank circle."""
     made = solution.mechanism
     turn = whole_turn(solution)
@@ -268,18 +158,7 @@ def _frame(ax, solution):
     return shape
 
 
-def _cut(solution, joint):
-    """Reaction at a joint; near change points that are passed, where it grows without bound, no longer than most."""
-    force = solution.reaction(joint)
-    if not solution.mechanism.grows(joint):
-        return force
-    size = magnitude(force)
-    most = np.nanquantile(np.where(np.isfinite(size), size, np.nan), MOST)
-    with np.errstate(invalid="ignore"):
-        return np.where(size > most, np.nan_to_num(force / size, nan=0.0) * most, force)
-
-
-def _leading(made):
+def leading(made):
     """First joint that moves, from the crank outwards; O where none does."""
     return next((name for name, point in made.joints.items() if point.link != FRAME), "O")
 
@@ -298,7 +177,7 @@ def _together(poses, shape):
     return found
 
 
-def _equal(ax, moving=()):
+def equal_scales(ax, moving=()):
     """Equal scales, for what is drawn and for what moves, places (N, 2)."""
     ax.relim()
     if len(moving):

@@ -6,11 +6,12 @@ Where a function takes `solutions`, give one `Solution` or a mapping of label to
 quantity that the mechanism has not is a `QuantityError`, a batch of designs a `ParameterError`.
 """
 
+from .animations import animation
 from .cams import cam_curvature, cam_pressure_angle, cam_profile, contact_pressure, law_motion
 from .charts import error_by_distance, model_ladder, sweep_map, work_precision
 from .curves import acceleration_error, cam_force, hodograph, over_turn, pressure_angle, torque
 from .designs import before_and_after
-from .drawings import animation, mass_centres, mechanism
+from .drawings import mass_centres, mechanism
 from .drives import crank_speed, drive_torques, energy_flow
 from .fronts import front
 from .lost_power import losses, lost_power

@@ -3,6 +3,9 @@
    share is taken out of the loop. With s and c of the coupler, k its rate and e its angular acceleration by crank angle,
    the point at the distance a from A on the coupler has the acceleration -(x + a p, y - a q) by crank angle.
 
+   Balanced, with a circular cam and a spring along the guide, A runs on the circle of radius `radius` about (offset, 0),
+   at r on the ray of the crank; lean is r'/r, and the cam's normal leans by radius / root from the ray.
+
    With RECIPROCAL the divisions, too, are taken out or together, which rounds once more for each. */
 
 #define _GNU_SOURCE
@@ -55,6 +58,42 @@ static inline void forces(Shared d, double sine, double cosine, double *row, lon
     row[8 * n] = x * inner_y - y * inner_x;
 }
 
+typedef struct {
+    double radius, offset, stiffness, free;
+} Balance;
+
+/* Into rows of n values: the same, and the forces of the cam and of the slotted crank. */
+static inline void balanced(Shared d, Balance b, double sine, double cosine, double *row, long n)
+{
+    double u = b.offset * cosine, w = b.offset * sine, root = sqrt((b.radius - w) * (b.radius + w));
+    double over = 1.0 / root, r = u + root, lean = -w * over, slope = lean * r, secant = b.radius * over;
+    double bend = lean * slope - u * (secant * secant) * r * over, x = r * cosine, y = r * sine;
+    double y1 = slope * sine + x;
+    double x2 = bend * cosine - 2.0 * slope * sine - x, y2 = bend * sine + 2.0 * slope * cosine - y;
+    double along = sqrt((d.length - y) * (d.length + y)), inverse = 1.0 / along;
+    double s = -y * d.shorter, c = along * d.shorter, k = y1 * inverse, k2 = k * k, e = -(y2 + k2 * y) * inverse;
+    double p = e * s + k2 * c, q = e * c - k2 * s;
+    double load_x = d.coupler * (d.centre * p - x2);
+    double load_y = -d.coupler * (y2 + d.centre * q) - d.coupler_weight;
+    double moment = d.centre * (c * load_y - s * load_x) - d.inertia * e;
+    double pin_x = -d.slider * (d.length * p - x2) + b.stiffness * (x + along - b.free);
+    double pin_y = (moment + s * d.length * pin_x) * inverse;
+    double inner_x = pin_x - load_x, inner_y = pin_y - load_y;
+    double outward = -(inner_x * cosine + inner_y * sine);
+    double slot = outward * lean + inner_x * sine - inner_y * cosine;
+    row[0] = slot * sine;
+    row[n] = -slot * cosine;
+    row[2 * n] = inner_x;
+    row[3 * n] = inner_y;
+    row[4 * n] = pin_x;
+    row[5 * n] = pin_y;
+    row[6 * n] = d.slider_weight - pin_y;
+    row[7 * n] = 0.0;
+    row[8 * n] = -slot * r;
+    row[9 * n] = outward * secant;
+    row[10 * n] = -slot;
+}
+
 void turn(const Design *design, long n, const double *angle, double *rows)
 {
     Shared d = shared(design);
@@ -72,5 +111,17 @@ void sweep(const Design *designs, long count, long n, const double *sine, const 
 #pragma GCC ivdep
         for (long i = 0; i < n; i++)
             forces(d, sine[i], cosine[i], rows + 9 * n * design + i, n);
+    }
+}
+
+void sweep_balanced(const Design *designs, const Balance *balances, long count, long n, const double *sine,
+                    const double *cosine, double *rows)
+{
+    for (long design = 0; design < count; design++) {
+        Shared d = shared(designs + design);
+        Balance b = balances[design];
+#pragma GCC ivdep
+        for (long i = 0; i < n; i++)
+            balanced(d, b, sine[i], cosine[i], rows + 11 * n * design + i, n);
     }
 }

@@ -21,8 +21,8 @@ CASES = [
     ("pumpjack", "weights"),
 ]
 MOST = {"numpy": {"torque": 4.3, "all": 4.3}, "compiled": {"torque": 2.5, "all": 3.7}}
-"""Asked are 4 and 2.5. The chain unit takes 3.8 to 4.2 by NumPy. Compiled, more outputs than a loop writes at once take a
-third of their time for the way to memory.
+"""Asked are 4 and 2.5. The chain unit takes 3.8 to 4.2 by NumPy. Compiled, more outputs than a loop writes at once take
+a third of their time for the way to memory.
 """
 
 

@@ -12,7 +12,7 @@ from matplotlib.image import imread
 
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.results.extremes import FLOOR
+from kinetostatics.results.rounding import FLOOR
 
 pytest.importorskip("bokeh")
 pytest.importorskip("selenium")

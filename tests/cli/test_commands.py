@@ -199,9 +199,16 @@ def test_a_new_case_never_takes_the_place_of_a_file(tmp_path, capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["new\nline", 'say "when"', "b\\c", "\N{GREEK SMALL LETTER OMEGA}.toml"])
 def test_a_new_case_of_an_odd_name_is_read_again(tmp_path, name):
-    assert main(["new", str(tmp_path / name)]) == 0
-    (path,) = tmp_path.iterdir()
-    assert ks.load_case(path).title == path.stem
+    for kind in STARTERS:
+        assert main(["new", str(tmp_path / kind / name), "--kind", kind]) == 0
+        (path,) = (tmp_path / kind).iterdir()
+        assert ks.load_case(path).title == path.stem
+
+
+def test_a_new_chain_is_named_as_it_is_titled(tmp_path):
+    assert main(["new", str(tmp_path / "press 3"), "--kind", "chain"]) == 0
+    case = ks.load_case(tmp_path / "press 3.toml")
+    assert case.title == case.variant("plain").mechanism.name == "press 3"
 
 
 @pytest.mark.slow

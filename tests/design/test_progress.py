@@ -11,7 +11,7 @@ from kinetostatics.design import progress
 def test_a_bar_counts_steps_while_it_is_shown(capsys, monkeypatch):
     monkeypatch.setattr(progress, "SHOWN_AFTER", 0.0)
     problem = SimpleNamespace(stepped=progress.no_bar)
-    with progress.shown(problem, label="saw"):
+    with progress.moving_bar(problem, label="saw"):
         for _ in range(3):
             problem.stepped(None)
     assert problem.stepped is progress.no_bar
@@ -20,7 +20,7 @@ def test_a_bar_counts_steps_while_it_is_shown(capsys, monkeypatch):
 
 def test_without_one_nothing_is_shown(capsys):
     problem = SimpleNamespace(stepped=progress.no_bar)
-    with progress.shown(problem, wanted=False):
+    with progress.moving_bar(problem, wanted=False):
         problem.stepped(None)
     assert capsys.readouterr().err == ""
 

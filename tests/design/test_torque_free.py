@@ -5,9 +5,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.design.cam_start import begun
-from kinetostatics.design.problem import Problem
-from kinetostatics.design.torque_free import least_squares
 from support.shipped import shipped
 
 pytestmark = pytest.mark.slow
@@ -96,36 +93,6 @@ def test_the_mower_too_as_a_cam_balanced_machine():
         assert found.scene.parameters["guide_offset"] == (-0.02 if offset is None else offset)
 
 
-def search(cosine, sine):
-    start = begun(SAW.variant("cam-cosine").scene, cosine, sine, None, True, None, None, None, None)
-    return start, Problem(start.machine, start.vary, ["balancing_torque", "slider_position"], None, 360)
-
-
-def squares(problem, values):
-    return np.sqrt(np.mean(problem.curves(values)["balancing_torque"].values ** 2))
-
-
-@pytest.mark.parametrize("harmonics", [(3, 0), (4, 4), (8, 8)])
-def test_least_squares_from_the_studys_cam_within_20_evaluations(harmonics):
-    start, problem = search(*harmonics)
-    assert_allclose(problem.start[: 1 + harmonics[0]][1], -0.0219, atol=3e-3)
-    first = squares(problem, problem.start)
-    found = least_squares(problem, start, problem.start)
-    assert problem.evaluations <= 20
-    assert squares(problem, found) < 0.05 * first
-
-
-@pytest.mark.parametrize("harmonics", [(4, 4), (8, 8)])
-def test_random_starts_reach_the_same_least_squares(harmonics):
-    start, problem = search(*harmonics)
-    best = squares(problem, least_squares(problem, start, problem.start))
-    generator = np.random.default_rng(7)
-    starts = [start.random(problem.names, problem.start, generator) for _ in range(6)]
-    assert max(abs(values[0] - 0.3) for values in starts) <= 0.03
-    ends = [squares(problem, least_squares(problem, start, values)) for values in starts]
-    assert np.mean(np.isclose(ends, best, rtol=1e-6)) >= 0.6
-
-
 def test_a_ratio_beyond_the_bound_ends_with_the_bound_and_what_may_help():
     with pytest.raises(
         ks.DesignError, match=r">= 200 cannot be kept; .* reaches .* 16\d.* at most: give sine"
@@ -143,11 +110,3 @@ def test_bound_is_what_the_weight_alone_asks():
     plain = np.mean(np.abs(found.reference.solve(2880).balancing_torque))
     assert_allclose(found.bound, plain / torque, rtol=1e-3)
     assert numbers["coupler_length"] > 2.0
-
-
-def test_smooth_cams_come_first():
-    """Waves are counted from the second harmonic on."""
-    from kinetostatics.design.torque_free import wave
-
-    names = ("cam.cosine.0", "cam.cosine.1", "cam.sine.3", "coupler_length")
-    assert [wave(name) for name in names] == [0.0, 0.0, 9.0, 0.0]

@@ -3,6 +3,7 @@
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.shipped import shipped
 
 pytestmark = pytest.mark.slow
@@ -18,3 +19,12 @@ def test_ways_to_carry_the_weight_are_told_with_their_prices():
     assert ratios["symmetric"] < table.loc["symmetric", "bound"] < ratios["sine terms"] < ratios["coupler spring"]
     assert table["largest O [N]"].idxmax() == "counterweight"
     assert table["largest_absolute guide_moment [N m]"].idxmax() == "coupler spring"
+
+
+@every("machine", [
+    ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), ks.scotch_yoke(0.1), ks.slotted_lever(0.1, pivot=(0.0, -0.2)),
+    ks.crank_slider(0.1, 0.4, assembly=-1),
+])  # fmt: skip
+def test_other_machines_than_crank_sliders_are_refused_in_words(machine):
+    with pytest.raises(ks.ParameterError, match="takes a crank-slider, plain or with a cam, whose slider"):
+        ks.design.weight_options(ks.Scene(machine, 1.0), 2)

@@ -11,7 +11,7 @@ from kinetostatics.engines.arithmetic import DOUBLE, SINGLE, BoundsElsewhere, is
 from kinetostatics.engines.backends import Backend
 from kinetostatics.engines.trace import Graph
 from kinetostatics.errors import NotGivenError
-from support.bounded import FAMILIES, solution
+from support.bounded import FAMILIES, over_worst, solution
 from support.elsewhere import errors, exact_values
 from support.every import every
 
@@ -29,19 +29,9 @@ def test_no_value_in_single_precision_of_random_machines_is_off_by_more_than_its
     assert found.wrong == []
 
 
-@every(
-    "case, variant, most",
-    [
-        ("sawframe_2r63", "plain", 20),
-        ("sawframe_2r63", "cam-cosine", 60),
-        ("chain_unit", "rho-0.5", 250),
-        ("toggle_press", "coining", 100),
-        ("compressor", None, 100),
-    ],
-)
+@every("case, variant, most", over_worst("single"))
 def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(case, variant, most):
-    case = ks.load_case(case)
-    scene = case.variants[variant or case.reference].scene
+    scene = ks.load_case(case).variants[variant].scene
     program = ks.compile(scene, ("balancing_torque", "O"), engine="numpy", precision="single")
     exact = ks.compile(scene, ("balancing_torque", "O"), engine="numpy")(ANGLES)
     values, bounds = program(ANGLES), program.error_bound(ANGLES)

@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree as ET
 
-from kinetostatics.engines.styles import GREEK, LATEX, MATHML, TEXT, shown, written
+from kinetostatics.engines.styles import GREEK, LATEX, MATHML, TEXT, in_digits, written
 from kinetostatics.engines.symbols import Symbol
 from tests.support.every import every
 
@@ -43,10 +43,10 @@ def test_mathml_is_well_formed(name):
 
 
 def test_values_have_six_digits_and_constants_all_theirs():
-    assert shown(1 / 3) == "0.333333"
-    assert shown(0.0) == "0"
-    assert shown(1 / 3, True) == "0.3333333333333333"
-    assert shown(2.0, True) == "2"
+    assert in_digits(1 / 3) == "0.333333"
+    assert in_digits(0.0) == "0"
+    assert in_digits(1 / 3, True) == "0.3333333333333333"
+    assert in_digits(2.0, True) == "2"
     assert LATEX.number(-2.5e-8) == r"-2.5 \cdot 10^{-8}"
     assert "−8" in MATHML.number(-2.5e-8)
 

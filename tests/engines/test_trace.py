@@ -76,6 +76,35 @@ def test_a_quotient_by_a_quotient_is_one_by_its_numerator(lean):
     assert told(sine / (cosine.sqrt() / length)) == ["sin", "cos", "sqrt", "/", "*", "*"]
 
 
+def test_a_quotient_leaves_its_sign_to_sums(lean):
+    sine, cosine, length, _ = lean
+    assert told(-(sine * cosine) / cosine) == ["sin", "-"]
+    assert told(length + -sine / cosine) == ["sin", "cos", "/", "-"]
+
+
+def test_the_secant_of_a_leaning_root_is_no_root_of_its_own(lean):
+    """1 + x^2 / (a^2 - x^2) = a^2 / (a^2 - x^2), whatever the sign of a, and in whichever order it is written."""
+    sine, _, length, _ = lean
+    for one, other in ((length - sine, length + sine), (sine + length, length - sine)):
+        over = sine / (one * other).sqrt()
+        for square in (1.0 + over * over, over * over + 1.0):
+            assert told(square.sqrt()).count("sqrt") == 1
+            assert "abs" in told(square.sqrt())
+    slope = sine / ((length - sine) * (length + 2.0 * sine)).sqrt()
+    assert told((1.0 + slope * slope).sqrt()).count("sqrt") == 2
+
+
+def test_what_is_zero_at_every_crank_angle_is_left_out_but_not_what_may_be_a_gap(lean):
+    sine, cosine, length, _ = lean
+    assert 0.0 * sine == 0.0
+    assert cosine * 0.0 == 0.0
+    assert length * sine + 0.0 * cosine is length * sine
+    assert told(0.0 * cosine - length * sine) == ["sin", "*", "-"]
+    gap = 0.0 * cosine.sqrt()
+    assert told(gap)[-1] == "*"
+    assert told(0.0 + gap)[-1] == "+"
+
+
 def test_what_is_multiplied_and_divided_by_the_same_number_is_left(lean):
     sine, cosine, length, other = lean
     assert sine / length * length is sine

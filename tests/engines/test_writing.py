@@ -35,33 +35,11 @@ def test_a_loop_assigns_each_output_its_row_and_a_buffered_line_its_result(recor
     loop, (line, buffers) = writing.loop(made.outputs), writing.buffered_line(made.outputs)
     compile(loop, "loop", "exec")
     compile(line, "line", "exec")
-    for place in range(len(made.outputs)):
-        assert f"row_{place}[i] = " in loop
+    for place, output in enumerate(made.outputs):
+        assert f"    v{output.index} = " in loop
         assert f"r{place}" in line
+    assert f"    return ({' '.join(f'v{output.index},' for output in made.outputs)})\n" in loop
     assert 0 < buffers < len(line.splitlines())
-
-
-def test_many_outputs_are_computed_in_one_loop_over_the_angles(recorded):
-    """A second one would compute again what they have in common, and assign the same names, which numba is slow at."""
-    made, _ = recorded
-    many = [made.outputs[0]] * (2 * writing.ROWS_AT_ONCE + 1)
-    lines = [line.strip() for line in writing.loop(many).splitlines()]
-    assigned = [line.split(" = ")[0] for line in lines if line.startswith("v")]
-    assert len(assigned) == len(set(assigned)) > 30
-    assert sum(line.startswith("for k in range") for line in lines) == 2  # that, and one that copies rows
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("angles", [1, writing.AT_ONCE, 2 * writing.AT_ONCE + 3])
-def test_many_outputs_are_those_of_few_to_the_last_bit(recorded, angles):
-    pytest.importorskip("numba")
-    made, leaves = recorded
-    few = programs.Program(made.recording)
-    many = programs.Program(made.recording, (*made.outputs * writing.ROWS_AT_ONCE, 2.5))
-    angle = np.linspace(0.0, 6.0, angles)
-    one, other = (each.by_loop(angle, leaves.numbers, (), angle.shape) for each in (few, many))
-    assert np.array_equal(other[:-1], np.tile(one, (writing.ROWS_AT_ONCE, 1)))
-    assert (other[-1] == 2.5).all()
 
 
 def test_an_output_that_is_a_sine_of_the_crank_angle_itself_is_computed_too():
@@ -85,3 +63,18 @@ def test_a_total_loses_nothing_in_any_engine():
     wanted = [[math.fsum(values)] * 2, [math.fsum((0.3, angle, -values[3])) for angle in angles]]
     for compute in (program.by_numpy, program.by_loop):
         np.testing.assert_array_equal(compute(angles, values, (), angles.shape), wanted)
+
+
+@pytest.mark.slow_start
+def test_a_rest_is_the_same_in_any_engine():
+    pytest.importorskip("numba")
+    graph = Graph()
+    x, y, length = parts = [graph.parameter(place) for place in range(3)]
+    whole, values = (x * x + y * y).sqrt(), [0.3, 0.4, 0.5000000000000001]
+    outputs = elementary.rest(whole, x, y), elementary.total(whole, -length, elementary.rest(whole, x, y))
+    program = programs.Program(Recording((), outputs, (), (), tuple(parts), (), graph))
+    least = np.sqrt(0.3 * 0.3 + 0.4 * 0.4)
+    lost = elementary.rest(least, 0.3, 0.4)
+    for compute in (program.by_numpy, program.by_loop):
+        found = compute(np.zeros(1), values, (), (1,))
+        np.testing.assert_array_equal(found[:, 0], [lost, math.fsum((least, -values[2], lost))])

@@ -5,6 +5,8 @@ import sys
 
 import pytest
 
+import kinetostatics as ks
+from support.commands import CAM, TEXT
 from support.every import limited
 
 SECONDS = 2
@@ -27,3 +29,28 @@ def soon_and_small(request):
     with limited(60 if patient else SECONDS):
         yield
     assert _memory() - held < BYTES
+
+
+@pytest.fixture
+def saw(tmp_path):
+    """A case with a table of its own; both must be as they were at the end, with nothing else beside them."""
+    case, table = tmp_path / "saw.toml", tmp_path / "saw_precision.csv"
+    case.write_text(TEXT, encoding="utf-8")
+    table.write_text(CAM, encoding="utf-8")
+    ks.load_case(case)
+    yield case
+    assert case.read_text(encoding="utf-8") == TEXT
+    assert table.read_text(encoding="utf-8") == CAM
+    assert not [path for path in tmp_path.rglob("*") if path.name.startswith(".")]
+
+
+@pytest.fixture
+def idle(monkeypatch):
+    """Nothing may be solved once the case is read; what is wrong must be seen before."""
+
+    def work(*_, **options):
+        raise AssertionError("work began")
+
+    monkeypatch.setattr("kinetostatics.casefile.case.Case.solve", lambda case, name, *_: work(case.variant(name)))
+    monkeypatch.setattr("kinetostatics.sweeps.sweeps.tried", work)
+    monkeypatch.setattr("kinetostatics.studies.stability.study", work)

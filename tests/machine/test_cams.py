@@ -25,6 +25,8 @@ LAWS = [(0.3, 2.0), (0.3, 0.31), (0.3, 0.6), (0.01, 5.0)]
 """Amplitude and mean: the sawframe; a slider that nearly reaches O; between; a short stroke far away."""
 
 
+NEXT = mp.mpf(2) ** -52, -(mp.mpf(2) ** -52)
+"""Steps of the crank angle by its rounding, rad."""
 OFFSETS = [0.0] + [sign * 10.0**-power for power in range(1, 17) for sign in (1, -1)]
 
 
@@ -104,6 +106,29 @@ def test_torque_and_cam_force_of_the_sawframe_at_and_near_the_singular_angle():
     for name in ("balancing_torque", "cam_force", "slot_force"):
         assert_close(getattr(s, name), [found[name] for found in expected], tolerance=1e-12)
     assert_close(planar(s.reaction("O")), [found["O"] for found in expected], tolerance=1e-12)
+
+
+@pytest.mark.parametrize("nearness", [0.03, 1e-6, 1e-12])
+@pytest.mark.parametrize("direction", [(-1.0, 0.0), (0.6, -0.8), (0.0, 1.0)])
+def test_a_circle_that_o_lies_close_to_is_off_by_no_more_than_a_rounding_of_the_crank_angle(direction, nearness):
+    cam = ks.cams.Circle(0.3, tuple(0.3 * (1.0 - nearness) * part for part in direction))
+    angles = np.linspace(0.0, 2 * np.pi, 37) + 0.01
+    found = np.transpose(cam.radius(angles))
+    assert cam.is_close
+    with mp.workdps(60):
+        x, y, radius = map(mp.mpf, (*cam.centre, cam.pitch_radius))
+
+        def exact(angle):
+            cosine, sine = mp.cos(angle), mp.sin(angle)
+            along, across = x * cosine + y * sine, y * cosine - x * sine
+            root = mp.sqrt(radius**2 - across**2)
+            r, lean = along + root, across / root
+            return r, lean * r, lean**2 * r - along * (1 + lean**2) * r / root
+
+        for angle, values in zip(map(mp.mpf, angles), found, strict=True):
+            moved = [[abs(a - b) for a, b in zip(exact(angle + way), exact(angle), strict=True)] for way in NEXT]
+            for own, wanted, *steps in zip(values, exact(angle), *moved, strict=True):
+                assert abs(own - wanted) <= 1e-15 * (abs(wanted) + radius) + max(steps), float(angle)
 
 
 @pytest.mark.parametrize("centre", [(0.0, 0.0), (-0.0219, 0.0), (0.1, -0.2), (0.0, 0.29)])

@@ -5,6 +5,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.errors import ConditionWarning, ParameterError
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.studies.methods.certified import differences, enclosure, relative_errors
 
 R, PIVOT = 0.1, (0.05, -0.35)
 ANGLES = np.linspace(0.1, 6.2, 9)
@@ -82,3 +85,15 @@ def test_requirement_tells_the_distances():
 def test_what_no_cylinder_can_have_is_refused(fields, words):
     with pytest.raises(ParameterError, match=f"cylinder group: {words}"):
         ks.CylinderGroup(**{"pivot": PIVOT} | fields)
+
+
+@pytest.mark.parametrize("margin", [1e-3, 1e-6, 1e-9])
+def test_a_pin_that_only_just_clears_the_pivot_keeps_its_digits(flint, margin):
+    reach = 0.3125
+    group = ks.CylinderGroup((reach, 0.0), rod=ROD, cylinder=CYLINDER)
+    engine = ks.Mechanism("engine", ks.Crank(reach * (1.0 - margin)), (group,))
+    s = ks.solve(engine, margin * np.linspace(-2.0, 2.0, 21), crank_speed=20.0, loads=LOADS)
+    for quantity in ("cylinder_rate", "O"):
+        exact = enclosure(s, quantity, digits=20)
+        moved = differences(enclosure(s.at(np.nextafter(s.crank_angle, 9.0)), quantity, digits=20), exact)
+        assert relative_errors(components(s, quantity), exact).max() <= 5.0 * (UNIT + moved.max())

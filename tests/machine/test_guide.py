@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.numbers.leaves import Axis
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, -2.5, np.pi / 2])
@@ -32,3 +33,19 @@ def test_points_that_coincide_or_are_many_make_no_guide():
         ks.Guide.through((0.0, 0.0), (np.ones((2, 1)), 1.0))
     with pytest.raises(ks.ParameterError, match="direction must have length 1"):
         ks.Guide(None, 0.0, (1.0, 1.0))
+
+
+@pytest.mark.parametrize("end", [(0.0, 2.0), (0.0, -2.0), (-2.0, 0.0), (2.0, 0.0), (1.0, 2.0)])
+def test_a_guide_through_points_along_an_axis_has_that_direction_in_its_structure(end):
+    saw = ks.crank_slider(0.1, 3.0, guide=ks.Guide.through((0.0, 0.0), end), slider=ks.Link(1.0))
+    s = ks.solve(saw, np.linspace(0, 6, 50), crank_speed=3.0)
+    structure, leaves = s.apart
+    along = 0.0 in end
+    assert (Axis(saw.groups[0].guide.exact) in structure[1][3][1][2]) == along
+    assert len(leaves.numbers) == (4 if along else 6)
+    plain = ks.solve(
+        ks.crank_slider(0.1, 3.0, guide_angle=saw.groups[0].guide.guide_angle, slider=ks.Link(1.0)),
+        s.crank_angle,
+        crank_speed=3.0,
+    )
+    np.testing.assert_allclose(s.balancing_torque, plain.balancing_torque, rtol=0, atol=1e-14)

@@ -1,13 +1,15 @@
 """Elementary functions of whatever number the caller brought."""
 
 import math
+from fractions import Fraction
 
+import mpmath as mp
 import numpy as np
 import pytest
 
 from kinetostatics.numbers import elementary
 from kinetostatics.numbers.duals import Dual
-from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, root, sign, stack, total
+from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, rest, root, sign, stack, total
 
 
 @pytest.mark.parametrize("name", ["sin", "cos", "sqrt"])
@@ -71,7 +73,37 @@ def test_a_total_is_rounded_once_whatever_cancels():
     assert total(np.longdouble(2.0), 1.0) == 3.0
 
 
+def test_a_length_with_its_rest_has_twice_the_digits():
+    random = np.random.default_rng(3)
+    parts = random.uniform(0.1, 1.0, (2, 50)) * 2.0 ** random.integers(-60, 60, (2, 50))
+    length = np.hypot(*parts)
+    found = rest(length, *parts)
+    with mp.workdps(60):
+        exact = [mp.sqrt(mp.mpf(x) ** 2 + mp.mpf(y) ** 2) for x, y in parts.T]
+        errors = [abs(mp.mpf(a) + mp.mpf(b) - c) / c for a, b, c in zip(length, found, exact, strict=True)]
+        assert max(errors) < 9 * 2.0**-106
+        assert rest(float(length[0]), *map(float, parts[:, 0])) == found[0]
+    assert 2.0**-60 < np.max(np.abs(found / length)) < 2.0**-52
+
+
+def test_a_rest_of_numbers_with_slopes_has_none_and_enclosures_have_no_rest():
+    seeded = [Dual(np.array(part), np.ones((1, 1))) for part in (0.5, 0.3, 0.4)]
+    found = rest(*seeded)
+    assert found.slopes is None
+    assert found.value == rest(0.5, 0.3, 0.4) != 0.0
+    assert rest(*(np.array([part], dtype=object) for part in (5, 3, 4))) is None
+
+
+def test_absent_terms_of_a_total_are_none():
+    assert total(0.1, None, 0.2, -0.3, None) == math.fsum((0.1, 0.2, -0.3))
+
+
 def test_a_total_has_the_slopes_of_a_sum():
     found = total(Dual(np.array(0.1), np.array([[1.0], [0.0]])), 0.2, -Dual(np.array(0.3), np.array([[0.0], [2.0]])))
     assert found.value == math.fsum((0.1, 0.2, -0.3))
     np.testing.assert_array_equal(found.slopes, [[1.0], [-2.0]])
+
+
+def test_numbers_of_any_precision_are_not_moved_off_zero():
+    assert apart(Fraction(0), 1.0) == 0
+    assert apart(0, 1.0) == apart(0.0, 1.0) == APART

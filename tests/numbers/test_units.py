@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from kinetostatics.numbers.units import base_factor, factor, shown, to_si
+from kinetostatics.numbers.units import base_factor, factor, quoted, to_si
 
 
 @pytest.mark.parametrize(
@@ -27,12 +27,24 @@ def test_what_measures_something_else_is_refused(text, unit):
         to_si(text, unit)
 
 
+@pytest.mark.parametrize("unit", ["degC", "°C", "degF", "°F", "dB"])
+@pytest.mark.parametrize("wanted", ["K", "m"])
+def test_units_with_a_zero_of_their_own_are_refused_in_words(unit, wanted):
+    with pytest.raises(ValueError, match=f'unit "{unit}" has a zero of its own.* as K, or delta_degC'):
+        to_si(f"20 {unit}", wanted)
+
+
+@pytest.mark.parametrize(("text", "unit", "value"), [("20 delta_degC", "K", 20.0), ("2 J/degC", "J/K", 2.0)])
+def test_differences_of_temperature_are_numbers_as_any(text, unit, value):
+    assert to_si(text, unit) == value
+
+
 def test_factors_go_to_the_unit_and_to_the_base():
     assert factor("kN", "N") == base_factor("kN") == 1000.0
 
 
 def test_long_values_are_shown_short():
-    assert len(shown("x" * 1000)) < 100
+    assert len(quoted("x" * 1000)) < 100
 
 
 @pytest.mark.parametrize(

@@ -216,3 +216,21 @@ def test_a_quantity_that_does_not_change_has_no_extremes_and_no_bounds_of_them()
     s = ks.solve(ks.crank_slider(0.3, 2.0, crank=ks.Link(5.0)), 8, crank_speed=33.5, loads=[ks.Gravity()])
     for quantity in ("shaking_force", "balancing_torque"):
         assert ks.extremes(s, quantity).error_bound.shape == (0,)
+
+
+# In print
+
+
+def test_extremes_are_printed_with_the_digits_that_are_known_and_rounding_as_0():
+    found = ks.extremes(ks.load_case("sawframe_2r63").solve("cam-circle"), "O")
+    lines = repr(found).splitlines()
+    assert lines[0] == "8 extremes of O"
+    assert lines[1].split() == ["51.543504", "deg", "22285.3"]
+    assert lines[2].split() == ["93.042671", "deg", "0"]
+    assert 0.0 < found.value[1] < 1e-10
+
+
+def test_extremes_of_a_function_are_printed_to_six_digits():
+    pump = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0)
+    (line, _) = repr(ks.extremes(pump, lambda s: s.slider_position)).splitlines()[1:]
+    assert line.split()[-1] in ("2.3", "1.7")

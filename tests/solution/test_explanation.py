@@ -1,6 +1,6 @@
 """What a user sees of a hand calculation: beside one done by hand, as text, steps, LaTeX and HTML."""
 
-from math import asin, cos, degrees, hypot, sin
+from math import asin, cos, degrees, hypot, pi, sin
 
 import pytest
 
@@ -92,6 +92,15 @@ def test_rounding_stands_as_zero():
         .shown
         == "0"
     )
+
+
+def test_what_tables_take_for_rounding_stands_as_zero_too():
+    """Horizontally the counterweights of the mower balance the pin: 3e-10 N are left of kilonewtons."""
+    solution = ks.load_case("mower_drive").solve("full", 8)
+    told = solution.explain("A", 1.5 * pi)
+    left = [abs(step.value) for step in told.results if step.shown == "0"]
+    assert left
+    assert all(0.0 < size <= 1e-13 * solution.largest_force_term for size in left)
 
 
 def test_notebooks_and_prompts_show_it():

@@ -11,8 +11,10 @@ from tests.support.chains import chain
 from tests.support.rubbing_machines import Drawn
 
 
-@pytest.fixture(scope="module", params=["friction of a cam", "chain"])
+@pytest.fixture(scope="module", params=["friction of a cam", "chain", "balanced cam"])
 def told(request):
+    if request.param == "balanced cam":
+        return ks.load_case("sawframe_2r63_optimal").variants["cam-robust"].scene.solve(0.7).explain("O", 0.7)
     if request.param == "chain":
         scene, angles = chain(1)
         return scene.solve(angles).explain("O", float(angles[0]))

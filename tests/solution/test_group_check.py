@@ -160,6 +160,8 @@ DERIVATIVES = {
     ),
     "wrong length": lambda p: _joint(p, position=tuple(1.1 * part for part in p.joints["B"].position)),
     "other joint": lambda p: p.links.update(coupler=p.links["coupler"]._replace(joint=Joint((9.0, 0.0), None, None))),
+    "other swing": lambda p: p.swings.update(B=p.swings["B"]._replace(radius=0.31)),
+    "wrong departure": lambda p: p.departures.update(B=p.joints["B"].second),
 }
 SEEN = {
     "wrong first": "first derivative of joint B",
@@ -170,6 +172,8 @@ SEEN = {
     "long direction": "direction of coupler",
     "wrong length": "length of coupler",
     "other joint": "reference joint of coupler",
+    "other swing": "swing of B",
+    "wrong departure": "departure of B",
     "wrong force": "work of the forces along x",
 }
 
@@ -184,6 +188,19 @@ def test_check_says_what_is_wrong_with_a_group(change):
     assert not report
     assert any(problem.startswith(SEEN[change]) for problem in report.problems)
     assert f"WRONG  {report.errors[SEEN[change]]:7.1e}  {SEEN[change]}" in repr(report)
+
+
+class Departing(ks.SliderGroup):
+    """A slider group that tells its departure wrongly."""
+
+    def departure(self, placement, position):
+        """Too much by a tenth."""
+        return 1.1 * super().departure(placement, position)
+
+
+def test_check_says_that_a_slider_departs_in_another_way_than_told():
+    assert ks.check(Departing(0.5)).problems[0].startswith("departure of slider")
+    assert "departure of slider" in ks.check(ks.SliderGroup(0.5)).errors
 
 
 TABLE = 0.3 + 0.05 * np.cos(TURN)

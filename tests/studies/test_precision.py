@@ -14,7 +14,7 @@ import kinetostatics as ks
 from kinetostatics import cli
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.studies import precision
-from kinetostatics.studies.methods import METHODS, kane, newton, structures
+from kinetostatics.studies.methods import METHODS, Method, kane, newton, structures
 from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from kinetostatics.views import charts
 from support.curves import FEW, torque_study
@@ -164,6 +164,23 @@ def test_motion_too_coarse_for_a_table_is_a_reason_not_an_error():
     (series,) = (method for method in METHODS if method.name == "harmonic series")
     table = precision.study(ks.load_case("shaper").solve("cutting", 24), methods=[series], repeats=1)
     assert table["not given"].str.contains("table over travel").any()
+
+
+@pytest.mark.parametrize("error", [ks.ParameterError, ks.errors.KinetostaticsError, ValueError])
+def test_an_error_of_a_method_that_does_not_mean_that_it_cannot_is_raised(case, error):
+    def prepare(solution, quantity, setting):
+        raise error("a wrong number")
+
+    with pytest.raises(error, match="a wrong number"):
+        precision.study(case.solve("plain", 4), methods=[Method("at fault", prepare)], repeats=1)
+
+
+def test_a_library_that_is_missing_is_a_reason(case):
+    def prepare(solution, quantity, setting):
+        raise ks.errors.MissingLibraryError("abacus is not installed")
+
+    table = precision.study(case.solve("plain", 4), methods=[Method("counting", prepare)], repeats=1)
+    assert table["not given"].tolist() == ["abacus is not installed"]
 
 
 # Files and charts

@@ -80,7 +80,7 @@ WORDS = {"lost": "loses digits", "flipped": "flips assembly", "nan": "NaN", "giv
 EXPECTED = [(place, method, how) for place, row in FAILURES.items() for method, ways in row.items() for how in ways]
 HARMLESS = ("dead centres, inclined guide", "singular angle of the cosine cam", "size", "unequal masses", "many turns")
 """Places that hurt methods, not the problem."""
-ELSEWHERE = ("pressure angle toward 90 deg", "nearly balanced")
+ELSEWHERE = ("nearly balanced",)
 """Places where other numbers than the crank angle decide."""
 DRAWN = ("condition x rounding", "one rounding of the crank angle", "proven bound of ours")
 """Lines of a chart besides those of methods."""

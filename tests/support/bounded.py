@@ -15,11 +15,23 @@ from kinetostatics.studies.methods.enclosures import on_arb
 from kinetostatics.studies.places import PLACES
 
 from . import chains, loads
+from .inclined import INCLINED
 from .shipped import shipped
 
 BITS = 200
-FAMILIES = "chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped"
+FAMILIES = "chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped", "inclined"
+AT_PLACES = {"place": PLACES, "inclined": INCLINED}
+"""Families of few structures, whose numbers are exact."""
 CASES = "sawframe_2r63", "chain_unit", "toggle_press", "mower_drive", "v_twin"
+OVER_WORST = {
+    ("sawframe_2r63", "plain"): {"double": 20, "single": 20},
+    ("sawframe_2r63", "cam-cosine"): {"double": 60, "single": 60},
+    ("chain_unit", "rho-0.5"): {"double": 150, "single": 250},
+    ("toggle_press", "coining"): {"double": 100, "single": 100},
+    ("compressor", "loaded"): {"single": 100},
+    ("pumpjack", "weights"): {"double": 50},
+}
+"""By case and variant how many times the worst error of a turn the worst bound may be, in each precision."""
 ENGINES: dict[str, Any] = {"numpy": NUMPY, "compiled": COMPILED}
 
 
@@ -30,6 +42,11 @@ class Found(NamedTuple):
     wrong: list
     unbounded: int
     share: float
+
+
+def over_worst(precision):
+    """Rows (case, variant, most) of `OVER_WORST`."""
+    return [(*names, most[precision]) for names, most in OVER_WORST.items() if precision in most]
 
 
 def solution(family, seed, count=5):
@@ -64,8 +81,9 @@ def _made(family, rng, count):
     if family == "chain":
         scene, (low, *_, high) = chains.chain(int(rng.integers(1 << 30)), int(rng.integers(1, 5)))
         return scene.solve(rng.uniform(low, high, count), on_gap="nan")
-    if family == "place":
-        place = PLACES[rng.integers(len(PLACES))]
+    if family in AT_PLACES:
+        places = AT_PLACES[family]
+        place = places[rng.integers(len(places))]
         found = place.scene(place.numbers[rng.integers(len(place.numbers))])
         angles = rng.choice(found.crank_angle.ravel(), count)
         return _solved(found.mechanism, found.crank_speed, 0.0, found.loads, found.friction, angles)

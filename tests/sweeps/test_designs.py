@@ -1,7 +1,10 @@
 """Tables of designs: grids and samples, the texts that spread them, and the columns that name their parameters."""
 
+import re
+
 import numpy as np
 import pandas as pd
+import pint
 import pytest
 from scipy import stats
 
@@ -9,6 +12,7 @@ import kinetostatics as ks
 from kinetostatics.casefile import parameters, schema
 from kinetostatics.numbers.headings import si_columns
 from kinetostatics.sweeps import designs
+from support.every import every
 from support.shipped import shipped
 
 SPREADS = {
@@ -97,6 +101,29 @@ def test_all_texts_that_cannot_be_read_are_told_at_once():
 def test_no_parameters_are_no_designs(kind):
     with pytest.raises(ks.ParameterError, match="there are no parameters"):
         kind({})
+
+
+KG, M = (pint.UnitRegistry().Quantity([1.0, 2.0], unit) for unit in ("kg", "m"))
+
+
+@every("name, given, unit", [
+    ("crank_length", KG, "m"), ("crank_length", "1..2 kg:2", "m"), ("coupler_length2", KG, "m"),
+    ("slider3.mass", M, "kg"), ("slider.mass", "1..2 m:2", "kg"), ("crank_speed", "1..2 Hz:2", "rad/s"),
+    ("spring.stiffness", "1..2 N:2", "N/m"), ("torsion_spring.stiffness", "1..2 N/m:2", "N*m/rad"),
+    ("lever.inertia", KG, "kg*m**2"),
+])  # fmt: skip
+def test_a_number_that_machines_have_is_refused_in_a_unit_of_another_dimension(name, given, unit):
+    with pytest.raises(ks.ParameterError, match=re.escape(f"parameter '{name} [")) as caught:
+        designs.grid({name: given})
+    assert f'does not measure the same as "{unit}"' in str(caught.value)
+    samples = given if not isinstance(given, str) else given.removesuffix(":2")
+    with pytest.raises(ks.ParameterError, match="does not measure the same as"):
+        designs.sobol({name: samples}, 4)
+
+
+@every("name", ["mass", "speed", "reach", "my.mass", "crank_length.x", "length"])
+def test_names_of_the_users_own_may_have_any_unit(name):
+    assert designs.grid({name: "1..2 kN:2"}).columns.tolist() == [f"{name} [kN]"]
 
 
 # What may be varied

@@ -109,16 +109,6 @@ def test_slotted_crank_is_drawn_from_its_pivot_through_the_block(saw, axes):
     assert np.hypot(*crank[1]) > np.hypot(*pin)
 
 
-def test_force_arrows_start_at_their_joints_and_point_along_the_reactions(saw, axes):
-    film = ks.plots.animation(saw["plain"], joints=("A", "guide"), frames=4, ax=axes)
-    film._draw_frame(90)  # drawing one pose is what saving does for each
-    arrows = next(item for item in axes.collections if hasattr(item, "U"))
-    pose = saw["plain"]
-    np.testing.assert_allclose(arrows.get_offsets(), [pose.position("A")[:, 90], pose.position("B")[:, 90]])
-    np.testing.assert_allclose(np.array([arrows.U, arrows.V]).T, [pose.reaction(j)[:, 90] for j in ("A", "guide")])
-    film._draw_was_started = True
-
-
 def test_acceleration_error_of_an_inclined_cosine_law_is_nil(axes):
     law = ks.cams.CosineLaw(0.3, 2.0, 0.5)
     turn = np.linspace(0, 2 * np.pi, 90)

@@ -200,27 +200,6 @@ def test_labels_of_two_hodographs_lie_clear_of_each_other(axes):
     assert not [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
 
 
-def test_an_animation_shows_all_that_moves_within_its_axes(axes):
-    solution = ks.solve(FOUR_BAR, np.linspace(0, 2 * np.pi, 24, endpoint=False), crank_speed=10.0)
-    ks.plots.animation(solution, frames=2, ax=axes)._draw_was_started = True
-    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
-    for x, y in (solution.position(name) for name in FOUR_BAR.joints):
-        assert left < x.min() <= x.max() < right
-        assert bottom < y.min() <= y.max() < top
-
-
-def test_an_animation_covers_both_turns_of_a_branch_that_closes_after_two(axes):
-    deltoid = ks.four_bar(0.1, 0.2, 0.2, rocker_pivot=(0.1, 0.0), assembly="open", **BARS)
-    solution = ks.solve(deltoid, np.linspace(0.1, 2 * np.pi + 0.1, 24, endpoint=False), crank_speed=10.0)
-    film = ks.plots.animation(solution, joints=("O",), frames=8, ax=axes)
-    shown = []
-    for step in film.new_frame_seq():
-        film._draw_frame(step)
-        shown.append(axes.texts[-1].get_text())
-    film._draw_was_started = True
-    assert shown == [f"crank angle {angle}°" for angle in range(6, 726, 90)]
-
-
 def test_the_roller_of_a_cam_is_drawn_about_its_centre(axes):
     machine = ks.cam_crank_slider(ks.cams.Circle(0.1, (-0.01, 0.0)), 0.6, slider=ks.Link(1.0))
     pose = drawn(machine, axes)

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from ...design.spread import Spread
 from ...errors import ParameterError
-from ...numbers.units import shown
+from ...numbers.units import quoted
 from .tables import Table, one_of
 from .texts import Angle, Coordinate, Mass, pair_of
 
@@ -21,7 +21,7 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
 def _bounds(value):
     if not isinstance(value, list) or len(value) != 2 or not all(isinstance(part, str) for part in value):
-        raise ValueError(f'must be a pair of texts with units, ["600 kN/m", "900 kN/m"], found {shown(value)}')
+        raise ValueError(f'must be a pair of texts with units, ["600 kN/m", "900 kN/m"], found {quoted(value)}')
     return tuple(value)
 
 

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from ...drive.motor import Motor
 from ...errors import ParameterError
-from ...numbers.units import shown, to_si
+from ...numbers.units import quoted, to_si
 from .tables import Table, one_of
 from .texts import reader
 
@@ -26,7 +26,7 @@ def _row(unit):
 
     def read(value):
         if not isinstance(value, list) or not value:
-            raise ValueError(f'must be a list such as ["0 {unit}", "1 {unit}"], found {shown(value)}')
+            raise ValueError(f'must be a list such as ["0 {unit}", "1 {unit}"], found {quoted(value)}')
         return tuple(to_si(part, unit) for part in value)
 
     return Annotated[tuple[float, ...] | None, BeforeValidator(read)]

@@ -20,7 +20,7 @@ from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
 from ...numbers import checks
-from ...numbers.units import shown, to_si
+from ...numbers.units import quoted, to_si
 from .tables import Cam, LinkTable, RollerTable, Table, list_of, one_of, value_in
 from .texts import Angle, Coordinate, GuidePoints, Stiffness, pair_of, reader
 
@@ -60,7 +60,7 @@ def by(rule):
         found, problem = rule.taken(value)
         if problem and isinstance(rule, checks.Sign):
             others = f", or one of {', '.join(map(repr, rule.words))}" if rule.words else ""
-            raise ValueError(f"must be 1 or -1{others}, found {shown(value)}")
+            raise ValueError(f"must be 1 or -1{others}, found {quoted(value)}")
         if problem:
             raise ValueError(problem.strip())
         return found
@@ -85,13 +85,13 @@ def _place(value):
         named = value[:1] if len(value) == 3 or not _NUMBER.match(str(value[0])) else []
         value = [*named, *(to_si(part, "m") for part in value[len(named) :])]
     elif not isinstance(value, str):
-        raise ValueError(f"must be {POINT}, found {shown(value)}")
+        raise ValueError(f"must be {POINT}, found {quoted(value)}")
     return by(Place())(value)
 
 
 def _two_places(value):
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f"must be a pair of points, each {POINT}, found {shown(value)}")
+        raise ValueError(f"must be a pair of points, each {POINT}, found {quoted(value)}")
     return tuple(map(_place, value))
 
 

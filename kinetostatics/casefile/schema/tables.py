@@ -9,7 +9,7 @@ from ...design.balancing import RATIOS
 from ...machine.cams import Harmonic
 from ...machine.roller import LARGEST_RATIO
 from ...numbers.checks import choice, nearest
-from ...numbers.units import shown
+from ...numbers.units import quoted
 from .texts import (
     Angle,
     Centre,
@@ -66,7 +66,9 @@ def list_of(kind, name, least=0) -> Any:
 
     def read(value):
         if not isinstance(value, list) or len(value) < least:
-            raise ValueError(f"must be a list of tables, each under [[{name}]], {least} at least, found {shown(value)}")
+            raise ValueError(
+                f"must be a list of tables, each under [[{name}]], {least} at least, found {quoted(value)}"
+            )
         return value
 
     return Annotated[tuple[kind, ...], BeforeValidator(read)]

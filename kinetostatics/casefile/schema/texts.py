@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import BeforeValidator, Field
 
 from ...machine.loads import WholeTurns
-from ...numbers.units import shown, to_si
+from ...numbers.units import quoted, to_si
 
 MID_LENGTH = "mid-length"
 BALANCE_THE_SLIDER = "balance the slider"
@@ -61,7 +61,7 @@ def pair_of(unit):
 
     def read(value):
         if not isinstance(value, list) or len(value) != 2:
-            raise ValueError(f'must be a pair such as ["0.1 {unit}", "0 {unit}"], found {shown(value)}')
+            raise ValueError(f'must be a pair such as ["0.1 {unit}", "0 {unit}"], found {quoted(value)}')
         return tuple(to_si(part, unit) for part in value)
 
     return read
@@ -72,7 +72,7 @@ def series_of(unit):
 
     def read(value):
         if not isinstance(value, list | tuple):
-            raise ValueError(f'must be a list such as ["0.3 {unit}", "0.02 {unit}"], found {shown(value)}')
+            raise ValueError(f'must be a list such as ["0.3 {unit}", "0.02 {unit}"], found {quoted(value)}')
         return tuple(to_si(part, unit) for part in value)
 
     return read
@@ -96,7 +96,7 @@ def _sampling(text):
 
 def _two_points(value):
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f'must be two points such as [["0 m", "0 m"], ["1 m", "0 m"]], found {shown(value)}')
+        raise ValueError(f'must be two points such as [["0 m", "0 m"], ["1 m", "0 m"]], found {quoted(value)}')
     return tuple(point(part) for part in value)
 
 

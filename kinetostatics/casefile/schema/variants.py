@@ -10,7 +10,7 @@ from ...machine.rocker_group import RockerGroup
 from ...machine.slider_group import SliderGroup
 from ...machine.yoke_group import YokeGroup
 from ...numbers import checks
-from ...numbers.units import shown
+from ...numbers.units import quoted
 from .drives import DriveTable
 from .parts import Groups, Loads, by
 from .tables import BalancingTable, Cam, GravityTable, LinkTable, RollerTable, Table, value_in
@@ -64,7 +64,7 @@ def _coefficient(value):
     number = isinstance(value, int | float) and not isinstance(value, bool)
     found, problem = COEFFICIENT.taken(float(value) if number else value, "")
     if problem or not number:
-        raise ValueError(f"must be a number of at least 0, such as 0.1, found {shown(value)}")
+        raise ValueError(f"must be a number of at least 0, such as 0.1, found {quoted(value)}")
     return found
 
 

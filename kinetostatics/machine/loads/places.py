@@ -108,7 +108,7 @@ def problem(owner, field, place, mechanism) -> Any:
     return None
 
 
-def shown(place):
+def spelled(place):
     """How a place looks in a message."""
     if isinstance(place, str):
         return repr(place)

@@ -79,7 +79,7 @@ class Force(Load):
 
     @property
     def title(self):
-        return f"Force at {places.shown(self.at)}"
+        return f"Force at {places.spelled(self.at)}"
 
     def misplaced(self, mechanism):
         """Say if there is no such joint or link."""
@@ -118,7 +118,7 @@ class PointLoad(Load):
 
     @property
     def title(self):
-        return f"{type(self).__name__} between {' and '.join(map(places.shown, self.between))}"
+        return f"{type(self).__name__} between {' and '.join(map(places.spelled, self.between))}"
 
     def misplaced(self, mechanism):
         """Say if there are no such points, or if both move as one."""

@@ -41,9 +41,13 @@ def looked_at(place, returning):
         return next(xp for xp in map(namespace, (place, returning)) if xp is not np), place, returning
 
 
-def pieces(xp, x, y, place):
-    """Start, value there and slope of the piece between rows that each place lies in; of the first or last beyond."""
-    piece = xp.clip(xp.searchsorted(xp.asarray(x), place, side="right") - 1, 0, x.size - 2)
+def piece(xp, x, place):
+    """Which piece between rows each place lies in; the first or last beyond."""
+    return xp.clip(xp.searchsorted(xp.asarray(x), place, side="right") - 1, 0, x.size - 2)
+
+
+def pieces(xp, x, y, piece):
+    """Start, value there and slope of some pieces."""
     return tuple(xp.asarray(part)[piece] for part in (x, y, np.diff(y) / np.diff(x)))
 
 

@@ -110,10 +110,14 @@ class Spring(OnSlider):
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
-        elongation = motion.elongation(self.free_position, self.on)
+        return -self.spring_rate(motion) * motion.elongation(self.free_position, self.on)
+
+    def spring_rate(self, motion):
+        """Force that the spring takes over its elongation, N/m."""
         if present(self.cubic) is None:
-            return -self.stiffness * elongation
-        return -(self.stiffness + self.cubic * elongation * elongation) * elongation
+            return self.stiffness
+        elongation = motion.elongation(self.free_position, self.on)
+        return self.stiffness + self.cubic * elongation * elongation
 
     def potential(self, motion):
         """Energy stored, J."""

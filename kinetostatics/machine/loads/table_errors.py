@@ -4,35 +4,54 @@ import numpy as np
 
 from ...numbers.elementary import UNIT
 
+MORE = 1.0 + 1e-9
+"""What a bound is enlarged by for products of roundings."""
+TINY = 2.0**-1000
+"""More than what a product or quotient too small for a double loses."""
+
 
 def rounding(table, motion):
     """Bound on the error of values read by crank angle, N or N m.
 
-    Outside of its rows a turn more or less is rounded too, and with it where the last piece ends.
+    A slope has three roundings, the rise along it two more, the sum with the row's value one; a level piece has none.
+    The end of the last piece is rounded as well, and a turn more or less moves every row, so that another piece may be
+    read where one is near.
     """
     angle, (start, value, slope) = np.asarray(motion.crank_angle), table.pieces(motion)
+    rise = slope * (angle - start)
     x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
-    steepest = np.max(np.abs(np.diff(y) / np.diff(x)))
-    inside = (angle >= table.x[0]) & (angle <= table.x[-1])
-    turned = np.where(inside, 0.0, steepest * (np.abs(angle) + table.period))
-    return 8 * UNIT * (np.abs(slope * (angle - start)) + np.abs(value) + turned)
+    turned = np.floor((angle - x[0]) / table.period) * table.period
+    reach = np.where(turned == 0.0, 0.0, np.abs(angle) + abs(x[0]) + 2.0 * table.period)
+    ending = np.where((angle - turned < x[-2]) | (x[0] == 0.0), 0.0, 2.0 * abs(x[-1]))
+    near = _distance(x, angle - turned) <= 4.0 * UNIT * reach
+    starting = np.where(turned == 0.0, 0.0, np.abs(turned) + np.abs(start))
+    moved = np.abs(slope) * (starting + ending) + np.where(near, _steepest(x, y) * 8.0 * reach, 0.0)
+    return MORE * UNIT * (5.0 * np.abs(rise) + np.where(slope == 0.0, 0.0, np.abs(value + rise)) + moved) + TINY
+
+
+def _steepest(x, y):
+    return float(np.max(np.abs(np.diff(y) / np.diff(x))))
+
+
+def _distance(x, place):
+    """Of each place from the row that is nearest."""
+    row = np.clip(np.searchsorted(x, place), 1, x.size - 1)
+    return np.minimum(np.abs(place - x[row - 1]), np.abs(place - x[row]))
 
 
 def kinks_within(table, motion):
     """Over travel, what bounds need to know of its kinks and jumps (see `engines.record`).
 
-    By how much the slope changes at the row beside each place, N/m or N m/m, how far the value may jump there, and
-    how near, m or m a radian, a row or the end of a stroke must be for it not to be zero.
+    By how much the slope may change at the row beside each place, N/m or N m/m, how far the value may jump there, how
+    near, m or m a radian, a row or the end of a stroke must be for it not to be zero, and how far, m, the row is.
     """
     near = 1e-6 * float(table.x[-1] - table.x[0])
     place = np.asarray(table.place(motion), dtype=float)
     sides = [table.y] if table.back is None else [table.y, table.back]
-    steepest = max(float(np.max(np.abs(np.diff(side) / np.diff(table.x)))) for side in sides)
-    row = np.clip(np.searchsorted(table.x, place), 1, table.x.size - 1)
-    beside = np.minimum(np.abs(place - table.x[row - 1]), np.abs(place - table.x[row])) <= near
+    change, distance = 2.0 * max(_steepest(table.x, side) for side in sides), _distance(table.x, place)
     jump = 0.0 if table.back is None else _largest_within(table.x, table.y - table.back, place, near)
     standing = np.abs(table.rate(motion)) <= near
-    return np.where(beside, 2.0 * steepest, 0.0), np.where(standing, jump, 0.0), near
+    return np.where(distance <= near, change, 0.0), np.where(standing, jump, 0.0), near, distance
 
 
 def _largest_within(x, y, place, near):

@@ -247,13 +247,21 @@ class Table:
     def read(self, motion, pieces):
         """Values at a motion of whatever numbers that runs through these pieces."""
         start, value, slope = pieces
-        return value + slope * (self.place(motion) - start)
+        return value + slope * self._from(start, motion)
+
+    def _from(self, start, motion):
+        """How far what it is read by is beyond the start of a piece; where a slider is, without its own rounding."""
+        if self.over == "angle":
+            return motion.crank_angle - start
+        return motion.elongation(start, self._slider(motion))
 
     def _slider(self, motion):
         return self.slider or next(iter(motion.mechanism.guides))
 
-    def pieces(self, motion):
+    def pieces(self, motion, number=lambda given: given):
         """Where the piece of the table starts at each crank angle, the value there, and its slope.
+
+        In double precision, or in whatever numbers `number` makes of floats and of arrays of them.
 
         Raises
         ------
@@ -262,20 +270,21 @@ class Table:
         """
         returning = None if self.back is None else self.returns(motion)
         xp, place, returning = rows.looked_at(self.place(motion), returning)
-        x, y = self.x, self.y
+        x, y, period = number(self.x), number(self.y), number(self.period)
         if self.over == "angle":
-            turns = xp.floor((place - x[0]) / self.period)
-            x, y = np.append(x, x[0] + self.period), np.append(y, y[0])
-            start, value, slope = rows.pieces(xp, x, y, place - turns * self.period)
-            return start + turns * self.period, value, slope
-        start, value, slope = rows.pieces(xp, x, y, place)
+            turns = xp.floor((place - self.x[0]) / self.period)
+            piece = rows.piece(xp, np.append(self.x, self.x[0] + self.period), place - turns * self.period)
+            start, value, slope = rows.pieces(xp, np.append(x, x[0] + period), np.append(y, y[0]), piece)
+            return start + number(turns) * period, value, slope
+        piece = rows.piece(xp, self.x, place)
+        start, value, slope = rows.pieces(xp, x, y, piece)
         if self.back is not None:
-            _, value_back, slope_back = rows.pieces(xp, x, self.back, place)
+            _, value_back, slope_back = rows.pieces(xp, x, number(self.back), piece)
             value, slope = xp.where(returning, value_back, value), xp.where(returning, slope_back, slope)
         if xp is np:
-            rows.require_inside(x, place, motion)
+            rows.require_inside(self.x, place, motion)
             return start, value, slope
-        return start, xp.where(rows.outside(x, place), xp.nan, value), slope
+        return start, xp.where(rows.outside(self.x, place), xp.nan, value), slope
 
     def rate(self, motion):
         """Rate of the slider along its guide by the crank angle, m."""

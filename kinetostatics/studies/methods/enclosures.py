@@ -171,7 +171,7 @@ def _load_on_arb(arb, item, what, motion, solution):
         _require_exact(what, getattr(exact, item.VALUE, 0.0), arb)
         return exact
     if isinstance(value, Table):
-        found = value.read(motion, [_copied(np.atleast_1d(part), arb) for part in value.pieces(solution)])
+        found = value.read(motion, [np.atleast_1d(part) for part in value.pieces(solution, partial(_copied, arb=arb))])
     else:
         found = _attempted(what, lambda: value(moving(motion)))
     _require_exact(what, found, arb)

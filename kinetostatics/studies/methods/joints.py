@@ -6,7 +6,7 @@ import numpy as np
 
 from ...engines.engines import Kernels
 from ...engines.series import assembled, closed_paths, harmonic_series, joints_of, positions
-from ...errors import NotGivenError
+from ...errors import NotGivenError, ParameterError
 from ...mechanics.quantities import components
 from ..simplifications import two_mass_coupler
 from .engines import compiled_run
@@ -38,7 +38,7 @@ def _differences(order):
                 ),
             )
 
-        return lambda: components(replace(solution, engine=Kernels(way)), quantity)
+        return _approximated(lambda: components(replace(solution, engine=Kernels(way)), quantity))
 
     return prepare
 
@@ -60,7 +60,19 @@ def _spectral(solution, quantity, samples):
         parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
         return assembled(mechanism, angle, joints_of(mechanism, *parts))
 
-    return lambda: components(replace(solution, engine=Kernels(way)), quantity)
+    return _approximated(lambda: components(replace(solution, engine=Kernels(way)), quantity))
+
+
+def _approximated(run):
+    """The same function, which cannot give what loads have no value for where a coarse motion takes the slider."""
+
+    def approximated():
+        try:
+            return run()
+        except ParameterError as why:
+            raise NotGivenError(f"the motion found is too coarse: {why}") from why
+
+    return approximated
 
 
 def _is_even_turn(angle):
@@ -87,14 +99,14 @@ def _eager(model):
 
     def prepare(solution, quantity, setting):
         simpler = model(solution, setting)
-        return lambda: components(replace(simpler), quantity)
+        return _approximated(lambda: components(replace(simpler), quantity))
 
     return prepare
 
 
 def _compiled(model):
     """Method that computes a simpler model by a compiled loop, its fastest."""
-    return lambda solution, quantity, setting: compiled_run(model(solution, setting), quantity)
+    return lambda solution, quantity, setting: _approximated(compiled_run(model(solution, setting), quantity))
 
 
 HARMONICS = (1, 2, 4, 6)

@@ -11,7 +11,7 @@ import numpy as np
 from ...machine.group import FRAME
 from ...mechanics.quantities import magnitude
 from .. import symbols
-from ..drawings import MOST
+from ..animations import MOST
 from ..shape import Shape, Stroke
 
 REACH = 0.3

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ...mechanics.quantities import components, of_scene, scale, still
-from ...results.extremes import FLOOR
+from ...results.rounding import FLOOR, zeroed
 from ..canvas import display, in_sight, ordinary
 from .movement import packed
 from .words import pretty
@@ -40,8 +40,7 @@ def _values(machine, name):
     if name not in of_scene(solution) or _is_still(solution, of_scene(solution)[name]):
         return None
     shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(scale(solution, name)))
-    parts = np.stack([np.broadcast_to(part, shape) for part in components(solution, name)])
-    return np.where(np.abs(parts) < rounding, 0.0, parts)
+    return zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
 
 
 def _sent(quantity, of_each, text):

@@ -163,7 +163,8 @@ def test_a_table_over_travel_knows_the_second_turn_of_a_branch(back):
     torque = -v * np.where(
         v < 0, np.interp(x, table.x, table.y[::-1] if back else table.y), np.interp(x, table.x, table.y)
     )
-    assert largest(s.balancing_torque - torque) < 1e-13
+    rounded = np.spacing(x.max()) * np.max(np.abs(np.diff(table.y) / np.diff(table.x))) * largest(v)
+    assert largest(s.balancing_torque - torque) < 2 * rounded  # by hand it is read at a rounded travel
     assert np.allclose(ks.extremes(s, "balancing_torque").range, (torque.min(), torque.max()), rtol=1e-3)
     mean, _ = ks.compare(s, s).mean_torques
     assert mean == pytest.approx(np.abs(torque).mean(), rel=1e-6)

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from kinetostatics.mechanics.quantities import components, of_scene
-from kinetostatics.results.extremes import FLOOR
+from kinetostatics.results.rounding import FLOOR
 from kinetostatics.views.report.readings import decimals, readings
 from kinetostatics.views.report.subject import subject_of
 from support.every import every

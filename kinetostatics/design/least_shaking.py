@@ -1,0 +1,157 @@
+"""Counterweights whose unbalances make a norm of the shaking force least, found by search."""
+
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..mechanics.principal_points import principal_points
+from ..mechanics.quantities import magnitude
+from ..results.extremes import extremes
+from ..solution.solution import Solution
+from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight
+
+LARGEST = ("largest", "along", "across")
+"""Norms that are the largest of a size over the turn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What is searched: unbalances of counterweights, relative to the largest static moment.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    norm : str
+    weights : (float, float)
+        Of force and moment, 1/N and 1/(N m).
+    counterweights : dict of link to Counterweight
+    size : int
+        Components of each unbalance: 2 if it may lie beside its link's line, else 1.
+    turn : array
+        Crank angles at which the norm is taken.
+    scale : float
+        The largest static moment, kg m.
+    reference : float
+        The norm without counterweights, or 1.
+    """
+
+    mechanism: Any
+    norm: str
+    weights: tuple[float, float]
+    counterweights: dict[str, Counterweight]
+    size: int
+    turn: Any
+    scale: float
+    reference: float = 1.0
+
+    @classmethod
+    def of(cls, mechanism, norm, weights, counterweights, size, turn):
+        """The search of a mechanism, with its scale and reference."""
+        scale = max(float(np.hypot(*pair)) for pair in principal_points(mechanism).static_moments.values())
+        made = cls(mechanism, norm, weights, counterweights, size, turn, scale)
+        return replace(made, reference=made.value(made.none) or 1.0)
+
+    @property
+    def none(self):
+        """Unknowns of no counterweight."""
+        return np.zeros(self.size * len(self.counterweights))
+
+    @property
+    def starts(self):
+        """Unknowns to begin with: of weights that keep out of a hole on either side of it."""
+        kept_out = any(weight.keep_out for weight in self.counterweights.values())
+        return (self.none - 0.5, self.none + 0.5) if kept_out else (self.none,)
+
+    def balanced(self, unknowns):
+        """The mechanism with counterweights of these unbalances."""
+        result, unbalances = Balanced(self.mechanism, self.mechanism), (unknowns * self.scale).reshape(-1, self.size)
+        for (name, weight), unbalance in zip(self.counterweights.items(), unbalances, strict=True):
+            step = _added(result.mechanism, name, np.append(unbalance, 0.0)[:2], weight)
+            result = Balanced(self.mechanism, step.mechanism, {**result.counterweights, **step.counterweights})
+        return result
+
+    def solved(self, unknowns):
+        """Its solution at crank speed 1."""
+        return Solution(self.balanced(unknowns).mechanism, self.turn, 1.0, 0.0)
+
+    def sizes(self, unknowns):
+        """What the norm looks at, at each crank angle, relative to the reference."""
+        return _sizes(self.solved(unknowns), self.norm) / self.reference
+
+    def value(self, unknowns):
+        """The norm."""
+        if self.norm == "weighted":
+            return _weighted(self.solved(unknowns), self.weights)
+        return (np.mean if self.norm == "mean" else np.max)(_sizes(self.solved(unknowns), self.norm))
+
+    def objective(self, unknowns):
+        """The norm relative to the reference."""
+        return self.value(unknowns) / self.reference
+
+
+def least(search) -> Balanced:
+    """The mechanism with the best counterweights."""
+    best = min((_searched(search.objective, start) for start in search.starts), key=search.objective)
+    if search.norm not in LARGEST:
+        return search.balanced(best)
+    sizes = partial(_sizes, norm=search.norm)
+    for _ in range(8):  # what is largest between the angles joins them
+        best = min(best, _levelled(search.sizes, best), key=search.objective)
+        peaks = extremes(search.solved(best), sizes)
+        if peaks.range[1] <= search.value(best) + 1e-10 * search.reference:
+            break
+        search = replace(search, turn=np.append(search.turn, peaks.angle))
+    return search.balanced(best)
+
+
+def _searched(objective, start):
+    """Minimum by Nelder and Mead, begun anew where it stops."""
+    from scipy.optimize import minimize
+
+    options = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000}
+    for _ in range(2):
+        start = minimize(objective, start, method="Nelder-Mead", options=options, callback=_stop_at_zero).x
+    return start
+
+
+def _stop_at_zero(intermediate_result):
+    if intermediate_result.fun < 1e-11:
+        raise StopIteration
+
+
+def _levelled(sizes, start):
+    """Minimum of the largest of many sizes: of a level that none of them exceeds (SLSQP)."""
+    from scipy.optimize import minimize
+
+    found = minimize(
+        lambda unknowns: unknowns[-1],
+        np.append(start, np.max(sizes(start))),
+        jac=lambda unknowns: np.append(np.zeros(start.size), 1.0),
+        constraints={"type": "ineq", "fun": lambda unknowns: unknowns[-1] - sizes(unknowns[:-1])},
+        method="SLSQP",
+        options={"ftol": 1e-15, "maxiter": 200},
+    )
+    return found.x[:-1]
+
+
+def _sizes(solution, norm):
+    """What the norm looks at, at each crank angle: the shaking force or a component of it."""
+    if norm in ("along", "across"):
+        return np.abs((along_guide if norm == "along" else across_guide)(solution))
+    return magnitude(solution.shaking_force)
+
+
+def _weighted(solution, weights):
+    force, moment = weights[0] * magnitude(solution.shaking_force), weights[1] * solution.shaking_moment
+    return np.sqrt(np.mean(force * force + moment * moment))
+
+
+def _added(mechanism, link, unbalance, weight):
+    """A counterweight of that unbalance, on whichever side, reduced to its limits."""
+    size = float(np.hypot(*unbalance))
+    smallest, largest = weight.unbalances()
+    kept = unbalance * (min(max(size, smallest), largest) / size) if size else np.array([-smallest, 0.0])
+    sided = weight if weight.arm is None else replace(weight, arm=float(np.copysign(weight.arm, kept[0])))
+    return counterweight(mechanism, link, kept, sided)

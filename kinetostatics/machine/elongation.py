@@ -1,0 +1,49 @@
+"""Where a slider is along its guide less a position, and how it departs from the motion of a pin of the crank.
+
+Kernels without the rounding of its coordinate: a length reaches along a line that it leans from less l (1 - cos) =
+l sin^2 / (1 + cos), which is small beside it near a dead centre, as is what is left of the lengths themselves.
+"""
+
+from ..numbers.elementary import sign
+from ..numbers.planar import unturned
+
+TERMS = {
+    "elongation.cosine": ("c", "cosine of the angle from the guide to what swings the inner joint"),
+    "elongation.sine": ("s", "sine of that angle"),
+    "turning": ("j", "place of the inner joint along the guide where that angle is 0 or half a turn"),
+    "departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
+
+
+def shortfall(length, sine, cosine):
+    """By how much a length falls short of itself along a line, by its angle to that."""
+    return length * sine * sine / (1.0 + cosine)
+
+
+def elongation(placement, joint, direction, reach, short):
+    """Coordinate of a joint along a direction plus a reach, which falls short, from there.
+
+    The joint itself is so far from a fixed place if a link swings it about that, this way or the other.
+    """
+    swing = placement.swings.get(joint)
+    if swing is None:
+        return unturned(placement.joints[joint].position, direction)[0] + (reach - short)
+    cosine, sine = unturned(swing.direction, direction)
+    way = sign(cosine)
+    turning = unturned(swing.centre, direction)[0] + way * swing.radius
+    return turning + reach - (way * shortfall(swing.radius, sine, abs(cosine)) + short)
+
+
+def departure(placement, drawn_in, joint, direction, reach, short):
+    """Second derivative of that coordinate plus itself; None where both are large.
+
+    What of both is the joint's cancels if that is a pin of the crank, and is known of a roller on a cam; `drawn_in` is
+    what the second derivative of the reach takes.
+    """
+    if joint in placement.throws:
+        return reach - short - drawn_in
+    if joint not in placement.departures:
+        return None
+    departing = unturned(placement.departures[joint], direction)[0]
+    return departing - drawn_in + (reach - short)

@@ -1,0 +1,178 @@
+"""The mechanism in motion, with arrows for the reactions at its joints."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..machine.group import FRAME
+from ..mechanics.quantities import magnitude
+from ..numbers import checks
+from .canvas import ACCENT, axes, display, single
+from .drawings import MASS_CENTRE, PIN, equal_scales, leading, still_parts
+from .strokes import artist, put
+
+MOST = 0.9
+"""Share of the poses at which the arrow of a reaction that grows without bound is drawn as it is."""
+
+
+def animation(solution, joints=None, frames=72, interval=50, ax=None):
+    """Animation of the mechanism over the period of its motion and loads, with arrows for the joint reactions.
+
+    Show it in a notebook by ``HTML(animation.to_jshtml())``, or save it by ``animation.save("saw.gif")``.
+
+    Parameters
+    ----------
+    solution : Solution
+    joints : sequence of str, optional
+        Reactions drawn as arrows from the joints that they act at ("guide" at B), of those at O, A and B the ones that
+        it has unless told; the largest of all is as long as the crank. NaN where the mechanism does not close draws
+        nothing.
+    frames : int
+        Poses shown, of the solution's crank angles; where these are less than a period, over the whole of it, unless
+        the solution holds tables over its crank angles.
+    interval : float
+        Time between them, ms.
+    ax : Axes, optional
+
+    Returns
+    -------
+    matplotlib.animation.FuncAnimation
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import kinetostatics as ks
+    >>> s = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5).solve(8)
+    >>> film = ks.plots.animation(s, joints=["O"], frames=2)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     film.save(Path(folder, "saw.gif"), writer="pillow", dpi=40)
+    """
+    from matplotlib.animation import FuncAnimation
+
+    solution, ax = single(solution), axes(ax)
+    if joints is None:
+        joints = [name for name in ("O", "A", "B") if name in solution.mechanism.outputs]
+    joints = (joints,) if isinstance(joints, str) else tuple(joints)
+    interval = checks.singles(
+        "animation",
+        checks.count("frames", frames),
+        None if joints else "joints must name at least one reaction",
+        interval=(interval, "ms", {"low": 0.0, "strict": True}),
+    )["interval"]
+    solution = _whole(solution, frames)
+    count, shape = solution.crank_angle.size, still_parts(ax, solution)
+    links, marks = _moving_links(ax, shape, solution), _moving_marks(ax, shape, solution)
+    moving = [links, marks, _moving_arrows(ax, solution, joints), _moving_caption(ax, solution)]
+    paths = np.concatenate([*marks.paths, *links.paths], axis=1)
+    equal_scales(ax, paths[:, np.isfinite(paths).all(axis=0)].T)
+
+    def draw(step):
+        for part in moving:
+            part.move(step)
+        return [one for part in moving for one in part.artists]
+
+    steps = np.linspace(0, count, min(frames, count), endpoint=False).astype(int)
+    return FuncAnimation(ax.figure, draw, frames=steps, interval=interval)
+
+
+class _Moving(NamedTuple):
+    """What moves in an animation: its artists, how they come to a step, and the points (2, K) that they pass."""
+
+    artists: list
+    move: Callable[[int], None]
+    paths: list
+
+
+def _moving_links(ax, shape, solution):
+    """Links, counterweights and signs of loads."""
+    strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
+    parts = [artist(ax, stroke, 1.0) for stroke in strokes]
+
+    def move(step):
+        for part, stroke in zip(parts, strokes, strict=True):
+            put(part, stroke.points[..., step])
+
+    return _Moving(parts, move, [stroke.points.reshape(2, -1) for stroke in strokes])
+
+
+def _moving_marks(ax, shape, solution):
+    """Joints and mass centres."""
+    moving = [name for name, point in solution.mechanism.joints.items() if point.link != FRAME]
+    spots = [(name, {**PIN, "zorder": 4}) for name in moving]
+    spots += [(name, style) for name in shape.heavy for style in MASS_CENTRE]
+    marks = [ax.plot([], [], **style)[0] for _, style in spots]
+    positions = [solution.position(name) for name, _ in spots]
+
+    def move(step):
+        for mark, position in zip(marks, positions, strict=True):
+            mark.set_data(position[:, [step]])
+
+    return _Moving(marks, move, positions)
+
+
+def _moving_arrows(ax, solution, joints):
+    """Reactions, the largest as long as the crank; the title tells it."""
+    made = solution.mechanism
+    forces = [_cut(solution, joint) for joint in joints]
+    largest = max(_largest(magnitude(force)) for force in forces)
+    length = _largest(magnitude(solution.position(leading(made))))
+    starts = [solution.position(made.outputs[joint].at or joint) for joint in joints]
+    arrows = ax.quiver(
+        *np.zeros((2, len(joints))),
+        *np.zeros((2, len(joints))),
+        angles="xy",
+        scale_units="xy",
+        scale=(largest or 1.0) / length,
+        color=ACCENT,
+        width=0.005,
+        zorder=5,
+    )
+    factor, shown = display("N", [largest])
+    ax.set_title(f"reactions at {', '.join(joints)}; longest arrow {factor * largest:.4g} {shown}", fontsize="small")
+
+    def move(step):
+        arrows.set_offsets(np.array([start[:, step] for start in starts]))
+        arrows.set_UVC(*np.array([force[:, step] for force in forces]).T)
+
+    return _Moving([arrows], move, [])
+
+
+def _moving_caption(ax, solution):
+    """The crank angle."""
+    caption = ax.text(0.02, 0.94, "", transform=ax.transAxes, fontsize="small")
+
+    def move(step):
+        caption.set_text(f"crank angle {np.degrees(solution.crank_angle[step]):.0f}°")
+
+    return _Moving([caption], move, [])
+
+
+def _whole(solution, frames):
+    """The solution over its whole period, at its own crank angles if they are enough of it."""
+    angle, period = np.sort(solution.crank_angle), solution.period
+    step = np.median(np.diff(angle)) if angle.size > 1 else 0.0
+    if angle[-1] - angle[0] + 1.5 * step >= period:
+        return solution
+    try:
+        return solution.at(angle[0] + np.linspace(0.0, period, max(frames, 2), endpoint=False))
+    except ParameterError:
+        return solution
+
+
+def _largest(values):
+    finite = values[np.isfinite(values)]
+    return float(np.max(finite, initial=0.0)) or 1.0
+
+
+def _cut(solution, joint):
+    """Reaction at a joint; near change points that are passed, where it grows without bound, no longer than most."""
+    force = solution.reaction(joint)
+    if not solution.mechanism.grows(joint):
+        return force
+    size = magnitude(force)
+    most = np.nanquantile(np.where(np.isfinite(size), size, np.nan), MOST)
+    with np.errstate(invalid="ignore"):
+        return np.where(size > most, np.nan_to_num(force / size, nan=0.0) * most, force)

@@ -1,0 +1,91 @@
+"""Files are written whole or not at all, with the permissions, owner and links that they had."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.numbers import files
+from support.every import every
+
+
+@pytest.mark.parametrize("link", [False, True])
+@every("mode", [0o600, 0o640, 0o644, 0o664, 0o777, 0o200])
+def test_a_file_that_is_replaced_keeps_its_permissions_and_links_to_it_stay(tmp_path, mode, link):
+    file, name = tmp_path / "x.csv", tmp_path / "link.csv"
+    file.write_text("old")
+    file.chmod(mode)
+    name.unlink(missing_ok=True)
+    name.symlink_to("x.csv")
+    with files.written_whole(name if link else file) as temporary:
+        assert Path(temporary).stat().st_mode & 0o077 == 0
+        Path(temporary).write_text("new")
+    assert file.stat().st_mode & 0o777 == mode
+    assert (name.is_symlink(), name.resolve()) == (True, file)
+    file.chmod(0o600)
+    assert file.read_text() == "new"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.csv", "x.csv"]
+
+
+@pytest.mark.parametrize("mask", [0o000, 0o022, 0o077])
+def test_a_new_file_has_the_permissions_that_the_process_gives_and_its_mask_is_never_touched(
+    tmp_path, mask, monkeypatch
+):
+    before = os.umask(mask)
+    set_mask = os.umask
+    monkeypatch.setattr(os, "umask", None)
+    try:
+        with files.written_whole(tmp_path / "x.csv") as temporary:
+            Path(temporary).write_text("new")
+    finally:
+        set_mask(before)
+    assert (tmp_path / "x.csv").stat().st_mode & 0o777 == 0o666 & ~mask
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root may give files away")
+def test_a_file_that_is_replaced_keeps_its_owner(tmp_path):
+    file = tmp_path / "x.csv"
+    file.write_text("old")
+    os.chown(file, 12345, 54321)
+    with files.written_whole(file) as temporary:
+        Path(temporary).write_text("new")
+    assert (file.stat().st_uid, file.stat().st_gid) == (12345, 54321)
+
+
+def test_a_file_that_is_read_only_is_refused_when_written_too(tmp_path):
+    file = tmp_path / "x.csv"
+    file.write_text("old")
+    file.chmod(0o444)
+    with pytest.raises(ks.errors.FileError, match="is read-only; allow writing"), files.written_whole(file):
+        pytest.fail("it may be written")
+    assert file.read_text() == "old"
+
+
+def test_a_link_to_nothing_is_written_through(tmp_path):
+    (tmp_path / "link.csv").symlink_to("new.csv")
+    with files.written_whole(tmp_path / "link.csv") as temporary:
+        Path(temporary).write_text("new")
+    assert (tmp_path / "link.csv").is_symlink()
+    assert (tmp_path / "new.csv").read_text() == "new"
+
+
+@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt, SystemExit, ValueError])
+def test_whatever_stops_the_writing_nothing_is_left_of_it(tmp_path, error):
+    file = tmp_path / "x.csv"
+    file.write_text("old")
+
+    def written():
+        with files.written_whole(file) as temporary:
+            Path(temporary).write_text("half")
+            raise error
+
+    with pytest.raises(error):
+        written()
+    assert file.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize("name", ["a\0b.csv", "\ud800.csv"])
+def test_names_that_no_file_can_have_are_told(name):
+    assert "is no name of a file here" in files.unwritable(name)

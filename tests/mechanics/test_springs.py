@@ -1,0 +1,146 @@
+"""Inertia of sliders together with springs that nearly balance it."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.engines import programs
+from kinetostatics.engines.engines import NUMPY
+from kinetostatics.mechanics import springs
+from kinetostatics.mechanics.quantities import components
+from kinetostatics.numbers.leaves import with_fields
+from kinetostatics.studies.methods.enclosures import on_arb
+from support.every import every
+
+TURN = np.linspace(0.0, 2 * np.pi, 60, endpoint=False) + 0.013
+SPEED = 33.5
+MASS = 600.0
+SLIDER = ks.Link(MASS, (0.1, -0.05), 3.0)
+ROD = ks.Link(150.0, (1.0, 0.02), 20.5)
+CAM = ks.cams.CosineLaw(0.3, 2.0)
+CAMS = {
+    "cosine": (CAM, CAM.coupler_length),
+    "circle": (ks.cams.Circle(0.3, (-0.0219, 0.001)), 2.0219),
+    "harmonic": (ks.cams.Harmonic((0.2987, -0.0199, 0.0013), (-0.0006,)), 2.02),
+}
+LEVEL, INCLINED = ks.Guide.at(), ks.Guide.at(0.7, -0.04)
+
+
+class Apart(ks.SliderGroup):
+    """A slider group that does not tell how its slider departs."""
+
+    def departure(self, placement, position):
+        """Not known."""
+        return
+
+
+def saw(cam, length, guide=LEVEL, kind=ks.SliderGroup):
+    rod = kind(length, guide, coupler=ROD, slider=SLIDER)
+    return ks.Mechanism("saw", ks.Crank(link=ks.Link(40.0, 0.1, 1.0)), (ks.CamRoller(cam), rod))
+
+
+def plain(guide=LEVEL, assembly=1, length=2.0):
+    rod = ks.SliderGroup(length, guide, assembly=assembly, coupler=ROD, slider=SLIDER)
+    return ks.Mechanism("plain", ks.Crank(0.3), (rod,))
+
+
+MACHINES = {
+    **{name: saw(*made) for name, made in CAMS.items()},
+    "inclined": saw(*CAMS["circle"], INCLINED),
+    "crank": plain(),
+    "behind": plain(INCLINED, -1),
+    "open": plain(assembly="open"),
+    "through change points": plain(assembly="open", length=0.3),
+    "rocker": ks.Mechanism(
+        "rocker",
+        ks.Crank(0.1),
+        (
+            ks.RockerGroup(0.4, 0.3, (0.35, 0.1)),
+            ks.SliderGroup(1.0, INCLINED, slider=SLIDER, on="B", pin="C", label="2"),
+        ),
+    ),
+    "follower": ks.Mechanism(
+        "follower", ks.Crank(None), (ks.RollerFollower(ks.laws.cosine(0.1, 0.3), follower=ks.Link(MASS)),)
+    ),
+}
+APART = "rocker", "follower", "through change points"
+SPRINGS = {
+    "balancing": [ks.Spring.balancing(MASS, SPEED, 2.0)],
+    "stiff": [ks.Spring(5e6, 1.7)],
+    "soft": [ks.Spring(3e3, 0.2)],
+    "cubic": [ks.Spring(2e5, 2.0, cubic=1.2e7)],
+    "two and a force": [ks.Spring(4e5, 2.1), ks.ProcessForce(700.0), ks.Spring(2e5, 1.9, cubic=-1e6)],
+}
+
+
+def loaded(machine, given, acceleration=0.0):
+    moved = next(iter(machine.guides))
+    weight = [ks.Gravity(9.81, -1.4), ks.Force(360.0, at=(moved, 0.2, 0.1), direction=-0.6)]
+    loads = [with_fields(load, on=moved) for load in SPRINGS[given]] + weight
+    return ks.Scene(machine, SPEED, acceleration, loads).solve(TURN)
+
+
+@every("name, given, acceleration", [(n, g, a) for n in MACHINES for g in SPRINGS for a in (0.0, -50.0)])
+def test_forces_are_those_of_inertia_and_springs_apart(name, given, acceleration):
+    run = loaded(MACHINES[name], given, acceleration).dynamics
+    apart = run.mechanism.resolve(run.placement, run.link_loads, run.pushes)
+    for joint, force in apart.reactions.items():
+        assert np.allclose(run.reaction(joint), run.as_vector(force), rtol=0.0, atol=1e-13 * run.largest_force_term)
+    error = run.balancing_torque - apart.scalars["balancing_torque"]
+    assert np.max(np.abs(error)) < 1e-13 * run.largest_torque_term
+
+
+@every("name", [name for name in MACHINES if name not in APART])
+def test_inertia_and_a_spring_that_balances_it_are_taken_together(name):
+    run = loaded(MACHINES[name], "balancing").dynamics
+    loads, pushes = springs.acting(run)
+    assert loads["slider"].force is not run.link_loads["slider"].force
+    assert pushes["slider"] is not run.pushes["slider"]
+    assert {part: loads[part] for part in loads if part != "slider"} == {
+        part: run.link_loads[part] for part in loads if part != "slider"
+    }
+
+
+@every("name", APART)
+def test_where_no_departure_is_known_they_stay_apart(name):
+    run = loaded(MACHINES[name], "balancing").dynamics
+    assert all(taken is given for taken, given in zip(springs.acting(run), (run.link_loads, run.pushes), strict=True))
+
+
+def test_without_springs_or_mass_nothing_is_done():
+    for load in (ks.ProcessForce(3.0), ks.Spring(1e3, 2.0)):
+        run = ks.solve(ks.crank_slider(0.3, 2.0), TURN, crank_speed=SPEED, loads=load).dynamics
+        assert all(
+            taken is given for taken, given in zip(springs.acting(run), (run.link_loads, run.pushes), strict=True)
+        )
+
+
+@every("name, guide", [(name, guide) for name in CAMS for guide in (LEVEL, INCLINED)])
+def test_together_they_take_hardly_more_operations_than_apart(name, guide):
+    counts = []
+    for kind in (ks.SliderGroup, Apart):
+        run = ks.Scene(saw(*CAMS[name], guide, kind), SPEED, 0.0, SPRINGS["balancing"]).solve(TURN).dynamics
+        program, _ = programs.of(run, ("B", "balancing_torque"))
+        counts.append(program.recording.operations)
+    assert counts[0] <= 1.02 * counts[1]
+
+
+@every("name", CAMS)
+def test_what_a_balancing_spring_leaves_is_near_the_exact(name, flint):
+    """Within 1e-16 of the spring's force, most of it the rounding of m omega^2; subtracted it were 3e-16."""
+    s = ks.Scene(saw(*CAMS[name]), SPEED, 0.0, SPRINGS["balancing"]).solve(TURN)
+    found = NUMPY.values(s.dynamics, ("B",))["B"][0]
+    exact = components(on_arb(flint.arb, s), "B")[0]
+    errors = [float(flint.arb(float(one)) - other) for one, other in zip(found, exact, strict=True)]
+    spring = MASS * SPEED * SPEED * 0.3
+    assert np.max(np.abs(errors)) < 1.7e-16 * spring
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("speed", [0.0, 1e-12])
+def test_a_slow_machine_at_a_limit_position_keeps_its_spring(speed):
+    """There the slider's second derivative is a million times its elongation, and nothing of it counts."""
+    close = plain(length=0.3 * (1.0 + 1e-13))
+    run = ks.Scene(close, speed, 0.0, SPRINGS["balancing"]).solve(np.pi / 2 + np.array([-1e-7, 0.0, 1e-7])).dynamics
+    assert np.min(np.abs(run.placement.travels["slider"].second)) > 1e5
+    assert np.allclose(springs.acting(run)[1]["slider"], run.pushes["slider"], rtol=3e-16, atol=0.0)
