@@ -73,3 +73,8 @@ def test_no_module_outside_the_machine_knows_a_kind_of_group():
     paths = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob("*.py")}
     knowing = {name: named_in(path, kinds) for name, path in paths.items() if not name.startswith(MAY_NAME_GROUPS)}
     assert not {name: found for name, found in knowing.items() if found}
+
+
+def test_no_module_is_longer_than_350_lines():
+    lengths = {module: len((PACKAGE / module).read_text(encoding="utf-8").splitlines()) for module in modules()}
+    assert {module: length for module, length in lengths.items() if length > 350} == {}

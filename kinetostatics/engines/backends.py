@@ -8,7 +8,8 @@ import numpy as np
 
 from . import accelerated, arithmetic
 from .arithmetic import BoundsElsewhere
-from .bounds import CAP, where_known
+from .bounded import where_known
+from .bounds import CAP
 from .programs import Program
 from .split import Split
 

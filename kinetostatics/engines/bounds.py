@@ -12,8 +12,6 @@ from functools import reduce
 from operator import add
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .trace import INPUTS, Node, is_negative, needed
@@ -215,16 +213,6 @@ def size(part):
         return size(part.arguments[0])
     square = part.operation == "*" and part.arguments[0] is part.arguments[1]
     return part if square or part.operation in ("abs", "sqrt", "root", "divisor") else abs(part)
-
-
-def of_magnitude(vector, bounds):
-    """Bound on the error of a vector's magnitude, from the vector's values and those of its components."""
-    return np.hypot(*bounds) * SAFE + 4 * UNIT * np.hypot(*vector)
-
-
-def where_known(values, bounds):
-    """Bounds as users have them: infinite where none is proven, NaN where there is no value."""
-    return np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds))
 
 
 def whole(total):

@@ -172,9 +172,8 @@ class Placement:
     """The mechanism at its crank angles: motion flows outward from the crank into these tables.
 
     `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
-    to find again; `throws` by joint the pins of the crank, each a `Throw`, whose second derivative is minus its
-    position; `departures` by other joints the sum of both, where it is known by itself; `swings` by joint what swings
-    it about a fixed place, a `Swing`.
+    to find again; `throws` by joint the pins of the crank, each a `Throw`; `departures` by other joints the sum of
+    position and second derivative, where it is known by itself; `swings` by joint what swings it, a `Swing`.
     """
 
     angle: Any

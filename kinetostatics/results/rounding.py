@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..engines.bounds import of_magnitude
+from ..engines.bounded import of_magnitude
 from ..engines.engines import NUMPY
 from ..errors import NotGivenError
 from ..mechanics.quantities import of_scene, scale

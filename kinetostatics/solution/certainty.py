@@ -9,7 +9,7 @@ import numpy as np
 
 from ..engines import programs
 from ..engines.backends import Backend
-from ..engines.bounds import of_magnitude, where_known
+from ..engines.bounded import of_magnitude, where_known
 from ..errors import ConditionWarning, QuantityError
 from ..mechanics import quantities
 from ..numbers import checks

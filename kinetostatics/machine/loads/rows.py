@@ -10,6 +10,8 @@ from .period import TURN
 
 BEYOND = 1e-9
 """Share of a table over travel by which a slider may go beyond it: rounding."""
+SAMPLES = 720
+"""Crank angles a turn between which the kinks of a table over travel are found."""
 
 
 def order_problem(x, over):
@@ -118,3 +120,19 @@ def _missing(angle, value, period, step):
 
 def _degrees(angle):
     return f"{math.degrees(angle):.9g} deg"
+
+
+def passed(function, levels, turns):
+    """Crank angles in so many turns at which a function of it passes some levels."""
+    from scipy.optimize import elementwise
+
+    grid = np.linspace(0.0, TURN * turns, SAMPLES * turns + 1)
+    above = np.broadcast_to(function(grid), grid.shape) - levels[:, None]
+    _, exact = np.nonzero(above[:, :-1] == 0)
+    with np.errstate(invalid="ignore"):
+        level, before = np.nonzero(above[:, :-1] * above[:, 1:] < 0)
+    if not before.size:
+        return grid[exact]
+    bracket, given = (grid[before], grid[before + 1]), (levels[level],)
+    found = elementwise.find_root(lambda angle, level: function(angle) - level, bracket, args=given).x
+    return np.mod(np.concatenate([grid[exact], found]), TURN * turns)

@@ -15,8 +15,6 @@ from .period import TURN, WholeTurns
 
 OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 """By what a table may be over: the heading of such a column, and its unit."""
-SAMPLES = 720
-"""Crank angles a turn between which the kinks of a table over travel are found."""
 AREA = {"area": checks.Optional(checks.Number("m**2"))}
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
@@ -311,8 +309,8 @@ class Table:
         def travel(angle):
             return motion.mechanism.place(angle).travels[name]
 
-        ends = _passed(lambda angle: travel(angle).first, np.zeros(1), turns)
-        passed = _passed(lambda angle: travel(angle).position, self.x, turns)
+        ends = rows.passed(lambda angle: travel(angle).first, np.zeros(1), turns)
+        passed = rows.passed(lambda angle: travel(angle).position, self.x, turns)
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
     @property
@@ -329,22 +327,6 @@ class Table:
 
     def __hash__(self):
         return hash(self._content)
-
-
-def _passed(function, levels, turns):
-    """Crank angles in so many turns at which a function of it passes some levels."""
-    from scipy.optimize import elementwise
-
-    grid = np.linspace(0.0, TURN * turns, SAMPLES * turns + 1)
-    above = np.broadcast_to(function(grid), grid.shape) - levels[:, None]
-    _, exact = np.nonzero(above[:, :-1] == 0)
-    with np.errstate(invalid="ignore"):
-        level, before = np.nonzero(above[:, :-1] * above[:, 1:] < 0)
-    if not before.size:
-        return grid[exact]
-    bracket, given = (grid[before], grid[before + 1]), (levels[level],)
-    found = elementwise.find_root(lambda angle, level: function(angle) - level, bracket, args=given).x
-    return np.mod(np.concatenate([grid[exact], found]), TURN * turns)
 
 
 def _unit_of(values):

@@ -1,0 +1,16 @@
+"""Bounds as users have them, from those that programs compute."""
+
+import numpy as np
+
+from ..numbers.elementary import UNIT
+from .bounds import SAFE
+
+
+def of_magnitude(vector, bounds):
+    """Bound on the error of a vector's magnitude, from the vector's values and those of its components."""
+    return np.hypot(*bounds) * SAFE + 4 * UNIT * np.hypot(*vector)
+
+
+def where_known(values, bounds):
+    """Bounds as users have them: infinite where none is proven, NaN where there is no value."""
+    return np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds))
