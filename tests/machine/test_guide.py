@@ -1,5 +1,8 @@
 """The straight guide: the same line by angle and offset as by two points, and what passes none."""
 
+from collections import namedtuple
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -49,3 +52,9 @@ def test_a_guide_through_points_along_an_axis_has_that_direction_in_its_structur
         crank_speed=3.0,
     )
     np.testing.assert_allclose(s.balancing_torque, plain.balancing_torque, rtol=0, atol=1e-14)
+
+
+def test_a_guide_along_an_axis_is_taken_by_whoever_makes_it_anew():
+    down = ks.Guide.through((0.0, 0.0), (0.0, -1.0))
+    assert replace(down, guide_offset=0.1).direction == (0.0, -1.0)
+    assert ks.Guide(None, 0.0, namedtuple("Direction", "x y")(0.0, -1.0)).direction == (0.0, -1.0)

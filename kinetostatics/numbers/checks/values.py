@@ -37,7 +37,7 @@ def _unfit(kind: Any):
     ):
         if issubclass(kind, kinds):
             return words
-    if issubclass(kind, PLAIN) or kind in (np.ndarray, list, tuple):
+    if issubclass(kind, (*PLAIN, list, tuple)) or kind is np.ndarray:
         return None
     if hasattr(kind, "units") or hasattr(kind, "unit"):
         return "a quantity with its unit; give the plain number in SI units, as by .to('{unit}').magnitude"
