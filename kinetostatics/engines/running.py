@@ -22,9 +22,9 @@ from collections import Counter
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
-from .bounds import DUST, SAFE, ULP, is_zero, whole
+from .bounds import DUST, SAFE, ULP, Bounds, is_zero, whole
 from .counted import Counted, is_scaling
-from .trace import BY_ANGLE, INPUTS, Node, needed
+from .trace import BY_ANGLE, BY_DESIGN, INPUTS, Node, needed
 
 KNOWN, CURVED, POWER = 0.1, 18.0, 16.0
 """Relative errors x of pivots stay below `KNOWN`; up to `POWER` then (1 - x)^-m - 1 <= m x (1 + `CURVED` x)."""
@@ -59,6 +59,7 @@ class RunningBounds(Counted):
 
     def __init__(self, graph, inputs=None, dust=DUST):
         super().__init__(graph, inputs, dust)
+        self._by_design = Bounds(graph, inputs, dust=dust)
         self._absolute: dict[Node, Absolute] = {}
         self._bounds: dict[Node, Any] = {}
         self._coefficients: dict[Any, Any] = {}
@@ -93,6 +94,9 @@ class RunningBounds(Counted):
 
     def _found(self, node):
         kind, parts = node.operation, node.arguments
+        if node.varies == BY_DESIGN:
+            self._by_design.of([node])
+            return Absolute([(MORE, self.size(node)), (1.0, self._by_design.total(node)), (1.0, self._dust)], MORE)
         if kind in INPUTS:
             relative, rest = self._inputs[node](self)
             return Absolute([(relative + MORE, self.size(node)), (1.0, rest), (1.0, self._dust)], MORE)
