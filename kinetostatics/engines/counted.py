@@ -161,9 +161,6 @@ class Counted:
         if not isinstance(node, Node):
             return 1.0 / abs(node)
         if node not in self._reciprocals:
-            above_one = node.operation == "+" and is_number(node.arguments[0], 1.0) and self.is_positive(node)
-            if above_one and node.arguments[1].operation == "abs":
-                return 1.0
             size = node if node in self._squares else self.size(node)  # what is negative has no root
             self._reciprocals[node] = 1.0 / self._graph.node("divisor", size, 0.0)
         return self._reciprocals[node]
@@ -278,8 +275,10 @@ def is_exact(error):
 
 
 def is_scaling(part):
-    """Whether a factor is a power of two near one: it loses no digit but of dust."""
-    return not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
+    """Whether a factor is a sign, or a power of two near one: it loses no digit but of dust."""
+    if isinstance(part, Node):
+        return part.operation == "sign"
+    return math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
 
 
 def is_number(part, number):

@@ -13,6 +13,9 @@ absolute
     reserves, and has what is left. A product with what is relative takes its roundings in the same way. Where nothing
     is left so many roundings of the value itself are added to the bound.
 
+What a design fixes is found once, however many angles there are: where it is not relative the rules of `bounds`, which
+are dearer and nearer, bound it, those of lengths and their rests among them. Its reserve is added to that.
+
 With errors a and b of two absolute factors x and y, that of x y is at most |y| a + |x| b + a b. A bound is infinite
 where a pivot is not known to a tenth, or where the guard of a divisor acts. Each bound has `DUST` in it.
 """
@@ -22,9 +25,9 @@ from collections import Counter
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
-from .bounds import DUST, SAFE, ULP, is_zero, whole
+from .bounds import DUST, SAFE, ULP, Bounds, is_zero, whole
 from .counted import Counted, is_scaling
-from .trace import BY_ANGLE, INPUTS, Node, needed
+from .trace import BY_DESIGN, INPUTS, Node, needed
 
 KNOWN, CURVED, POWER = 0.1, 18.0, 16.0
 """Relative errors x of pivots stay below `KNOWN`; up to `POWER` then (1 - x)^-m - 1 <= m x (1 + `CURVED` x)."""
@@ -59,6 +62,7 @@ class RunningBounds(Counted):
 
     def __init__(self, graph, inputs=None, dust=DUST):
         super().__init__(graph, inputs, dust)
+        self._by_design = Bounds(graph, inputs, dust=dust)
         self._absolute: dict[Node, Absolute] = {}
         self._bounds: dict[Node, Any] = {}
         self._coefficients: dict[Any, Any] = {}
@@ -93,6 +97,9 @@ class RunningBounds(Counted):
 
     def _found(self, node):
         kind, parts = node.operation, node.arguments
+        if node.varies == BY_DESIGN:
+            self._by_design.of([node])
+            return Absolute([(MORE, self.size(node)), (1.0, self._by_design.total(node)), (1.0, self._dust)], MORE)
         if kind in INPUTS:
             relative, rest = self._inputs[node](self)
             return Absolute([(relative + MORE, self.size(node)), (1.0, rest), (1.0, self._dust)], MORE)
@@ -102,6 +109,8 @@ class RunningBounds(Counted):
         if kind in ("sin", "cos", "atan"):
             terms = [(ULP[kind] + MORE, self.size(node)), (1.0, self.total(parts[0])), (1.0, self._dust)]
             return Absolute(terms, MORE)
+        if kind == "rest":  # truly nothing
+            return Absolute([(1.0 / UNIT, self.size(node))], 0.0)
         if kind == "*":
             return self._of_product(node)
         return self._of_quotient(node) if kind == "/" else self._of_sum(node)
@@ -113,7 +122,7 @@ class RunningBounds(Counted):
         reserve = min(
             (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=FEW
         )
-        is_charged = reserve < 0.0 or node.operation == "total" or node.varies < BY_ANGLE
+        is_charged = reserve < 0.0 or node.operation == "total"
         terms = [(1.0, self._dust)]
         if is_charged:
             terms.append((own + MORE, self.size(node)))

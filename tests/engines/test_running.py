@@ -6,7 +6,7 @@ import kinetostatics as ks
 from kinetostatics.engines import programs
 from kinetostatics.engines.running import CURVED, KNOWN, LIMIT, POWER, RunningBounds
 from kinetostatics.engines.trace import Graph
-from kinetostatics.numbers.elementary import UNIT, total
+from kinetostatics.numbers.elementary import UNIT, rest, sign, total
 from support.every import every
 from support.shipped import shipped
 
@@ -74,6 +74,39 @@ def test_a_total_of_given_numbers_is_bounded_by_few_roundings_of_itself():
     values = [0.3, 0.6000000000000001, -0.4, -0.5000000000000001]
     (bound,) = bounds_of(graph, [total(*parts) * parts[0]], values)
     assert bound < 1e-31
+
+
+def test_a_length_and_its_rest_leave_few_roundings_of_what_a_design_is_off_another():
+    graph = Graph()
+    x, y, other = (graph.parameter(place) for place in range(3))
+    length = (x * x + y * y).sqrt()
+    off = total(length, rest(length, x, y), -other)
+    (bound,) = bounds_of(graph, [off * graph.angle().sin()], [0.21, 0.81, 0.83], angle=1.0)
+    assert bound < 8 * UNIT * (0.83679 - 0.83)
+
+
+def test_a_length_of_the_angle_and_its_rest_are_bounded_to_their_last_bits():
+    graph = Graph()
+    x, y = graph.parameter(0), graph.angle()
+    length = (x * x + y * y).sqrt()
+    (bound,) = bounds_of(graph, [total(length, rest(length, x, y))], [0.21], angle=0.81)
+    assert 0.5 * UNIT * 0.83 < bound < 12 * UNIT * 0.84
+
+
+def test_what_is_turned_by_the_sign_of_a_clear_sum_keeps_its_error():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    turning = graph.angle().sin() * one - other
+    (bound,) = bounds_of(graph, [sign(turning) * one], [3.0, 0.5], angle=1.0)
+    assert bound < 1e-9 * UNIT
+
+
+def test_a_quotient_by_one_and_a_magnitude_is_bounded_by_the_slope_at_its_value():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    cosine = graph.angle().cos() * one - other
+    (bound, alone) = bounds_of(graph, [one / (1.0 + abs(cosine)), cosine], [100.0, 50.0])
+    assert bound < 1.2 * (100.0 / 51.0**2 * (alone + 51.0 * UNIT) + 100.0 / 51.0 * UNIT)
 
 
 def test_a_bound_does_not_hang_on_what_else_is_asked_for():
