@@ -49,3 +49,10 @@ def test_a_guide_through_points_along_an_axis_has_that_direction_in_its_structur
         crank_speed=3.0,
     )
     np.testing.assert_allclose(s.balancing_torque, plain.balancing_torque, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("direction", [(1.0, -0.0), (-0.0, -1.0)])
+def test_an_axis_has_one_zero(direction):
+    """For structures that are equal share what is recorded of the first."""
+    zero = next(part for part in ks.Guide(None, 0.0, direction).exact if not part)
+    assert np.copysign(1.0, zero) == 1.0
