@@ -70,6 +70,9 @@ class Circle(Cam):
     def __init__(self, radius, centre=(0.0, 0.0)):
         object.__setattr__(self, "pitch_radius", radius)
         object.__setattr__(self, "centre", centre)
+        self.__post_init__()
+
+    def __post_init__(self):
         self.RULES.admit(self)
         object.__setattr__(self, "is_close", self._comes_close())
 

@@ -23,7 +23,7 @@ def acting(dynamics):
     Of a slider with springs inertia along its guide is among the latter, where the departure of its motion is known.
     """
     loads, pushes = dynamics.link_loads, dynamics.pushes
-    for slider in {item.on: None for item in dynamics.loads if hasattr(item, "spring_rate")}:
+    for slider in {item.on: None for item in dynamics.loads if _is_spring(item)}:
         found = _held(dynamics, slider)
         if found is not None:
             loads, pushes = loads | {slider: _without_inertia(dynamics, slider)}, pushes | {slider: found}
@@ -37,7 +37,7 @@ def _held(dynamics, slider):
         return None
     square, alpha = dynamics.accelerating
     items = [item for item in dynamics.loads if getattr(item, "on", None) == slider and hasattr(item, "push")]
-    springs = [item for item in items if hasattr(item, "spring_rate")]
+    springs = [item for item in items if _is_spring(item)]
     departures = [dynamics.departure(item) for item in springs]
     if any(part is None for part in departures):
         return None
@@ -48,8 +48,14 @@ def _held(dynamics, slider):
     for item, departure in zip(springs, departures, strict=True):
         force = minus(force, share * departure)
         force = force + (share - item.spring_rate(dynamics)) * dynamics.elongation(item.free_position, slider)
-    others = (pushed(item, dynamics) for item in items if not hasattr(item, "spring_rate"))
+    others = (pushed(item, dynamics) for item in items if not _is_spring(item))
     return reduce(plus, others, force)
+
+
+def _is_spring(item):
+    """Whether a load's rate tells all its push: not where a kind derived from a spring pushes in another way."""
+    own = next((vars(kind) for kind in type(item).__mro__ if {"push", "spring_rate"} & vars(kind).keys()), {})
+    return "spring_rate" in own
 
 
 def _without_inertia(dynamics, slider):

@@ -46,7 +46,9 @@ class Axis(tuple):
     @staticmethod
     def of(pair):
         """A pair, as an axis if it is one of plain numbers."""
-        return Axis(pair) if set(map(type, pair)) == FLOATS and sorted(map(abs, pair)) == [0.0, 1.0] else pair
+        if set(map(type, pair)) != FLOATS or sorted(map(abs, pair)) != [0.0, 1.0]:
+            return pair
+        return Axis(part + 0.0 for part in pair)  # structures that are equal have one zero, which has no sign
 
 
 class Leaves:

@@ -148,8 +148,9 @@ class Certainty(Parameters):
         Warns
         -----
         ConditionWarning
-            At some crank angle the second order is more than a tenth of the first, or there is no value with an input
-            larger or smaller by its uncertainty.
+            At some crank angle the second order of the inputs, each by itself, is more than a tenth of the first and
+            more than a thousandth of the first's median, or there is no value with an input larger or smaller by its
+            uncertainty.
 
         Examples
         --------

@@ -7,7 +7,7 @@ from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from ..numbers.kinds import Numbered
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import Kept, with_fields
+from ..numbers.leaves import Axis, Kept, with_fields
 
 DRIVE = checks.Rules(
     "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)
@@ -40,10 +40,12 @@ def leaves_of(places, state):
 
 
 def keeping(scene, places, wanted):
-    """The scene with the wanted numbers that are zero, and so absent from programs, kept as numbers."""
+    """The scene with the wanted numbers that are zero or of an axis, and so absent from programs, kept as numbers."""
     for path in wanted:
-        if is_zero(places[path].value(scene)):
-            scene = _with_kept(scene, places[path].steps)
+        place = places[path]
+        owner = place._replace(steps=place.steps[:-1])
+        if isinstance(owner.value(scene), Axis) or is_zero(place.value(scene)):
+            scene = _with_kept(scene, place.steps)
     return scene
 
 
@@ -53,9 +55,9 @@ def is_zero(value):
 
 
 def _with_kept(item, steps):
-    """Copy of a tree in which a zero is kept as a number; nothing is checked."""
+    """Copy of a tree in which a number, though it is zero or of an axis, is kept as one; nothing is checked."""
     if not steps:
-        return Kept(0.0)
+        return Kept(0.0) if item == 0 else item
     step, *rest = steps
     if isinstance(step, int):
         return tuple(_with_kept(part, rest) if place == step else part for place, part in enumerate(item))

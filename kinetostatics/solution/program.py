@@ -19,7 +19,7 @@ from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.leaves import made, with_fields
 from .angles import crank_angles, problems
-from .parameters import fixed, is_judged_together, keeping, leaves_of, require_free, shaping
+from .parameters import fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping
 from .scene import unchecked
 from .slopes import slopes
 
@@ -98,8 +98,8 @@ class Program:
         Raises
         ------
         ParameterError
-            No machine has such a value, or there is no such parameter: what is zero in the scene is absent unless
-            `compile` was told to keep it.
+            No machine has such a value, or there is no such parameter: what is zero in the scene, or of a
+            direction along an axis, is absent unless `compile` was told to keep it.
 
         Warns
         -----
@@ -276,9 +276,9 @@ class Program:
             return
         for path in names:
             if path in self._absent:
+                why = "zero in the scene" if is_zero(self.scene.places[path].value(self.scene)) else "of an axis"
                 raise ParameterError(
-                    f"program: {path} is zero in the scene and so left out; keep it by "
-                    f'compile(..., parameters=("{path}",))'
+                    f'program: {path} is {why} and so left out; keep it by compile(..., parameters=("{path}",))'
                 )
         checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
 

@@ -141,3 +141,15 @@ def test_circle_derivatives_equal_those_of_the_sine_rule(centre):
         assert largest(found - value) < 1e-15 * loss
     assert_allclose(cam.pressure_angle(ANGLES), np.arctan2(expected[1], expected[0]), rtol=0, atol=1e-15 * loss)
     assert_allclose(cam.curvature_radius(ANGLES), 0.3, rtol=1e-14 * loss)
+
+
+@pytest.mark.parametrize(("before", "after"), [(-0.0219, -0.295), (-0.295, -0.0219)])
+def test_a_circle_with_another_centre_tells_anew_whether_o_lies_close(before, after):
+    made = [
+        ks.Scene(ks.cam_crank_slider(ks.cams.Circle(0.3, (x, 0.0)), 2.0, slider=ks.Link(600.0)), 33.5)
+        for x in (before, after)
+    ]
+    varied = made[0].varied({"cam.centre.x": after})
+    cams = [scene.mechanism.groups[0].cam for scene in (varied, made[1])]
+    assert cams[0].is_close is cams[1].is_close is (after < -0.29)
+    np.testing.assert_array_equal(*(scene.solve(9).reaction("O") for scene in (varied, made[1])))

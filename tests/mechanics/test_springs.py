@@ -125,6 +125,36 @@ def test_together_they_take_hardly_more_operations_than_apart(name, guide):
     assert counts[0] <= 1.02 * counts[1]
 
 
+class Preloaded(ks.Spring):
+    """A spring of a user's that pushes in a way of its own."""
+
+    def push(self, motion):
+        """With a constant force besides."""
+        return super().push(motion) + 1000.0
+
+
+class Stiffened(ks.Spring):
+    """A spring of a user's with a rate of its own."""
+
+    def spring_rate(self, motion):
+        """Twice as large."""
+        return 2.0 * super().spring_rate(motion)
+
+
+@every("own, plain", [
+    ([Preloaded(2e5, 1.9)], [ks.Spring(2e5, 1.9), ks.ProcessForce(1000.0)]),
+    ([Preloaded(2e5, 1.9), ks.Spring(4e5, 2.1)], [ks.Spring(2e5, 1.9), ks.ProcessForce(1000.0), ks.Spring(4e5, 2.1)]),
+    ([Stiffened(2e5, 1.9)], [ks.Spring(4e5, 1.9)]),
+])  # fmt: skip
+def test_a_spring_of_the_user_s_pushes_as_it_says(own, plain):
+    one, other = (ks.Scene(MACHINES["crank"], SPEED, 0.0, loads).solve(TURN) for loads in (own, plain))
+    for name in ("B", "O"):
+        np.testing.assert_allclose(
+            one.reaction(name), other.reaction(name), rtol=0.0, atol=1e-13 * other.largest_force_term
+        )
+    assert one.power_residual < 1e-14
+
+
 @every("name", CAMS)
 def test_what_a_balancing_spring_leaves_is_near_the_exact(name, flint):
     """Within 1e-16 of the spring's force, most of it the rounding of m omega^2; subtracted it were 3e-16."""
