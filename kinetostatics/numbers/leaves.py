@@ -120,10 +120,7 @@ def put_together(structure, number: Callable[[], Any], table: Callable[[], Any],
 
 def _filled(kind: Any, values):
     """Item of a dataclass with values in its fields, nothing checked."""
-    whole = object.__new__(kind)
-    for field, value in zip(fields(kind), values, strict=True):
-        object.__setattr__(whole, field.name, value)
-    return whole
+    return made(kind, **{field.name: value for field, value in zip(fields(kind), values, strict=True)})
 
 
 class Opaque:
@@ -174,10 +171,7 @@ def made(kind: Any, /, **values):
 
 def with_fields(item, **changes):
     """Copy of a dataclass with some fields changed and nothing checked."""
-    made: Any = object.__new__(type(item))
-    for field in fields(item):
-        object.__setattr__(made, field.name, changes.get(field.name, getattr(item, field.name)))
-    return made
+    return made(type(item), **{field.name: getattr(item, field.name) for field in fields(item)} | changes)
 
 
 def is_structural(field):
