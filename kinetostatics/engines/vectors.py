@@ -25,10 +25,14 @@ CALLED = {"sin": "llvm.sin.{}", "cos": "llvm.cos.{}", "atan": "atan"}
 
 
 @cache
-def edition() -> str:
-    """What tells machine code written by this version of the module from that of another."""
+def edition(*others) -> str:
+    """What tells machine code written by this version of the module, and of others that it is made by, from another's.
+
+    Numba knows the text that it compiles, not the modules that it is written by.
+    """
+    modules = sys.modules[__name__], sys.modules[sum_and_rest.__module__], *others
     try:
-        text = inspect.getsource(sys.modules[__name__])
+        text = "".join(map(inspect.getsource, modules))
     except OSError:
         text = __version__
     return sha256(text.encode()).hexdigest()[:8]

@@ -24,13 +24,13 @@ def acting(dynamics):
     """
     loads, pushes = dynamics.link_loads, dynamics.pushes
     for slider in {item.on: None for item in dynamics.loads if _is_spring(item)}:
-        found = _held(dynamics, slider)
+        found = _along(dynamics, slider)
         if found is not None:
             loads, pushes = loads | {slider: _without_inertia(dynamics, slider)}, pushes | {slider: found}
     return loads, pushes
 
 
-def _held(dynamics, slider):
+def _along(dynamics, slider):
     """All that acts on a slider along its guide, with its inertia; None where that is known in no better way."""
     mass, travel = dynamics.mechanism.links[slider].body.mass, dynamics.placement.travels[slider]
     if mass is None:
@@ -54,8 +54,8 @@ def _held(dynamics, slider):
 
 def _is_spring(item):
     """Whether a load's rate tells all its push: not where a kind derived from a spring pushes in another way."""
-    own = next((vars(kind) for kind in type(item).__mro__ if {"push", "spring_rate"} & vars(kind).keys()), {})
-    return "spring_rate" in own
+    telling = (vars(kind) for kind in type(item).__mro__ if {"push", "spring_rate"} & vars(kind).keys())
+    return "spring_rate" in next(telling, ())
 
 
 def _without_inertia(dynamics, slider):

@@ -4,9 +4,12 @@ A loop over designs leaves its values in the cache; here they are reduced before
 design is written for it alone, so that it does not matter which designs come together.
 """
 
+from functools import cache
+
 import numpy as np
 
-from ..engines import compiled
+from ..engines import compiled, scanning
+from ..engines.vectors import edition
 from ..numbers.elementary import ROUNDING
 from .peaks import INNER, REACH, THROUGH, TINY
 from .reductions import MEAN, PEAK
@@ -303,6 +306,12 @@ def passes(results, rows, kinds, first, angle, turns, numbers, rough, gaps, near
 '''
 
 
+@cache
+def _source():
+    """The source with the edition of what writes it, so that machine code of another is not taken for its own."""
+    return SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(scanning)};", 1)
+
+
 class Passes:
     """Outputs reduced from blocks of values.
 
@@ -319,7 +328,7 @@ class Passes:
 
     def __init__(self, outputs, rows, first, angle, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
-        self._passes, self._turns = compiled.loaded(SOURCE).passes, turns
+        self._passes, self._turns = compiled.loaded(_source()).passes, turns
         places, numbers = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64)
         self._given = places, numbers, int(first), np.array(angle), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
