@@ -62,6 +62,7 @@ def _added(structure):
     """A new kind, or that which another thread has added meanwhile."""
     with _lock:
         found = _kinds.setdefault(structure, Kind(structure))
+        found.used = next(_uses)
         while len(_kinds) > MOST:
             idle = min((kind for kind in _kinds.values() if kind is not found), key=lambda kind: kind.used)
             del _kinds[idle.structure]

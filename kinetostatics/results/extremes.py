@@ -94,7 +94,10 @@ class Extremes:
     def __repr__(self):
         known = zip(self.angle, *known_values(self), strict=True)
         rows = (f"{np.degrees(angle):12.6f} deg  {number(value, bound=error):>11}" for angle, value, error in known)
-        return "\n".join([f"{len(self)} extremes of {self.quantity}", *rows])
+        gaps = (
+            "" if self.solution is None or not self.solution.sampled.gaps else f"; it {self.solution.sampled.unclosed}"
+        )
+        return "\n".join([f"{len(self)} extremes of {self.quantity}{gaps}", *rows])
 
 
 def extremes(solution, quantity):
@@ -169,7 +172,8 @@ def warning(solution, several):
         sentences.append(f"{item.quantity} grows without bound at {_degrees(angle)} deg")
     unknown = [item.quantity for item in several if not len(item) and np.isnan(item.constant)]
     if unknown:
-        sentences.append(f"{', '.join(unknown)} has no value with a correct digit at all")
+        why = f": it {solution.sampled.unclosed}" if solution.sampled.gaps else " with a correct digit at all"
+        sentences.append(f"{', '.join(unknown)} has no value{why}")
     return f"{solution.mechanism.name}: {'; '.join(sentences)} (solution.condition)" if sentences else None
 
 

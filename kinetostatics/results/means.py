@@ -150,8 +150,7 @@ def closed_turn(solution, owner):
     require_single(solution, owner, "balancing_torque")
     turn = solution.sampled
     if turn.gaps:
-        where = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g}" for start, stop in turn.gaps)
-        raise ParameterError(f"{owner}: {solution.mechanism.name} does not close for crank angles {where} deg")
+        raise ParameterError(f"{owner}: {solution.mechanism.name} {turn.unclosed}")
     jamming.require_free(turn.at, owner)
     return turn
 

@@ -155,6 +155,12 @@ class Turn:
         """Ends of the gaps, rad."""
         return np.mod(np.ravel(self.gaps), self.period)
 
+    @property
+    def unclosed(self):
+        """What is to be said of the gaps, if there are any."""
+        where = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g}" for start, stop in self.gaps)
+        return where and f"does not close for crank angles {where} deg"
+
     def evaluate(self, function, angle):
         """Values of a function of a solution at any crank angles."""
         return function(self.at.at(np.mod(angle, self.period)))

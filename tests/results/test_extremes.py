@@ -1,5 +1,7 @@
 """Extremes: where they must lie, that all are found, and what is refused."""
 
+import re
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -234,3 +236,22 @@ def test_extremes_of_a_function_are_printed_to_six_digits():
     pump = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0)
     (line, _) = repr(ks.extremes(pump, lambda s: s.slider_position)).splitlines()[1:]
     assert line.split()[-1] in ("2.3", "1.7")
+
+
+def test_extremes_tell_where_the_mechanism_does_not_close():
+    open_press = ks.Mechanism(
+        "press",
+        ks.Crank(0.1),
+        (
+            ks.RockerGroup(0.3, 0.25, (0.35, 0.0)),
+            ks.SliderGroup(0.08, ks.Guide.at(0.0, 0.3), on="B", pin="C", label="2"),
+        ),
+    )
+    s = ks.solve(open_press, np.linspace(0, 6, 50), crank_speed=3.0, on_gap="nan")
+    told = repr(ks.extremes(s, "slider2_position"))
+    assert "it does not close for crank angles" in told
+    (interval,) = re.findall(r"([\d.]+) \.\. ([\d.]+) deg", told.splitlines()[0]) or [(None, None)]
+    assert [float(end) for end in interval] == pytest.approx(np.degrees(s.sampled.gaps[0]), rel=1e-5)
+    never = ks.solve(ks.crank_slider(0.3, 0.1, guide_offset=0.9, slider=ks.Link(2)), 0.1, crank_speed=6.0, on_gap="nan")
+    with pytest.warns(ks.ConditionWarning, match="O has no value: it does not close for crank angles 0 .. 360 deg"):
+        ks.extremes(never, "O")
