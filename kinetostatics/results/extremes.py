@@ -94,10 +94,8 @@ class Extremes:
     def __repr__(self):
         known = zip(self.angle, *known_values(self), strict=True)
         rows = (f"{np.degrees(angle):12.6f} deg  {number(value, bound=error):>11}" for angle, value, error in known)
-        gaps = (
-            "" if self.solution is None or not self.solution.sampled.gaps else f"; it {self.solution.sampled.unclosed}"
-        )
-        return "\n".join([f"{len(self)} extremes of {self.quantity}{gaps}", *rows])
+        gaps = self.solution.sampled.unclosed if self.solution else ""
+        return "\n".join([f"{len(self)} extremes of {self.quantity}{gaps and f'; it {gaps}'}", *rows])
 
 
 def extremes(solution, quantity):
@@ -150,8 +148,7 @@ def extremes(solution, quantity):
     """
     checks.require("extremes", checks.solution("solution", solution), checks.quantity(quantity, function=True))
     found = extrema(solution, quantity)
-    text = warning(solution, [found])
-    if text:
+    if text := warning(solution, [found]):
         warnings.warn(text, ConditionWarning, stacklevel=2)
     return found
 
