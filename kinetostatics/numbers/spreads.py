@@ -5,6 +5,7 @@ likeliest, high)``.
 """
 
 import re
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -61,6 +62,7 @@ def distributions(spreads):
 
 def read(spreads, reader):
     """What the reader, which raises `ValueError`, makes of the spread of each parameter."""
+    require_mapping(spreads)
     found, problems = {}, [] if spreads else ["there are no parameters"]
     for name, given in spreads.items():
         try:
@@ -71,6 +73,13 @@ def read(spreads, reader):
         problems.append(f"write {_HELP}")
     checks.require("designs", *problems)
     return found
+
+
+def require_mapping(spreads):
+    """Raise `ParameterError` unless spreads are told by parameter."""
+    form = '{"slider.mass": "500..700 kg"}'
+    told = isinstance(spreads, Mapping)
+    checks.require("designs", None if told else f"spreads must be a dict, as {form}, got {checks.shown(spreads)}")
 
 
 def _text(text):

@@ -17,7 +17,7 @@ from ..machine.builders import crank_slider, four_bar, slotted_lever
 from ..machine.loads import Gravity, Spring, TorsionDamper, TorsionSpring
 from ..numbers import checks
 from ..numbers.headings import heading
-from ..numbers.spreads import LARGEST, axis, distributions, read
+from ..numbers.spreads import LARGEST, axis, distributions, read, require_mapping
 from ..numbers.units import factor
 from ..solution.scene import Scene
 
@@ -94,6 +94,7 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     """
     from scipy.stats import qmc
 
+    require_mapping(spreads)
     _require_room(count, len(spreads))
     return sample(spreads, lambda size: qmc.LatinHypercube(size, rng=seed).random(count))
 
@@ -130,6 +131,7 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
     """
     from scipy.stats import qmc
 
+    require_mapping(spreads)
     _require_room(count, len(spreads))
     return sample(spreads, lambda size: qmc.Sobol(size, rng=seed).random(count))
 
@@ -164,6 +166,7 @@ def random(spreads, count, seed=0) -> pd.DataFrame:
     >>> bool(table["slider.mass [kg]"].between(500.0, 700.0).all())
     True
     """
+    require_mapping(spreads)
     _require_room(count, len(spreads))
     return sample(spreads, lambda size: np.random.default_rng(seed).random((count, size)))
 

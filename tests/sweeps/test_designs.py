@@ -103,6 +103,14 @@ def test_no_parameters_are_no_designs(kind):
         kind({})
 
 
+@pytest.mark.parametrize("kind", ["grid", "sobol", "latin_hypercube", "random", "sample", "distributions"])
+def test_spreads_that_are_told_by_no_parameter_are_refused_in_words(kind):
+    more = () if kind in ("grid", "distributions") else (4,)
+    for spreads in (None, 5, "slider.mass", [1, 2], np.array([1.0, 2.0]), KG):
+        with pytest.raises(ks.ParameterError, match="spreads must be a dict"):
+            getattr(designs, kind)(spreads, *more)
+
+
 KG, M = (pint.UnitRegistry().Quantity([1.0, 2.0], unit) for unit in ("kg", "m"))
 
 
