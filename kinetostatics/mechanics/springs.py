@@ -3,11 +3,15 @@
 With s the coordinate of a slider, e its elongation from where a spring of rate c is free, and m its mass, inertia and
 spring give
 
-    - m omega^2 s'' - c e = - m omega^2 (s'' + e) + (m omega^2 - c) e
+    - w s'' - c e = - h (s'' + e) - (w - h) s'' - (c - h) e,    w = m omega^2
 
-and with several springs each takes its share of inertia so. A group that knows the departure s'' + e by itself leaves
-nothing on the right that cancels where c is near m omega^2. Where it is not, no term is larger than inertia or springs
-by more than elongations are larger than the stroke; at rest inertia is out of it.
+for any h, and with several springs each takes its share of w so. A group that knows the departure s'' + e by itself
+leaves nothing on the right that cancels where c is near w, if h is near both. With h = 2 w c^2 / (w^2 + c^2)
+
+    w - h = w (w - c) (w + c) / (w^2 + c^2),    c - h = c (w - c)^2 / (w^2 + c^2)
+
+lose no digit that w - c has, and no term is much larger than inertia and spring are, be elongations as long as they
+may, or s'' near a limit position.
 """
 
 from functools import reduce
@@ -15,6 +19,9 @@ from functools import reduce
 from ..machine.links import Wrench
 from ..numbers.planar import added, minus, plus, product, stretched
 from .pushes import pushed
+
+UNSEEN = 2.0**-120
+"""Rate, N/m, that counts as nothing: where there is neither spring nor inertia something is to be divided by."""
 
 
 def acting(dynamics):
@@ -46,10 +53,19 @@ def _along(dynamics, slider):
         share = share / len(springs)
     force = minus(None, product(product(mass, alpha), travel.first))
     for item, departure in zip(springs, departures, strict=True):
-        force = minus(force, share * departure)
-        force = force + (share - item.spring_rate(dynamics)) * dynamics.elongation(item.free_position, slider)
+        both, inertia, rate = _parted(share, item.spring_rate(dynamics))
+        left = inertia * travel.second + rate * dynamics.elongation(item.free_position, slider)
+        force = minus(force, both * departure + left)
     others = (pushed(item, dynamics) for item in items if not _is_spring(item))
     return reduce(plus, others, force)
+
+
+def _parted(inertia, rate):
+    """What inertia and the rate of a spring have in common, and what each has besides: h, w - h and c - h."""
+    size = inertia + abs(rate) + UNSEEN
+    w, c, apart = inertia / size, rate / size, (inertia - rate) / size
+    over = 1.0 / (w * w + c * c)
+    return 2.0 * c * c * over * inertia, apart * (w + c) * over * inertia, apart * apart * over * rate
 
 
 def _is_spring(item):

@@ -174,3 +174,14 @@ def test_a_slow_machine_at_a_limit_position_keeps_its_spring(speed):
     run = ks.Scene(close, speed, 0.0, SPRINGS["balancing"]).solve(np.pi / 2 + np.array([-1e-7, 0.0, 1e-7])).dynamics
     assert np.min(np.abs(run.placement.travels["slider"].second)) > 1e5
     assert np.allclose(springs.acting(run)[1]["slider"], run.pushes["slider"], rtol=3e-16, atol=0.0)
+
+
+@every("strokes", [1.0, 1e2, 1e4, 1e6])
+def test_a_soft_spring_that_is_long_loses_no_digit(flint, strokes):
+    """Its force is as large as inertia, its elongation many times the stroke."""
+    rod = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
+    spring = ks.Spring(600 * SPEED**2 / strokes, 2.0 + 0.6 * strokes)
+    s = ks.solve(rod, TURN, crank_speed=SPEED, loads=spring)
+    with flint.ctx.workprec(200):
+        exact = np.array([float(part) for part in components(on_arb(flint.arb, s), "B")[0]])
+    assert np.abs(s.reaction("B")[0] - exact).max() < 1e-15 * np.abs(exact).max()
