@@ -20,26 +20,29 @@ CASES = [
     ("mower_drive", "unbalanced"),
     ("pumpjack", "weights"),
 ]
-MOST = {"numpy": {"torque": 4.3, "all": 4.3}, "compiled": {"torque": 2.5, "all": 3.7}}
-"""Asked are 4 and 2.5. The chain unit takes 3.8 to 4.2 by NumPy. Compiled, more outputs than a loop writes at once take
-a third of their time for the way to memory.
+MOST = {"numpy": 4.0, "compiled": 2.5}
+"""What is asked, and kept by crank-sliders. Compiled, cams take 2.6 and all their reactions 2.8, the chain unit 2.7 to 3.1,
+the pumpjack with its tables 2.6 to 3.4; by NumPy the chain unit takes 4.4 and the pumpjack 4.2.
 """
 
 
 @pytest.mark.parametrize("engine", MOST)
 @pytest.mark.parametrize(("case", "variant"), CASES)
-def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, monkeypatch, engine, case, variant):
+def test_values_with_bounds_take_few_times_as_long_as_values(benchmark, tell, monkeypatch, engine, case, variant):
     if engine == "compiled" and not compiled.available():
         pytest.skip("numba is not installed (extra: fast)")
     monkeypatch.setattr(loops, "cores", lambda: 1)
-    for kind, most in MOST[engine].items():
+    found, scene = {}, shipped(case).variants[variant].scene
+    for kind in ("torque", "all"):
         for count in (360, 3600):
-            s = shipped(case).variants[variant].scene.solve(np.linspace(0.0, 2 * np.pi, count))
+            s = scene.solve(np.linspace(0.0, 2 * np.pi, count))
             names = ("balancing_torque",) if kind == "torque" else (*s.reactions, "balancing_torque")
             program, leaves = programs.of(s.dynamics, names)
             ways = [partial(way.run, s.dynamics, leaves, engine == "compiled") for way in (program, program.bounded())]
             alone, bounded = seconds(*ways)
-            benchmark.extra_info[f"{kind}, {count}"] = bounded / alone
-            print(f"{case} {variant}, {engine}, {kind}, {count} angles: {bounded / alone:.2f} times values alone")
-            assert bounded <= most * alone
+            found[f"{kind}, {count}"] = bounded / alone
     benchmark.pedantic(ways[1], rounds=3)
+    benchmark.extra_info.update(found)
+    told = "; ".join(f"{name} {share:.2f}" for name, share in found.items())
+    tell(f"{case} {variant}, {engine}, with bounds over values alone: {told}")
+    assert {name: share for name, share in found.items() if share > MOST[engine]} == {}
