@@ -156,19 +156,13 @@ class LeanGraph(Graph):
 
     Quotients by a root are products with its reciprocal, which they share; those by a design's number leave that to the
     design. Neither has an infinite reciprocal, as what is tiny has, so that zero by it stays zero. Products leave signs
-    to sums, to the last bit. Each is decided where it is recorded, by what is there, so that a number is computed in
-    one way whatever else is wanted.
+    to sums, to the last bit. A zero that is added stays, for it gives a zero its sign, on which friction hangs. Each is
+    decided where it is recorded, by what is there, so that a number is computed in one way whatever else is wanted.
     """
 
     def node(self, operation, *arguments):
         if operation == "/":
             return self._quotient(*arguments)
-        if operation in "+-" and len(arguments) == 2:
-            left, right = arguments
-            if _is_number(right, 0.0) and _counts(left):
-                return left
-            if _is_number(left, 0.0) and _counts(right):
-                return right if operation == "+" else -right
         if operation == "sqrt" and (secant := _secant(*arguments)):
             return abs(secant[0]) * self._over(secant[1])
         if operation == "*":
@@ -257,11 +251,6 @@ def _is_none_of_turn(part, other):
         and other.operation in ("sin", "cos")
         and other.arguments[0].operation == "angle"
     )
-
-
-def _counts(part):
-    """Whether a part at each crank angle is more than zero times another, which may say that there is no value."""
-    return _varies(part) == BY_ANGLE and not any(_is_number(factor, 0.0) for factor in part.arguments)
 
 
 def _secant(square):

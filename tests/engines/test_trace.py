@@ -98,8 +98,7 @@ def test_what_is_zero_at_every_crank_angle_is_left_out_but_not_what_may_be_a_gap
     sine, cosine, length, _ = lean
     assert 0.0 * sine == 0.0
     assert cosine * 0.0 == 0.0
-    assert length * sine + 0.0 * cosine is length * sine
-    assert told(0.0 * cosine - length * sine) == ["sin", "*", "-"]
+    assert told(length * sine + 0.0 * cosine) == ["sin", "*", "+"]  # a zero that is added gives a zero its sign
     gap = 0.0 * cosine.sqrt()
     assert told(gap)[-1] == "*"
     assert told(0.0 + gap)[-1] == "+"

@@ -117,12 +117,13 @@ def test_without_springs_or_mass_nothing_is_done():
 
 @every("name, guide", [(name, guide) for name in CAMS for guide in (LEVEL, INCLINED)])
 def test_together_they_take_hardly_more_operations_than_apart(name, guide):
+    """Two products and two sums more at each crank angle."""
     counts = []
     for kind in (ks.SliderGroup, Apart):
         run = ks.Scene(saw(*CAMS[name], guide, kind), SPEED, 0.0, SPRINGS["balancing"]).solve(TURN).dynamics
         program, _ = programs.of(run, ("B", "balancing_torque"))
         counts.append(program.recording.operations)
-    assert counts[0] <= 1.02 * counts[1]
+    assert counts[0] <= counts[1] + 4
 
 
 class Preloaded(ks.Spring):
