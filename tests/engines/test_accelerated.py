@@ -15,6 +15,7 @@ from support.every import every
 SINGLE, DOUBLE = Backend("jax", "single", "cpu"), Backend("jax", "double", "cpu")
 
 
+@pytest.mark.slow
 @pytest.mark.slow_start
 @every("name", ["designs", "one angle of a table", "designs under a table", "friction", "speeds"])
 def test_jax_gives_values_within_their_bounds(jax, name):

@@ -127,6 +127,7 @@ def test_ordinary_sliders_and_levers_are_placed_as_ever_and_close_ones_with_care
     assert all(mechanism.groups[-1].is_close for mechanism in close)
 
 
+@pytest.mark.slow
 def test_what_jax_traces_is_no_known_length_and_has_derivatives(double):
     body = ks.Link(3.0, 0.1, 0.1)
 

@@ -79,6 +79,7 @@ def computed(scene, angles):
     yield "program in single precision", ks.compile(scene, names, engine="numpy", precision="single")(angles)
 
 
+@pytest.mark.slow
 @every("machine", STAYING, ids=lambda machine: machine.__name__)
 @every("inner, outer, loads", [(BODY, BODY, (ks.Gravity(),)), (BODY, NONE, ()), (NONE, NONE, (ks.Gravity(),))])
 @pytest.mark.filterwarnings("ignore:crank angles are in single precision")

@@ -80,6 +80,7 @@ def loaded(machine, given, acceleration=0.0):
     return ks.Scene(machine, SPEED, acceleration, loads).solve(TURN)
 
 
+@pytest.mark.slow
 @every("name, given, acceleration", [(n, g, a) for n in MACHINES for g in SPRINGS for a in (0.0, -50.0)])
 def test_forces_are_those_of_inertia_and_springs_apart(name, given, acceleration):
     run = loaded(MACHINES[name], given, acceleration).dynamics

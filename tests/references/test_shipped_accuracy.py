@@ -23,7 +23,7 @@ cam makes 4e-15 of it.
 """
 PLAIN, TIGHT = 150.0, 20.0
 STEEP = {
-    ("shaper", "cutting"): dict.fromkeys(("balancing_torque", "O", "A", "C", "D", "O2"), (4e-14, 7e-13)),
+    ("shaper", "cutting"): dict.fromkeys(("balancing_torque", "O", "A", "C", "D", "O2"), (4e-14, 9e-13)),
     ("toggle_press", "coining"): dict.fromkeys(
         ("balancing_torque", "O", "A", "B", "guide2", "B2", "C", "O2"), (3e-14, 5e-13)
     ),

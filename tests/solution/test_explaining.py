@@ -74,6 +74,7 @@ def test_random_chains_of_every_group(seed):
         ask(solution, quantity, float(angles[1]))
 
 
+@pytest.mark.slow
 @every("kind", FOLLOWERS)
 def test_followers(kind):
     ask(with_follower(FOLLOWERS[kind]()).solve(3), "O", 0.7)

@@ -133,6 +133,7 @@ def test_a_device_that_jax_does_not_have_is_refused(jax):
         made(engine="jax", device="abacus")
 
 
+@pytest.mark.slow
 @every("crank", [ks.Link(), ks.Link(3.0, 0.1, 0.1)], ids=["massless", "heavy"])
 @every("bodies", [{}, {"coupler": ks.Link(150.0, 0.1, 20.5), "slider": ks.Link(600.0)}], ids=["massless", "heavy"])
 @every("loads", [[], [ks.Gravity()]], ids=len)

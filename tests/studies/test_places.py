@@ -31,6 +31,7 @@ def test_names_are_told_apart_and_axes_have_units():
     assert all(place.axis.endswith("]") for place in PLACES)
 
 
+@pytest.mark.slow
 @every("place", INCLINED, ids=lambda place: place.name)
 def test_inclined_twins_of_places_are_as_near_as_the_crank_angle_allows(flint, place):
     rows = stability.study([replace(place, numbers=place.numbers[::3])], METHODS[:1])

@@ -198,6 +198,7 @@ def torque(table, angles, length=0.2, speed=100.0):
     return ks.solve(pump, angles, crank_speed=speed, loads=loads, on_gap="nan").balancing_torque
 
 
+@pytest.mark.slow
 @pytest.mark.slow_start
 @every("name", TABLES)
 @every("speed", [100.0, -100.0])
@@ -209,6 +210,7 @@ def test_jax_reads_tables_as_numpy_does(double, name, speed):
         assert largest(np.asarray(found) - expected) <= 1e-13 * largest(expected)
 
 
+@pytest.mark.slow
 @pytest.mark.slow_start
 @every("name", TABLES)
 def test_gradients_by_jax_through_a_table_are_those_of_the_record(double, name):
