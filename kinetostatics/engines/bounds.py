@@ -95,7 +95,7 @@ class Bounds:
         if self.is_reciprocal(node):
             return Error(1.0, None)
         if kind in ("*", "/"):
-            return Error(0.0 if any(map(_is_scaling, arguments[kind == "/" :])) else 1.0, self._dust)
+            return Error(0.0 if any(map(is_scaling, arguments[kind == "/" :])) else 1.0, self._dust)
         if kind == "total":
             return Error(1.0, ((2.0 * (len(arguments) - 1)) ** 3 * UNIT * UNIT) * reduce(add, map(size, arguments)))
         if kind in ("+", "-"):
@@ -188,11 +188,7 @@ class Bounds:
         return rest * (size(part) if cap is None else 2.0 * cap)
 
     def fused(self, one, other, more):
-        """Product and sum, in one operation where the processor has it."""
-        plain = [part for part in (one, other) if not isinstance(part, Node)]
-        if more is None or len(plain) == 2 or 1.0 in plain:
-            return plus(one * other, more)
-        return self._graph.node("fma", one, other, more)
+        return fused(self._graph, one, other, more)
 
     def cap(self, part):
         """Largest magnitude of a part for inputs up to `CAP`; None if only the computed value tells."""
@@ -220,13 +216,21 @@ def whole(total):
     return 0.0 if total is None else (SAFE * UNIT) * total
 
 
+def fused(graph, one, other, more):
+    """Product and sum, in one operation where the processor has it."""
+    plain = [part for part in (one, other) if not isinstance(part, Node)]
+    if more is None or len(plain) == 2 or 1.0 in plain:
+        return plus(one * other, more)
+    return graph.node("fma", one, other, more)
+
+
 def is_zero(part):
     """Whether a part of an operation is a product with the number 0."""
     factors = part.arguments if isinstance(part, Node) and part.operation == "*" else ()
     return any(not isinstance(factor, Node) and factor == 0.0 for factor in factors)
 
 
-def _is_scaling(part):
+def is_scaling(part):
     """Whether a factor is a sign, or a power of two near one: it loses no digit but of dust."""
     if isinstance(part, Node):
         return part.operation == "sign"

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import ULP, Error, is_zero
+from .bounds import ULP, Error, fused, is_scaling, is_zero
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 
@@ -242,11 +242,7 @@ class Counted:
         return one, other
 
     def fused(self, one, other, more):
-        """Product and sum, in one operation where the processor has it."""
-        plain = [part for part in (one, other) if not isinstance(part, Node)]
-        if more is None or len(plain) == 2 or 1.0 in plain:
-            return plus(one * other, more)
-        return self._graph.node("fma", one, other, more)
+        return fused(self._graph, one, other, more)
 
     def size(self, part):
         """Magnitude of a part of an operation."""
@@ -272,13 +268,6 @@ class Counted:
 
 def is_exact(error):
     return error is not None and not error.roundings and not error.pivots and error.dust is None
-
-
-def is_scaling(part):
-    """Whether a factor is a sign, or a power of two near one: it loses no digit but of dust."""
-    if isinstance(part, Node):
-        return part.operation == "sign"
-    return math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
 
 
 def is_number(part, number):

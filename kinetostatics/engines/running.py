@@ -25,8 +25,8 @@ from collections import Counter
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
-from .bounds import DUST, SAFE, ULP, Bounds, is_zero, whole
-from .counted import Counted, is_scaling
+from .bounds import DUST, SAFE, ULP, Bounds, is_scaling, is_zero, whole
+from .counted import Counted
 from .trace import BY_DESIGN, INPUTS, Node, needed
 
 KNOWN, CURVED, POWER = 0.1, 18.0, 16.0

@@ -11,7 +11,7 @@ from functools import cache
 from hashlib import sha256
 from types import FunctionType
 
-from ..numbers.elementary import ROUNDING, sum_and_rest
+from ..numbers.elementary import ROUNDING, sum_and_rest, summed
 from ..version import __version__
 
 WIDTHS = {"+avx512f": 8, "+avx": 4}
@@ -154,7 +154,7 @@ class Writer:
         self.builder, self._one, self._count = builder, kind, count
         self._kind = kind if count == 1 else ir.VectorType(kind, count)
         self.scope = {name: getattr(self, name) for name in ("root", "divisor", "copysign", "fma", "total")}
-        self.scope |= {"sqrt": self._built_in("sqrt"), "nan": float("nan"), "inf": float("inf"), "abs": abs}
+        self.scope |= {"sqrt": self.built_in("sqrt"), "nan": float("nan"), "inf": float("inf"), "abs": abs}
         self.scope |= {name: self._called(name) for name in CALLED}
 
     def loaded(self, place):
@@ -184,24 +184,16 @@ class Writer:
         return self._chosen("<", root, unit, unit, root)
 
     def copysign(self, one, other):
-        return self._built_in("copysign")(one, other)
+        return self.built_in("copysign")(one, other)
 
     def fma(self, one, other, more):
         """In one operation where the processor has it; in single precision never, as NumPy has it."""
-        return self._built_in("fmuladd")(one, other, more) if self._is_double else one * other + more
+        return self.built_in("fmuladd")(one, other, more) if self._is_double else one * other + more
 
     def total(self, *terms):
         """See `elementary.total`."""
-        *lost, whole = self._summed(self._summed(terms))
+        *lost, whole = summed(summed(terms))
         return whole + sum(lost[1:], lost[0])
-
-    @staticmethod
-    def _summed(terms):
-        whole, lost = terms[0], []
-        for term in terms[1:]:
-            whole, rest = sum_and_rest(whole, term)
-            lost.append(rest)
-        return *lost, whole
 
     def holds(self, sign, one, other):
         """Whether operands compare so, a bit for each lane; not if one is no number."""
@@ -238,7 +230,7 @@ class Writer:
 
         return cgutils.get_or_insert_function(self.builder.module, ir.FunctionType(kind, [kind] * count), name)
 
-    def _built_in(self, name):
+    def built_in(self, name):
         """Function of LLVM's own of all lanes together."""
         lanes = "" if self._count == 1 else f"v{self._count}"
 
@@ -301,4 +293,4 @@ class _Lanes:
         return self._writer.written("fneg", self)
 
     def __abs__(self):
-        return self._writer._built_in("fabs")(self)
+        return self._writer.built_in("fabs")(self)

@@ -127,7 +127,7 @@ def total(*terms):
         return recorded.total_with(present)
     if not _are_floats(present):
         return sum(present)
-    *lost, whole = _summed(_summed(present))
+    *lost, whole = summed(summed(present))
     return whole + sum(lost)
 
 
@@ -157,7 +157,7 @@ def _are_floats(parts):
     return all(isinstance(part, float) or getattr(part, "dtype", _OBJECT) != _OBJECT for part in parts)
 
 
-def _summed(terms):
+def summed(terms):
     """What each sum of terms one after the other loses, and the last sum."""
     whole, lost = terms[0], []
     for term in terms[1:]:
