@@ -4,22 +4,18 @@ from .vectors import Writer
 
 AT_ONCE = 64
 """Numbers that are compared, or added to as many sums, at once."""
+COLUMNS = 8
+"""Columns of a table that are computed at once."""
 
 
-def rising(writer, before, here, after):
-    """Whether the middle of three numbers is higher than the one before and not lower than the one behind, or none."""
-    return _peaking(writer, ">", before, here, after)
+def rising(writer, here, after):
+    """Whether the second of two numbers is higher, or one of them is none."""
+    return writer.builder.not_(writer.holds("<=", after, here))
 
 
-def falling(writer, before, here, after):
-    """The same of a number that is lower."""
-    return _peaking(writer, "<", before, here, after)
-
-
-def _peaking(writer, sign, before, here, after):
-    write = writer.builder
-    goes_on = write.or_(writer.holds(sign, after, here), write.not_(writer.holds(sign, here, before)))
-    return write.or_(write.not_(goes_on), write.not_(writer.holds("==", here, here)))
+def falling(writer, here, after):
+    """Whether the second of two numbers is lower, or one of them is none."""
+    return writer.builder.not_(writer.holds(">=", after, here))
 
 
 def changing(writer, here, after):
@@ -27,59 +23,115 @@ def changing(writer, here, after):
     return writer.builder.xor(writer.holds("<", here, 0.0), writer.holds("<", after, 0.0))
 
 
-def bits_where(holds, reach):
-    """For numba: ``bits(values, words)``, which sets bit k of a row of uint64 where `holds` of values[k:k + reach].
+def bits_of_steps(*conditions):
+    """For numba: ``bits(results, design, row, words)``: bit k of a row of uint64 is set where a condition holds of a step.
 
-    There are as many bits as there are such places; those of the last word beyond them are 0.
+    That is from value k in a row of results (designs, rows, N) to the next, and from the last to the first. There is a
+    row of words for each condition, with N bits; those of the last word beyond them are 0.
     """
     from numba import types
     from numba.core import cgutils
     from numba.extending import intrinsic
 
     @intrinsic
-    def bits(typing, values, words):
+    def bits(typing, results, design, row, words):
+        kinds = results, design, row, words
+
         def written(context, builder, signature, given):
-            row, into = (
-                context.make_array(kind)(context, builder, part)
-                for kind, part in zip((values, words), given, strict=True)
-            )
-            (size,) = cgutils.unpack_tuple(builder, row.shape)
+            first, size = _row(context, builder, kinds[:3], given[:3])
+            into = context.make_array(words)(context, builder, given[3])
+            length = cgutils.unpack_tuple(builder, into.shape)[1]
             word = size.type
-            count, whole = builder.sub(size, word(reach - 1)), word(AT_ONCE)
+            last, whole = builder.sub(size, word(1)), word(AT_ONCE)
 
-            def at(start, lanes):
-                writer = Writer(builder, context.get_data_type(values.dtype), lanes)
-                places = (builder.gep(row.data, [builder.add(start, word(k))]) for k in range(reach))
-                return holds(writer, *map(writer.loaded, places))
+            def found(lanes, *places):
+                writer = Writer(builder, context.get_data_type(results.dtype), lanes)
+                step = [writer.loaded(builder.gep(first, [place])) for place in places]
+                return [condition(writer, *step) for condition in conditions]
 
-            def vector(start):
-                return builder.bitcast(at(start, AT_ONCE), word)
+            def found_from(start):
+                both = found(AT_ONCE, start, builder.add(start, word(1)))
+                return [builder.bitcast(bit, word) for bit in both]
 
-            with builder.if_else(builder.icmp_signed("<", count, whole)) as (few, many):
-                with few:
-                    total = cgutils.alloca_once_value(builder, word(0))
-                    with cgutils.for_range(builder, count) as each:
-                        bit = builder.shl(builder.zext(at(each.index, 1), word), each.index)
-                        builder.store(builder.or_(builder.load(total), bit), total)
-                    builder.store(builder.load(total), into.data)
+            def put(masks, place, add=False):
+                for number, mask in enumerate(masks):
+                    at = builder.gep(into.data, [builder.add(builder.mul(length, word(number)), place)])
+                    builder.store(builder.or_(builder.load(at), mask) if add else mask, at)
+
+            def put_bit(place, *step):
+                shift = builder.srem(place, whole)
+                masks = [builder.shl(builder.zext(bit, word), shift) for bit in found(1, *step)]
+                put(masks, builder.sdiv(place, whole), add=True)
+
+            full, rest = builder.sdiv(last, whole), builder.srem(last, whole)
+            put([word(0)] * len(conditions), full)
+            with builder.if_else(builder.icmp_signed("<", last, whole)) as (few, many):
+                with few, cgutils.for_range(builder, last) as each:
+                    put_bit(each.index, each.index, builder.add(each.index, word(1)))
                 with many:
-                    full, rest = builder.sdiv(count, whole), builder.srem(count, whole)
                     with cgutils.for_range(builder, full) as each:
-                        builder.store(vector(builder.mul(each.index, whole)), builder.gep(into.data, [each.index]))
+                        put(found_from(builder.mul(each.index, whole)), each.index)
                     with builder.if_then(builder.icmp_signed(">", rest, word(0))):
-                        last = builder.lshr(vector(builder.sub(count, whole)), builder.sub(whole, rest))
-                        builder.store(last, builder.gep(into.data, [full]))
+                        beyond = builder.sub(whole, rest)
+                        put([builder.lshr(mask, beyond) for mask in found_from(builder.sub(last, whole))], full)
+            put_bit(last, last, word(0))
             return context.get_dummy_value()
 
-        return types.void(values, words), written
+        return types.void(*kinds), written
 
     return bits
 
 
-def summing(term):
-    """For numba: ``sums(values)``: the sum of a term of every other value from the first on, and of those between.
+def _row(context, builder, kinds, given):
+    """Where a row of results (designs, rows, N) begins in memory, and N."""
+    from numba import types
+    from numba.core import cgutils
 
-    Many sums go side by side, in an order of its own, whatever the processor.
+    array = context.make_array(kinds[0])(context, builder, given[0])
+    _, rows, size = cgutils.unpack_tuple(builder, array.shape)
+    design, row = (context.cast(builder, part, kind, types.intp) for part, kind in zip(given[1:], kinds[1:], strict=True))
+    return builder.gep(array.data, [builder.mul(builder.add(builder.mul(design, rows), row), size)]), size
+
+
+def over_columns(function, rows):
+    """For numba: ``over(table, count)``: the first rows of a table become a function of all, in so many columns.
+
+    ``function(parts, chosen, sqrt)`` gives fewer parts than there are rows. It is computed in a multiple of `COLUMNS`,
+    which the table must have.
+    """
+    from numba import types
+    from numba.core import cgutils
+    from numba.extending import intrinsic
+
+    @intrinsic
+    def over(typing, table, count):
+        def written(context, builder, signature, given):
+            array = context.make_array(table)(context, builder, given[0])
+            size = cgutils.unpack_tuple(builder, array.shape)[1]
+            word = size.type
+            writer = Writer(builder, context.get_data_type(table.dtype), COLUMNS)
+            wanted = context.cast(builder, given[1], count, types.intp)
+            times = builder.sdiv(builder.add(wanted, word(COLUMNS - 1)), word(COLUMNS))
+            with cgutils.for_range(builder, times) as each:
+                start = builder.mul(each.index, word(COLUMNS))
+                places = [
+                    builder.gep(array.data, [builder.add(builder.mul(size, word(row)), start)])
+                    for row in range(rows)
+                ]
+                found = function([writer.loaded(place) for place in places], writer.chosen, writer.scope["sqrt"])
+                for part, place in zip(found, places, strict=False):
+                    writer.store(part, place)
+            return context.get_dummy_value()
+
+        return types.void(table, count), written
+
+    return over
+
+
+def summing(term):
+    """For numba: ``sums(results, design, row)``: the sum of a term of every other value, and of those between.
+
+    These are a row of results (designs, rows, N). Many sums go side by side, in an order of its own, whatever the processor.
     """
     from llvmlite import ir
     from numba import types
@@ -87,17 +139,18 @@ def summing(term):
     from numba.extending import intrinsic
 
     @intrinsic
-    def sums(typing, values):
+    def sums(typing, results, design, row):
+        kinds = results, design, row
+
         def written(context, builder, signature, given):
-            row = context.make_array(values)(context, builder, given[0])
-            (size,) = cgutils.unpack_tuple(builder, row.shape)
-            word, one = size.type, context.get_data_type(values.dtype)
+            values, size = _row(context, builder, kinds, given)
+            word, one = size.type, context.get_data_type(results.dtype)
             vectors, numbers = Writer(builder, one, AT_ONCE), Writer(builder, one, 1)
             sides = cgutils.alloca_once_value(builder, vectors.held(0.0))
             blocks = builder.sdiv(size, word(AT_ONCE))
             with cgutils.for_range(builder, blocks) as each:
                 start = builder.mul(each.index, word(AT_ONCE))
-                more = term(vectors.loaded(builder.gep(row.data, [start]))).value
+                more = term(vectors.loaded(builder.gep(values, [start]))).value
                 builder.store(builder.fadd(builder.load(sides), more), sides)
             whole, lanes = builder.load(sides), AT_ONCE
             while lanes > 2:
@@ -112,11 +165,11 @@ def summing(term):
             for parity, side in enumerate(pair):
                 first = builder.add(builder.mul(blocks, word(AT_ONCE)), word(parity))
                 with cgutils.for_range_slice(builder, first, size, word(2)) as (place, _):
-                    more = term(numbers.loaded(builder.gep(row.data, [place]))).value
+                    more = term(numbers.loaded(builder.gep(values, [place]))).value
                     builder.store(builder.fadd(builder.load(side), more), side)
             return context.make_tuple(builder, signature.return_type, [builder.load(side) for side in pair])
 
-        return types.UniTuple(values.dtype, 2)(values), written
+        return types.UniTuple(results.dtype, 2)(*kinds), written
 
     return sums
 

@@ -177,11 +177,11 @@ class Writer:
         return _Lanes(self, getattr(self.builder, operation)(*map(self.held, parts)))
 
     def root(self, square, unit):
-        above = self._chosen(">", square, 0.0, square, 0.0)
-        return self._chosen(">", square, -ROUNDING * unit, self.scope["sqrt"](above), float("nan"))
+        above = self.chosen(">", square, 0.0, square, 0.0)
+        return self.chosen(">", square, -ROUNDING * unit, self.scope["sqrt"](above), float("nan"))
 
     def divisor(self, root, unit):
-        return self._chosen("<", root, unit, unit, root)
+        return self.chosen("<", root, unit, unit, root)
 
     def copysign(self, one, other):
         return self.built_in("copysign")(one, other)
@@ -199,7 +199,8 @@ class Writer:
         """Whether operands compare so, a bit for each lane; not if one is no number."""
         return self.builder.fcmp_ordered(sign, self.held(one), self.held(other))
 
-    def _chosen(self, sign, one, other, here, there):
+    def chosen(self, sign, one, other, here, there):
+        """The one operand where two others compare so, else the other."""
         holds = self.holds(sign, one, other)
         return _Lanes(self, self.builder.select(holds, self.held(here), self.held(there)))
 

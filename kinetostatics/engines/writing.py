@@ -7,6 +7,8 @@ from .vectors import edition
 
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
 """Arrays of so many axes that a loop reads, which may be locked, and that it writes, as numba names them."""
+ARGUMENTS = f"void({', '.join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})"
+"""What a loop takes: crank angles, their sines and cosines, parameters, tables, results."""
 TURN = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import cos, sin
@@ -45,7 +47,7 @@ def divisor(root, unit):
 LOOP_TYPE = f"""at_angles = over_angles(line)
 
 
-@njit("void({", ".join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 3)})", cache=KEEP, **options)
+@njit("{ARGUMENTS}", cache=KEEP, **options)
 """
 LOOP_HEAD = """def loop(angle, sine, cosine, parameters, tables, results):
     for design in range(parameters.shape[0]):

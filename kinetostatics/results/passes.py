@@ -9,189 +9,139 @@ from functools import cache
 import numpy as np
 
 from ..engines import compiled, scanning
+from ..engines.scanning import COLUMNS
 from ..engines.vectors import edition
+from ..engines.writing import ARGUMENTS, FILLED, GIVEN
 from ..numbers.elementary import ROUNDING
-from .peaks import INNER, REACH, THROUGH, TINY
+from .peaks import REACH
 from .reductions import MEAN, PEAK
 from .turn import NEAR
 
 EXTREMES = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 KINDS = (*EXTREMES, "mean", "mean_absolute", "rms")
 """Reductions that are there, by their number; harmonics and the swing are not."""
+AROUND = 2 * REACH + 1
+"""Samples that tell how high a peak is."""
 
 
-CURVE, SERIES, SLOPE, CHANGE = (
-    [f"{name}{k}" for k in range(2 * REACH + 1 - less)]
-    for name, less in (("curve", 0), ("series", 0), ("slope", 1), ("change", 2))
-)
-"""Names of samples about a peak, of coefficients of the polynomial through them, of its slope, of its slope's slope."""
-
-
-def _lines(lines, indent=4):
-    return f"\n{' ' * indent}".join(lines)
-
-
-def _polynomial(series):
-    """Expression of a polynomial at `place`, from names or numbers of its coefficients.
-
-    Even and odd powers apart, which wait for each other half as long.
-    """
-    even, odd = (_nested(series[first::2]) for first in (0, 1))
-    return f"({even} + {odd} * place)"
-
-
-def _nested(series):
-    *others, value = series
-    for number in reversed(others):
-        value = f"({number} + {value} * square)"
-    return value
-
-
-def _through_samples():
-    """Lines that find the place of the top of the polynomial through samples, by two of Newton's steps.
-
-    Even powers come from sums of samples as far on either side, odd ones from differences.
-    """
-    for k in range(1, REACH + 1):
-        before, after = CURVE[REACH - k], CURVE[REACH + k]
-        yield f"sum{k}, less{k} = {after} + {before}, {after} - {before}"
-    for power, (name, row) in enumerate(zip(SERIES, THROUGH[:, REACH:].tolist(), strict=True)):
-        own = [CURVE[REACH], *(f"{'less' if power % 2 else 'sum'}{k}" for k in range(1, REACH + 1))]
-        yield f"{name} = {' + '.join(f'{part!r} * {sample}' for part, sample in zip(row, own, strict=True) if part)}"
-    for above, below in ((SERIES, SLOPE), (SLOPE, CHANGE)):
-        yield from (f"{name} = {above[k]} * {k}.0" for k, name in enumerate(below, 1))
-    yield from [SQUARE, f"place -= {_polynomial(SLOPE)} / {_polynomial(CHANGE)}"] * 2
-
-
-SQUARE = "square = place * place"
+LOOP = f"FunctionType({ARGUMENTS})"
+"""Type of a program's loop, which is handed in."""
 SOURCE = f'''"""Written by kinetostatics; may be deleted at any time."""
 
 from math import inf, nan, pi, sqrt
 
 import numpy as np
 from kinetostatics.engines import scanning
+from kinetostatics.results.peaks import between
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
-rising = scanning.bits_where(scanning.rising, 3)
-falling = scanning.bits_where(scanning.falling, 3)
-changing = scanning.bits_where(scanning.changing, 2)
+steps = scanning.bits_of_steps(scanning.rising, scanning.falling)
+changes = scanning.bits_of_steps(scanning.changing)
 lowest = scanning.lowest_bit()
+heights = scanning.over_columns(between, {AROUND})
 plain = scanning.summing(lambda value: value)
 sizes = scanning.summing(abs)
 squares = scanning.summing(lambda value: value * value)
-ONE = np.uint64(1)
+ONE, SIXTY_THREE = np.uint64(1), np.uint64(63)
 
 
 @njit(**options)
-def wrapped(values, i):
-    return values[i + values.size if i < 0 else i - values.size if i >= values.size else i]
+def value(results, design, row, i):
+    """Value at a place that may lie a little beyond either end of the turn."""
+    count = results.shape[2]
+    return results[design, row, i + count if i < 0 else i - count if i >= count else i]
 
 
 @njit(**options)
-def through({", ".join(CURVE)}, place):
-    """Top of the polynomial through samples, where it is, and how much lower it is with two samples fewer."""
-    {_lines(_through_samples())}
-    {SQUARE}
-    top = {_polynomial(SERIES)}
-    return place, top, {_polynomial(INNER.coef.tolist())} * ({SERIES[-2]} + {SERIES[-1]} * place)
+def bend(results, design, row, i):
+    before, after = value(results, design, row, i - 1), value(results, design, row, i + 1)
+    return abs(before - 2.0 * results[design, row, i] + after)
 
 
 @njit(**options)
-def between(values, at, side):
-    """Height of a peak, how far from its highest sample, and about how much the height may be wrong."""
-    {_lines(f"{name} = side * wrapped(values, at + {k - REACH})" for k, name in enumerate(CURVE))}
-    above = {" & ".join(f"({name} >= 0.0)" for name in CURVE)}
-    below = {" & ".join(f"({name} <= 0.0)" for name in CURVE)}
-    sign = 1.0 if above else -1.0 if below else 0.0
-    if sign != 0.0:
-        {_lines((f"{name} *= abs({name})" for name in CURVE), 8)}
-    before, here, after = {CURVE[REACH - 1]}, {CURVE[REACH]}, {CURVE[REACH + 1]}
-    bend = (after - here) - (here - before)
-    first = (here - before) - (before - {CURVE[REACH - 2]})
-    last = ({CURVE[REACH + 2]} - after) - (after - here)
-    shift, found, other = 0.0, here, here + abs(bend)
-    if first < 0.0 and bend < 0.0 and last < 0.0:
-        shift = 0.5 * (before - after) / bend
-        found = here - 0.25 * (before - after) * shift
-        place, top, less = through({", ".join(CURVE)}, shift)
-        other = top
-        if abs(top - found) < 0.05 * abs(bend) and abs(place) < 1.0:
-            found, shift, other = top, place, top - less
-    error = abs(found - other)
-    if sign == 0.0:
-        return found, shift, error
-    height = sign * sqrt(max(sign * found, 0.0))
-    return height, shift, error / max(max(abs(height), sqrt(error)), {TINY!r})
-
-
-@njit(**options)
-def peaks(values, side, words, places):
-    """How many peaks values times a sign have, whose places it fills in, and whether all values are numbers.
-
-    There is at least one, of what is constant the first sample.
-    """
-    if side > 0.0:
-        rising(values, words)
-    else:
-        falling(values, words)
-    count, found = values.size, 0
-    first, second, last = side * values[0], side * values[1], side * values[count - 1]
-    whole = first == first and last == last
-    if first > last and not second > first:
-        places[0] = 0
-        found = 1
-    for k in range((count + 61) // 64):
-        word = words[k]
+def tops(words, side, count, places, found):
+    """Fill in, from a place on, where values stop rising, or falling, that did; how many are found then."""
+    last = (count - 1) // 64
+    for k in range(last + 1):
+        after = words[side, k + 1] << SIXTY_THREE if k < last else (words[side, 0] & ONE) << np.uint64((count - 1) % 64)
+        word = words[side, k] & ~(words[side, k] >> ONE | after)
         while word:
-            places[found] = 64 * k + lowest(word) + 1
-            whole &= values[places[found]] == values[places[found]]
+            place = 64 * k + lowest(word) + 1
+            places[found] = place if place < count else 0
             found += 1
             word &= word - ONE
-    if last > side * values[count - 2] and not first > last:
-        places[found] = count - 1
+    return found
+
+
+@njit(**options)
+def rivals(results, design, row, side, words, places, found):
+    """Fill in, from a place on, where peaks of values, or of them with the sign turned, are that may be the highest.
+
+    How many are found then.
+    """
+    sign, last, first = 1.0 - 2.0 * side, results.shape[2] - 1, found
+    found = tops(words, side, last + 1, places, found)
+    if found == first:  # of what is constant the first
+        places[found] = 0
         found += 1
-    if found == 0:
-        places[0] = 0
-        found = 1
-    return found, whole
+    best, bound = -inf, -inf
+    for k in range(first, found):
+        here = sign * results[design, row, places[k]]
+        best, bound = max(best, here), max(bound, here - bend(results, design, row, places[k]))
+    if sign * results[design, row, 0] == best and sign * results[design, row, last] == best:
+        places[found] = 0  # a plateau goes on across the end of the turn, and its first sample counts too
+        found += 1
+        bound = max(bound, best - bend(results, design, row, 0))
+    kept = first
+    for k in range(first, found):
+        if not sign * results[design, row, places[k]] + bend(results, design, row, places[k]) < bound:
+            places[kept] = places[k]
+            kept += 1
+    return kept
 
 
 @njit(**options)
-def peak(values, side, words, places):
-    """Highest peak of values times a sign, where, in samples, and about how far off; none if a value is no number."""
-    found, whole = peaks(values, side, words, places)
-    if not whole:
-        return nan, nan, 0.0
-    count, bound, best = values.size, -inf, -inf
+def peaks(results, row, sides, memory, high, where, error):
+    """Fill in (2, designs): highest peaks of values, and of them with the sign turned, where, in samples, and about how
+    far off; NaN where a value is no number. Sides are the first to be found and the one behind the last.
+    """
+    near, owners, places, words = memory
+    designs, count, found = results.shape[0], results.shape[2], 0
+    for design in range(designs):
+        steps(results, design, row, words)
+        whole = True
+        for k in range((count + 63) // 64):
+            whole &= words[0, k] & words[1, k] == 0
+        for side in range(sides[0], sides[1]):
+            high[side, design], where[side, design], error[side, design] = -inf if whole else nan, nan, 0.0
+            if whole:
+                first = found
+                found = rivals(results, design, row, side, words, places, found)
+                for k in range(first, found):
+                    owners[k] = 2 * design + side
     for k in range(found):
-        i = places[k]
-        before, after = side * values[i - 1 if i else count - 1], side * values[i + 1 if i + 1 < count else 0]
-        here = side * values[i]
-        bound = max(bound, here - abs(before - 2.0 * here + after))
-        best = max(best, here)
-    around = side * values[0] == best and side * values[count - 1] == best
-    if around:  # a plateau goes on across the end of the turn, and its first sample counts too
-        bound = max(bound, best - abs(side * values[1] - best))
-    highest, where, worst = -inf, nan, 0.0
-    for k in range(found + around):
-        i = places[k] if k < found else 0
-        before, after = side * values[i - 1 if i else count - 1], side * values[i + 1 if i + 1 < count else 0]
-        here = side * values[i]
-        if here + abs(before - 2.0 * here + after) < bound:
-            continue
-        height, shift, error = between(values, i, side)
-        worst = max(worst, error)
-        if height > highest or (height == highest and i + shift < where) or where != where:
-            highest, where = height, i + shift
-    where += count if where < 0.0 else -count if where >= count else 0
-    return highest, where, worst
+        design, sign = owners[k] // 2, 1.0 - 2.0 * (owners[k] % 2)
+        for i in range({AROUND}):
+            near[i, k] = sign * value(results, design, row, places[k] + i - {REACH})
+    heights(near, found)
+    for k in range(found):
+        design, side = owners[k] // 2, owners[k] % 2
+        height, place = near[0, k], places[k] + near[1, k]
+        error[side, design] = max(error[side, design], near[2, k])
+        best, at = high[side, design], where[side, design]
+        if height > best or (height == best and place < at) or at != at:
+            high[side, design], where[side, design] = height, place
+    for side in range(sides[0], sides[1]):
+        for design in range(designs):
+            at = where[side, design]
+            where[side, design] = at + count if at < 0.0 else at - count if at >= count else at
 
 
 @njit(**options)
-def kink(values, i, j):
+def kink(results, design, row, i, j):
     """What the sum of sizes is too large by if the sign changes from one sample to another (`reductions._kinks`)."""
-    one, other = wrapped(values, i), wrapped(values, j)
+    one, other = value(results, design, row, i), value(results, design, row, j)
     if (one < 0.0) == (other < 0.0):
         return 0.0
     here, there = abs(one), abs(other)
@@ -199,78 +149,86 @@ def kink(values, i, j):
 
 
 @njit(**options)
-def kinks(values, words):
+def kinks(results, design, row, words):
     """The same of all samples, and of every other."""
-    changing(values, words)
-    count, whole, half = values.size, 0.0, 0.0
-    if (values[0] < 0.0) != (values[count - 1] < 0.0):
-        whole, half = kink(values, -1, 0), kink(values, -2, 0)
-    for k in range((count + 62) // 64):
-        word = words[k]
+    changes(results, design, row, words)
+    whole, half = 0.0, 0.0
+    for k in range((results.shape[2] + 63) // 64):
+        word = words[0, k]
         while word:
             i = 64 * k + lowest(word) + 1
             word &= word - ONE
-            whole += kink(values, i - 1, i)
-            half += kink(values, i - 1, i + 1) if i % 2 else kink(values, i - 2, i)
+            whole += kink(results, design, row, i - 1, i)
+            half += kink(results, design, row, i - 1 - (i + 1) % 2, i + i % 2)
     return whole, half
 
 
 @njit(**options)
-def averaged(values, power, words):
+def averaged(results, design, row, power, words):
     """Mean, of sizes or squares too, and how far that of every other value is from it."""
-    even, odd = plain(values) if power == 0 else sizes(values) if power == 1 else squares(values)
+    count = results.shape[2]
+    if power == 0:
+        even, odd = plain(results, design, row)
+    elif power == 1:
+        even, odd = sizes(results, design, row)
+    else:
+        even, odd = squares(results, design, row)
     whole, half = even + odd, even
     if power == 1:
-        more, some = kinks(values, words)
+        more, some = kinks(results, design, row, words)
         whole, half = whole - more, half - some
-    whole, half = whole / values.size, half / (values.size // 2)
+    whole, half = whole / count, half / (count // 2)
     if power == 2:
         whole, half = sqrt(whole), sqrt(half)
-    return whole, abs(half - whole) if values.size % 2 == 0 else 0.0 * whole
+    return whole, abs(half - whole) if count % 2 == 0 else 0.0 * whole
 
 
 @njit(**options)
-def estimated(values, kind, turns, words, places):
-    """Number, and whether so many samples do not tell it."""
-    if kind >= 6:
-        found, error = averaged(values, kind - 6, words)
-        if not error > {MEAN!r} * abs(found):
-            return found, False
-        size = 0.0
-        for value in values:
-            size = max(size, abs(value))
-        return found, error > {MEAN / 10!r} * size
-    high, low, above, below, at, under = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    if kind <= 1 or kind >= 4:
-        high, at, above = peak(values, 1.0, words, places)
-    if kind >= 2:
-        low, under, below = peak(values, -1.0, words, places)
-        low = -low
-    error = max(above, below)
-    if kind == 1 or kind == 3:
-        found, size = (at, high) if kind == 1 else (under, low)
-        found *= 2.0 * pi / values.size
-        return found * turns, error > {PEAK!r} * abs(size)
-    found = high if kind == 0 else low if kind == 2 else max(high, -low) if kind == 4 else high - low
-    if not error > {PEAK!r} * abs(found):
-        return found, False
-    least, most = values[0], values[0]
-    for value in values:
-        least, most = min(least, value), max(most, value)
-    return found, error > {PEAK / 100!r} * (most - least)
+def means(results, row, power, words, numbers, rough):
+    for design in range(results.shape[0]):
+        found, error = averaged(results, design, row, power, words)
+        doubtful = error > {MEAN!r} * abs(found)
+        if doubtful:
+            size = 0.0
+            for i in range(results.shape[2]):
+                size = max(size, abs(results[design, row, i]))
+            doubtful = error > {MEAN / 10!r} * size
+        numbers[design], rough[design] = found, doubtful
 
 
 @njit(**options)
-def reduced(results, rows, kinds, turns, numbers, rough, start):
-    designs, count = results.shape[0], results.shape[2]
-    words, places = np.empty(count // 64 + 1, np.uint64), np.empty(count, np.int64)
-    for design in range(designs):
-        for k in range(rows.size):
-            if kinds[k] >= 0:
-                values = results[design, rows[k]]
-                numbers[k, start + design], rough[k, start + design] = estimated(
-                    values, kinds[k], turns, words, places
-                )
+def extremes(results, row, kind, turns, memory, numbers, rough):
+    high, where, error = memory[4:]
+    high[:], error[:] = -inf, 0.0
+    sides = 0 if kind <= 1 or kind >= 4 else 1, 1 if kind <= 1 else 2
+    peaks(results, row, sides, memory[:4], high, where, error)
+    for design in range(results.shape[0]):
+        above, below = high[0, design], -high[1, design]
+        off = max(error[0, design], error[1, design])
+        if kind == 1 or kind == 3:
+            size = above if kind == 1 else below
+            found = where[kind // 2, design] * (2.0 * pi / results.shape[2]) * turns
+            doubtful = off > {PEAK!r} * abs(size)
+        else:
+            found = above if kind == 0 else below if kind == 2 else max(above, -below) if kind == 4 else above - below
+            doubtful = off > {PEAK!r} * abs(found)
+            if doubtful:
+                least, most = inf, -inf
+                for i in range(results.shape[2]):
+                    least, most = min(least, results[design, row, i]), max(most, results[design, row, i])
+                doubtful = off > {PEAK / 100!r} * (most - least)
+        numbers[design], rough[design] = found, doubtful
+
+
+@njit(**options)
+def reduced(results, rows, kinds, turns, memory, numbers, rough, start):
+    stop = start + results.shape[0]
+    for k in range(rows.size):
+        if kinds[k] >= {len(EXTREMES)}:
+            power = kinds[k] - {len(EXTREMES)}
+            means(results, rows[k], power, memory[3], numbers[k, start:stop], rough[k, start:stop])
+        elif kinds[k] >= 0:
+            extremes(results, rows[k], kinds[k], turns, memory, numbers[k, start:stop], rough[k, start:stop])
 
 
 @njit(**options)
@@ -298,11 +256,28 @@ def closed(results, first, angle, gaps, nearest, start):
             nearest[start + design] = nan
 
 
-@njit("void(Array(float64, 3, 'C'), int64[::1], int64[::1], int64, float64[::1], int64, float64[:, ::1],"
-      "boolean[:, ::1], int64[::1], float64[::1], int64)", cache=KEEP, **options)
-def passes(results, rows, kinds, first, angle, turns, numbers, rough, gaps, nearest, start):
-    reduced(results, rows, kinds, turns, numbers, rough, start)
-    closed(results, first, angle, gaps, nearest, start)
+@njit("void({LOOP}, {", ".join([GIVEN] * 5).format(2, 2, 2, 2, 3)}, {FILLED.format(3)}, int64[::1], int64[::1], int64,"
+      "int64, float64[:, ::1], boolean[:, ::1], int64[::1], float64[::1], int64, int64)", cache=KEEP, **options)
+def passes(
+    loop, angle, sine, cosine, parameters, tables, held, rows, kinds, first, turns, numbers, rough, gaps, nearest,
+    start, stop,
+):
+    step, count = held.shape[0], angle.shape[1]
+    many = {COLUMNS} * (2 * step * (count // 2 + 2) // {COLUMNS} + 1)
+    memory = (
+        np.empty(({AROUND}, many)), np.empty(many, np.int64), np.empty(many, np.int64),
+        np.empty((2, count // 64 + 1), np.uint64), np.empty((2, step)), np.empty((2, step)), np.empty((2, step)),
+    )
+    while start < stop:
+        end = min(start + step, stop)
+        results = held[: end - start]
+        if tables.shape[1] > 1:
+            loop(angle, sine, cosine, parameters[start:end], tables[:, start:end].copy(), results)
+        else:
+            loop(angle, sine, cosine, parameters[start:end], tables, results)
+        reduced(results, rows, kinds, turns, memory, numbers, rough, start)
+        closed(results, first, angle[0], gaps, nearest, start)
+        start = end
 '''
 
 
@@ -313,7 +288,7 @@ def _source():
 
 
 class Passes:
-    """Outputs reduced from blocks of values.
+    """Outputs of many designs by one compiled loop: their values block by block, and what these are reduced to.
 
     Parameters
     ----------
@@ -322,24 +297,35 @@ class Passes:
         Row of the quantity of each.
     first : int
         Row where closure begins, which goes on to the last.
-    angle : array (N,)
     turns : int
+        As many as the crank angles go over.
     """
 
-    def __init__(self, outputs, rows, first, angle, turns):
+    def __init__(self, outputs, rows, first, turns):
         kinds = [KINDS.index(item.reduction) if item.reduction in KINDS else -1 for item in outputs]
         self._passes, self._turns = compiled.loaded(_source()).passes, turns
-        places, numbers = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64)
-        self._given = places, numbers, int(first), np.array(angle), turns
+        self._given = np.array(rows, dtype=np.int64), np.array(kinds, dtype=np.int64), int(first), turns
         self._others = [(k, item, rows[k]) for k, item in enumerate(outputs) if kinds[k] < 0]
 
-    def __call__(self, results, start, numbers, rough, gaps, nearest):
-        """Fill in, from a design on, what results (designs, rows, N) tell.
+    def __call__(self, loop, given, held, found, start, stop):
+        """Fill in what is found of some designs.
 
-        That is numbers (outputs, designs), whether so many angles do not tell them, at how many angles a design does
-        not close, and the angle at which it is nearest to a limit position, left as it is where it is not near.
+        Parameters
+        ----------
+        loop, given
+            A program's loop (`engines.loops`), and what it takes for all designs: crank angles with their sines and
+            cosines, parameters, tables.
+        held : array (designs, rows, N)
+            Memory for the values of a block.
+        found : tuple
+            Numbers (outputs, designs), whether so many angles do not tell them, at how many angles a design does not
+            close, and the angle at which it is nearest to a limit position, left as it is where it is not near.
+        start, stop : int
         """
-        self._passes(results, *self._given, numbers, rough, gaps, nearest, start)
-        for k, item, row in self._others:
-            part = slice(start, start + len(results))
-            numbers[k, part], rough[k, part] = item.estimated(results[:, row], self._turns)
+        step = len(held) if self._others else max(1, stop - start)
+        for first in range(start, stop, step):
+            last = min(first + step, stop)
+            self._passes(loop, *given, held, *self._given, *found, first, last)
+            for k, item, row in self._others:
+                numbers, rough = (part[k, first:last] for part in found[:2])
+                numbers[...], rough[...] = item.estimated(held[: last - first, row], self._turns)

@@ -1,7 +1,9 @@
 """Peaks of evenly spaced values of many designs, between the samples, and memory for what is soon forgotten."""
 
 import math
+import operator
 import threading
+from functools import reduce
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -13,8 +15,9 @@ SCRATCH = 2**18
 TINY = np.finfo(float).tiny
 _own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
-_POWERS = np.arange(_AROUND.size)[:, None]
-INNER = polynomial.Polynomial.fromroots(_AROUND[1:-1])
+INNER = polynomial.polyfromroots(_AROUND[1:-1]).tolist()
+"""Coefficients of the polynomial that vanishes at all samples around a peak but the outermost two."""
+COMPARED = {"<": operator.lt, "<=": operator.le, "==": operator.eq, ">=": operator.ge}
 _WHOLE = math.factorial(2 * REACH)
 THROUGH = np.round(np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True)) * _WHOLE) / _WHOLE
 """Coefficients of the polynomial through samples, from them; whole numbers over a factorial, so the nearest to them."""
@@ -71,35 +74,85 @@ def _highest(height, design, count):
 
 
 def _between(near):
-    """Height of each peak, and how far from its highest sample, from the samples around it (places, peaks).
-
-    By the polynomial through all of them, by the parabola through three if others spoil it, as beyond a jump, and that
-    of the sample if not even three go together. What does not change its sign may be a magnitude, which has a corner at
-    zero, but its square has none. About how much the height may be wrong is what two samples less make of it.
-    """
-    sign = np.where((near >= 0).all(axis=0), 1.0, np.where((near <= 0).all(axis=0), -1.0, 0.0))
-    curve = np.where(sign == 0, near, near * abs(near))
-    _, bend, _ = bends = np.diff(curve[REACH - 2 : REACH + 3], 2, axis=0)
-    before, here, after = curve[REACH - 1 : REACH + 2]
+    """The same as `between`, of samples as arrays (places, peaks)."""
     with np.errstate(all="ignore"):
-        shift = 0.5 * (before - after) / bend
-        height = here - 0.25 * (before - after) * shift
-        series = sum(weights[:, None] * sample for weights, sample in zip(THROUGH.T, curve, strict=True))
-        slope = series[1:] * _POWERS[1:]
-        change = slope[1:] * _POWERS[1:-1]
-        place = shift
-        for _ in range(2):
-            place = place - polynomial.polyval(place, slope, tensor=False) / polynomial.polyval(place, change, False)
-        top = polynomial.polyval(place, series, tensor=False)
-        fits = (abs(top - height) < 0.05 * abs(bend)) & (abs(place) < 1)
-        fewer = top - INNER(place) * (series[-2] + series[-1] * place)
-    smooth = (bends < 0).all(axis=0)
-    other = np.where(smooth, np.where(fits, fewer, top), here + abs(bend))
-    found = np.where(smooth, np.where(fits, top, height), here)
-    height = np.where(sign == 0, found, sign * np.sqrt(np.maximum(sign * found, 0.0)))
-    error = abs(found - other)
-    error = np.where(sign == 0, error, error / np.maximum(np.maximum(abs(height), np.sqrt(error)), TINY))
-    return height, np.where(smooth, np.where(fits, place, shift), 0.0), error
+        return between(list(near), _chosen, np.sqrt)
+
+
+def _chosen(sign, one, other, here, there):
+    return np.where(COMPARED[sign](one, other), here, there)
+
+
+def between(near, chosen, sqrt):
+    """Height of each peak, how far from its highest sample, and about how much the height may be wrong.
+
+    From the samples around it, one after the other, by the polynomial through all of them, by the parabola through
+    three if others spoil it, as beyond a jump, and that of the sample if not even three go together. What does not
+    change its sign may be a magnitude, which has a corner at zero, but its square has none. About how much the height
+    may be wrong is what two samples less make of it.
+
+    Parameters
+    ----------
+    near : sequence of operand
+        Arrays, or vectors that write down what is done to them (`engines.vectors`).
+    chosen : function
+        ``chosen(sign, one, other, here, there)``: `here` where two operands compare so, else `there`.
+    sqrt : function
+    """
+
+    def larger(one, other):
+        return chosen("<", one, other, other, one)
+
+    least, most = reduce(lambda one, other: chosen("<", other, one, other, one), near), reduce(larger, near)
+    sign = chosen(">=", least, 0.0, 1.0, chosen("<=", most, 0.0, -1.0, 0.0))
+    curve = [chosen("==", sign, 0.0, sample, sample * abs(sample)) for sample in near]
+    before, here, after = curve[REACH - 1 : REACH + 2]
+    bend = (after - here) - (here - before)
+    first = (here - before) - (before - curve[REACH - 2])
+    last = (curve[REACH + 2] - after) - (after - here)
+    shift = 0.5 * (before - after) / bend
+    height = here - 0.25 * (before - after) * shift
+    series = list(_series(curve))
+    slope = [power * number for power, number in enumerate(series)][1:]
+    change = [power * number for power, number in enumerate(slope)][1:]
+    place = shift
+    for _ in range(2):
+        place = place - _polynomial(slope, place) / _polynomial(change, place)
+    top = _polynomial(series, place)
+    fewer = top - _polynomial(INNER, place) * (series[-2] + series[-1] * place)
+
+    def if_smooth(one, other):
+        return chosen("<", larger(larger(first, last), bend), 0.0, one, other)
+
+    def if_it_fits(one, other):
+        return chosen("<", abs(top - height), 0.05 * abs(bend), chosen("<", abs(place), 1.0, one, other), other)
+
+    found = if_smooth(if_it_fits(top, height), here)
+    error = abs(found - if_smooth(if_it_fits(fewer, top), here + abs(bend)))
+    size = sqrt(larger(sign * found, 0.0))
+    relative = error / larger(larger(size, sqrt(error)), TINY)
+    return (
+        chosen("==", sign, 0.0, found, sign * size),
+        if_smooth(if_it_fits(place, shift), 0.0),
+        chosen("==", sign, 0.0, error, relative),
+    )
+
+
+def _series(curve):
+    """Coefficients of the polynomial through samples, from their sums and differences on either side of the middle."""
+    after, before = curve[REACH + 1 :], curve[REACH - 1 :: -1]
+    even = [curve[REACH], *(one + other for one, other in zip(after, before, strict=True))]
+    odd = [one - other for one, other in zip(after, before, strict=True)]
+    for power, (middle, *weights) in enumerate(THROUGH[:, REACH:].tolist()):
+        terms = zip(weights, odd, strict=True) if power % 2 else zip([middle, *weights], even, strict=True)
+        yield reduce(operator.add, (weight * part for weight, part in terms if weight))
+
+
+def _polynomial(series, place):
+    """Polynomial from its coefficients: even and odd powers apart, which wait for each other half as long."""
+    square = place * place
+    even, odd = (reduce(lambda value, number: number + value * square, reversed(series[k::2])) for k in (0, 1))
+    return even + odd * place
 
 
 def lowest(values, step):

@@ -4,7 +4,6 @@ The loop over designs and crank angles runs block by block, so that values over 
 """
 
 import math
-import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -26,6 +25,8 @@ VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
 BLOCK = 40_000
 """Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""
+SHARES = 4
+"""Parts of a chunk that each thread gets, so that none waits long for another."""
 
 
 def quantities(outputs):
@@ -56,14 +57,14 @@ def run(scene, job, count, outputs):
     numbers, gaps = np.empty((len(outputs), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
     way = _by_loop if job.engine == "compiled" else _by_numpy
-    fill, step = way(solution, outputs, made, (numbers, rough, gaps, nearest))
+    fill, step = way(solution, outputs, made, (numbers, rough, gaps, nearest), job.threads)
     starts = range(0, made, step)
-    threads = min(job.threads, len(starts))
-    if threads == 1:
-        _each(fill, starts)
+    if job.threads == 1 or len(starts) == 1:
+        for start in starts:
+            fill(start)
     else:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(_each, [fill] * threads, [starts[first::threads] for first in range(threads)]))
+        with ThreadPoolExecutor(job.threads) as pool:
+            list(pool.map(fill, starts))
     reasons = np.full(made, "", dtype=object)
     for row in np.flatnonzero(gaps):
         where = f"at {gaps[row]} of {job.angles} crank angles"
@@ -73,42 +74,31 @@ def run(scene, job, count, outputs):
     return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
 
 
-def _each(fill, starts):
-    for start in starts:
-        fill(start)
+def _by_loop(solution, outputs, count, found, threads):
+    """Function that fills in what is found of some designs, from one on, and how many these are.
 
-
-def _by_loop(solution, outputs, count, found):
-    """Function that fills in what is found of a block of designs, from its first on, and how many are a block.
-
-    Each block is computed and reduced by machine code, in memory that the same thread takes again.
+    Values are computed and reduced by machine code, block by block in the same memory.
     """
     state, names = solution.dynamics, quantities(outputs)
     program, leaves = programs.of(state, (*names, "closure"), sizes=True)
     angle = np.array(solution.crank_angle, ndmin=2)
-    sine, cosine = loops.turn(angle)
     tables = loops.table_of_rows(program.rows(state, leaves), solution.shape)
     parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
+    given = angle, *loops.turn(angle), parameters, tables
     first = np.cumsum([0, *program.recording.widths])
     rows = [first[names.index(item.quantity)] for item in outputs]
-    held, size = threading.local(), len(program.outputs)
-    passes = Passes(outputs, rows, first[len(names)], angle[0], round(solution.period / TURN))
-    step = max(1, BLOCK // (size * angle.shape[1]))
+    passes = Passes(outputs, rows, first[len(names)], round(solution.period / TURN))
+    size = len(program.outputs), angle.shape[1]
+    block = max(1, BLOCK // math.prod(size))
+    step = max(block, -(-count // (SHARES * threads)))
 
     def fill(start):
-        block = slice(start, start + step)
-        designs = len(parameters[block])
-        if not hasattr(held, "results"):
-            held.results = np.empty((step, size, angle.shape[1]))
-        shared = tables if tables.shape[1] == 1 else np.ascontiguousarray(tables[:, block])
-        results = held.results[:designs]
-        loops.run(program.loop, angle, sine, cosine, parameters[block], shared, results)
-        passes(results, start, *found)
+        passes(program.loop, given, np.empty((block, *size)), found, start, min(start + step, count))
 
     return fill, step
 
 
-def _by_numpy(solution, outputs, count, found):
+def _by_numpy(solution, outputs, count, found, threads):
     """The same by NumPy, all designs at a time."""
     numbers, rough, gaps, nearest = found
     with np.errstate(all="ignore"):
