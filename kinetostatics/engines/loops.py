@@ -14,6 +14,8 @@ from .writing import TURN
 
 SHARE = 100_000
 """Values over designs and angles that are worth a thread of their own."""
+ALIGNED = 8
+"""Numbers in the largest vector of a processor."""
 NO_ROWS = np.empty((0, 1, 0))
 """Tables of a loop that needs none."""
 
@@ -28,10 +30,10 @@ def turn(angle):
 
 def table_of_parameters(numbers, shape):
     """Parameters (designs, P) from numbers, each a float or an array (..., 1), for designs of a batch shape."""
-    if not shape:
-        return np.array([numbers], dtype=float)
-    columns = [np.broadcast_to(number, (*shape, 1)).ravel() for number in numbers]
-    return np.array(columns, dtype=float).reshape(len(columns), -1).T.copy()
+    table = np.empty((math.prod(shape), len(numbers)))
+    for place, number in enumerate(numbers):
+        table[:, place] = np.broadcast_to(number, (*shape, 1)).ravel() if np.ndim(number) else number
+    return table
 
 
 def table_of_rows(rows, shape):
@@ -42,6 +44,14 @@ def table_of_rows(rows, shape):
     full = (1, shape[-1]) if one_row else (math.prod(shape[:-1]), shape[-1])
     spread = [np.broadcast_to(row, shape[-1:] if one_row else shape).reshape(full) for row in rows]
     return np.array(spread, dtype=float)
+
+
+def memory(*shape):
+    """Memory for numbers, which begins where vectors of every processor are loaded at once."""
+    size = math.prod(shape)
+    held = np.empty(size + ALIGNED)
+    first = -held.ctypes.data // held.itemsize % ALIGNED
+    return held[first : first + size].reshape(shape)
 
 
 def run(loop, angle, sine, cosine, parameters, tables, results):

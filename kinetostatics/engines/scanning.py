@@ -18,9 +18,9 @@ def falling(writer, here, after):
     return writer.builder.not_(writer.holds(">=", after, here))
 
 
-def changing(writer, here, after):
-    """Whether only one of two numbers is negative."""
-    return writer.builder.xor(writer.holds("<", here, 0.0), writer.holds("<", after, 0.0))
+def negative(writer, here, after):
+    """Whether the first of two numbers is negative."""
+    return writer.holds("<", here, 0.0)
 
 
 def bits_of_steps(*conditions):
@@ -89,7 +89,9 @@ def _row(context, builder, kinds, given):
 
     array = context.make_array(kinds[0])(context, builder, given[0])
     _, rows, size = cgutils.unpack_tuple(builder, array.shape)
-    design, row = (context.cast(builder, part, kind, types.intp) for part, kind in zip(given[1:], kinds[1:], strict=True))
+    design, row = (
+        context.cast(builder, part, kind, types.intp) for part, kind in zip(given[1:], kinds[1:], strict=True)
+    )
     return builder.gep(array.data, [builder.mul(builder.add(builder.mul(design, rows), row), size)]), size
 
 
@@ -115,8 +117,7 @@ def over_columns(function, rows):
             with cgutils.for_range(builder, times) as each:
                 start = builder.mul(each.index, word(COLUMNS))
                 places = [
-                    builder.gep(array.data, [builder.add(builder.mul(size, word(row)), start)])
-                    for row in range(rows)
+                    builder.gep(array.data, [builder.add(builder.mul(size, word(row)), start)]) for row in range(rows)
                 ]
                 found = function([writer.loaded(place) for place in places], writer.chosen, writer.scope["sqrt"])
                 for part, place in zip(found, places, strict=False):

@@ -13,6 +13,7 @@ from ..engines.scanning import COLUMNS
 from ..engines.vectors import edition
 from ..engines.writing import ARGUMENTS, FILLED, GIVEN
 from ..numbers.elementary import ROUNDING
+from . import peaks
 from .peaks import REACH
 from .reductions import MEAN, PEAK
 from .turn import NEAR
@@ -36,8 +37,9 @@ from kinetostatics.results.peaks import between
 from numba import njit
 
 options = dict(error_model="numpy", nogil=True)
+inner = dict(options, _nrt=False)  # nothing in here gets memory, so nobody need count who holds it
 steps = scanning.bits_of_steps(scanning.rising, scanning.falling)
-changes = scanning.bits_of_steps(scanning.changing)
+signs = scanning.bits_of_steps(scanning.negative)
 lowest = scanning.lowest_bit()
 heights = scanning.over_columns(between, {AROUND})
 plain = scanning.summing(lambda value: value)
@@ -46,26 +48,32 @@ squares = scanning.summing(lambda value: value * value)
 ONE, SIXTY_THREE = np.uint64(1), np.uint64(63)
 
 
-@njit(**options)
+@njit(**inner)
 def value(results, design, row, i):
     """Value at a place that may lie a little beyond either end of the turn."""
     count = results.shape[2]
     return results[design, row, i + count if i < 0 else i - count if i >= count else i]
 
 
-@njit(**options)
+@njit(**inner)
 def bend(results, design, row, i):
     before, after = value(results, design, row, i - 1), value(results, design, row, i + 1)
     return abs(before - 2.0 * results[design, row, i] + after)
 
 
-@njit(**options)
-def tops(words, side, count, places, found):
-    """Fill in, from a place on, where values stop rising, or falling, that did; how many are found then."""
+@njit(**inner)
+def after(words, k, count):
+    """Bits of a word moved by one, so that each place has that of the next; the first comes after the last."""
     last = (count - 1) // 64
-    for k in range(last + 1):
-        after = words[side, k + 1] << SIXTY_THREE if k < last else (words[side, 0] & ONE) << np.uint64((count - 1) % 64)
-        word = words[side, k] & ~(words[side, k] >> ONE | after)
+    following = words[k + 1] << SIXTY_THREE if k < last else (words[0] & ONE) << np.uint64((count - 1) % 64)
+    return words[k] >> ONE | following
+
+
+@njit(**inner)
+def tops(words, count, places, found):
+    """Fill in, from a place on, where values stop rising, or falling, that did; how many are found then."""
+    for k in range((count + 63) // 64):
+        word = words[k] & ~after(words, k, count)
         while word:
             place = 64 * k + lowest(word) + 1
             places[found] = place if place < count else 0
@@ -74,14 +82,14 @@ def tops(words, side, count, places, found):
     return found
 
 
-@njit(**options)
+@njit(**inner)
 def rivals(results, design, row, side, words, places, found):
     """Fill in, from a place on, where peaks of values, or of them with the sign turned, are that may be the highest.
 
     How many are found then.
     """
     sign, last, first = 1.0 - 2.0 * side, results.shape[2] - 1, found
-    found = tops(words, side, last + 1, places, found)
+    found = tops(words[side], last + 1, places, found)
     if found == first:  # of what is constant the first
         places[found] = 0
         found += 1
@@ -101,7 +109,7 @@ def rivals(results, design, row, side, words, places, found):
     return kept
 
 
-@njit(**options)
+@njit(**inner)
 def peaks(results, row, sides, memory, high, where, error):
     """Fill in (2, designs): highest peaks of values, and of them with the sign turned, where, in samples, and about how
     far off; NaN where a value is no number. Sides are the first to be found and the one behind the last.
@@ -138,7 +146,7 @@ def peaks(results, row, sides, memory, high, where, error):
             where[side, design] = at + count if at < 0.0 else at - count if at >= count else at
 
 
-@njit(**options)
+@njit(**inner)
 def kink(results, design, row, i, j):
     """What the sum of sizes is too large by if the sign changes from one sample to another (`reductions._kinks`)."""
     one, other = value(results, design, row, i), value(results, design, row, j)
@@ -148,13 +156,13 @@ def kink(results, design, row, i, j):
     return here * there / (here + there) - (here + there) / 6.0
 
 
-@njit(**options)
+@njit(**inner)
 def kinks(results, design, row, words):
     """The same of all samples, and of every other."""
-    changes(results, design, row, words)
-    whole, half = 0.0, 0.0
-    for k in range((results.shape[2] + 63) // 64):
-        word = words[0, k]
+    signs(results, design, row, words)
+    count, whole, half = results.shape[2], 0.0, 0.0
+    for k in range((count + 63) // 64):
+        word = words[0, k] ^ after(words[0], k, count)
         while word:
             i = 64 * k + lowest(word) + 1
             word &= word - ONE
@@ -163,7 +171,7 @@ def kinks(results, design, row, words):
     return whole, half
 
 
-@njit(**options)
+@njit(**inner)
 def averaged(results, design, row, power, words):
     """Mean, of sizes or squares too, and how far that of every other value is from it."""
     count = results.shape[2]
@@ -183,7 +191,7 @@ def averaged(results, design, row, power, words):
     return whole, abs(half - whole) if count % 2 == 0 else 0.0 * whole
 
 
-@njit(**options)
+@njit(**inner)
 def means(results, row, power, words, numbers, rough):
     for design in range(results.shape[0]):
         found, error = averaged(results, design, row, power, words)
@@ -196,7 +204,7 @@ def means(results, row, power, words, numbers, rough):
         numbers[design], rough[design] = found, doubtful
 
 
-@njit(**options)
+@njit(**inner)
 def extremes(results, row, kind, turns, memory, numbers, rough):
     high, where, error = memory[4:]
     high[:], error[:] = -inf, 0.0
@@ -220,7 +228,7 @@ def extremes(results, row, kind, turns, memory, numbers, rough):
         numbers[design], rough[design] = found, doubtful
 
 
-@njit(**options)
+@njit(**inner)
 def reduced(results, rows, kinds, turns, memory, numbers, rough, start):
     stop = start + results.shape[0]
     for k in range(rows.size):
@@ -231,7 +239,7 @@ def reduced(results, rows, kinds, turns, memory, numbers, rough, start):
             extremes(results, rows[k], kinds[k], turns, memory, numbers[k, start:stop], rough[k, start:stop])
 
 
-@njit(**options)
+@njit(**inner)
 def closed(results, first, angle, gaps, nearest, start):
     designs, count = results.shape[0], results.shape[2]
     for design in range(designs):
@@ -284,7 +292,7 @@ def passes(
 @cache
 def _source():
     """The source with the edition of what writes it, so that machine code of another is not taken for its own."""
-    return SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(scanning)};", 1)
+    return SOURCE.replace("kinetostatics;", f"kinetostatics, edition {edition(scanning, peaks)};", 1)
 
 
 class Passes:

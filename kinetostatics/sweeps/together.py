@@ -93,7 +93,7 @@ def _by_loop(solution, outputs, count, found, threads):
     step = max(block, -(-count // (SHARES * threads)))
 
     def fill(start):
-        passes(program.loop, given, np.empty((block, *size)), found, start, min(start + step, count))
+        passes(program.loop, given, loops.memory(block, *size), found, start, min(start + step, count))
 
     return fill, step
 

@@ -9,7 +9,7 @@ from kinetostatics.engines import scanning
 from support import by_arrays
 
 SIZES = (12, 63, 64, 65, 66, 67, 127, 128, 130, 360, 1441)
-SCANS = {"rising": 3, "falling": 3, "changing": 2}
+SCANS = ("rising", "falling", "negative")
 
 
 def values_of(size):
@@ -23,50 +23,67 @@ def values_of(size):
 def jitted(intrinsic, arguments):
     from numba import njit
 
-    names = ", ".join("abc"[:arguments])
+    names = ", ".join("abcd"[:arguments])
     scope = {"intrinsic": intrinsic}
     exec(f"def call({names}):\n    return intrinsic({names})", scope)
     return njit(scope["call"])
 
 
 @pytest.mark.slow_start
-@pytest.mark.parametrize("name", SCANS)
-def test_bits_are_set_where_it_holds_and_nowhere_else(numba, name):
-    holds, reach = getattr(scanning, name), SCANS[name]
-    own, expected = jitted(scanning.bits_where(holds, reach), 2), by_arrays.bits_where(holds, reach)
+def test_bits_are_set_where_conditions_hold_and_nowhere_else(numba):
+    conditions = [getattr(scanning, name) for name in SCANS]
+    own, expected = jitted(scanning.bits_of_steps(*conditions), 4), by_arrays.bits_of_steps(*conditions)
     for size in SIZES:
-        values = values_of(size)
-        words, wanted = np.full((2, size // 64 + 1), 2**64 - 1, np.uint64)
-        own(values, words)
-        expected(values, wanted)
-        filled = (size - reach) // 64 + 1
-        assert wanted[:filled].any()
-        assert np.array_equal(words[:filled], wanted[:filled]), size
+        results = np.zeros((2, 3, size))
+        results[1, 2] = values_of(size)
+        words, wanted = np.full((2, 3, size // 64 + 1), 2**64 - 1, np.uint64)
+        own(results, 1, 2, words)
+        expected(results, 1, 2, wanted)
+        filled = (size + 63) // 64
+        assert wanted[:, :filled].any(axis=1).all()
+        assert np.array_equal(words[:, :filled], wanted[:, :filled]), size
 
 
 def test_what_holds_is_what_reductions_mean():
-    rows = np.array([[0.0, 1.0, 1.0, 0.0, math.nan, -1.0, -0.0, 0.0]])
-    places = {name: by_arrays_places(name, rows[0]) for name in SCANS}
-    assert places == {"rising": [1, 4, 6], "falling": [3, 4], "changing": [4, 5]}
+    values = np.array([0.0, 1.0, 1.0, 0.0, math.nan, -1.0, -0.0, 0.0])
+    after = np.roll(values, -1)
+    places = {name: np.flatnonzero(getattr(scanning, name)(by_arrays.WRITER, values, after)).tolist() for name in SCANS}
+    assert places == {"rising": [0, 3, 4, 5], "falling": [2, 3, 4], "negative": [5]}
 
 
-def by_arrays_places(name, values):
-    """Places in the middle of three, or the first of two."""
-    words, reach = np.zeros(1, np.uint64), SCANS[name]
-    by_arrays.bits_where(getattr(scanning, name), reach)(values, words)
-    return [k + reach - 2 for k in range(64) if int(words[0]) >> k & 1]
+@pytest.mark.slow_start
+def test_columns_of_a_table_become_a_function_of_them(numba):
+    """Up to the next multiple of so many, and not beyond."""
+
+    def function(parts, chosen, sqrt):
+        one, other, *_ = parts
+        return chosen("<", one, other, 2.0 * one, 3.0), sqrt(abs(one - other))
+
+    own, expected = jitted(scanning.over_columns(function, 3), 2), by_arrays.over_columns(function, 3)
+    for count in (1, scanning.COLUMNS, scanning.COLUMNS + 1):
+        table = np.random.default_rng(count).normal(size=(3, 4 * scanning.COLUMNS))
+        found, wanted = table.copy(), table.copy()
+        own(found, count)
+        expected(wanted, count)
+        assert np.array_equal(found[:, :count], wanted[:, :count])
+        beyond = -(-count // scanning.COLUMNS) * scanning.COLUMNS
+        assert np.array_equal(found[:, beyond:], table[:, beyond:])
+        assert np.array_equal(found[2], table[2])
 
 
 @pytest.mark.slow_start
 def test_sums_of_every_other_value_lose_little(numba):
     terms = {"plain": lambda value: value, "sizes": abs, "squares": lambda value: value * value}
     for name, term in terms.items():
-        own = jitted(scanning.summing(term), 1)
+        own = jitted(scanning.summing(term), 3)
         for size in SIZES:
             values = np.random.default_rng(size).normal(size=size)
             wanted = [math.fsum(term(values[first::2]).tolist()) for first in (0, 1)]
             scale = np.abs(term(values)).sum()
-            assert np.abs(np.subtract(own(values), wanted)).max() < 2e-16 * scale, (name, size)
+            assert np.abs(np.subtract(own(np.array([[0.0 * values, values]]), 0, 1), wanted)).max() < 2e-16 * scale, (
+                name,
+                size,
+            )
 
 
 @pytest.mark.slow_start

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from kinetostatics.engines import compiled, scanning, vectors
-from kinetostatics.results import passes
+from kinetostatics.engines.writing import ARGUMENTS
+from kinetostatics.results import passes, peaks
 from kinetostatics.results.passes import KINDS, Passes
 from kinetostatics.results.reductions import parsed
 
@@ -48,25 +49,41 @@ def signals(count):
     return np.array(made)
 
 
-def reduced(values, closure=None, turns=1):
-    """What `Passes` finds of values (designs, N), and of closure."""
+@pytest.fixture(scope="module")
+def handed_on():
+    """A program's loop whose results are its tables."""
+    text = f"""from numba import njit
+
+
+@njit("{ARGUMENTS}", nogil=True)
+def loop(angle, sine, cosine, parameters, tables, results):
+    for design in range(results.shape[0]):
+        for row in range(results.shape[1]):
+            results[design, row] = tables[row, design]
+"""
+    return compiled.loaded(text).loop
+
+
+def reduced(loop, values, closure=None, turns=1, block=7):
+    """What `Passes` finds of values (designs, N), and of closure, block by block."""
     closure = np.ones_like(values) if closure is None else closure
-    results = np.ascontiguousarray(np.stack([values, closure], axis=1))
-    count, shape = len(values), (len(OUTPUTS), len(values))
-    numbers, rough = np.empty(shape), np.zeros(shape, dtype=bool)
-    gaps, nearest = np.zeros(count, dtype=int), np.full(count, np.nan)
-    passes = Passes(OUTPUTS, [0] * len(OUTPUTS), 1, np.linspace(0, 6, values.shape[1]), turns)
-    half = count // 2
-    for part, start in ((results[:half], 0), (results[half:], half)):
-        passes(part.copy(), start, numbers, rough, gaps, nearest)
-    return numbers, rough, gaps, nearest
+    designs, count = values.shape
+    shape = len(OUTPUTS), designs
+    found = np.empty(shape), np.zeros(shape, dtype=bool), np.zeros(designs, dtype=int), np.full(designs, np.nan)
+    angle = np.linspace(0, 6, count)[None]
+    given = angle, np.sin(angle), np.cos(angle), np.zeros((designs, 1)), np.array([values, closure])
+    passes = Passes(OUTPUTS, [0] * len(OUTPUTS), 1, turns)
+    half = designs // 2
+    for start, stop in ((0, half), (half, designs)):
+        passes(loop, given, np.empty((block, 2, count)), found, start, stop)
+    return found
 
 
 @pytest.mark.parametrize("count", [12, 13, 45, 360, 361])
 @pytest.mark.parametrize("turns", [1, 2])
-def test_numbers_and_doubts_are_those_of_numpy(count, turns):
+def test_numbers_and_doubts_are_those_of_numpy(handed_on, count, turns):
     values = signals(count)
-    numbers, rough, *_ = reduced(values, turns=turns)
+    numbers, rough, *_ = reduced(handed_on, values, turns=turns)
     for item, found, doubtful in zip(OUTPUTS, numbers, rough, strict=True):
         with np.errstate(all="ignore"):
             expected, doubted = item.estimated(values, turns)
@@ -77,12 +94,12 @@ def test_numbers_and_doubts_are_those_of_numpy(count, turns):
         np.testing.assert_array_equal(doubtful, doubted, err_msg=str(item))
 
 
-def test_designs_that_do_not_close_or_nearly_do_not_are_told():
+def test_designs_that_do_not_close_or_nearly_do_not_are_told(handed_on):
     closure = np.ones((4, 20))
     closure[1, 7] = 0.005
     closure[2, 3:6] = -0.1
     closure[3, 2] = np.nan
-    *_, gaps, nearest = reduced(np.ones((4, 20)), closure)
+    *_, gaps, nearest = reduced(handed_on, np.ones((4, 20)), closure)
     assert gaps.tolist() == [0, 0, 3, 1]
     np.testing.assert_array_equal(nearest, [np.nan, np.linspace(0, 6, 20)[7], np.nan, np.nan])
 
@@ -90,7 +107,7 @@ def test_designs_that_do_not_close_or_nearly_do_not_are_told():
 def test_machine_code_is_told_apart_by_what_writes_it(monkeypatch):
     """It is kept by its text, which does not have what `engines.scanning` and `engines.vectors` write."""
     own = passes._source.__wrapped__()
-    assert f"edition {vectors.edition(scanning)};" in own
+    assert f"edition {vectors.edition(scanning, peaks)};" in own
     texts = {scanning: "another"}
     monkeypatch.setattr(vectors.inspect, "getsource", lambda module: texts.get(module, "the same"))
     monkeypatch.setattr(passes, "edition", vectors.edition.__wrapped__)

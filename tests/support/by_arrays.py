@@ -7,10 +7,10 @@ import numpy as np
 
 from kinetostatics.engines.operations import BY_DESIGN
 
-COMPARED = {">": operator.gt, "<": operator.lt, "==": operator.eq}
+COMPARED = {"<": operator.lt, "<=": operator.le, "==": operator.eq, ">=": operator.ge}
 WRITER = SimpleNamespace(
     holds=lambda sign, one, other: COMPARED[sign](one, other),
-    builder=SimpleNamespace(or_=operator.or_, xor=operator.xor, not_=operator.invert),
+    builder=SimpleNamespace(not_=operator.invert),
 )
 
 
@@ -26,18 +26,35 @@ def over_angles(line):
     return at_angles
 
 
-def bits_where(holds, reach):
-    def bits(values, words):
-        found = holds(WRITER, *np.lib.stride_tricks.sliding_window_view(values, reach).T)
-        packed = np.packbits(found, bitorder="little")
+def bits_of_steps(*conditions):
+    def bits(results, design, row, words):
+        values = results[design, row]
+        found = [condition(WRITER, values, np.roll(values, -1)) for condition in conditions]
+        packed = np.packbits(found, axis=-1, bitorder="little")
         words.view(np.uint8)[:] = 0
-        words.view(np.uint8)[: packed.size] = packed
+        words.view(np.uint8)[:, : packed.shape[1]] = packed
 
     return bits
 
 
+def over_columns(function, rows):
+    def over(table, count):
+        found = function([*table[:rows, :count]], chosen, np.sqrt)
+        for place, part in enumerate(found):
+            table[place, :count] = part
+
+    def chosen(sign, one, other, here, there):
+        return np.where(COMPARED[sign](one, other), here, there)
+
+    return over
+
+
 def summing(term):
-    return lambda values: (term(values[::2]).sum(), term(values[1::2]).sum())
+    def sums(results, design, row):
+        values = term(results[design, row])
+        return values[::2].sum(), values[1::2].sum()
+
+    return sums
 
 
 def lowest_bit():
@@ -49,5 +66,5 @@ def stand_in(patch):
     from kinetostatics.engines import scanning, vectors
 
     patch.setattr(vectors, "over_angles", over_angles)
-    for own in (bits_where, summing, lowest_bit):
+    for own in (bits_of_steps, over_columns, summing, lowest_bit):
         patch.setattr(scanning, own.__name__, own)
