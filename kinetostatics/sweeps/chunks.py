@@ -48,6 +48,8 @@ class Job:
         Where the values stand in the table of designs.
     threads : int
         Cores to use for a chunk.
+    wide : bool
+        Whether a compiled loop takes all designs of a chunk, and no table for each of them.
     """
 
     make: Callable[[dict], Any]
@@ -57,6 +59,7 @@ class Job:
     angles: int
     engine: str
     threads: int
+    wide: bool = False
 
     @property
     def ratios(self):
@@ -124,7 +127,9 @@ def tried(job, designs, engines):
             continue
         checks.require("sweep", *problems)
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
-        return replace(job, engine=_engine(job, solutions, engines), outputs=outputs)
+        engine = _engine(job, solutions, engines)
+        wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
+        return replace(job, engine=engine, outputs=outputs, wide=wide)
     return None
 
 
@@ -146,13 +151,20 @@ def _engine(job, solutions, engines):
     if first == "numpy":
         return first
     try:
-        for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
-            programs.of(solution.dynamics, (*together.quantities(outputs), "closure"), sizes=True)
+        _programs(job, solutions)
     except NotGivenError:
         if not others:
             raise
         return _engine(job, solutions, others)
     return first
+
+
+def _programs(job, solutions):
+    """What a compiled loop of each side computes."""
+    return [
+        programs.of(solution.dynamics, (*together.quantities(outputs), "closure"), sizes=True)[0]
+        for solution, (_, outputs) in zip(solutions, job.sides, strict=True)
+    ]
 
 
 # Designs set apart

@@ -28,6 +28,9 @@ from .workers import ATTEMPTS, Workers, computed
 
 __all__ = ["FAILED", "sweep"]
 
+CHUNK, WIDE = 10_000, 50_000
+"""Designs computed together, unless told, and where they take little time and memory and nobody waits for them."""
+
 
 def sweep(
     source,
@@ -40,7 +43,7 @@ def sweep(
     engine=None,
     executor=None,
     workers=None,
-    chunk=10_000,
+    chunk=None,
     folder=None,
     progress=True,
 ):
@@ -78,7 +81,8 @@ def sweep(
         this process. When one dies, only the chunks under way are run again, and only designs that kill their worker by
         themselves have no numbers.
     chunk : int
-        Designs computed together: what bounds the memory.
+        Designs computed together: what bounds the memory. Unless told 10 000, or 50 000 where this process computes
+        them compiled and writes no folder.
     folder : path
         Parquet dataset that chunks are written to as they are done. If it holds part of the same sweep, that is kept
         and the rest computed, also what was damaged since. A function is the same if its code is, with what it holds
@@ -118,6 +122,8 @@ def sweep(
     )
     with Workers(executor, workers) as hands:
         job = _tried(job, designs, engines, hands)
+        here = executor is None and workers is None and folder is None
+        chunk = chunk or (WIDE if here and job.wide else CHUNK)
         parts = Parts(designs, chunk)
         if folder is not None:
             parts = Dataset(designs, chunk, folder, identity(job, designs, compared, chunk))
@@ -168,7 +174,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
         *_type_problems(designs),
         None if known is not None or wrong else _signature_problem(source, [name for _, name, _ in columns]),
         checks.count("angles", angles, size=checks.ANGLE),
-        checks.count("chunk", chunk),
+        None if chunk is None else checks.count("chunk", chunk),
         None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
         None if len(designs) else "there are no designs",
         _executor_problem(executor),
