@@ -31,8 +31,10 @@ def turn(angle):
 def table_of_parameters(numbers, shape):
     """Parameters (designs, P) from numbers, each a float or an array (..., 1), for designs of a batch shape."""
     table = np.empty((math.prod(shape), len(numbers)))
+    table[...] = [0.0 if np.ndim(number) else number for number in numbers]
     for place, number in enumerate(numbers):
-        table[:, place] = np.broadcast_to(number, (*shape, 1)).ravel() if np.ndim(number) else number
+        if np.ndim(number):
+            table[:, place] = np.broadcast_to(number, (*shape, 1)).ravel()
     return table
 
 

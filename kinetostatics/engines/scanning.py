@@ -24,10 +24,10 @@ def negative(writer, here, after):
 
 
 def bits_of_steps(*conditions):
-    """For numba: ``bits(results, design, row, words)``: bit k of a row of uint64 is set where a condition holds of a step.
+    """For numba: ``bits(results, design, row, words)``: sets bit k of words where a condition holds of step k.
 
-    That is from value k in a row of results (designs, rows, N) to the next, and from the last to the first. There is a
-    row of words for each condition, with N bits; those of the last word beyond them are 0.
+    That is the step from value k in a row of results (designs, rows, N) to the next, or from the last to the first.
+    There is a row of uint64 for each condition, with N bits; those of the last word beyond them are 0.
     """
     from numba import types
     from numba.core import cgutils
@@ -132,7 +132,8 @@ def over_columns(function, rows):
 def summing(term):
     """For numba: ``sums(results, design, row)``: the sum of a term of every other value, and of those between.
 
-    These are a row of results (designs, rows, N). Many sums go side by side, in an order of its own, whatever the processor.
+    These are a row of results (designs, rows, N). Many sums go side by side, in an order of its own, whatever the
+    processor.
     """
     from llvmlite import ir
     from numba import types

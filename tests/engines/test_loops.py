@@ -30,6 +30,21 @@ def test_machine_code_gives_the_same_on_one_thread_and_on_several(numba, monkeyp
         assert np.abs(found - s.reaction("O")).max() <= 8 * ULP * np.abs(before).max()
 
 
+def test_parameters_stand_in_a_row_for_each_design():
+    numbers = 1.0, np.array([[2.0], [3.0]]), np.array([4.0]), 5
+    assert loops.table_of_parameters(numbers, (2,)).tolist() == [[1, 2, 4, 5], [1, 3, 4, 5]]
+    assert loops.table_of_parameters((1.0, np.float64(2.0)), ()).tolist() == [[1, 2]]
+    assert (
+        loops.table_of_parameters((1.0, np.array([[[6.0]], [[7.0]]])), (2, 3)).tolist() == [[1, 6]] * 3 + [[1, 7]] * 3
+    )
+
+
+def test_memory_begins_where_vectors_are_loaded_at_once():
+    held = [loops.memory(count, 3, 8) for count in (1, 2, 5)]
+    assert [part.shape for part in held] == [(1, 3, 8), (2, 3, 8), (5, 3, 8)]
+    assert [part.ctypes.data % 64 for part in held] == [0, 0, 0]
+
+
 def too_short(engine, **options):
     mechanism = ks.crank_slider(0.3, 0.25, slider=ks.Link(1.0))
     return ks.solve(mechanism, ANGLES, crank_speed=3.0, engine=engine, **options)

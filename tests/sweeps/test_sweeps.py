@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -16,7 +17,7 @@ import kinetostatics as ks
 from kinetostatics.engines import compiled
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.results.reductions import REDUCTIONS
-from kinetostatics.sweeps import sweeps, together
+from kinetostatics.sweeps import sweeps, together, workers
 from kinetostatics.sweeps.sweeps import FAILED, _type_problems
 from support import factories
 from support.case_files import written
@@ -182,12 +183,14 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     pd.testing.assert_frame_equal(found, expected, rtol=1e-13)
     monkeypatch.setattr(compiled, "cores", lambda: 2)
     monkeypatch.setattr(together, "VALUES", 50)
+    monkeypatch.setattr(together, "BLOCK", 50)
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 
 def test_tables_beforehand_are_cut_into_blocks_like_designs(interpreted, monkeypatch):
     """What NumPy computes beforehand has its rows for each design too."""
     monkeypatch.setattr(together, "VALUES", 50)
+    monkeypatch.setattr(together, "BLOCK", 50)
 
     def made(crank, mass):
         push = ks.ProcessForce(lambda motion: np.where(motion.slider_velocity > 0, -50.0, 20.0))
@@ -240,6 +243,39 @@ def test_what_cannot_be_compiled_is_left_to_numpy_unless_told(interpreted, monke
 
 
 # Memory and progress
+
+
+def test_more_designs_go_together_where_they_take_little_time_and_memory(interpreted, monkeypatch, tmp_path):
+    """Compiled, here, and without a table for each of them, unless told; what is written keeps its chunks."""
+    sizes, run = [], workers.run_chunk
+
+    def counted(job, frame):
+        sizes.append(len(frame))
+        return run(job, frame)
+
+    monkeypatch.setattr(workers, "run_chunk", counted)
+    monkeypatch.setattr(sweeps, "CHUNK", 3)
+    monkeypatch.setattr(sweeps, "WIDE", 4)
+    tabled = ks.ProcessForce(ks.Table((1.0, 3.0), (5.0, 9.0), over="travel"))
+
+    def loaded(crank):
+        mechanism = ks.crank_slider(crank, 2.0, slider=ks.Link(1.0))
+        return ks.Scene(mechanism, 10.0, loads=(tabled,))
+
+    designs = DESIGNS[["crank [mm]"]].head(6)
+    options = [
+        ({"engine": "compiled"}, [4, 2]),
+        ({"engine": "numpy"}, [3, 3]),
+        ({"engine": "compiled", "folder": tmp_path}, [3, 3]),
+        ({"engine": "compiled", "executor": ThreadPoolExecutor(1)}, [3, 3]),
+        ({"engine": "compiled", "chunk": 5}, [5, 1]),
+        ({"engine": "compiled", "source": loaded}, [3, 3]),
+    ]
+    for told, expected in options:
+        sizes.clear()
+        table = sweep(**{"source": factories.pump, "designs": designs, "outputs": OUTPUTS, "angles": 24} | told)
+        assert (table[FAILED] == "").all()
+        assert sizes == expected, told
 
 
 @pytest.mark.slow
