@@ -187,14 +187,14 @@ def _compared(job, frame):
     return numbers, reasons
 
 
-def _reduced(make, job, frame, outputs, earlier=None):
+def _reduced(make, job, frame, outputs, earlier=None, wrong=False):
     """Numbers of a scene (outputs, designs) and reasons (designs,) why it cannot be made or solved.
 
-    `earlier` are the numbers from half as many crank angles.
+    `earlier` are the numbers from half as many crank angles; `wrong` tells that arrays of a single design are refused.
     """
     count = len(frame)
     if count == 1:
-        return _alone(make, job, frame, outputs, earlier)
+        return _alone(make, job, frame, outputs, earlier, wrong)
     (values,) = job.values(frame)
     try:
         scene = _scene(make, values)
@@ -217,13 +217,15 @@ def _reduced(make, job, frame, outputs, earlier=None):
     for part in parts:
         if part.size:
             known = None if earlier is None else earlier[:, part]
-            numbers[:, part], reasons[part] = _reduced(make, job, frame.iloc[part], outputs, known)
+            refused = part.size == 1 and wrong is not None and bool(wrong[part[0]])
+            some = frame.iloc[part[0] : part[0] + 1] if part.size == 1 else frame.iloc[part]  # a slice is soon made
+            numbers[:, part], reasons[part] = _reduced(make, job, some, outputs, known, refused)
     return numbers, reasons
 
 
-def _alone(make, job, frame, outputs, earlier):
+def _alone(make, job, frame, outputs, earlier, wrong):
     """The same for a single design, as an array of one, so that it does not matter which designs come together."""
-    for values in job.values(frame):
+    for values in job.values(frame)[wrong:]:
         try:
             return _settled(make, job, frame, outputs, together.run(_scene(make, values), job, 1, outputs), earlier)
         except (MissingLibraryError, OSError):

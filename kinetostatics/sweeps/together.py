@@ -25,7 +25,7 @@ VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
 BLOCK = 40_000
 """Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""
-SHARES = 4
+SHARES = 8
 """Parts of a chunk that each thread gets, so that none waits long for another."""
 
 

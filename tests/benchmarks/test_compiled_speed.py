@@ -255,13 +255,13 @@ def test_sweep_of_many_designs_takes_seconds_and_no_more_memory_than_its_table(b
             assert memory_10 - memory < 2 * (size_10 - size)
 
 
-def test_sweep_takes_at_most_three_times_as_long_as_its_bare_loop(benchmark, tell):
+def test_sweep_takes_at_most_twice_as_long_as_its_bare_loop(benchmark, tell):
     designs = ks.designs.random(VARIED["plain"], MANY)
     benchmark.pedantic(swept, ("plain", designs), rounds=1, warmup_rounds=1)
     whole, alone = np.min([(swept("plain", designs)[1], bare(designs)) for _ in range(5)], axis=0)
     benchmark.extra_info["times as long"] = whole / alone
     tell(f"{MANY} designs x 360 angles: sweep {whole:.3f} s, {whole / alone:.2f} times its bare loop, {alone:.3f} s")
-    assert whole <= 3 * alone
+    assert whole <= 2 * alone
 
 
 def test_designs_that_are_impossible_hardly_slow_a_sweep_down(benchmark, tell):
