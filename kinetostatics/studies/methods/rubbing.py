@@ -95,10 +95,8 @@ class Rubbing:
         """On the pin of the roller, whose contact pulls along the curve as much as its pin holds it back."""
         _, place, moving = self._acting.point(pair.joint)
         way = moving / abs(moving) * self._sign(self._speed)
-        radius, reach = (
-            self._number(friction.roller_radius),
-            self._number(friction.mu) * self._number(friction.pin_radius),
-        )
+        radius, mu = self._number(friction.roller_radius), self._number(friction.mu)
+        reach = mu * self._number(friction.pin_radius)
         pressed = forces[pair.force]
         side = self._sign(pressed)
         turning = -side * (way.conjugate() * moving).real / radius - self._at(pair.link)[-1]
