@@ -1,7 +1,7 @@
-"""Reductions of many designs in one pass each, as machine code by numba: the same numbers as `reductions` to rounding.
+"""Values of many designs computed and reduced as machine code by numba: the same numbers as `reductions` to rounding.
 
-A loop over designs leaves its values in the cache; here they are reduced before they leave it. What depends on a
-design is written for it alone, so that it does not matter which designs come together.
+A program's loop leaves the values of a block of designs in the cache; here they are reduced before they leave it, and
+nothing of Python comes between. It does not matter which designs come together.
 """
 
 from functools import cache
@@ -110,19 +110,22 @@ def rivals(results, design, row, side, words, places, found):
 
 
 @njit(**inner)
-def peaks(results, row, sides, memory, high, where, error):
+def peaks(results, row, sides, memory):
     """Fill in (2, designs): highest peaks of values, and of them with the sign turned, where, in samples, and about how
     far off; NaN where a value is no number. Sides are the first to be found and the one behind the last.
+
+    All designs' peaks that may be the highest come first, and then how high they are between samples, at once.
     """
-    near, owners, places, words = memory
+    near, owners, places, words, high, where, error = memory
     designs, count, found = results.shape[0], results.shape[2], 0
+    error[:] = 0.0
     for design in range(designs):
         steps(results, design, row, words)
         whole = True
         for k in range((count + 63) // 64):
             whole &= words[0, k] & words[1, k] == 0
         for side in range(sides[0], sides[1]):
-            high[side, design], where[side, design], error[side, design] = -inf if whole else nan, nan, 0.0
+            high[side, design], where[side, design] = -inf if whole else nan, nan
             if whole:
                 first = found
                 found = rivals(results, design, row, side, words, places, found)
@@ -192,7 +195,8 @@ def averaged(results, design, row, power, words):
 
 
 @njit(**inner)
-def means(results, row, power, words, numbers, rough):
+def means(results, row, power, memory, numbers, rough):
+    words = memory[3]
     for design in range(results.shape[0]):
         found, error = averaged(results, design, row, power, words)
         doubtful = error > {MEAN!r} * abs(found)
@@ -206,10 +210,9 @@ def means(results, row, power, words, numbers, rough):
 
 @njit(**inner)
 def extremes(results, row, kind, turns, memory, numbers, rough):
-    high, where, error = memory[4:]
-    high[:], error[:] = -inf, 0.0
     sides = 0 if kind <= 1 or kind >= 4 else 1, 1 if kind <= 1 else 2
-    peaks(results, row, sides, memory[:4], high, where, error)
+    peaks(results, row, sides, memory)
+    high, where, error = memory[4:]
     for design in range(results.shape[0]):
         above, below = high[0, design], -high[1, design]
         off = max(error[0, design], error[1, design])
@@ -234,7 +237,7 @@ def reduced(results, rows, kinds, turns, memory, numbers, rough, start):
     for k in range(rows.size):
         if kinds[k] >= {len(EXTREMES)}:
             power = kinds[k] - {len(EXTREMES)}
-            means(results, rows[k], power, memory[3], numbers[k, start:stop], rough[k, start:stop])
+            means(results, rows[k], power, memory, numbers[k, start:stop], rough[k, start:stop])
         elif kinds[k] >= 0:
             extremes(results, rows[k], kinds[k], turns, memory, numbers[k, start:stop], rough[k, start:stop])
 
@@ -272,10 +275,9 @@ def passes(
 ):
     step, count = held.shape[0], angle.shape[1]
     many = {COLUMNS} * (2 * step * (count // 2 + 2) // {COLUMNS} + 1)
-    memory = (
-        np.empty(({AROUND}, many)), np.empty(many, np.int64), np.empty(many, np.int64),
-        np.empty((2, count // 64 + 1), np.uint64), np.empty((2, step)), np.empty((2, step)), np.empty((2, step)),
-    )
+    near, owners, places = np.empty(({AROUND}, many)), np.empty(many, np.int64), np.empty(many, np.int64)
+    words = np.empty((2, count // 64 + 1), np.uint64)
+    memory = near, owners, places, words, np.empty((2, step)), np.empty((2, step)), np.empty((2, step))
     while start < stop:
         end = min(start + step, stop)
         results = held[: end - start]
