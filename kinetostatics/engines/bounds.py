@@ -81,8 +81,10 @@ class Bounds:
                 self._uses.setdefault(part, []).append(node.operation)
 
     def _found(self, node):
+        if node in self._inputs:
+            return self._inputs[node](self)
         if node.operation in INPUTS:
-            return self._inputs[node](self) if node in self._inputs else EXACT
+            return EXACT
         relative, rest = self.own(node)
         carried = _CARRIED[node.operation](self, rest, node, *node.arguments)
         return Error(relative + carried.relative, carried.rest)

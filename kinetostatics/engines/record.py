@@ -20,12 +20,13 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
-from ..numbers.elementary import UNIT
+from ..numbers.elementary import UNIT, held
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from ..numbers.planar import plus
 from .bounds import Error
 from .gaping import Gaps
+from .steep import SteepTable
 from .trace import Graph, LeanGraph, Node, needed, operations
 
 WITHOUT_GAPS = ("closure", *CHECKS)
@@ -243,14 +244,26 @@ class Recorder:
             )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
-        names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
-        pieces = self._tabled(names, lambda motion, arrays: item(motion).pieces(motion), of=place)
-        within = self._tabled(ERRORS, lambda motion, arrays: table_errors.kinks_within(item(motion), motion))
+        names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"), ("known", 0, ""))
+        steep = SteepTable(self.inputs)
+        pieces = self._tabled(names, lambda motion, arrays: steep.pieces(item(motion), motion), of=place)
+        within = self._tabled(
+            ERRORS,
+            lambda motion, arrays: (
+                *table_errors.kinks_within(item(motion), motion),
+                steep.errors(item(motion), motion),
+            ),
+        )
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
+            steep.follow(travel)
+            start, value, slope, known = pieces
+            beyond = table.beyond(start, motion)
+            left = beyond - known * held(beyond)
             self.inputs |= _of_pieces([part[0] for part in pieces], [part[0] for part in within], travel, rate)
-            return table.read(motion, pieces)
+            self.inputs[left[0]] = _not_known(beyond[0], known[0])
+            return value + slope * left
 
         return read
 
@@ -285,7 +298,7 @@ class _Tabled:
 
 # What is known of inputs that are not exact
 
-ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""), ("error", 3, ""))
+ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""), ("error", 3, ""), ("error", 4, ""))
 """Names of rows that only bounds need."""
 
 
@@ -305,14 +318,24 @@ def _unproven(what):
 
 def _of_pieces(pieces, within, travel, rate):
     """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
-    _, value, slope = pieces
-    change, jump, near, distance = within
+    _, value, slope, _ = pieces
+    change, jump, near, distance, lost = within
 
     def of_value(bounds):
         bounds.of((travel, rate))
         jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
         off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
         jumps = plus(jumps, 0.0 / bounds.above(near, off))
-        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps))
+        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps) + lost)
 
     return {value: of_value, slope: lambda bounds: Error(3.0, None)}
+
+
+def _not_known(beyond, known):
+    """Error of how far a travel is beyond the start of a piece, where the value there is not known beforehand."""
+
+    def error(bounds):
+        total = bounds.total(beyond)
+        return Error(1.0, None if total is None else (1.0 - known) * total)
+
+    return error

@@ -100,7 +100,7 @@ class RunningBounds(Counted):
         if node.varies == BY_DESIGN:
             self._by_design.of([node])
             return Absolute([(MORE, self.size(node)), (1.0, self._by_design.total(node)), (1.0, self._dust)], MORE)
-        if kind in INPUTS:
+        if node in self._inputs:
             relative, rest = self._inputs[node](self)
             return Absolute([(relative + MORE, self.size(node)), (1.0, rest), (1.0, self._dust)], MORE)
         if kind == "sign":

@@ -18,6 +18,8 @@ OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 AREA = {"area": checks.Optional(checks.Number("m**2"))}
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
+STEEP = 8.0
+"""Roundings of the largest value that one of the travel makes, from which on a table counts as steep."""
 BACKWARDS = re.compile("back|return", re.IGNORECASE)
 """What a heading has that is meant for a stroke back."""
 
@@ -245,13 +247,17 @@ class Table:
     def read(self, motion, pieces):
         """Values at a motion of whatever numbers that runs through these pieces."""
         start, value, slope = pieces
-        return value + slope * self._from(start, motion)
+        return value + slope * self.beyond(start, motion)
 
-    def _from(self, start, motion):
+    def beyond(self, start, motion):
         """How far what it is read by is beyond the start of a piece; where a slider is, without its own rounding."""
         if self.over == "angle":
             return motion.crank_angle - start
         return motion.elongation(start, self._slider(motion))
+
+    def is_steep(self, place, slope):
+        """Whether one rounding of a travel makes `STEEP` of the largest value, or more, where the slope is such."""
+        return np.abs(slope * place) > STEEP * abs(self.largest)
 
     def _slider(self, motion):
         return self.slider or next(iter(motion.mechanism.guides))
