@@ -94,7 +94,7 @@ class Twofold:
         size = abs(other.value)
         rounding = 6.0 * UNIT * (abs(left) + abs(number(self.rest)) + abs(number(own)))
         error = (self.error + abs(whole) * other.error + rounding + abs(rest) * other.off) / (size - other.off)
-        return Twofold(whole, rest, np.where(other.off < CLEAR * size, 2.0 * error + TINY, np.inf))
+        return Twofold(whole, rest, np.where(other.off < CLEAR * size, error + TINY, np.inf))
 
     def sqrt(self):
         whole = np.sqrt(self.value)
@@ -104,7 +104,7 @@ class Twofold:
         if self.error is None:
             return Twofold(whole, rest)
         curved = (abs(left) + self.error) * (abs(left) + self.error) / self.value
-        error = (self.error + 4.0 * UNIT * (abs(left) + abs(number(self.rest))) + curved) / whole + TINY
+        error = (0.5 * self.error + 2.0 * UNIT * (abs(left) + abs(number(self.rest))) + 0.25 * curved) / whole + TINY
         return Twofold(whole, rest, np.where(self.off < CLEAR * self.value, error, np.inf))
 
     def forgiving_root(self, unit):
