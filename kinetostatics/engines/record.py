@@ -247,17 +247,11 @@ class Recorder:
         names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"), ("known", 0, ""))
         steep = SteepTable(self.inputs)
         pieces = self._tabled(names, lambda motion, arrays: steep.pieces(item(motion), motion), of=place)
-        within = self._tabled(
-            ERRORS,
-            lambda motion, arrays: (
-                *table_errors.kinks_within(item(motion), motion),
-                steep.errors(item(motion), motion),
-            ),
-        )
+        within = self._tabled(ERRORS, lambda motion, arrays: steep.errors(item(motion), motion))
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
-            steep.follow(travel)
+            steep.follow(travel, rate)
             start, value, slope, known = pieces
             beyond = table.beyond(start, motion)
             left = beyond - known * held(beyond)

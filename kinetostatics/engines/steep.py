@@ -1,20 +1,36 @@
-"""Tables over travel read where they are steep: by a travel in two parts, so that its own rounding does not count.
+"""Tables over travel as programs read them: beforehand, and where they are steep by a travel of more digits.
 
 One rounding of the travel makes as many of the largest value as the table is steep there. At such crank angles, mostly
-few, what was recorded of the travel is run on `Twofold` numbers, and the value found beforehand. What the loop adds to
-it is zero, with the derivatives that it has.
+few, what was recorded of the travel is run on numbers of more digits, and the value found with it. What the program
+adds to that is zero, with the derivatives that it has. Numbers of more digits are NumPy's `longdouble` where that has
+64 digits, else a double and what rounding took off it; bounds are always by these, which bound themselves.
 """
+
+from functools import reduce
+from operator import add
 
 import numpy as np
 
-from ..numbers.elementary import UNIT
+from ..machine.loads import table_errors
+from ..numbers.elementary import UNIT, squared, total
+from ..numbers.lazy import cached_property
+from ..numbers.planar import number
 from ..numbers.twofold import Twofold, sine_and_cosine
+from .operations import BY_DESIGN, made
+from .recent import kept_for_same_angles
 from .trace import needed
+from .writing import line
 
+LONG = np.finfo(np.longdouble).nmant >= 63
+"""Whether long numbers have more digits than a double."""
+SPLIT = np.longdouble(2.0**32 + 1.0)
+"""Factor by which a number of 64 digits is split into two of half as many."""
 SMALL = 2.0**-30
-"""Share of a travel up to which its second part is rounding."""
+"""Share of a travel up to which two ways to it differ by rounding."""
 MORE = 1.0 + 1e-9
 """What a bound is enlarged by for products of roundings."""
+UNKNOWN = ("table", "atan")
+"""Operations that are not run on numbers of more digits."""
 
 
 class SteepTable:
@@ -27,17 +43,20 @@ class SteepTable:
     """
 
     def __init__(self, inputs):
-        self._inputs, self._nodes = inputs, []
+        self._inputs, self._outputs, self._rounded = inputs, None, frozenset()
 
-    def follow(self, travel):
-        """Read by a recorded travel, if it comes of operations that two parts go through."""
-        nodes = needed([travel])
-        self._nodes = nodes if all(node.operation in _RULES for node in nodes) else []
+    def follow(self, travel, rate):
+        """Be read by what was recorded of a slider's travel and rate, unless that cannot be run beforehand."""
+        nodes = needed((travel, rate))
+        if not any(node.operation in UNKNOWN for node in nodes):
+            parameters = (node for node in nodes if node.operation == "parameter" and node in self._inputs)
+            self._outputs, self._rounded = (travel, rate), {node.arguments[0] for node in parameters}
 
     def pieces(self, table, motion):
         """Start, value and slope of the piece at each crank angle; 1 where the value is that at the travel, else 0."""
-        start, value, slope = table.pieces(motion)
-        known, rise, _ = self._known(table, motion, start, slope)
+        slider = self._slider(motion)
+        start, value, slope = table.pieces(motion, slider=slider)
+        known, _, rise = self._known(table, motion, slider, start, slope)
         if known is None:
             return start, value, slope, 0.0
         value = np.array(np.broadcast_to(value, known.shape))
@@ -45,54 +64,80 @@ class SteepTable:
         return start, value, slope, known.astype(float)
 
     def errors(self, table, motion):
-        """Bounds on the errors of those values, in `UNIT`."""
-        start, value, slope = table.pieces(motion)
-        known, rise, error = self._known(table, motion, start, slope, bounded=True)
+        """What bounds need to know of kinks, see `table_errors`, and bounds on the errors of such values, in `UNIT`."""
+        slider = self._slider(motion)
+        kinks = table_errors.kinks_within(table, motion, slider)
+        start, value, slope = table.pieces(motion, slider=slider)
+        known, travel, rise = self._known(table, motion, slider, start, slope)
         if known is None:
-            return 0.0
-        found, steepness = np.zeros(known.shape), np.abs(_at(known, slope))
+            return *kinks, 0.0
+        with np.errstate(all="ignore"):
+            exact = self._in_two_parts(known, motion, bounded=True)
+        off = abs((travel[0] - exact.value) + (travel[1] - number(exact.rest))) + exact.error
+        found = np.zeros(known.shape)
         whole = np.abs(_at(known, value) + rise)
-        found[known] = MORE * (steepness * error / UNIT + 8.0 * np.abs(rise) + whole)
-        return found
+        found[known] = MORE * (np.abs(_at(known, slope)) * (off / UNIT) + 8.0 * np.abs(rise) + whole)
+        return *kinks, found
 
-    def _known(self, table, motion, start, slope, bounded=False):
-        """Where a table is steep, by how much it rises there from the start of a piece, and the error of the travel."""
-        if not self._nodes:
+    def _slider(self, motion):
+        """Where the slider is, and its rate, in double precision; None where the kernels are to be asked."""
+        if self._outputs is None:
+            return None
+        angle = motion.crank_angle
+        with np.errstate(all="ignore"):
+            return self._double(angle, *_turn(angle), [np.float64(leaf) for leaf in motion.apart[1].numbers], ())
+
+    def _known(self, table, motion, slider, start, slope):
+        """Where a table is steep, the travel there in two parts, and by how much the value rises from the start."""
+        if slider is None:
             return None, None, None
-        known = np.asarray(table.is_steep(table.place(motion), slope))
+        known = np.array(table.is_steep(slider[0], slope))
         if not known.any():
             return None, None, None
         with np.errstate(all="ignore"):
-            travel = self._at(known, motion, bounded)
-            rise = _at(known, slope) * ((travel.value - _at(known, start)) + travel.rest)
-            right = np.isfinite(rise) & (np.abs(travel.rest) < SMALL * np.abs(travel.value))
-        known = known.copy()
+            value, rest = self._in_long(known, motion) if LONG else self._in_two(known, motion)
+            place = _at(known, slider[0])
+            rise = _at(known, slope) * ((value - _at(known, start)) + rest)
+            right = np.abs((value - place) + rest) < SMALL * np.abs(place)
         known[known] = right
-        return known, rise[right], np.broadcast_to(travel.error, right.shape)[right] if bounded else None
+        return known, (value[right], rest[right]), rise[right]
 
-    def _at(self, known, motion, bounded):
-        """The travel in two parts."""
-        _, leaves = motion.apart
+    def _in_long(self, known, motion):
+        angle = _at(known, motion.crank_angle).astype(np.longdouble)
+        numbers = [np.longdouble(_of(known, leaf)) for leaf in motion.apart[1].numbers]
+        (travel,) = self._long(angle, np.sin(angle), np.cos(angle), numbers, ())
+        value = travel.astype(float)
+        return value, (travel - value).astype(float)
+
+    def _in_two(self, known, motion):
+        found = self._in_two_parts(known, motion, bounded=False)
+        return found.value, number(found.rest)
+
+    def _in_two_parts(self, known, motion, bounded):
         none = 0.0 if bounded else None
-        found, turns = {}, {}
-        for node in self._nodes:
-            kind, arguments = node.operation, node.arguments
-            if kind == "angle":
-                made = Twofold(_at(known, motion.crank_angle), None, none)
-            elif kind == "parameter":
-                value = leaves.numbers[arguments[0]]
-                value = value if type(value) is float else _at(known, value)
-                made = Twofold(value, None, UNIT * abs(value) if bounded and node in self._inputs else none)
-            else:
-                parts = [found[part] if part in found else Twofold(part, None, none) for part in arguments]
-                if kind in ("sin", "cos"):
-                    if arguments[0] not in turns:
-                        turns[arguments[0]] = sine_and_cosine(parts[0])
-                    made = turns[arguments[0]][kind == "cos"]
-                else:
-                    made = _RULES[kind](*parts)
-            found[node] = made
-        return made
+        angle = Twofold(_at(known, motion.crank_angle), None, none)
+        numbers = [Twofold(_of(known, leaf), None, none) for leaf in motion.apart[1].numbers]
+        if bounded:
+            for place in self._rounded:
+                numbers[place].error = UNIT * abs(numbers[place].value)
+        return self._twofold(angle, *sine_and_cosine(angle), numbers, ())[0]
+
+    @cached_property
+    def _double(self):
+        return made(line(self._outputs), BY_DESIGN)
+
+    @cached_property
+    def _long(self):
+        return made(line(self._outputs[:1]), BY_DESIGN | {"rest": _long_rest})
+
+    @cached_property
+    def _twofold(self):
+        return made(line(self._outputs[:1]), _TWOFOLD)
+
+
+@kept_for_same_angles
+def _turn(angle):
+    return np.sin(angle), np.cos(angle)
 
 
 def _at(known, part):
@@ -100,34 +145,26 @@ def _at(known, part):
     return np.broadcast_to(part, known.shape)[known]
 
 
-def _difference(one, *others):
-    return one - others[0] if others else -one
+def _of(known, leaf):
+    """A number of the design, or those of the designs there."""
+    return leaf if type(leaf) is float else _at(known, leaf)
 
 
-def _total(first, *others):
-    for part in others:
-        first = first + part
-    return first
+def _long_rest(length, x, y):
+    """What rounding took off a length in long numbers, as `elementary.rest` has it."""
+    (one, first), (two, second), (three, third) = (squared(part, SPLIT) for part in (x, y, length))
+    return total(one, first, two, second, -three, -third) / (2.0 * length)
 
 
-def _no_rest(length, x, y):
-    """In exact arithmetic there is none."""
-    return Twofold(0.0, None, None if length.error is None else 0.0)
-
-
-_RULES = {
-    **dict.fromkeys(("angle", "parameter", "sin", "cos")),
-    "+": Twofold.__add__,
-    "-": _difference,
-    "*": Twofold.__mul__,
-    "/": Twofold.__truediv__,
+_TWOFOLD = {
+    "sin": lambda angle: sine_and_cosine(angle)[0],
+    "cos": lambda angle: sine_and_cosine(angle)[1],
     "sqrt": Twofold.sqrt,
-    "root": Twofold.forgiving_root,
+    "root": lambda square, unit: square.sqrt(),
     "divisor": Twofold.kept_off_zero,
-    "abs": Twofold.__abs__,
-    "sign": Twofold.sign,
-    "held": Twofold.held,
-    "total": _total,
-    "rest": _no_rest,
+    "abs": abs,
+    "copysign": lambda one, part: part.sign(),
+    "total": lambda *terms: reduce(add, terms),
+    "rest": lambda length, x, y: 0.0,
 }
-"""What is run on numbers in two parts."""
+"""Operations on numbers in two parts; a length has no rest that is not among its own."""

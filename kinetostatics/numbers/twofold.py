@@ -49,8 +49,9 @@ class Twofold:
         """Bound on how far the value is from the exact number."""
         return number(self.error) + abs(number(self.rest))
 
-    def _bounds(self, other):
-        return self.error is not None and other.error is not None
+    def _taken(self, other):
+        """Another operand, which may be a plain number."""
+        return other if isinstance(other, Twofold) else Twofold(other, None, None if self.error is None else 0.0)
 
     def __neg__(self):
         return Twofold(-self.value, None if self.rest is None else -self.rest, self.error)
@@ -60,28 +61,41 @@ class Twofold:
         return Twofold(abs(self.value), product(sign, self.rest), self.error)
 
     def __add__(self, other):
+        other = self._taken(other)
         whole, lost = sum_and_rest(self.value, other.value)
         rest = plus(lost, plus(self.rest, other.rest))
-        if not self._bounds(other):
+        if self.error is None:
             return Twofold(whole, rest)
         rounding = 3.0 * UNIT * (abs(lost) + abs(number(self.rest)) + abs(number(other.rest)))
         return Twofold(whole, rest, self.error + other.error + rounding)
 
+    __radd__ = __add__
+
     def __sub__(self, other):
         return self + -other
 
+    def __rsub__(self, other):
+        return -self + other
+
     def __mul__(self, other):
+        other = self._taken(other)
         whole = self.value * other.value
         lost = _lost(self, other, whole)
         one, two = product(self.value, other.rest), product(other.value, self.rest)
         rest = plus(lost, plus(one, two))
-        if not self._bounds(other):
+        if self.error is None:
             return Twofold(whole, rest)
         error = abs(self.value) * other.error + abs(other.value) * self.error + self.off * other.off
         rounding = 4.0 * UNIT * (abs(lost) + abs(number(one)) + abs(number(two)))
         return Twofold(whole, rest, error + rounding + TINY)
 
+    __rmul__ = __mul__
+
+    def __rtruediv__(self, other):
+        return self._taken(other) / self
+
     def __truediv__(self, other):
+        other = self._taken(other)
         whole = np.divide(self.value, other.value)
         found = Twofold(whole)
         back = whole * other.value
@@ -89,7 +103,7 @@ class Twofold:
         own = product(whole, other.rest)
         left = left + (number(self.rest) - number(own))
         rest = np.divide(left, other.value)
-        if not self._bounds(other):
+        if self.error is None:
             return Twofold(whole, rest)
         size = abs(other.value)
         rounding = 6.0 * UNIT * (abs(left) + abs(number(self.rest)) + abs(number(own)))
@@ -107,11 +121,9 @@ class Twofold:
         error = (0.5 * self.error + 2.0 * UNIT * (abs(left) + abs(number(self.rest))) + 0.25 * curved) / whole + TINY
         return Twofold(whole, rest, np.where(self.off < CLEAR * self.value, error, np.inf))
 
-    def forgiving_root(self, unit):
-        return self.sqrt()
-
     def kept_off_zero(self, unit):
         """The same where that is not less than the unit for certain; else nothing is known."""
+        unit = self._taken(unit)
         if self.error is None:
             return Twofold(np.where(self.value > unit.value, self.value, np.nan), self.rest)
         least = self.value - self.off - unit.value - unit.off
@@ -122,9 +134,6 @@ class Twofold:
         if self.error is None:
             return Twofold(found)
         return Twofold(found, None, np.where(self.off < abs(self.value), 0.0, np.inf))
-
-    def held(self):
-        return self
 
 
 def sine_and_cosine(angle):

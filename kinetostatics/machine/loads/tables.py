@@ -262,18 +262,20 @@ class Table:
     def _slider(self, motion):
         return self.slider or next(iter(motion.mechanism.guides))
 
-    def pieces(self, motion, number=lambda given: given):
+    def pieces(self, motion, number=lambda given: given, slider=None):
         """Where the piece of the table starts at each crank angle, the value there, and its slope.
 
-        In double precision, or in whatever numbers `number` makes of floats and of arrays of them.
+        In double precision, or in whatever numbers `number` makes of floats and of arrays of them. `slider` is where
+        the slider is, and its rate, if that is known beforehand.
 
         Raises
         ------
         ParameterError
             The travel goes beyond the table; where it has no value yet, as under ``jax.jit``, there is NaN instead.
         """
-        returning = None if self.back is None else self.returns(motion)
-        xp, place, returning = rows.looked_at(self.place(motion), returning)
+        place, rate = (self.place(motion), None) if slider is None else slider
+        returning = None if self.back is None else self.returns(motion, rate)
+        xp, place, returning = rows.looked_at(place, returning)
         x, y, period = number(self.x), number(self.y), number(self.period)
         if self.over == "angle":
             turns = xp.floor((place - self.x[0]) / self.period)
@@ -294,10 +296,10 @@ class Table:
         """Rate of the slider along its guide by the crank angle, m."""
         return motion.placement.travels[self._slider(motion)].first
 
-    def returns(self, motion):
+    def returns(self, motion, rate=None):
         """Whether the slider is on its stroke with negative velocity; standing still, as if the crank turned on."""
-        speed = motion.crank_speed
-        return namespace(speed).where(speed < 0, -1.0, 1.0) * self.rate(motion) < 0
+        speed, rate = motion.crank_speed, self.rate(motion) if rate is None else rate
+        return namespace(speed).where(speed < 0, -1.0, 1.0) * rate < 0
 
     def period_on(self, mechanism):
         """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""
