@@ -12,7 +12,7 @@ from operator import add
 import numpy as np
 
 from ..machine.loads import table_errors
-from ..numbers.elementary import UNIT, squared, total
+from ..numbers.elementary import UNIT, squared, summed
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number
 from ..numbers.twofold import Twofold, sine_and_cosine
@@ -83,9 +83,12 @@ class SteepTable:
         """Where the slider is, and its rate, in double precision; None where the kernels are to be asked."""
         if self._outputs is None:
             return None
-        angle = motion.crank_angle
+        angle, numbers = motion.crank_angle, motion.apart[1].numbers
         with np.errstate(all="ignore"):
-            return self._double(angle, *_turn(angle), [np.float64(leaf) for leaf in motion.apart[1].numbers], ())
+            try:
+                return self._double(angle, *_turn(angle), numbers, ())
+            except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
+                return self._double(angle, *_turn(angle), list(map(np.float64, numbers)), ())
 
     def _known(self, table, motion, slider, start, slope):
         """Where a table is steep, the travel there in two parts, and by how much the value rises from the start."""
@@ -128,7 +131,7 @@ class SteepTable:
 
     @cached_property
     def _long(self):
-        return made(line(self._outputs[:1]), BY_DESIGN | {"rest": _long_rest})
+        return made(line(self._outputs[:1]), BY_DESIGN | {"total": _long_total, "rest": _long_rest})
 
     @cached_property
     def _twofold(self):
@@ -142,7 +145,7 @@ def _turn(angle):
 
 def _at(known, part):
     """What of numbers, or rows, is there."""
-    return np.broadcast_to(part, known.shape)[known]
+    return part[known] if np.shape(part) == known.shape else np.broadcast_to(part, known.shape)[known]
 
 
 def _of(known, leaf):
@@ -150,10 +153,16 @@ def _of(known, leaf):
     return leaf if type(leaf) is float else _at(known, leaf)
 
 
+def _long_total(*terms):
+    """As `elementary.total`, by half of its steps: terms have more digits here than it is to keep."""
+    *lost, whole = summed(terms)
+    return whole + sum(lost)
+
+
 def _long_rest(length, x, y):
     """What rounding took off a length in long numbers, as `elementary.rest` has it."""
     (one, first), (two, second), (three, third) = (squared(part, SPLIT) for part in (x, y, length))
-    return total(one, first, two, second, -three, -third) / (2.0 * length)
+    return _long_total(one, two, -three, first, second, -third) / (2.0 * length)
 
 
 _TWOFOLD = {
