@@ -16,10 +16,10 @@ from ..numbers.elementary import UNIT, squared, summed
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number
 from ..numbers.twofold import Twofold, sine_and_cosine
-from .operations import BY_DESIGN, made
+from .operations import ARRAYS, BY_DESIGN, PLAIN, made
 from .recent import kept_for_same_angles
 from .trace import needed
-from .writing import line
+from .writing import buffered_line, line
 
 LONG = np.finfo(np.longdouble).nmant >= 63
 """Whether long numbers have more digits than a double."""
@@ -84,11 +84,15 @@ class SteepTable:
         if self._outputs is None:
             return None
         angle, numbers = motion.crank_angle, motion.apart[1].numbers
+        (single, batch), count = self._double
+        buffers, found = np.empty((count, *motion.shape)), np.empty((2, *motion.shape))
         with np.errstate(all="ignore"):
             try:
-                return self._double(angle, *_turn(angle), numbers, ())
+                run = single if motion.apart[1].are_plain else batch
+                run(angle, *_turn(angle), numbers, (), buffers, found)
             except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
-                return self._double(angle, *_turn(angle), list(map(np.float64, numbers)), ())
+                batch(angle, *_turn(angle), list(map(np.float64, numbers)), (), buffers, found)
+        return found
 
     def _known(self, table, motion, slider, start, slope):
         """Where a table is steep, the travel there in two parts, and by how much the value rises from the start."""
@@ -127,7 +131,8 @@ class SteepTable:
 
     @cached_property
     def _double(self):
-        return made(line(self._outputs), BY_DESIGN)
+        source, count = buffered_line(self._outputs)
+        return [made(source, ARRAYS | scope) for scope in (PLAIN, BY_DESIGN)], count
 
     @cached_property
     def _long(self):

@@ -280,13 +280,11 @@ class Table:
         if self.over == "angle":
             turns = xp.floor((place - self.x[0]) / self.period)
             piece = rows.piece(xp, np.append(self.x, self.x[0] + self.period), place - turns * self.period)
-            start, value, slope = rows.pieces(xp, np.append(x, x[0] + period), np.append(y, y[0]), piece)
+            start, value, slope = rows.pieces(xp, np.append(x, x[0] + period), [np.append(y, y[0])], piece)
             return start + number(turns) * period, value, slope
         piece = rows.piece(xp, self.x, place)
-        start, value, slope = rows.pieces(xp, x, y, piece)
-        if self.back is not None:
-            _, value_back, slope_back = rows.pieces(xp, x, number(self.back), piece)
-            value, slope = xp.where(returning, value_back, value), xp.where(returning, slope_back, slope)
+        strokes = [y] if self.back is None else [y, number(self.back)]
+        start, value, slope = rows.pieces(xp, x, strokes, piece, returning)
         if xp is np:
             rows.require_inside(self.x, place, motion)
             return start, value, slope
