@@ -85,7 +85,8 @@ class SteepTable:
             return None
         angle, numbers = motion.crank_angle, motion.apart[1].numbers
         (single, batch), count = self._double
-        buffers, found = np.empty((count, *motion.shape)), np.empty((2, *motion.shape))
+        shape = motion.shape or (1,)
+        buffers, found = np.empty((count, *shape)), np.empty((2, *shape))
         with np.errstate(all="ignore"):
             try:
                 run = single if motion.apart[1].are_plain else batch

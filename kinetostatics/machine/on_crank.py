@@ -170,12 +170,10 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_clos
     sine, divided = assembly * size, assembly * divisor(size, SMALLEST)
 
     d, square, over = line.d, line.square, 1.0 / line.square
-    share, aside = 0.5 * gap * both * over, sine * over
-    along, across = (0.5 + share) / b, h * aside
-    q = (along * d[0] - across * d[1], along * d[1] + across * d[0])
-    back = share - 0.5
-    behind, beside = back / h, b * aside  # by parts of its own: what q and d have in common may be far longer
-    p = (behind * d[0] - beside * d[1], behind * d[1] + beside * d[0])
+    share, aside = 0.5 * gap * both * over, assembly * b * h * size * over
+    along, back, across = 0.5 + share, share - 0.5, (aside * d[0], aside * d[1])
+    q = ((along * d[0] - across[1]) / b, (along * d[1] + across[0]) / b)
+    p = ((back * d[0] - across[1]) / h, (back * d[1] + across[0]) / h)
 
     inverse, sweep = 1.0 / divided, 2.0 * a * ground
     rate = sweep / (product * line.reach) * line.turn * inverse
