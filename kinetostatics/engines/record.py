@@ -330,6 +330,6 @@ def _not_known(beyond, known):
 
     def error(bounds):
         total = bounds.total(beyond)
-        return Error(1.0, None if total is None else (1.0 - known) * total)
+        return Error(0.0, None if total is None else (1.0 - known) * total)
 
     return error

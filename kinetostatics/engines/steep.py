@@ -15,7 +15,7 @@ from ..machine.loads import table_errors
 from ..numbers.elementary import UNIT, squared, summed
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number
-from ..numbers.twofold import Twofold, sine_and_cosine
+from ..numbers.twofold import FARTHEST, Twofold, sine_and_cosine
 from .operations import ARRAYS, BY_DESIGN, PLAIN, made
 from .recent import kept_for_same_angles
 from .trace import needed
@@ -29,6 +29,8 @@ SMALL = 2.0**-30
 """Share of a travel up to which two ways to it differ by rounding."""
 MORE = 1.0 + 1e-9
 """What a bound is enlarged by for products of roundings."""
+FAR = FARTHEST / 32.0
+"""Crank angle, rad, up to which multiples of it are known in two parts."""
 UNKNOWN = ("table", "atan")
 """Operations that are not run on numbers of more digits."""
 
@@ -99,7 +101,7 @@ class SteepTable:
         """Where a table is steep, the travel there in two parts, and by how much the value rises from the start."""
         if slider is None:
             return None, None, None
-        known = np.array(table.is_steep(slider[0], slope))
+        known = table.is_steep(slider[0], slope) & (np.abs(motion.crank_angle) < FAR)
         if not known.any():
             return None, None, None
         with np.errstate(all="ignore"):

@@ -152,7 +152,9 @@ def sine_and_cosine(angle):
         more = 2.0**-75 + (2.0**-23 + off) * off
     square = small * small
     halved = Twofold(-0.5 * square.value, -0.5 * square.rest, 0.5 * square.error if known else None)
-    sine = small + Twofold(odd, (z * z * (1.0 / 24.0) - 0.5 * z) * rest, 8.0 * UNIT * abs(odd) + more if known else None)
+    sine = small + Twofold(
+        odd, (z * z * (1.0 / 24.0) - 0.5 * z) * rest, 8.0 * UNIT * abs(odd) + more if known else None
+    )
     cosine = Twofold(1.0, None, 0.0 if known else None) + halved
     cosine = cosine + Twofold(even, h * z * (1.0 / 6.0) * rest, 8.0 * UNIT * abs(even) + more if known else None)
     place = np.asarray(turns % 32.0, dtype=int)
