@@ -81,10 +81,8 @@ class Bounds:
                 self._uses.setdefault(part, []).append(node.operation)
 
     def _found(self, node):
-        if node in self._inputs:
-            return self._inputs[node](self)
-        if node.operation in INPUTS:
-            return EXACT
+        if node in self._inputs or node.operation in INPUTS:
+            return self._inputs[node](self) if node in self._inputs else EXACT
         relative, rest = self.own(node)
         carried = _CARRIED[node.operation](self, rest, node, *node.arguments)
         return Error(relative + carried.relative, carried.rest)

@@ -8,6 +8,7 @@ adds to that is zero, with the derivatives that it has. Numbers of more digits a
 
 from functools import reduce
 from operator import add
+from typing import Any
 
 import numpy as np
 
@@ -45,14 +46,16 @@ class SteepTable:
     """
 
     def __init__(self, inputs):
-        self._inputs, self._outputs, self._rounded = inputs, None, frozenset()
+        self._inputs = inputs
+        self._outputs: tuple[Any, ...] = ()
+        self._rounded: set[int] = set()
 
     def follow(self, travel, rate):
         """Be read by what was recorded of a slider's travel and rate, unless that cannot be run beforehand."""
         nodes = needed((travel, rate))
         if not any(node.operation in UNKNOWN for node in nodes):
-            parameters = (node for node in nodes if node.operation == "parameter" and node in self._inputs)
-            self._outputs, self._rounded = (travel, rate), {node.arguments[0] for node in parameters}
+            rounded = (node for node in nodes if node.operation == "parameter" and node in self._inputs)
+            self._outputs, self._rounded = (travel, rate), {node.arguments[0] for node in rounded}
 
     def pieces(self, table, motion):
         """Start, value and slope of the piece at each crank angle; 1 where the value is that at the travel, else 0."""
@@ -83,7 +86,7 @@ class SteepTable:
 
     def _slider(self, motion):
         """Where the slider is, and its rate, in double precision; None where the kernels are to be asked."""
-        if self._outputs is None:
+        if not self._outputs:
             return None
         angle, numbers = motion.crank_angle, motion.apart[1].numbers
         (single, batch), count = self._double

@@ -36,7 +36,7 @@ def elongation(placement, joint, direction, reach, short):
 
 
 def across(swing, guide):
-    """From a joint that swings about a fixed place across to a guide: where that passes near, all of it is the swing's."""
+    """From a joint that swings about a fixed place across to a guide: all by the swing if that place is on it."""
     apart = minus(guide.offset, unturned(swing.centre, guide.direction)[1])
     return minus(apart, swing.radius * unturned(swing.direction, guide.direction)[1])
 

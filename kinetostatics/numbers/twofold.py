@@ -158,7 +158,7 @@ def sine_and_cosine(angle):
     cosine = Twofold(1.0, None, 0.0 if known else None) + halved
     cosine = cosine + Twofold(even, h * z * (1.0 / 6.0) * rest, 8.0 * UNIT * abs(even) + more if known else None)
     place = np.asarray(turns % 32.0, dtype=int)
-    s, c = (Twofold(*_SINES[:, place + ahead], 2.0**-105 if known else None) for ahead in (0, 8))
+    s, c = (Twofold(_SINES[0, at], _SINES[1, at], 2.0**-105 if known else None) for at in (place, place + 8))
     return s * cosine + c * sine, c * cosine - s * sine
 
 
