@@ -81,7 +81,7 @@ class SliderForces(NamedTuple):
 
 
 def place(joint, coupler_length, guide, assembly, swing=None):
-    """Coupler and slider for a given inner joint, and its swing (kernel); None: a guide along +x, no offset or swing."""
+    """Coupler and slider for a given inner joint, and its swing (kernel); None is +x, no offset, no swing."""
     position = unturned(joint.position, guide.direction)
     first = unturned(vector(joint.first), guide.direction)
     second = unturned(vector(joint.second), guide.direction)
