@@ -124,7 +124,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     way : function, optional
         Other way to the placement, as `Dynamics` takes it.
     """
-    recorder = Recorder(structure, way, LeanGraph())
+    recorder = Recorder(structure, way, LeanGraph(), steeply=True)
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -154,10 +154,14 @@ def recorded(structure):
 
 
 class Recorder:
-    """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given."""
+    """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given.
 
-    def __init__(self, structure, way=None, graph=None):
+    `steeply`: tables over travel are read with more digits where they are steep, see `steep`.
+    """
+
+    def __init__(self, structure, way=None, graph=None, steeply=False):
         self.graph = Graph() if graph is None else graph
+        self._steeply = steeply
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
         self.inputs: dict[Node, Callable[[Any], Error]] = {}
@@ -244,8 +248,11 @@ class Recorder:
             )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
-        names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"), ("known", 0, ""))
-        steep = SteepTable(self.inputs)
+        names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
+        if not self._steeply:
+            pieces = self._tabled(names, lambda motion, arrays: item(motion).pieces(motion), of=place)
+            return lambda motion: table.read(motion, pieces)
+        steep, names = SteepTable(self.inputs), (*names, ("known", 0, ""))
         pieces = self._tabled(names, lambda motion, arrays: steep.pieces(item(motion), motion), of=place)
         within = self._tabled(ERRORS, lambda motion, arrays: steep.errors(item(motion), motion))
 
