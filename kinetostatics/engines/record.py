@@ -252,8 +252,10 @@ class Recorder:
         if not self._steeply:
             pieces = self._tabled(names, lambda motion, arrays: item(motion).pieces(motion), of=place)
             return lambda motion: table.read(motion, pieces)
-        steep, names = SteepTable(self.inputs), (*names, ("known", 0, ""))
-        pieces = self._tabled(names, lambda motion, arrays: steep.pieces(item(motion), motion), of=place)
+        steep = SteepTable(self.inputs)
+        pieces = self._tabled(
+            (*names, ("known", 0, "")), lambda motion, arrays: steep.pieces(item(motion), motion), of=place
+        )
         within = self._tabled(ERRORS, lambda motion, arrays: steep.errors(item(motion), motion))
 
         def read(motion):
