@@ -114,7 +114,7 @@ class Program:
         rows: list[Any] = []
         for table in self.recording.tables:
             idle = self._rows_needed.isdisjoint(table.rows)
-            rows += [0.0] * len(table.rows) if idle else table.compute(state, leaves.tables)
+            rows += [0.0] * len(table.rows) if idle else table.compute(state, leaves)
         return rows
 
     @cached_property

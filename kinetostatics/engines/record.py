@@ -41,7 +41,7 @@ class Table(NamedTuple):
     rows : range
         Rows it fills.
     compute : function
-        ``compute(motion, arrays) -> rows``, from the scene's motion and the tables among its leaves.
+        ``compute(motion, leaves) -> rows``, from the scene's motion and leaves, which may be others of its structure.
     moved_by : str
         Code of the user's whose values may hang on parameters in a way that is not recorded; "" without.
     names : tuple of (str, int, str)
@@ -184,7 +184,7 @@ class Recorder:
     def _array(self):
         place = self._arrays
         self._arrays += 1
-        return self._tabled((("value", 0, ""),), lambda motion, arrays: [arrays[place]])[0]
+        return self._tabled((("value", 0, ""),), lambda motion, leaves: [leaves.tables[place]])[0]
 
     def _tabled(self, names, compute, moved_by="", of=""):
         first, self._rows = self._rows, self._rows + len(names)
@@ -205,7 +205,7 @@ class Recorder:
             return group
         values = self._tabled(
             tuple((group.LAW[0], order, group.LAW[1]) for order in range(3)),
-            lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle),
+            lambda motion, leaves: motion.mechanism.groups[place].cam.radius(motion.crank_angle),
             "" if group.cam is None else type(group.cam).__name__,
             f"cam{group.label}",
         )
@@ -231,7 +231,7 @@ class Recorder:
         """What code of the user's gives for a load, from a table."""
         names = (("value", 0, getattr(load, "UNIT", "N")),)
         (values,) = self._tabled(
-            names, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load), place
+            names, lambda motion, leaves: [given(motion.loads[place], motion)], title_of(load), place
         )
         return values
 
@@ -242,21 +242,21 @@ class Recorder:
             return motion.loads[place].value_now
 
         if table.over == "angle":
-            (values,) = self._tabled((("value", 0, unit),), lambda motion, arrays: [item(motion)(motion)], of=place)
+            (values,) = self._tabled((("value", 0, unit),), lambda motion, leaves: [item(motion)(motion)], of=place)
             (errors,) = self._tabled(
-                ERRORS[:1], lambda motion, arrays: [table_errors.rounding(item(motion), motion) / UNIT]
+                ERRORS[:1], lambda motion, leaves: [table_errors.rounding(item(motion), motion) / UNIT]
             )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
         names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
         if not self._steeply:
-            pieces = self._tabled(names, lambda motion, arrays: item(motion).pieces(motion), of=place)
+            pieces = self._tabled(names, lambda motion, leaves: item(motion).pieces(motion), of=place)
             return lambda motion: table.read(motion, pieces)
         steep = SteepTable(self.inputs)
         pieces = self._tabled(
-            (*names, ("known", 0, "")), lambda motion, arrays: steep.pieces(item(motion), motion), of=place
+            (*names, ("known", 0, "")), lambda motion, leaves: steep.pieces(item(motion), motion, leaves), of=place
         )
-        within = self._tabled(ERRORS, lambda motion, arrays: steep.errors(item(motion), motion))
+        within = self._tabled(ERRORS, lambda motion, leaves: steep.errors(item(motion), motion, leaves))
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))

@@ -57,50 +57,50 @@ class SteepTable:
             rounded = (node for node in nodes if node.operation == "parameter" and node in self._inputs)
             self._outputs, self._rounded = (travel, rate), {node.arguments[0] for node in rounded}
 
-    def pieces(self, table, motion):
+    def pieces(self, table, motion, leaves):
         """Start, value and slope of the piece at each crank angle; 1 where the value is that at the travel, else 0."""
-        slider = self._slider(motion)
+        slider = self._slider(motion, leaves)
         start, value, slope = table.pieces(motion, slider=slider)
-        known, _, rise = self._known(table, motion, slider, start, slope)
+        known, _, rise = self._known(table, motion, leaves, slider, start, slope)
         if known is None:
             return start, value, slope, 0.0
         value = np.array(np.broadcast_to(value, known.shape))
         value[known] += rise
         return start, value, slope, known.astype(float)
 
-    def errors(self, table, motion):
+    def errors(self, table, motion, leaves):
         """What bounds need to know of kinks, see `table_errors`, and bounds on the errors of such values, in `UNIT`."""
-        slider = self._slider(motion)
+        slider = self._slider(motion, leaves)
         kinks = table_errors.kinks_within(table, motion, slider)
         start, value, slope = table.pieces(motion, slider=slider)
-        known, travel, rise = self._known(table, motion, slider, start, slope)
+        known, travel, rise = self._known(table, motion, leaves, slider, start, slope)
         if known is None:
             return *kinks, 0.0
         with np.errstate(all="ignore"):
-            exact = self._in_two_parts(known, motion, bounded=True)
+            exact = self._in_two_parts(known, motion, leaves, bounded=True)
         off = abs((travel[0] - exact.value) + (travel[1] - number(exact.rest))) + exact.error
         found = np.zeros(known.shape)
-        whole = np.abs(_at(known, value) + rise)
-        found[known] = MORE * (np.abs(_at(known, slope)) * (off / UNIT) + 8.0 * np.abs(rise) + whole)
+        rounded = 8.0 * np.abs(rise) + np.abs(_at(known, value) + rise) + table_errors.TINY / UNIT
+        found[known] = MORE * (np.abs(_at(known, slope)) * (off / UNIT) + rounded)
         return *kinks, found
 
-    def _slider(self, motion):
+    def _slider(self, motion, leaves):
         """Where the slider is, and its rate, in double precision; None where the kernels are to be asked."""
         if not self._outputs:
             return None
-        angle, numbers = motion.crank_angle, motion.apart[1].numbers
+        angle, numbers = motion.crank_angle, leaves.numbers
         (single, batch), count = self._double
         shape = motion.shape or (1,)
         buffers, found = np.empty((count, *shape)), np.empty((2, *shape))
         with np.errstate(all="ignore"):
             try:
-                run = single if motion.apart[1].are_plain else batch
+                run = single if leaves.are_plain else batch
                 run(angle, *_turn(angle), numbers, (), buffers, found)
             except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
                 batch(angle, *_turn(angle), list(map(np.float64, numbers)), (), buffers, found)
         return found
 
-    def _known(self, table, motion, slider, start, slope):
+    def _known(self, table, motion, leaves, slider, start, slope):
         """Where a table is steep, the travel there in two parts, and by how much the value rises from the start."""
         if slider is None:
             return None, None, None
@@ -108,28 +108,28 @@ class SteepTable:
         if not known.any():
             return None, None, None
         with np.errstate(all="ignore"):
-            value, rest = self._in_long(known, motion) if LONG else self._in_two(known, motion)
+            value, rest = self._in_long(known, motion, leaves) if LONG else self._in_two(known, motion, leaves)
             place = _at(known, slider[0])
             rise = _at(known, slope) * ((value - _at(known, start)) + rest)
             right = np.abs((value - place) + rest) < SMALL * np.abs(place)
         known[known] = right
         return known, (value[right], rest[right]), rise[right]
 
-    def _in_long(self, known, motion):
+    def _in_long(self, known, motion, leaves):
         angle = _at(known, motion.crank_angle).astype(np.longdouble)
-        numbers = [np.longdouble(_of(known, leaf)) for leaf in motion.apart[1].numbers]
+        numbers = [np.longdouble(_of(known, leaf)) for leaf in leaves.numbers]
         (travel,) = self._long(angle, np.sin(angle), np.cos(angle), numbers, ())
         value = travel.astype(float)
         return value, (travel - value).astype(float)
 
-    def _in_two(self, known, motion):
-        found = self._in_two_parts(known, motion, bounded=False)
+    def _in_two(self, known, motion, leaves):
+        found = self._in_two_parts(known, motion, leaves, bounded=False)
         return found.value, number(found.rest)
 
-    def _in_two_parts(self, known, motion, bounded):
+    def _in_two_parts(self, known, motion, leaves, bounded):
         none = 0.0 if bounded else None
         angle = Twofold(_at(known, motion.crank_angle), None, none)
-        numbers = [Twofold(_of(known, leaf), None, none) for leaf in motion.apart[1].numbers]
+        numbers = [Twofold(_of(known, leaf), None, none) for leaf in leaves.numbers]
         if bounded:
             for place in self._rounded:
                 numbers[place].error = UNIT * abs(numbers[place].value)

@@ -132,3 +132,20 @@ def test_beyond_a_steep_table_it_is_an_error():
     table = ks.Table([0.15, 0.1501, 0.2], [0.0, 4e3, 4e3], over="travel")
     with pytest.raises(ks.ParameterError, match="the slider goes from"):
         ks.Scene(PUMPS["level"](), 30.0, loads=[ks.ProcessForce(table)]).solve(36).balancing_torque  # noqa: B018
+
+
+def test_programs_read_it_with_the_numbers_they_are_given():
+    """Zeros among them, which are no numbers of a scene."""
+    scene = pump(back=BACK)
+    program = ks.compile(scene, "B", parameters=("guide_offset",), engine="numpy")
+    angles = ordinary_angles(scene, 36, 12)
+    for values in (
+        {},
+        {"guide_offset": 0.004},
+        {"guide_offset": 0.0, "coupler_length": 0.188},
+        {"crank_length": 0.049},
+    ):
+        machine = ks.crank_slider(**({"crank_length": 0.05, "coupler_length": 0.19} | values))
+        varied = ks.Scene(machine, 30.0, loads=scene.loads)
+        expected = varied.solve(angles, engine="numpy").reaction("B")
+        np.testing.assert_allclose(program(angles, values)["B"], expected, rtol=0.0, atol=1e-11)
