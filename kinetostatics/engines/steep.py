@@ -32,6 +32,8 @@ MORE = 1.0 + 1e-9
 """What a bound is enlarged by for products of roundings."""
 FAR = FARTHEST / 32.0
 """Crank angle, rad, up to which multiples of it are known in two parts."""
+BLOCK, FEW = 4096, 512
+"""Values of several designs that are found together, in double precision and with more digits."""
 UNKNOWN = ("table", "atan")
 """Operations that are not run on numbers of more digits."""
 
@@ -88,16 +90,22 @@ class SteepTable:
         """Where the slider is, and its rate, in double precision; None where the kernels are to be asked."""
         if not self._outputs:
             return None
-        angle, numbers = motion.crank_angle, leaves.numbers
+        angle, shape = motion.crank_angle, motion.shape or (1,)
+        given, found, numbers = (angle, *_turn(angle)), np.empty((2, *shape)), leaves.numbers
         (single, batch), count = self._double
-        shape = motion.shape or (1,)
-        buffers, found = np.empty((count, *shape)), np.empty((2, *shape))
+        step = max(1, BLOCK // shape[-1]) if len(shape) == 2 else shape[0]
+        buffers = np.empty((count, min(step, shape[0]), *shape[1:]))
         with np.errstate(all="ignore"):
-            try:
-                run = single if leaves.are_plain else batch
-                run(angle, *_turn(angle), numbers, (), buffers, found)
-            except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
-                batch(angle, *_turn(angle), list(map(np.float64, numbers)), (), buffers, found)
+            for start in range(0, shape[0], step):
+                part = slice(start, start + step)
+                own = found[:, part]
+                free = buffers[:, : own.shape[1]]
+                try:
+                    run = single if leaves.are_plain else batch
+                    run(*_rows_of(part, shape, given), _rows_of(part, shape, numbers), (), free, own)
+                except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
+                    few = _rows_of(part, shape, map(np.float64, numbers))
+                    batch(*_rows_of(part, shape, given), few, (), free, own)
         return found
 
     def _known(self, table, motion, leaves, slider, start, slope):
@@ -118,9 +126,15 @@ class SteepTable:
     def _in_long(self, known, motion, leaves):
         angle = _at(known, motion.crank_angle).astype(np.longdouble)
         numbers = [np.longdouble(_of(known, leaf)) for leaf in leaves.numbers]
-        (travel,) = self._long(angle, np.sin(angle), np.cos(angle), numbers, ())
-        value = travel.astype(float)
-        return value, (travel - value).astype(float)
+        value, rest = np.empty((2, angle.size))
+        for start in range(0, angle.size, FEW):
+            part = slice(start, start + FEW)
+            own = angle[part]
+            few = [leaf[part] if leaf.ndim else leaf for leaf in numbers]
+            (travel,) = self._long(own, np.sin(own), np.cos(own), few, ())
+            value[part] = travel
+            rest[part] = travel - value[part]
+        return value, rest
 
     def _in_two(self, known, motion, leaves):
         found = self._in_two_parts(known, motion, leaves, bounded=False)
@@ -157,6 +171,11 @@ def _turn(angle):
 def _at(known, part):
     """What of numbers, or rows, is there."""
     return part[known] if np.shape(part) == known.shape else np.broadcast_to(part, known.shape)[known]
+
+
+def _rows_of(part, shape, given):
+    """Of arrays with a row for each design, those of some."""
+    return [item[part] if np.ndim(item) == 2 and np.shape(item)[0] == shape[0] else item for item in given]
 
 
 def _of(known, leaf):
