@@ -19,7 +19,7 @@ from ..numbers.planar import number
 from ..numbers.twofold import FARTHEST, Twofold, sine_and_cosine
 from .operations import ARRAYS, BY_DESIGN, PLAIN, made
 from .recent import kept_for_same_angles
-from .trace import needed
+from .trace import needed, parted
 from .writing import buffered_line, line
 
 LONG = np.finfo(np.longdouble).nmant >= 63
@@ -91,21 +91,20 @@ class SteepTable:
         if not self._outputs:
             return None
         angle, shape = motion.crank_angle, motion.shape or (1,)
-        given, found, numbers = (angle, *_turn(angle)), np.empty((2, *shape)), leaves.numbers
-        (single, batch), count = self._double
+        given, found = (angle, *_turn(angle)), np.empty((2, *shape))
+        (plain, by_design), varying, count = self._double
         step = max(1, BLOCK // shape[-1]) if len(shape) == 2 else shape[0]
         buffers = np.empty((count, min(step, shape[0]), *shape[1:]))
         with np.errstate(all="ignore"):
+            try:
+                numbers = (plain if leaves.are_plain else by_design)(0.0, 0.0, 1.0, leaves.numbers, ())
+            except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
+                numbers = by_design(0.0, 0.0, 1.0, list(map(np.float64, leaves.numbers)), ())
             for start in range(0, shape[0], step):
                 part = slice(start, start + step)
                 own = found[:, part]
-                free = buffers[:, : own.shape[1]]
-                try:
-                    run = single if leaves.are_plain else batch
-                    run(*_rows_of(part, shape, given), _rows_of(part, shape, numbers), (), free, own)
-                except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
-                    few = _rows_of(part, shape, map(np.float64, numbers))
-                    batch(*_rows_of(part, shape, given), few, (), free, own)
+                few = _rows_of(part, shape, given), _rows_of(part, shape, numbers)
+                varying(*few[0], few[1], (), buffers[:, : own.shape[1]], own)
         return found
 
     def _known(self, table, motion, leaves, slider, start, slope):
@@ -125,13 +124,14 @@ class SteepTable:
 
     def _in_long(self, known, motion, leaves):
         angle = _at(known, motion.crank_angle).astype(np.longdouble)
-        numbers = [np.longdouble(_of(known, leaf)) for leaf in leaves.numbers]
+        fixed, varying = self._long
+        numbers = [_of(known, part) for part in fixed(0.0, 0.0, 1.0, list(map(np.longdouble, leaves.numbers)), ())]
         value, rest = np.empty((2, angle.size))
         for start in range(0, angle.size, FEW):
             part = slice(start, start + FEW)
             own = angle[part]
-            few = [leaf[part] if leaf.ndim else leaf for leaf in numbers]
-            (travel,) = self._long(own, np.sin(own), np.cos(own), few, ())
+            few = [item[part] if isinstance(item, np.ndarray) else item for item in numbers]
+            (travel,) = varying(own, np.sin(own), np.cos(own), few, ())
             value[part] = travel
             rest[part] = travel - value[part]
         return value, rest
@@ -151,12 +151,14 @@ class SteepTable:
 
     @cached_property
     def _double(self):
-        source, count = buffered_line(self._outputs)
-        return [made(source, ARRAYS | scope) for scope in (PLAIN, BY_DESIGN)], count
+        fixed, outputs = parted(self._outputs)
+        source, count = buffered_line(outputs)
+        return [made(line(fixed), scope) for scope in (PLAIN, BY_DESIGN)], made(source, ARRAYS | BY_DESIGN), count
 
     @cached_property
     def _long(self):
-        return made(line(self._outputs[:1]), BY_DESIGN | {"total": _long_total, "rest": _long_rest})
+        operations = BY_DESIGN | {"total": _long_total, "rest": _long_rest}
+        return [made(line(outputs), operations) for outputs in parted(self._outputs[:1])]
 
     @cached_property
     def _twofold(self):
@@ -175,12 +177,18 @@ def _at(known, part):
 
 def _rows_of(part, shape, given):
     """Of arrays with a row for each design, those of some."""
-    return [item[part] if np.ndim(item) == 2 and np.shape(item)[0] == shape[0] else item for item in given]
+    if part.start == 0 and part.stop >= shape[0]:
+        return given
+    return [_row(item, part, shape) for item in given]
+
+
+def _row(item, part, shape):
+    return item[part] if isinstance(item, np.ndarray) and item.ndim == 2 and len(item) == shape[0] else item
 
 
 def _of(known, leaf):
     """A number of the design, or those of the designs there."""
-    return leaf if type(leaf) is float else _at(known, leaf)
+    return _at(known, leaf) if isinstance(leaf, np.ndarray) else leaf
 
 
 def _long_total(*terms):
