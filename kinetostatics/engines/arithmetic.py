@@ -75,6 +75,7 @@ class BoundsElsewhere:
 
     def __init__(self, graph, inputs, arithmetic):
         self._graph, self._arithmetic, self._in_double = graph, arithmetic, Bounds(graph, inputs)
+        self._inputs = inputs
         self._fused = self._in_double.fused
         self._errors: dict[Node, Error] = {}
         self._reaches: dict[Node, Any] = {}
@@ -102,6 +103,9 @@ class BoundsElsewhere:
         return Error(rounded + finer * relative, plus(None if rest is None else finer * rest, self._arithmetic.least))
 
     def _found(self, node):
+        if node in self._inputs:
+            relative, rest = self._inputs[node](self)
+            return Error(relative, plus(rest, self._arithmetic.least))
         kind, parts = node.operation, node.arguments
         relative, carried = RULES[kind](self, node, *parts)
         own = 0.0 if kind in EXACTLY or (len(parts) < 2 and kind == "-") else self._arithmetic.ulp.get(kind, 1.0)

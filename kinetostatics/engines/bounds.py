@@ -81,7 +81,7 @@ class Bounds:
                 self._uses.setdefault(part, []).append(node.operation)
 
     def _found(self, node):
-        if node.operation in INPUTS:
+        if node in self._inputs or node.operation in INPUTS:
             return self._inputs[node](self) if node in self._inputs else EXACT
         relative, rest = self.own(node)
         carried = _CARRIED[node.operation](self, rest, node, *node.arguments)

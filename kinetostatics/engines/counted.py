@@ -64,6 +64,8 @@ class Counted:
         kind, parts = node.operation, node.arguments
         if kind in INPUTS:
             return self._counted_input(node)
+        if node in self._inputs:
+            return None
         if kind in ("+", "-", "total"):
             return self._counted_sum(node, [part for part in parts if not is_zero(part)])
         if kind == "*":

@@ -2,8 +2,7 @@
 
 from ..machine import hints
 from . import writing
-from .operations import PLAIN
-from .programs import made
+from .operations import PLAIN, made
 from .record import recorded
 from .trace import needed
 

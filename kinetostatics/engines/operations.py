@@ -44,6 +44,13 @@ def _total_of(*terms_and_out):
     np.copyto(out, total(*terms))
 
 
+def made(source, scope):
+    """Function `line` of a source, with what a scope holds as its operations."""
+    scope = dict(scope)
+    exec(source, scope)
+    return scope["line"]
+
+
 def _sqrt(square):
     return math.sqrt(square) if square >= 0.0 else math.nan
 

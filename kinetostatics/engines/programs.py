@@ -16,7 +16,7 @@ from ..numbers.leaves import FLOATS, Leaves
 from . import loops, writing
 from .compiled import available, loaded
 from .derivatives import gradients
-from .operations import ARRAYS, BY_DESIGN, PLAIN
+from .operations import ARRAYS, BY_DESIGN, PLAIN, made
 from .recent import kept_for_same_angles
 from .record import record
 from .running import RunningBounds
@@ -114,7 +114,7 @@ class Program:
         rows: list[Any] = []
         for table in self.recording.tables:
             idle = self._rows_needed.isdisjoint(table.rows)
-            rows += [0.0] * len(table.rows) if idle else table.compute(state, leaves.tables)
+            rows += [0.0] * len(table.rows) if idle else table.compute(state, leaves)
         return rows
 
     @cached_property
@@ -265,13 +265,6 @@ def _sines(angle):
 
 
 turn = kept_for_same_angles(_sines)
-
-
-def made(source, scope):
-    """Function `line` of a source."""
-    scope = dict(scope)
-    exec(source, scope)
-    return scope["line"]
 
 
 _memory = threading.local()

@@ -20,12 +20,13 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import given, moving, title_of
 from ..mechanics.quantities import CHECKS, all_found, components, of_scene
 from ..mechanics.quantities import sizes as sizes_of
-from ..numbers.elementary import UNIT
+from ..numbers.elementary import UNIT, held
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from ..numbers.planar import plus
 from .bounds import Error
 from .gaping import Gaps
+from .steep import SteepTable
 from .trace import Graph, LeanGraph, Node, needed, operations
 
 WITHOUT_GAPS = ("closure", *CHECKS)
@@ -40,7 +41,7 @@ class Table(NamedTuple):
     rows : range
         Rows it fills.
     compute : function
-        ``compute(motion, arrays) -> rows``, from the scene's motion and the tables among its leaves.
+        ``compute(motion, leaves) -> rows``, from the scene's motion and leaves, which may be others of its structure.
     moved_by : str
         Code of the user's whose values may hang on parameters in a way that is not recorded; "" without.
     names : tuple of (str, int, str)
@@ -123,7 +124,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     way : function, optional
         Other way to the placement, as `Dynamics` takes it.
     """
-    recorder = Recorder(structure, way, LeanGraph())
+    recorder = Recorder(structure, way, LeanGraph(), steeply=True)
     if quantities is None:
         quantities = all_found(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -153,10 +154,14 @@ def recorded(structure):
 
 
 class Recorder:
-    """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given."""
+    """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given.
 
-    def __init__(self, structure, way=None, graph=None):
+    `steeply`: tables over travel are read with more digits where they are steep, see `steep`.
+    """
+
+    def __init__(self, structure, way=None, graph=None, steeply=False):
         self.graph = Graph() if graph is None else graph
+        self._steeply = steeply
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
         self.inputs: dict[Node, Callable[[Any], Error]] = {}
@@ -179,7 +184,7 @@ class Recorder:
     def _array(self):
         place = self._arrays
         self._arrays += 1
-        return self._tabled((("value", 0, ""),), lambda motion, arrays: [arrays[place]])[0]
+        return self._tabled((("value", 0, ""),), lambda motion, leaves: [leaves.tables[place]])[0]
 
     def _tabled(self, names, compute, moved_by="", of=""):
         first, self._rows = self._rows, self._rows + len(names)
@@ -200,7 +205,7 @@ class Recorder:
             return group
         values = self._tabled(
             tuple((group.LAW[0], order, group.LAW[1]) for order in range(3)),
-            lambda motion, arrays: motion.mechanism.groups[place].cam.radius(motion.crank_angle),
+            lambda motion, leaves: motion.mechanism.groups[place].cam.radius(motion.crank_angle),
             "" if group.cam is None else type(group.cam).__name__,
             f"cam{group.label}",
         )
@@ -226,7 +231,7 @@ class Recorder:
         """What code of the user's gives for a load, from a table."""
         names = (("value", 0, getattr(load, "UNIT", "N")),)
         (values,) = self._tabled(
-            names, lambda motion, arrays: [given(motion.loads[place], motion)], title_of(load), place
+            names, lambda motion, leaves: [given(motion.loads[place], motion)], title_of(load), place
         )
         return values
 
@@ -237,20 +242,31 @@ class Recorder:
             return motion.loads[place].value_now
 
         if table.over == "angle":
-            (values,) = self._tabled((("value", 0, unit),), lambda motion, arrays: [item(motion)(motion)], of=place)
+            (values,) = self._tabled((("value", 0, unit),), lambda motion, leaves: [item(motion)(motion)], of=place)
             (errors,) = self._tabled(
-                ERRORS[:1], lambda motion, arrays: [table_errors.rounding(item(motion), motion) / UNIT]
+                ERRORS[:1], lambda motion, leaves: [table_errors.rounding(item(motion), motion) / UNIT]
             )
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
         names = (("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m"))
-        pieces = self._tabled(names, lambda motion, arrays: item(motion).pieces(motion), of=place)
-        within = self._tabled(ERRORS, lambda motion, arrays: table_errors.kinks_within(item(motion), motion))
+        if not self._steeply:
+            pieces = self._tabled(names, lambda motion, leaves: item(motion).pieces(motion), of=place)
+            return lambda motion: table.read(motion, pieces)
+        steep = SteepTable(self.inputs)
+        pieces = self._tabled(
+            (*names, ("known", 0, "")), lambda motion, leaves: steep.pieces(item(motion), motion, leaves), of=place
+        )
+        within = self._tabled(ERRORS, lambda motion, leaves: steep.errors(item(motion), motion, leaves))
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
+            steep.follow(travel, rate)
+            start, value, slope, known = pieces
+            beyond = table.beyond(start, motion)
+            left = beyond - known * held(beyond)
             self.inputs |= _of_pieces([part[0] for part in pieces], [part[0] for part in within], travel, rate)
-            return table.read(motion, pieces)
+            self.inputs[left[0]] = _not_known(beyond[0], known[0])
+            return value + slope * left
 
         return read
 
@@ -285,7 +301,7 @@ class _Tabled:
 
 # What is known of inputs that are not exact
 
-ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""), ("error", 3, ""))
+ERRORS = (("error", 0, ""), ("error", 1, ""), ("error", 2, ""), ("error", 3, ""), ("error", 4, ""))
 """Names of rows that only bounds need."""
 
 
@@ -305,14 +321,24 @@ def _unproven(what):
 
 def _of_pieces(pieces, within, travel, rate):
     """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
-    _, value, slope = pieces
-    change, jump, near, distance = within
+    _, value, slope, _ = pieces
+    change, jump, near, distance, lost = within
 
     def of_value(bounds):
         bounds.of((travel, rate))
         jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
         off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
         jumps = plus(jumps, 0.0 / bounds.above(near, off))
-        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps))
+        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps) + lost)
 
     return {value: of_value, slope: lambda bounds: Error(3.0, None)}
+
+
+def _not_known(beyond, known):
+    """Error of how far a travel is beyond the start of a piece, where the value there is not known beforehand."""
+
+    def error(bounds):
+        total = bounds.total(beyond)
+        return Error(0.0, None if total is None else (1.0 - known) * total)
+
+    return error

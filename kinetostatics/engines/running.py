@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 from ..numbers.elementary import UNIT
 from .bounds import DUST, SAFE, ULP, Bounds, is_scaling, is_zero, whole
 from .counted import Counted
-from .trace import BY_DESIGN, INPUTS, Node, needed
+from .trace import BY_DESIGN, Node, needed
 
 KNOWN, CURVED, POWER = 0.1, 18.0, 16.0
 """Relative errors x of pivots stay below `KNOWN`; up to `POWER` then (1 - x)^-m - 1 <= m x (1 + `CURVED` x)."""
@@ -100,7 +100,7 @@ class RunningBounds(Counted):
         if node.varies == BY_DESIGN:
             self._by_design.of([node])
             return Absolute([(MORE, self.size(node)), (1.0, self._by_design.total(node)), (1.0, self._dust)], MORE)
-        if kind in INPUTS:
+        if node in self._inputs:
             relative, rest = self._inputs[node](self)
             return Absolute([(relative + MORE, self.size(node)), (1.0, rest), (1.0, self._dust)], MORE)
         if kind == "sign":

@@ -13,7 +13,7 @@ from . import loops, programs, writing
 from .compiled import loaded
 from .operations import BY_DESIGN
 from .programs import Program
-from .trace import BY_ANGLE, Graph, Node, needed
+from .trace import parted
 
 
 class Given(NamedTuple):
@@ -47,7 +47,7 @@ class Split:
 
     def __init__(self, program):
         self._whole = program
-        given, outputs = _cut(program.outputs)
+        given, outputs = parted(program.outputs)
         self._fixed = programs.made(writing.line(given), BY_DESIGN)
         self.at_angles = Program(program.recording, outputs)
 
@@ -107,30 +107,3 @@ class Split:
 
 def _of_type(part, dtype):
     return float(part) if isinstance(part, float) else np.asarray(part, dtype)
-
-
-def _cut(outputs):
-    """What is handed over to the operations at each crank angle, and outputs of a graph of these alone."""
-    graph = Graph()
-    parameters: list[tuple[Any, Node]] = []
-    nodes: dict[Node, Node] = {}
-    constants: dict[float, Node] = {}
-
-    def copied(part):
-        known: Any = nodes if isinstance(part, Node) else constants
-        if part not in known:
-            known[part] = graph.parameter(len(parameters))
-            parameters.append((part, known[part]))
-        return known[part]
-
-    for node in needed(outputs):
-        if node.varies < BY_ANGLE:
-            continue
-        if node.operation == "angle":
-            nodes[node] = graph.angle()
-        elif node.operation == "table":
-            nodes[node] = graph.row(*node.arguments)
-        else:
-            nodes[node] = graph.node(node.operation, *map(copied, node.arguments))
-    found = tuple(map(copied, outputs))
-    return tuple(part for part, _ in parameters), found

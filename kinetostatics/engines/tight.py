@@ -30,7 +30,7 @@ def tight_bound(graph, inputs, output, dust=DUST):
         return 0.0
     coarse = Bounds(graph, inputs, STRETCH, None if dust is None else STRETCH * dust)
     coarse.of([output])
-    local = _Local(graph, coarse, output)
+    local = _Local(graph, inputs, coarse, output)
     most, slopes, cancelling = coarse.total(output), _adjoints(graph, output, local.cut), None
     if most is None:
         return 0.0
@@ -55,8 +55,9 @@ class _Local(Bounds):
         Bounds on the errors, so counted, of values where they may cancel.
     """
 
-    def __init__(self, graph, coarse, output):
-        super().__init__(graph, dust=None)
+    def __init__(self, graph, inputs, coarse, output):
+        told = {node: error for node, error in (inputs or {}).items() if node.operation not in INPUTS}
+        super().__init__(graph, told, dust=None)
         self.coarse, self.cut = coarse, {}
         behind: set[Node] = set()
         nodes = needed([output])

@@ -315,3 +315,30 @@ def needed(outputs):
 def operations(outputs):
     """Number of operations at each crank angle."""
     return sum(node.varies == BY_ANGLE and node.operation not in INPUTS for node in needed(outputs))
+
+
+def parted(outputs):
+    """What a design hands over to the operations at each crank angle, and outputs of a graph of these alone."""
+    graph = Graph()
+    parameters: list[tuple[Node | float, Node]] = []
+    nodes: dict[Node, Node] = {}
+    constants: dict[float, Node] = {}
+
+    def copied(part):
+        known = nodes if isinstance(part, Node) else constants
+        if part not in known:
+            known[part] = graph.parameter(len(parameters))
+            parameters.append((part, known[part]))
+        return known[part]
+
+    for node in needed(outputs):
+        if node.varies < BY_ANGLE:
+            continue
+        if node.operation == "angle":
+            nodes[node] = graph.angle()
+        elif node.operation == "table":
+            nodes[node] = graph.row(*node.arguments)
+        else:
+            nodes[node] = graph.node(node.operation, *map(copied, node.arguments))
+    found = tuple(map(copied, outputs))
+    return tuple(part for part, _ in parameters), found

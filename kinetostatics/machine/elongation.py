@@ -5,7 +5,7 @@ l sin^2 / (1 + cos), which is small beside it near a dead centre, as is what is 
 """
 
 from ..numbers.elementary import sign
-from ..numbers.planar import unturned
+from ..numbers.planar import minus, unturned
 
 TERMS = {
     "elongation.cosine": ("c", "cosine of the angle from the guide to what swings the inner joint"),
@@ -33,6 +33,12 @@ def elongation(placement, joint, direction, reach, short):
     way = sign(cosine)
     turning = unturned(swing.centre, direction)[0] + way * swing.radius
     return turning + reach - (way * shortfall(swing.radius, sine, abs(cosine)) + short)
+
+
+def across(swing, guide):
+    """From a joint that swings about a fixed place across to a guide: all by the swing if that place is on it."""
+    apart = minus(guide.offset, unturned(swing.centre, guide.direction)[1])
+    return minus(apart, swing.radius * unturned(swing.direction, guide.direction)[1])
 
 
 def departure(placement, drawn_in, joint, direction, reach, short):

@@ -146,8 +146,8 @@ class Guide(checks.Checked):
 
     @property
     def rounded(self):
-        """What was rounded once when it was made: direction and offset of a guide through two points."""
-        return () if self.exact is None else (*self.exact, self.guide_offset)
+        """What was rounded once when it was made: direction and offset of a guide through two points off the axes."""
+        return () if self.exact is None or type(self.exact) is Axis else (*self.exact, self.guide_offset)
 
     @property
     def is_level(self):

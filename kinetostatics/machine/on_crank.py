@@ -170,15 +170,15 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_clos
     sine, divided = assembly * size, assembly * divisor(size, SMALLEST)
 
     d, square, over = line.d, line.square, 1.0 / line.square
-    share, aside = 0.5 * gap * both * over, sine * over
-    along, across = (0.5 + share) / b, h * aside
-    q = (along * d[0] - across * d[1], along * d[1] + across * d[0])
-    p = (b / h * q[0] - d[0] / h, b / h * q[1] - d[1] / h)
+    share, aside = 0.5 * gap * both * over, assembly * b * h * size * over
+    along, back, across = 0.5 + share, share - 0.5, (aside * d[0], aside * d[1])
+    q = ((along * d[0] - across[1]) / b, (along * d[1] + across[0]) / b)
+    p = ((back * d[0] - across[1]) / h, (back * d[1] + across[0]) / h)
 
     inverse, sweep = 1.0 / divided, 2.0 * a * ground
     rate = sweep / (product * line.reach) * line.turn * inverse
     bend = sweep / product * (near_c * far_off * far - far_s * near_by * near) * (inverse * inverse * inverse)
-    turning, back = 0.5 * line.gap * (ground + a) * over, share - 0.5
+    turning = 0.5 * line.gap * (ground + a) * over
     change = sweep / line.reach * line.turn * over * (turning - share * rate)
     ratio, slope = 0.5 - turning + back * rate, change + back * bend
     coupler, rocker = (q, ratio, slope), (p, ratio + rate, slope + bend)

@@ -80,13 +80,13 @@ class SliderForces(NamedTuple):
     guide_moment: Any
 
 
-def place(joint, coupler_length, guide, assembly):
-    """Coupler and slider for a given inner joint (kernel); a guide direction of None is +x, an offset of None zero."""
+def place(joint, coupler_length, guide, assembly, swing=None):
+    """Coupler and slider for a given inner joint, and its swing (kernel); None is +x, no offset, no swing."""
     position = unturned(joint.position, guide.direction)
     first = unturned(vector(joint.first), guide.direction)
     second = unturned(vector(joint.second), guide.direction)
 
-    across = minus(guide.offset, position[1])
+    across = minus(guide.offset, position[1]) if swing is None else elongation.across(swing, guide)
     square, unit = (coupler_length - across) * (coupler_length + across), coupler_length * coupler_length
     reach = root(square, unit)
     along, divided = assembly * reach, assembly * divisor(reach, SMALLEST * coupler_length)
@@ -281,7 +281,7 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
         elif self.is_close:
             motion = passed(placement, self.on, *given, on_crank.slid, self.side)
         else:
-            motion = place(placement.joints[self.on], *given, self.side)
+            motion = place(placement.joints[self.on], *given, self.side, placement.swings.get(self.on))
         self._set(placement, motion)
 
     def follow(self, placement, joints):

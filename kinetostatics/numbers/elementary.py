@@ -145,9 +145,9 @@ def rest(length, x, y):
     return total(one, first, two, second, -three, -third) / (2.0 * length)
 
 
-def squared(a):
+def squared(a, split=SPLIT):
     """Square of a number, rounded, and what that lost."""
-    whole, spread = a * a, SPLIT * a
+    whole, spread = a * a, split * a
     high = spread - (spread - a)
     low = a - high
     return whole, ((high * high - whole) + 2.0 * high * low) + low * low

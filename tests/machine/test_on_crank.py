@@ -162,5 +162,5 @@ def test_a_four_bar_on_the_crank_takes_few_more_operations_and_fewer_divisions(m
 
     monkeypatch.setattr(rocker_group, "turned_by_crank", general)
     whole_before, slow_before = counted(structure)
-    assert whole <= whole_before + 1
+    assert whole <= whole_before + 2  # the pin itself, which hangs on nothing here, would save two
     assert slow < slow_before

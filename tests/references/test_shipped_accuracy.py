@@ -22,20 +22,16 @@ VANISHING = 0.01
 cam makes 4e-15 of it.
 """
 PLAIN, TIGHT = 150.0, 20.0
-STEEP = {
-    ("shaper", "cutting"): dict.fromkeys(("balancing_torque", "O", "A", "C", "D", "O2"), (4e-14, 9e-13)),
-    ("toggle_press", "coining"): dict.fromkeys(
-        ("balancing_torque", "O", "A", "B", "guide2", "B2", "C", "O2"), (3e-14, 5e-13)
-    ),
-    ("sawframe_2r63_optimal", "cam-robust"): {"A": (1.2e-14, 4e-13)},
-}
+STIFF = {("sawframe_2r63_optimal", "cam-robust"): {"A": (1.2e-14, 4e-13)}}
 """What cannot be so near, with the least it keeps, and what one rounding makes where most are found.
 
-The shaper cuts with 4 kN that begin within 2 mm, 2e6 N/m, where joint C is 0.2 m from O2 along the guide: one rounding
-of that, 1.4e-17 m, makes 7e-15 of the cutting force; its place has six, from the root of A's distance from O2 on. The
-press coins with 400 kN that begin within 3 mm, 1.3e8 N/m: one rounding of the rocker's direction, 1e-16 rad, makes
-2e-15 of the ram's force, 5e-15 of the rod's; a four-bar has some thirty. The spring of the robust saw takes 331 kN, by
-the cube of its elongation; A bears 20 kN of that: one rounding of the elongation makes 5e-15 of A.
+The spring of the robust saw takes 331 kN, by the cube of its elongation; A bears 20 kN of that: one rounding of the
+elongation makes 5e-15 of A. Its elongation has three, 1.1e-14; the second derivative of its travel makes 4e-15, the law
+of the spring 3e-15.
+
+On 100 angles between two kinks of its table the coining press is at 9e-15 in its rod and knuckle, which the cutting
+shaper is not (2e-15): their forces go with the knuckle's angle, 0.016, which the rocker's direction has of parts of
+0.5, and one rounding of 1e-16 makes 7e-15.
 """
 
 
@@ -50,7 +46,7 @@ def test_torque_and_reactions_are_near_the_exact_ones_and_bounded(case, variant)
         size, largest = found.size, scale(s, name)
         if name == "balancing_torque" or size < VANISHING * largest:
             size = max(size, largest)
-        error, bound = STEEP.get((case, variant), {}).get(name, (ERROR, BOUND))
+        error, bound = STIFF.get((case, variant), {}).get(name, (ERROR, BOUND))
         assert found.error <= error * size, name
         assert found.plain <= bound * size, name
 

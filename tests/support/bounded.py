@@ -19,10 +19,10 @@ from .inclined import INCLINED
 from .shipped import shipped
 
 BITS = 200
-FAMILIES = "chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped", "inclined"
+FAMILIES = "chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped", "inclined", "steep"
 AT_PLACES = {"place": PLACES, "inclined": INCLINED}
 """Families of few structures, whose numbers are exact."""
-CASES = "sawframe_2r63", "chain_unit", "toggle_press", "mower_drive", "v_twin"
+CASES = "sawframe_2r63", "chain_unit", "toggle_press", "mower_drive", "v_twin", "shaper", "compressor"
 OVER_WORST = {
     ("sawframe_2r63", "plain"): {"double": 20, "single": 20},
     ("sawframe_2r63", "cam-cosine"): {"double": 60, "single": 60},
@@ -87,6 +87,8 @@ def _made(family, rng, count):
         found = place.scene(place.numbers[rng.integers(len(place.numbers))])
         angles = rng.choice(found.crank_angle.ravel(), count)
         return _solved(found.mechanism, found.crank_speed, 0.0, found.loads, found.friction, angles)
+    if family == "steep":
+        return _steep(rng, count)
     if family == "shipped":
         variants = shipped(str(rng.choice(CASES))).variants
         scene = variants[str(rng.choice(list(variants)))].scene
@@ -104,6 +106,28 @@ def _made(family, rng, count):
         friction=friction,
         on_gap="nan",
     )
+
+
+def _steep(rng, count):
+    """A scene with a table over travel, some rows as near to each other as may be, at angles of which some are at rows.
+
+    None if there is no slider.
+    """
+    base = _made(str(rng.choice(("chain", "plain"))), rng, count)
+    if not base.mechanism.guides:
+        return None
+    slider = str(rng.choice(list(base.mechanism.guides)))
+    travel = base.mechanism.place(np.linspace(0.0, 2.0 * np.pi, 720)).travels[slider].position
+    low, high = float(np.nanmin(travel)), float(np.nanmax(travel))
+    x, span = rng.uniform(low, high, 6), high - low
+    x = np.sort(np.concatenate([x, x[:3] + span * 10.0 ** rng.uniform(-9, -1, 3), [low - span, high + span]]))
+    back = rng.uniform(-99, 99, x.size) if rng.integers(2) else None
+    table = ks.Table(x, rng.uniform(-99, 99, x.size), over="travel", back=back, slider=slider)
+    given = [*base.loads, ks.ProcessForce(table, slider)]
+    made = _solved(base.mechanism, base.crank_speed, base.crank_acceleration, given, {}, base.crank_angle)
+    kinks = np.concatenate([*table.kinks(made.dynamics), base.crank_angle])
+    beside = rng.choice(kinks, count) + rng.choice((-1.0, 0.0, 1.0), count) * 10.0 ** rng.uniform(-17, -1, count)
+    return _solved(base.mechanism, base.crank_speed, base.crank_acceleration, given, {}, beside)
 
 
 def _mechanism(family, rng, size, mass):

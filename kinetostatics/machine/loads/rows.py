@@ -48,9 +48,12 @@ def piece(xp, x, place):
     return xp.clip(xp.searchsorted(xp.asarray(x), place, side="right") - 1, 0, x.size - 2)
 
 
-def pieces(xp, x, y, piece):
-    """Start, value there and slope of some pieces."""
-    return tuple(xp.asarray(part)[piece] for part in (x, y, np.diff(y) / np.diff(x)))
+def pieces(xp, x, strokes, piece, back=None):
+    """Start, value there and slope of some pieces, of the first or, where told, the second of two strokes."""
+    place = piece if back is None else piece + (x.size - 1) * back
+    values = np.concatenate([y[:-1] for y in strokes])
+    slopes = np.concatenate([np.diff(y) / np.diff(x) for y in strokes])
+    return tuple(xp.asarray(part)[at] for part, at in ((x, piece), (values, place), (slopes, place)))
 
 
 def outside(x, place):

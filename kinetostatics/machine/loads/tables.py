@@ -18,6 +18,8 @@ OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 AREA = {"area": checks.Optional(checks.Number("m**2"))}
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
+STEEP = 8.0
+"""Roundings of the largest value that one of the travel makes, from which on a table counts as steep."""
 BACKWARDS = re.compile("back|return", re.IGNORECASE)
 """What a heading has that is meant for a stroke back."""
 
@@ -245,40 +247,44 @@ class Table:
     def read(self, motion, pieces):
         """Values at a motion of whatever numbers that runs through these pieces."""
         start, value, slope = pieces
-        return value + slope * self._from(start, motion)
+        return value + slope * self.beyond(start, motion)
 
-    def _from(self, start, motion):
+    def beyond(self, start, motion):
         """How far what it is read by is beyond the start of a piece; where a slider is, without its own rounding."""
         if self.over == "angle":
             return motion.crank_angle - start
         return motion.elongation(start, self._slider(motion))
 
+    def is_steep(self, place, slope):
+        """Whether one rounding of a travel makes `STEEP` of the largest value, or more, where the slope is such."""
+        return np.abs(slope * place) > STEEP * abs(self.largest)
+
     def _slider(self, motion):
         return self.slider or next(iter(motion.mechanism.guides))
 
-    def pieces(self, motion, number=lambda given: given):
+    def pieces(self, motion, number=lambda given: given, slider=None):
         """Where the piece of the table starts at each crank angle, the value there, and its slope.
 
-        In double precision, or in whatever numbers `number` makes of floats and of arrays of them.
+        In double precision, or in whatever numbers `number` makes of floats and of arrays of them. `slider` is where
+        the slider is, and its rate, if that is known beforehand.
 
         Raises
         ------
         ParameterError
             The travel goes beyond the table; where it has no value yet, as under ``jax.jit``, there is NaN instead.
         """
-        returning = None if self.back is None else self.returns(motion)
-        xp, place, returning = rows.looked_at(self.place(motion), returning)
+        place, rate = (self.place(motion), None) if slider is None else slider
+        returning = None if self.back is None else self.returns(motion, rate)
+        xp, place, returning = rows.looked_at(place, returning)
         x, y, period = number(self.x), number(self.y), number(self.period)
         if self.over == "angle":
             turns = xp.floor((place - self.x[0]) / self.period)
             piece = rows.piece(xp, np.append(self.x, self.x[0] + self.period), place - turns * self.period)
-            start, value, slope = rows.pieces(xp, np.append(x, x[0] + period), np.append(y, y[0]), piece)
+            start, value, slope = rows.pieces(xp, np.append(x, x[0] + period), [np.append(y, y[0])], piece)
             return start + number(turns) * period, value, slope
         piece = rows.piece(xp, self.x, place)
-        start, value, slope = rows.pieces(xp, x, y, piece)
-        if self.back is not None:
-            _, value_back, slope_back = rows.pieces(xp, x, number(self.back), piece)
-            value, slope = xp.where(returning, value_back, value), xp.where(returning, slope_back, slope)
+        strokes = [y] if self.back is None else [y, number(self.back)]
+        start, value, slope = rows.pieces(xp, x, strokes, piece, returning)
         if xp is np:
             rows.require_inside(self.x, place, motion)
             return start, value, slope
@@ -288,10 +294,10 @@ class Table:
         """Rate of the slider along its guide by the crank angle, m."""
         return motion.placement.travels[self._slider(motion)].first
 
-    def returns(self, motion):
+    def returns(self, motion, rate=None):
         """Whether the slider is on its stroke with negative velocity; standing still, as if the crank turned on."""
-        speed = motion.crank_speed
-        return namespace(speed).where(speed < 0, -1.0, 1.0) * self.rate(motion) < 0
+        speed, rate = motion.crank_speed, self.rate(motion) if rate is None else rate
+        return namespace(speed).where(speed < 0, -1.0, 1.0) * rate < 0
 
     def period_on(self, mechanism):
         """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""
