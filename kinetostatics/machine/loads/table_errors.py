@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...numbers.elementary import UNIT
+from . import rows
 
 MORE = 1.0 + 1e-9
 """What a bound is enlarged by for products of roundings."""
@@ -14,19 +15,32 @@ def rounding(table, motion):
     """Bound on the error of values read by crank angle, N or N m.
 
     A slope has three roundings, the rise along it two more, the sum with the row's value one; a level piece has none.
-    The end of the last piece is rounded as well, and a turn more or less moves every row, so that another piece may be
-    read where one is near.
+    Each piece is taken as if all of it were risen. The end of the last one is rounded as well, and a turn more or less
+    moves every row, so that another piece may be read where one is near.
     """
-    angle, (start, value, slope) = np.asarray(motion.crank_angle), table.pieces(motion)
-    rise = slope * (angle - start)
-    x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
-    turned = np.floor((angle - x[0]) / table.period) * table.period
-    reach = np.where(turned == 0.0, 0.0, np.abs(angle) + abs(x[0]) + 2.0 * table.period)
-    ending = np.where((angle - turned < x[-2]) | (x[0] == 0.0), 0.0, 2.0 * abs(x[-1]))
-    near = _distance(x, angle - turned) <= 4.0 * UNIT * reach
-    starting = np.where(turned == 0.0, 0.0, np.abs(turned) + np.abs(start))
-    moved = np.abs(slope) * (starting + ending) + np.where(near, _steepest(x, y) * 8.0 * reach, 0.0)
-    return MORE * UNIT * (5.0 * np.abs(rise) + np.where(slope == 0.0, 0.0, np.abs(value + rise)) + moved) + TINY
+    angle, first = np.asarray(motion.crank_angle), table.x[0]
+    x, y = np.concatenate([table.x, [first + table.period]]), np.concatenate([table.y, table.y[:1]])
+    rise = np.abs(np.diff(y))
+    own = np.where(rise == 0.0, 0.0, 5.0 * rise + np.maximum(np.abs(y[1:]), np.abs(y[:-1])))
+    if first != 0.0:
+        own[-1] += 2.0 * abs(x[-1]) * rise[-1] / (x[-1] - x[-2])
+    turned = np.floor((angle - first) / table.period) * table.period
+    place = angle - turned
+    bound = (MORE * UNIT * own + TINY)[rows.piece(np, x, place)]
+    if not np.any(turned):
+        return bound
+    on = turned != 0.0
+    moved = np.zeros_like(bound)
+    moved[on] = MORE * UNIT * _moved(x, y, angle[on], turned[on], place[on])
+    return bound + moved
+
+
+def _moved(x, y, angle, turned, place):
+    """What a turn more or less adds, in `UNIT`."""
+    reach = np.abs(angle) + abs(x[0]) + x[-1] - x[0] + np.abs(turned)
+    slope = np.abs(np.diff(y) / np.diff(x))
+    near = _distance(x, place) <= 4.0 * UNIT * reach
+    return slope[rows.piece(np, x, place)] * 3.0 * reach + np.where(near, np.max(slope) * 8.0 * reach, 0.0)
 
 
 def _steepest(x, y):
