@@ -46,6 +46,7 @@ class Counted:
         self._squares: set[Any] = set()
         self._reciprocals: dict[Node, Any] = {}
         self._caps: dict[Node, Any] = {}
+        self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
 
     def count(self, nodes):
@@ -219,11 +220,20 @@ class Counted:
         ]
         if any(is_number(one, 1.0) and varies(other) for one, other in terms):  # a bound, which has dust enough
             terms = [term for term in terms if not (is_number(term[0], 1.0) and self._is_dust(term[1]))]
-        terms.sort(key=lambda term: varies(term[0]) or varies(term[1]))
+        terms.sort(key=lambda term: max(map(self._depth, term)))
         total = None
         for one, other in terms:
             total = self.fused(one, other, total)
         return total
+
+    def _depth(self, part):
+        """How many operations at a crank angle lead to a part: what is known last is added last."""
+        if not varies(part):
+            return 0
+        if part not in self._depths:
+            parts = () if part.operation in INPUTS else part.arguments
+            self._depths[part] = 1 + max(map(self._depth, parts), default=0)
+        return self._depths[part]
 
     def _is_dust(self, part):
         return isinstance(part, float) and 0.0 < part <= 256.0 * self._dust
