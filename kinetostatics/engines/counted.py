@@ -15,10 +15,10 @@ from .bounds import SAFE, ULP, Error, fused, is_scaling, is_zero
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 
-ROOM = 1.01
-"""How many times larger a bound is from the start, for what errors of pivots make of others."""
+ROOM = 1.03
+"""How many times larger than of first order a bound is from the start, see `running`."""
 ROUNDED = ROOM * SAFE * UNIT
-"""What a rounding counts for."""
+"""What a rounding counts for in bounds."""
 
 
 class Relative(NamedTuple):
@@ -45,7 +45,8 @@ class Counted:
     """
 
     def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
-        self._graph, self._inputs, self._dust, self._lost = graph, inputs or {}, dust or 0.0, ROUNDED * (dust or 0.0)
+        self._graph, self._inputs, self._dust = graph, inputs or {}, dust or 0.0
+        self._lost = ROUNDED * self._dust
         self._relative: dict[Node, Relative | None] = {}
         self._pivots: dict[Node, Any] = {}
         self._guards: dict[Node, dict[Node, None]] = {}

@@ -1,23 +1,39 @@
 """Proven bounds on the rounding errors of recorded outputs that cost about as much as the outputs.
 
 Running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, sections 3.1 to 3.4) with what
-the structure tells beforehand. A value is either
+the structure tells beforehand. What is computed along is as little as can be:
 
-relative
-    exact times (1 + d) for each of some roundings, |d| <= `UNIT`, and times (1 + e) to some power for each of some
-    pivots, see `counted`. A pivot is a sum that something is divided by or whose root is taken: its relative error is
-    computed once, by a reciprocal that is there if possible, and shared by all products with it.
-absolute
-    within ``UNIT (bound - reserve |value|)`` of the exact one. The bound is computed along, the reserve is a number.
-    A sum needs a rounding of itself, which is at most the sum of its parts' magnitudes: it takes it from their
-    reserves, and has what is left. A product with what is relative takes its roundings in the same way. Where nothing
-    is left so many roundings of the value itself are added to the bound.
+relative value
+    Exact times (1 + d) for each of some roundings, |d| <= `UNIT`, and times (1 + e) to some power for each of some
+    pivots, see `counted`. Nothing is computed for it.
+pivot
+    A sum that something is divided by or whose root is taken. Its relative error is computed once, by a reciprocal that
+    is there if possible, and shared by all products with it.
+absolute value
+    Any other. Its bound is computed, once.
+bound
+    Of an absolute value: at least its error and its reserve.
+reserve
+    So many roundings of the value itself, a number that no operation hangs on. A sum needs a rounding of itself, which
+    is at most the sum of its parts' magnitudes: it takes it from their reserves, and has what is left. A product takes
+    its roundings in the same way.
+charge
+    What is added to a bound so that it has a reserve: roundings of the value, which are an operation unless its
+    magnitude is multiplied by something anyhow. So reserves are large where they are free.
+total
+    The bound without its reserve, in `UNIT`, as `bounds` has it.
+room
+    A bound is `ROOM` times larger than of first order from the start: in this is what errors of pivots make of errors
+    of what they multiply. A bound knows the logarithm of how much of it is taken; where it would be more than there is
+    the term of second order is computed.
+dust
+    What may be lost as too small for a double.
 
 What a design fixes is found once, however many angles there are: where it is not relative the rules of `bounds`, which
 are dearer and nearer, bound it, those of lengths and their rests among them. Its reserve is added to that.
 
 With errors a and b of two absolute factors x and y, that of x y is at most |y| a + |x| b + a b. A bound is infinite
-where a pivot is not known to a tenth, or where the guard of a divisor acts. Each bound has `DUST` in it.
+where a pivot is not `KNOWN`, or where the guard of a divisor acts. Each bound has dust in it.
 """
 
 import math
@@ -29,19 +45,20 @@ from .bounds import DUST, SAFE, ULP, Bounds, is_scaling, is_zero
 from .counted import ROOM, ROUNDED, Counted, varies
 from .trace import BY_DESIGN, INPUTS, Node, needed
 
-KNOWN = 2.0**-12
+KNOWN = 2.0**-8
 """Relative errors of pivots stay below it."""
 LIMIT = 2.0**1022
 """What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
+RESERVE, LEFT = 3.0, 2.0
+"""Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
 TAKEN = math.log(ROOM) - 1e-6
-FEW, MORE = 3.0, 3.0
-"""Roundings in reserve: of magnitudes of what is added, and of a value's own, which may be far smaller."""
+"""Logarithm of what may be taken of `ROOM`; a product's own roundings are in the rest."""
 
 
 class Absolute(NamedTuple):
-    """Error of a value with sums in it."""
+    """Bound of an absolute value: the products that it is the sum of, its reserve, what is taken of `ROOM`."""
 
     terms: list
     reserve: float
@@ -100,17 +117,17 @@ class RunningBounds(Counted):
         if node.varies == BY_DESIGN:
             self._by_design.of([node])
             error = self._by_design.total(node)
-            return Absolute([(MORE * ROUNDED, self.size(node)), (ROUNDED, error), (1.0, self._lost)], MORE)
+            return Absolute([(RESERVE * ROUNDED, self.size(node)), (ROUNDED, error), (1.0, self._lost)], RESERVE)
         if kind in INPUTS:
             relative, rest = self._inputs[node](self)
-            terms = [((relative + MORE) * ROUNDED, self.size(node)), (ROUNDED, rest), (1.0, self._lost)]
-            return Absolute(terms, MORE)
+            terms = [((relative + RESERVE) * ROUNDED, self.size(node)), (ROUNDED, rest), (1.0, self._lost)]
+            return Absolute(terms, RESERVE)
         if kind == "sign":
             cleared = self.above(self.size(parts[0]), self.total(parts[0]))
             return Absolute([(1.0, 0.0 / cleared), (1.0, self._lost)], 0.0)
         if kind in ("sin", "cos", "atan"):
-            terms = [((ULP[kind] + MORE) * ROUNDED, self.size(node)), (1.0, self.whole(parts[0])), (1.0, self._lost)]
-            return Absolute(terms, MORE, self._taken(parts[0]))
+            terms = [((ULP[kind] + RESERVE) * ROUNDED, self.size(node)), (1.0, self.whole(parts[0])), (1.0, self._lost)]
+            return Absolute(terms, RESERVE, self._taken(parts[0]))
         if kind == "rest":  # truly nothing
             return Absolute([(ROUNDED / UNIT, self.size(node))], 0.0)
         if kind == "*":
@@ -122,12 +139,12 @@ class RunningBounds(Counted):
         parts = [part for part in node.arguments if not is_zero(part)]
         own = 1.0 if len(parts) > 1 else 0.0
         reserve = min(
-            (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=FEW
+            (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=RESERVE
         )
         is_charged = reserve < 0.0 or node.operation == "total"
         terms = [(1.0, self._lost)]
         if is_charged:
-            terms.append(((own + MORE) * ROUNDED, self.size(node)))
+            terms.append(((own + RESERVE) * ROUNDED, self.size(node)))
         for part in parts:
             found = self.relative(part)
             if found is None:
@@ -138,7 +155,7 @@ class RunningBounds(Counted):
         if node.operation == "total":  # sums without loss, and what those of their losses lose
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
             terms += [(lost, self.size(part)) for part in parts]
-        return Absolute(terms, MORE if is_charged else reserve, max(map(self._taken, parts), default=0.0))
+        return Absolute(terms, RESERVE if is_charged else reserve, max(map(self._taken, parts), default=0.0))
 
     def _of_product(self, node):
         left, right = node.arguments
@@ -160,31 +177,33 @@ class RunningBounds(Counted):
         else:
             factors = self.larger(right), self.size(left)
         terms = [(factors[0], one), (factors[1], other), (1.0, self._lost)]
-        return Absolute(terms, held - 1.0 if held >= 1.0 else MORE, taken)
+        return Absolute(terms, held - 1.0 if held >= 1.0 else RESERVE, taken)
 
     def _of_quotient(self, node):
         above, below = node.arguments
-        return self._scaled(above, self.as_divisor(below)._replace(dust=None), 1.0, self.over(below))
+        return self._scaled(above, self.as_divisor(below), 1.0, self.over(below))
 
     def _scaled(self, part, found, own, size):
         """An absolute part times, or over, what is relative."""
         own += found.roundings
         held, taken, bound, lost = self._absolute[part].reserve, self._taken(part), self.bound(part), found.dust
         if found.pivots:
-            reserve = max(held - own, MORE)
+            reserve = max(held - own, RESERVE)
             charge = self.coefficient(found._replace(roundings=0.0), reserve + own - held)
-            grown = taken + math.log1p(_most(found.pivots.values()))
-            near = self.size(part) if grown <= TAKEN else self.larger(part)
-            bound, taken = self.fused(charge, near, bound), grown if grown <= TAKEN else taken
+            grown = taken + math.log1p(most(found.pivots.values()))
+            if grown <= TAKEN:
+                bound, taken = self.fused(charge, self.size(part), bound), grown
+            else:
+                bound = self.fused(charge, self.larger(part), bound)
         elif held >= own:
             reserve = held - own
         else:
-            charge = 4.0 * math.ceil((own + 2.0 - held) / 4.0)
+            charge = 4.0 * math.ceil((own + LEFT - held) / 4.0)
             bound, reserve = self.fused(charge * ROUNDED, self.size(part), bound), held + charge - own
-        if lost is not None and varies(self.cap(part)) and reserve + own >= 1.0 and not varies(size) and not varies(lost):
-            size, lost = size + lost, None
         terms = [(size, bound), (1.0, self._lost)]
-        if lost is not None:
+        if lost is not None and varies(self.cap(part)) and reserve + own >= 1.0 and not (varies(size) or varies(lost)):
+            terms[0] = size + lost, bound  # which is a rounding of the part at least
+        elif lost is not None:
             terms.append((ROUNDED * lost, self.cap(part)))
         return Absolute(terms, reserve, taken)
 
@@ -193,11 +212,15 @@ class RunningBounds(Counted):
         return self._absolute[part].terms if self._uses[part] < 2 else [(1.0, self.bound(part))]
 
     def bound(self, part, held=0.0):
-        """Bound of an absolute part; with `MORE` in reserve if it has less than wanted."""
+        """Bound of an absolute part; with `RESERVE` in reserve if it has less than wanted."""
         if part not in self._bounds:
             self._bounds[part] = self.summed(self._absolute[part].terms)
         bound = self._bounds[part]
-        return bound if self._absolute[part].reserve >= held else self.fused((held + MORE) * ROUNDED, self.size(part), bound)
+        return (
+            bound
+            if self._absolute[part].reserve >= held
+            else self.fused((held + RESERVE) * ROUNDED, self.size(part), bound)
+        )
 
     def coefficient(self, found, more=0.0):
         """What a relative error is of the magnitude of its value."""
@@ -206,7 +229,7 @@ class RunningBounds(Counted):
             return ROUNDED * roundings
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
-            slope = _most(found.pivots.values()) / sum(map(abs, found.pivots.values()))
+            slope = most(found.pivots.values()) / sum(map(abs, found.pivots.values()))
             powers = [(pivot, slope * abs(power)) for pivot, power in found.pivots.items()]
             held = sum(power / KNOWN * self._reserve(pivot) for pivot, power in powers)
             terms = [(power / 4.0, self.pivot(pivot)) for pivot, power in powers]
@@ -217,7 +240,7 @@ class RunningBounds(Counted):
         return self._absolute[part].reserve if part in self._absolute else 0.0
 
     def _taken(self, part):
-        return self._absolute[part].taken if part in self._absolute else 0.0
+        return self._absolute[part].taken if isinstance(part, Node) and part in self._absolute else 0.0
 
     def total(self, part):
         """The whole bound of a part of an operation in `UNIT`, as `Bounds` has it; None where it is exact."""
@@ -246,6 +269,6 @@ class RunningBounds(Counted):
         return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
 
 
-def _most(powers):
-    """Bound on the relative error that pivots to some powers make; by Jensen as if all were one."""
+def most(powers):
+    """Largest relative error that pivots to some powers make while `KNOWN`; by Jensen as if all were one."""
     return math.expm1(-sum(map(abs, powers)) * math.log1p(-KNOWN))
