@@ -14,7 +14,6 @@ from ..numbers.planar import plus
 from .bounds import SAFE, ULP, Error, fused, is_scaling, is_zero
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
-
 ROOM = 1.03
 """How many times larger than of first order a bound is from the start, see `running`."""
 ROUNDED = ROOM * SAFE * UNIT
