@@ -14,10 +14,8 @@ from ..numbers.planar import plus
 from .bounds import SAFE, ULP, Error, fused, is_scaling, is_zero
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
-ROOM = 1.03
-"""How many times larger than of first order a bound is from the start, see `running`."""
-ROUNDED = ROOM * SAFE * UNIT
-"""What a rounding counts for in bounds."""
+ROUNDED = SAFE * UNIT
+"""What a rounding counts for in a bound, beside that of the bound itself."""
 
 
 class Relative(NamedTuple):

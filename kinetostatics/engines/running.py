@@ -22,10 +22,6 @@ charge
     magnitude is multiplied by something anyhow. So reserves are large where they are free.
 total
     The bound without its reserve, in `UNIT`, as `bounds` has it.
-room
-    A bound is `ROOM` times larger than of first order from the start: in this is what errors of pivots make of errors
-    of what they multiply. A bound knows the logarithm of how much of it is taken; where it would be more than there is
-    the term of second order is computed.
 dust
     What may be lost as too small for a double.
 
@@ -42,10 +38,10 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from .bounds import DUST, SAFE, ULP, Bounds, is_scaling, is_zero
-from .counted import ROOM, ROUNDED, Counted, varies
+from .counted import ROUNDED, Counted, varies
 from .trace import BY_DESIGN, INPUTS, Node, needed
 
-KNOWN = 2.0**-8
+KNOWN = 2.0**-4
 """Relative errors of pivots stay below it."""
 LIMIT = 2.0**1022
 """What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
@@ -53,16 +49,13 @@ GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
 RESERVE, LEFT = 3.0, 2.0
 """Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
-TAKEN = math.log(ROOM) - 1e-6
-"""Logarithm of what may be taken of `ROOM`; a product's own roundings are in the rest."""
 
 
 class Absolute(NamedTuple):
-    """Bound of an absolute value: the products that it is the sum of, its reserve, what is taken of `ROOM`."""
+    """Bound of an absolute value, as the products that it is the sum of, and its reserve."""
 
     terms: list
     reserve: float
-    taken: float = 0.0
 
 
 class RunningBounds(Counted):
@@ -127,7 +120,7 @@ class RunningBounds(Counted):
             return Absolute([(1.0, 0.0 / cleared), (1.0, self._lost)], 0.0)
         if kind in ("sin", "cos", "atan"):
             terms = [((ULP[kind] + RESERVE) * ROUNDED, self.size(node)), (1.0, self.whole(parts[0])), (1.0, self._lost)]
-            return Absolute(terms, RESERVE, self._taken(parts[0]))
+            return Absolute(terms, RESERVE)
         if kind == "rest":  # truly nothing
             return Absolute([(ROUNDED / UNIT, self.size(node))], 0.0)
         if kind == "*":
@@ -155,7 +148,7 @@ class RunningBounds(Counted):
         if node.operation == "total":  # sums without loss, and what those of their losses lose
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
             terms += [(lost, self.size(part)) for part in parts]
-        return Absolute(terms, RESERVE if is_charged else reserve, max(map(self._taken, parts), default=0.0))
+        return Absolute(terms, RESERVE if is_charged else reserve)
 
     def _of_product(self, node):
         left, right = node.arguments
@@ -165,11 +158,10 @@ class RunningBounds(Counted):
         if found is not None:
             own = 0.0 if any(map(is_scaling, node.arguments)) else 1.0
             return self._scaled(left, found, own, self.size(right))
-        taken = max(self._taken(left), self._taken(right))
         if left is right:
             bound, size = self.bound(left, 0.5), self.size(left)
             terms = [(size + size + bound, bound), (1.0, self._lost)]
-            return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0, taken)
+            return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
         held = self._absolute[left].reserve + self._absolute[right].reserve
         one, other = self.bound(left, 0.0 if held >= 1.0 else 1.0), self.bound(right)
         if self._crossed[left] > self._crossed[right]:  # one of both is to be larger, and may be so for others too
@@ -177,7 +169,7 @@ class RunningBounds(Counted):
         else:
             factors = self.larger(right), self.size(left)
         terms = [(factors[0], one), (factors[1], other), (1.0, self._lost)]
-        return Absolute(terms, held - 1.0 if held >= 1.0 else RESERVE, taken)
+        return Absolute(terms, held - 1.0 if held >= 1.0 else RESERVE)
 
     def _of_quotient(self, node):
         above, below = node.arguments
@@ -186,15 +178,11 @@ class RunningBounds(Counted):
     def _scaled(self, part, found, own, size):
         """An absolute part times, or over, what is relative."""
         own += found.roundings
-        held, taken, bound, lost = self._absolute[part].reserve, self._taken(part), self.bound(part), found.dust
+        held, bound, lost = self._absolute[part].reserve, self.bound(part), found.dust
         if found.pivots:
             reserve = max(held - own, RESERVE)
             charge = self.coefficient(found._replace(roundings=0.0), reserve + own - held)
-            grown = taken + math.log1p(most(found.pivots.values()))
-            if grown <= TAKEN:
-                bound, taken = self.fused(charge, self.size(part), bound), grown
-            else:
-                bound = self.fused(charge, self.larger(part), bound)
+            bound = self.fused(charge, self.larger(part), bound)
         elif held >= own:
             reserve = held - own
         else:
@@ -205,7 +193,7 @@ class RunningBounds(Counted):
             terms[0] = size + lost, bound  # which is a rounding of the part at least
         elif lost is not None:
             terms.append((ROUNDED * lost, self.cap(part)))
-        return Absolute(terms, reserve, taken)
+        return Absolute(terms, reserve)
 
     def terms(self, part):
         """Terms of the bound of an absolute part; one where it is used again."""
@@ -229,18 +217,15 @@ class RunningBounds(Counted):
             return ROUNDED * roundings
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
-            slope = most(found.pivots.values()) / sum(map(abs, found.pivots.values()))
+            slope = steepest(found.pivots.values())
             powers = [(pivot, slope * abs(power)) for pivot, power in found.pivots.items()]
-            held = sum(power / KNOWN * self._reserve(pivot) for pivot, power in powers)
-            terms = [(power / 4.0, self.pivot(pivot)) for pivot, power in powers]
+            held = sum(power * self._reserve(pivot) for pivot, power in powers)
+            terms = [(KNOWN / 4.0 * power, self.pivot(pivot)) for pivot, power in powers]
             self._coefficients[key] = self.summed([*terms, (1.0, ROUNDED * roundings - UNIT * held)])
         return self._coefficients[key]
 
     def _reserve(self, part):
         return self._absolute[part].reserve if part in self._absolute else 0.0
-
-    def _taken(self, part):
-        return self._absolute[part].taken if isinstance(part, Node) and part in self._absolute else 0.0
 
     def total(self, part):
         """The whole bound of a part of an operation in `UNIT`, as `Bounds` has it; None where it is exact."""
@@ -269,6 +254,7 @@ class RunningBounds(Counted):
         return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
 
 
-def most(powers):
-    """Largest relative error that pivots to some powers make while `KNOWN`; by Jensen as if all were one."""
-    return math.expm1(-sum(map(abs, powers)) * math.log1p(-KNOWN))
+def steepest(powers):
+    """How much more than of first order pivots to some powers make while `KNOWN`; by Jensen as if all were one."""
+    power = sum(map(abs, powers))
+    return math.expm1(-power * math.log1p(-KNOWN)) / (power * KNOWN)

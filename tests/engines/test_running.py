@@ -6,8 +6,7 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.engines import programs
-from kinetostatics.engines.counted import ROOM
-from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, most
+from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, steepest
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, rest, sign, total
 from support.every import every
@@ -25,17 +24,17 @@ def test_sums_products_quotients_and_roots_of_plain_numbers_are_bounded_as_by_ha
     outputs = one + two, one * two, one / two, (one * one).sqrt(), (one + two) * one
     values = bounds_of(graph, outputs, [3.0, 0.7])
     wanted = [3.7 * UNIT, 2.1 * UNIT, 3.0 / 0.7 * UNIT, 1.5 * 3.0 * UNIT, 2 * 3.7 * 3.0 * UNIT]
-    np.testing.assert_allclose(values, ROOM * np.array(wanted), rtol=1e-8)
+    np.testing.assert_allclose(values, wanted, rtol=1e-8)
 
 
 def test_powers_of_pivots_are_bounded_up_to_what_makes_the_bound_infinite():
     known = np.linspace(1e-9, KNOWN, 1000)
     for power in (0.5, 1.0, 2.0, 5.0, 16.0):
-        assert np.all(np.expm1(-power * np.log1p(-known)) <= most([power]) / KNOWN * known * (1.0 + 1e-12))
+        assert np.all(np.expm1(-power * np.log1p(-known)) <= steepest([power]) * power * known * (1.0 + 1e-12))
     assert LIMIT * 3.999 < np.inf == LIMIT * 4.0
 
 
-@every("digits, finite", [(30, True), (42, True), (48, False), (60, False)])
+@every("digits, finite", [(30, True), (46, True), (50, False), (60, False)])
 def test_what_is_divided_by_a_sum_is_bounded_as_long_as_that_is_known(digits, finite):
     graph = Graph()
     one, other = map(graph.parameter, range(2))
@@ -46,14 +45,14 @@ def test_what_is_divided_by_a_sum_is_bounded_as_long_as_that_is_known(digits, fi
 
 @every("power", [1, 3, 12, 20])
 def test_errors_of_pivots_make_others_larger_that_they_multiply(power):
-    """More often than there is room for as well; of first order a difference that is lost has an error of 1e-16."""
+    """A difference that is lost has an error of 1e-16, and what divides it one of a hundredth each time."""
     graph = Graph()
     one, other, tiny = map(graph.parameter, range(3))
     over = 1.0 / (one * one - other * other)
     product = (graph.angle().cos() * one + tiny) - one  # computed 0, truly tiny
     for _ in range(power):
         product = product * over
-    values = [1.0, 1.0 + 2.0**-43, 2.0**-54]
+    values = [1.0, 1.0 + 2.0**-47, 2.0**-54]
     (bound,) = bounds_of(graph, [product], values)
     one, other, tiny = map(Fraction, values)
     assert Fraction(bound) >= abs(tiny / (one * one - other * other) ** power)
