@@ -159,8 +159,7 @@ class RunningBounds(Counted):
             own = 0.0 if any(map(is_scaling, node.arguments)) else 1.0
             return self._scaled(left, found, own, self.size(right))
         if left is right:
-            bound, size = self.bound(left, 0.5), self.size(left)
-            terms = [(size + size + bound, bound), (1.0, self._lost)]
+            terms = [(self.larger(left) + self.size(left), self.bound(left, 0.5)), (1.0, self._lost)]
             return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
         held = self._absolute[left].reserve + self._absolute[right].reserve
         one, other = self.bound(left, 0.0 if held >= 1.0 else 1.0), self.bound(right)

@@ -1,5 +1,7 @@
 """What bounds need to know of a table: its own rounding, and its kinks and jumps."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from ...numbers.elementary import UNIT
@@ -18,29 +20,32 @@ def rounding(table, motion):
     Each piece is taken as if all of it were risen. The end of the last one is rounded as well, and a turn more or less
     moves every row, so that another piece may be read where one is near.
     """
-    angle, first = np.asarray(motion.crank_angle), table.x[0]
-    x, y = np.concatenate([table.x, [first + table.period]]), np.concatenate([table.y, table.y[:1]])
-    rise = np.abs(np.diff(y))
-    own = np.where(rise == 0.0, 0.0, 5.0 * rise + np.maximum(np.abs(y[1:]), np.abs(y[:-1])))
-    if first != 0.0:
-        own[-1] += 2.0 * abs(x[-1]) * rise[-1] / (x[-1] - x[-2])
-    turned = np.floor((angle - first) / table.period) * table.period
+    x, slope, own = _pieces(table)
+    angle = np.asarray(motion.crank_angle)
+    turned = np.floor((angle - x[0]) / table.period) * table.period
     place = angle - turned
-    bound = (MORE * UNIT * own + TINY)[rows.piece(np, x, place)]
-    if not np.any(turned):
-        return bound
+    piece = rows.piece(np, x, place)
+    bound = own[piece]
     on = turned != 0.0
+    if not on.any():
+        return bound
+    reach = np.abs(angle[on]) + np.abs(turned[on]) + abs(x[0]) + table.period
+    near = _distance(x, place[on]) <= 4.0 * UNIT * reach
     moved = np.zeros_like(bound)
-    moved[on] = MORE * UNIT * _moved(x, y, angle[on], turned[on], place[on])
+    moved[on] = (MORE * UNIT) * (3.0 * slope[piece[on]] + np.where(near, 8.0 * slope.max(), 0.0)) * reach
     return bound + moved
 
 
-def _moved(x, y, angle, turned, place):
-    """What a turn more or less adds, in `UNIT`."""
-    reach = np.abs(angle) + abs(x[0]) + x[-1] - x[0] + np.abs(turned)
-    slope = np.abs(np.diff(y) / np.diff(x))
-    near = _distance(x, place) <= 4.0 * UNIT * reach
-    return slope[rows.piece(np, x, place)] * 3.0 * reach + np.where(near, np.max(slope) * 8.0 * reach, 0.0)
+@lru_cache(maxsize=64)
+def _pieces(table):
+    """Ends of the pieces of a table by angle; of each its slope and the error of values in the first turn."""
+    x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
+    rise = np.abs(np.diff(y))
+    slope = rise / np.diff(x)
+    own = np.where(rise == 0.0, 0.0, 5.0 * rise + np.maximum(np.abs(y[1:]), np.abs(y[:-1])))
+    if x[0] != 0.0:
+        own[-1] += 2.0 * abs(x[-1]) * slope[-1]
+    return x, slope, MORE * UNIT * own + TINY
 
 
 def _steepest(x, y):
