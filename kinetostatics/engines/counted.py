@@ -11,8 +11,11 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import ULP, Error, fused, is_scaling, is_zero
+from .bounds import SAFE, ULP, Error, fused, is_scaling, is_zero
 from .trace import BY_ANGLE, INPUTS, Graph, Node
+
+ROUNDED = SAFE * UNIT
+"""What a rounding counts for in a bound, beside that of the bound itself."""
 
 
 class Relative(NamedTuple):
@@ -40,12 +43,14 @@ class Counted:
 
     def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
         self._graph, self._inputs, self._dust = graph, inputs or {}, dust or 0.0
+        self._lost = ROUNDED * self._dust
         self._relative: dict[Node, Relative | None] = {}
         self._pivots: dict[Node, Any] = {}
         self._guards: dict[Node, dict[Node, None]] = {}
         self._squares: set[Any] = set()
         self._reciprocals: dict[Node, Any] = {}
         self._caps: dict[Node, Any] = {}
+        self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
 
     def count(self, nodes):
@@ -213,22 +218,38 @@ class Counted:
         return self.over(part.arguments[1] if guarded else part)
 
     def summed(self, terms):
-        """Sum of products: of what a design fixes first, the others one after the other; None of nothing."""
+        """Sum of products: of what a design fixes first, then of what is known first; None of nothing."""
         terms = [
-            self._stripped(one, other)
+            self._stripped(one, other) if isinstance(one, Node) or isinstance(other, Node) else (1.0, one * other)
             for one, other in terms
             if other is not None and not is_number(one, 0.0) and not is_number(other, 0.0)
         ]
-        if any(is_number(one, 1.0) and varies(other) for one, other in terms):  # a bound, which has dust enough
-            terms = [term for term in terms if not (is_number(term[0], 1.0) and self._is_dust(term[1]))]
-        terms.sort(key=lambda term: varies(term[0]) or varies(term[1]))
+        others = [term for term in terms if not self._is_dust(*term)]
+        if len(others) < len(terms):
+            terms = others
+            if not any(is_number(one, 1.0) and varies(other) for one, other in terms):  # a bound, which has dust enough
+                terms.append((1.0, self._lost))
+        terms.sort(key=lambda term: max(map(self._depth, term)))
+        if terms and self._depth(terms[0][0]) + self._depth(terms[0][1]):
+            begin = next((term for term in terms if is_number(term[0], 1.0)), terms[0])
+            terms.sort(key=lambda term: term is not begin)  # which takes no operation
         total = None
         for one, other in terms:
             total = self.fused(one, other, total)
         return total
 
-    def _is_dust(self, part):
-        return isinstance(part, float) and 0.0 < part <= 256.0 * self._dust
+    def _depth(self, part):
+        """How many operations at a crank angle lead to a part: what is known last is added last."""
+        if not varies(part):
+            return 0
+        if part not in self._depths:
+            parts = () if part.operation in INPUTS else part.arguments
+            self._depths[part] = 1 + max(map(self._depth, parts), default=0)
+        return self._depths[part]
+
+    def _is_dust(self, one, other):
+        """Whether a term is a number that is dust, of which there is more than enough."""
+        return is_number(one, 1.0) and isinstance(other, float) and 0.0 < other <= 256.0 * self._lost
 
     def _stripped(self, one, other):
         """A term whose magnitude is of a product with numbers of the design: these multiply the other factor."""

@@ -1,23 +1,35 @@
 """Proven bounds on the rounding errors of recorded outputs that cost about as much as the outputs.
 
 Running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, sections 3.1 to 3.4) with what
-the structure tells beforehand. A value is either
+the structure tells beforehand. What is computed along is as little as can be:
 
-relative
-    exact times (1 + d) for each of some roundings, |d| <= `UNIT`, and times (1 + e) to some power for each of some
-    pivots, see `counted`. A pivot is a sum that something is divided by or whose root is taken: its relative error is
-    computed once, by a reciprocal that is there if possible, and shared by all products with it.
-absolute
-    within ``UNIT (bound - reserve |value|)`` of the exact one. The bound is computed along, the reserve is a number.
-    A sum needs a rounding of itself, which is at most the sum of its parts' magnitudes: it takes it from their
-    reserves, and has what is left. A product with what is relative takes its roundings in the same way. Where nothing
-    is left so many roundings of the value itself are added to the bound.
+relative value
+    Exact times (1 + d) for each of some roundings, |d| <= `UNIT`, and times (1 + e) to some power for each of some
+    pivots, see `counted`. Nothing is computed for it.
+pivot
+    A sum that something is divided by or whose root is taken. Its relative error is computed once, by a reciprocal that
+    is there if possible, and shared by all products with it.
+absolute value
+    Any other. Its bound is computed, once.
+bound
+    Of an absolute value: at least its error and its reserve.
+reserve
+    So many roundings of the value itself, a number that no operation hangs on. A sum needs a rounding of itself, which
+    is at most the sum of its parts' magnitudes: it takes it from their reserves, and has what is left. A product takes
+    its roundings in the same way.
+charge
+    What is added to a bound so that it has a reserve: roundings of the value, which are an operation unless its
+    magnitude is multiplied by something anyhow. So reserves are large where they are free.
+total
+    The bound without its reserve, in `UNIT`, as `bounds` has it.
+dust
+    What may be lost as too small for a double.
 
 What a design fixes is found once, however many angles there are: where it is not relative the rules of `bounds`, which
 are dearer and nearer, bound it, those of lengths and their rests among them. Its reserve is added to that.
 
 With errors a and b of two absolute factors x and y, that of x y is at most |y| a + |x| b + a b. A bound is infinite
-where a pivot is not known to a tenth, or where the guard of a divisor acts. Each bound has `DUST` in it.
+where a pivot is not `KNOWN`, or where the guard of a divisor acts. Each bound has dust in it.
 """
 
 import math
@@ -25,24 +37,22 @@ from collections import Counter
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
-from .bounds import DUST, SAFE, ULP, Bounds, is_scaling, is_zero, whole
-from .counted import Counted
+from .bounds import DUST, SAFE, ULP, Bounds, is_scaling, is_zero
+from .counted import ROUNDED, Counted, varies
 from .trace import BY_DESIGN, Node, needed
 
-KNOWN, CURVED, POWER = 0.1, 18.0, 16.0
-"""Relative errors x of pivots stay below `KNOWN`; up to `POWER` then (1 - x)^-m - 1 <= m x (1 + `CURVED` x)."""
-LIMIT = 2.0**973
-"""What bounds of pivots are held times, in `UNIT`: an overflow where x (1 + `CURVED` x) is 1/4 or more."""
+KNOWN = 2.0**-4
+"""Relative errors of pivots stay below it."""
+LIMIT = 2.0**1022
+"""What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
-SECOND = 2.0**-52
-"""More than what makes a term of second order of two bounds."""
-FEW, MORE = 1.0, 2.0
-"""Roundings in reserve: of magnitudes of what is added, and of a value's own, which may be far smaller."""
+RESERVE, LEFT = 3.0, 2.0
+"""Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
 
 
 class Absolute(NamedTuple):
-    """Error of a value with sums in it."""
+    """Bound of an absolute value, as the products that it is the sum of, and its reserve."""
 
     terms: list
     reserve: float
@@ -82,35 +92,37 @@ class RunningBounds(Counted):
         for node in everything:
             if self._relative[node] is None and node not in self._absolute:
                 self._absolute[node] = self._found(node)
-        return tuple(whole(self._with_reserve(part)) for part in outputs)
+        return tuple(0.0 if bound is None else bound for bound in map(self._with_reserve, outputs))
 
     def pivot(self, node):
-        """Bound on the relative error of a pivot, in `UNIT`, times `LIMIT`."""
+        """Bound on the relative error of a pivot, over a quarter of `KNOWN`."""
         if node not in self._pivots:
             guards = self._guards.get(node, {})
             bound = None if node in guards else self._with_reserve(node)
-            found = (0.0 if bound is None else bound) * self.over(node)
+            found = (0.0 if bound is None else 4.0 / KNOWN * bound) * self.over(node)
             for guard in guards:
                 found = self.fused(GUARDED, guard - guard.arguments[0], found)
-            self._pivots[node] = self.fused(CURVED * UNIT, found, 1.0) * (LIMIT * found)
+            self._pivots[node] = (LIMIT * found) * (1.0 / LIMIT)
         return self._pivots[node]
 
     def _found(self, node):
         kind, parts = node.operation, node.arguments
         if node.varies == BY_DESIGN:
             self._by_design.of([node])
-            return Absolute([(MORE, self.size(node)), (1.0, self._by_design.total(node)), (1.0, self._dust)], MORE)
+            error = self._by_design.total(node)
+            return Absolute([(RESERVE * ROUNDED, self.size(node)), (ROUNDED, error), (1.0, self._lost)], RESERVE)
         if node in self._inputs:
             relative, rest = self._inputs[node](self)
-            return Absolute([(relative + MORE, self.size(node)), (1.0, rest), (1.0, self._dust)], MORE)
+            terms = [((relative + RESERVE) * ROUNDED, self.size(node)), (ROUNDED, rest), (1.0, self._lost)]
+            return Absolute(terms, RESERVE)
         if kind == "sign":
             cleared = self.above(self.size(parts[0]), self.total(parts[0]))
-            return Absolute([(1.0, 0.0 / cleared), (1.0, self._dust)], 0.0)
+            return Absolute([(1.0, 0.0 / cleared), (1.0, self._lost)], 0.0)
         if kind in ("sin", "cos", "atan"):
-            terms = [(ULP[kind] + MORE, self.size(node)), (1.0, self.total(parts[0])), (1.0, self._dust)]
-            return Absolute(terms, MORE)
+            terms = [((ULP[kind] + RESERVE) * ROUNDED, self.size(node)), (1.0, self.whole(parts[0])), (1.0, self._lost)]
+            return Absolute(terms, RESERVE)
         if kind == "rest":  # truly nothing
-            return Absolute([(1.0 / UNIT, self.size(node))], 0.0)
+            return Absolute([(ROUNDED / UNIT, self.size(node))], 0.0)
         if kind == "*":
             return self._of_product(node)
         return self._of_quotient(node) if kind == "/" else self._of_sum(node)
@@ -120,23 +132,23 @@ class RunningBounds(Counted):
         parts = [part for part in node.arguments if not is_zero(part)]
         own = 1.0 if len(parts) > 1 else 0.0
         reserve = min(
-            (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=FEW
+            (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=RESERVE
         )
         is_charged = reserve < 0.0 or node.operation == "total"
-        terms = [(1.0, self._dust)]
+        terms = [(1.0, self._lost)]
         if is_charged:
-            terms.append((own + MORE, self.size(node)))
+            terms.append(((own + RESERVE) * ROUNDED, self.size(node)))
         for part in parts:
             found = self.relative(part)
             if found is None:
                 terms += self.terms(part)
             else:
                 terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), self.size(part)))
-                terms.append((1.0, found.dust))
+                terms.append((ROUNDED, found.dust))
         if node.operation == "total":  # sums without loss, and what those of their losses lose
-            lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT
+            lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
             terms += [(lost, self.size(part)) for part in parts]
-        return Absolute(terms, MORE if is_charged else reserve)
+        return Absolute(terms, RESERVE if is_charged else reserve)
 
     def _of_product(self, node):
         left, right = node.arguments
@@ -145,11 +157,9 @@ class RunningBounds(Counted):
         found = self.relative(right)
         if found is not None:
             own = 0.0 if any(map(is_scaling, node.arguments)) else 1.0
-            lost = [] if found.dust is None else [(found.dust, self.cap(left))]
-            return self._scaled(left, found, own, self.size(right), lost)
+            return self._scaled(left, found, own, self.size(right))
         if left is right:
-            bound, size = self.bound(left, 0.5), self.size(left)
-            terms = [(self.fused(SECOND, bound, size + size), bound), (1.0, self._dust)]
+            terms = [(self.larger(left) + self.size(left), self.bound(left, 0.5)), (1.0, self._lost)]
             return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
         held = self._absolute[left].reserve + self._absolute[right].reserve
         one, other = self.bound(left, 0.0 if held >= 1.0 else 1.0), self.bound(right)
@@ -157,70 +167,84 @@ class RunningBounds(Counted):
             factors = self.size(right), self.larger(left)
         else:
             factors = self.larger(right), self.size(left)
-        return Absolute(
-            [(factors[0], one), (factors[1], other), (1.0, self._dust)], held - 1.0 if held >= 1.0 else MORE
-        )
+        terms = [(factors[0], one), (factors[1], other), (1.0, self._lost)]
+        return Absolute(terms, held - 1.0 if held >= 1.0 else RESERVE)
 
     def _of_quotient(self, node):
         above, below = node.arguments
-        return self._scaled(above, self.as_divisor(below), 1.0, self.over(below), [])
+        return self._scaled(above, self.as_divisor(below), 1.0, self.over(below))
 
-    def _scaled(self, part, found, own, size, lost):
+    def _scaled(self, part, found, own, size):
         """An absolute part times, or over, what is relative."""
         own += found.roundings
-        held = self._absolute[part].reserve
+        held, bound, lost = self._absolute[part].reserve, self.bound(part), found.dust
         if found.pivots:
-            charge = self.coefficient(found._replace(roundings=0.0), own + MORE)
-            bound, reserve = self.fused(charge, self.larger(part), self.bound(part)), MORE
+            reserve = max(held - own, RESERVE)
+            charge = self.coefficient(found._replace(roundings=0.0), reserve + own - held)
+            bound = self.fused(charge, self.larger(part), bound)
         elif held >= own:
-            bound, reserve = self.bound(part), held - own
+            reserve = held - own
         else:
-            charge = 4.0 * math.ceil((own + MORE - held) / 4.0)
-            bound, reserve = self.fused(charge, self.size(part), self.bound(part)), held + charge - own
-        return Absolute([(size, bound), (1.0, self._dust), *lost], reserve)
+            charge = 4.0 * math.ceil((own + LEFT - held) / 4.0)
+            bound, reserve = self.fused(charge * ROUNDED, self.size(part), bound), held + charge - own
+        terms = [(size, bound), (1.0, self._lost)]
+        if lost is not None and varies(self.cap(part)) and reserve + own >= 1.0 and not (varies(size) or varies(lost)):
+            terms[0] = size + lost, bound  # which is a rounding of the part at least
+        elif lost is not None:
+            terms.append((ROUNDED * lost, self.cap(part)))
+        return Absolute(terms, reserve)
 
     def terms(self, part):
         """Terms of the bound of an absolute part; one where it is used again."""
         return self._absolute[part].terms if self._uses[part] < 2 else [(1.0, self.bound(part))]
 
     def bound(self, part, held=0.0):
-        """Bound of an absolute part; with `MORE` in reserve if it has less than wanted."""
+        """Bound of an absolute part; with `RESERVE` in reserve if it has less than wanted."""
         if part not in self._bounds:
             self._bounds[part] = self.summed(self._absolute[part].terms)
         bound = self._bounds[part]
-        return bound if self._absolute[part].reserve >= held else self.fused(held + MORE, self.size(part), bound)
+        return (
+            bound
+            if self._absolute[part].reserve >= held
+            else self.fused((held + RESERVE) * ROUNDED, self.size(part), bound)
+        )
 
     def coefficient(self, found, more=0.0):
-        """What a relative error is of the magnitude of its value, in `UNIT`."""
+        """What a relative error is of the magnitude of its value."""
         roundings = found.roundings + more
         if not found.pivots:
-            return roundings
+            return ROUNDED * roundings
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
-            slope = _slope(found.pivots.values())
+            slope = steepest(found.pivots.values())
             powers = [(pivot, slope * abs(power)) for pivot, power in found.pivots.items()]
-            roundings -= sum(power * self._reserve(pivot) / SAFE for pivot, power in powers)
-            terms = [(power / LIMIT, self.pivot(pivot)) for pivot, power in powers]
-            self._coefficients[key] = self.summed([*terms, (1.0, roundings)])
+            held = sum(power * self._reserve(pivot) for pivot, power in powers)
+            terms = [(KNOWN / 4.0 * power, self.pivot(pivot)) for pivot, power in powers]
+            self._coefficients[key] = self.summed([*terms, (1.0, ROUNDED * roundings - UNIT * held)])
         return self._coefficients[key]
 
     def _reserve(self, part):
         return self._absolute[part].reserve if part in self._absolute else 0.0
 
     def total(self, part):
+        """The whole bound of a part of an operation in `UNIT`, as `Bounds` has it; None where it is exact."""
+        whole = self.whole(part)
+        return None if whole is None else whole * (1.0 / UNIT)
+
+    def whole(self, part):
         """The whole bound of a part of an operation, without reserve; None where it is exact."""
         bound, reserve = self._with_reserve(part), self._reserve(part)
-        return self.fused(-reserve / SAFE, self.size(part), bound) if reserve else bound
+        return self.fused(-UNIT * reserve, self.size(part), bound) if reserve else bound
 
     def _with_reserve(self, part):
         found = self.relative(part)
         if found is None:
             return self.bound(part)
-        return self.summed([(self.coefficient(found), self.size(part)), (1.0, found.dust)])
+        return self.summed([(self.coefficient(found), self.size(part)), (ROUNDED, found.dust)])
 
     def larger(self, part):
         """Bound on the magnitude of the exact value of an absolute part."""
-        return self.fused(SECOND, self.bound(part), self.size(part))
+        return self.size(part) + self.bound(part)
 
     def above(self, value, total, floor=None):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
@@ -229,7 +253,7 @@ class RunningBounds(Counted):
         return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
 
 
-def _slope(powers):
-    """How much more than `CURVED` allows for pivots to some powers make; by Jensen as if all were one."""
+def steepest(powers):
+    """How much more than of first order pivots to some powers make while `KNOWN`; by Jensen as if all were one."""
     power = sum(map(abs, powers))
-    return max(1.0, math.expm1(-power * math.log1p(-KNOWN)) / (power * KNOWN * (1.0 + CURVED * KNOWN)))
+    return math.expm1(-power * math.log1p(-KNOWN)) / (power * KNOWN)

@@ -1,8 +1,11 @@
 """What bounds need to know of a table: its own rounding, and its kinks and jumps."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from ...numbers.elementary import UNIT
+from . import rows
 
 MORE = 1.0 + 1e-9
 """What a bound is enlarged by for products of roundings."""
@@ -14,19 +17,35 @@ def rounding(table, motion):
     """Bound on the error of values read by crank angle, N or N m.
 
     A slope has three roundings, the rise along it two more, the sum with the row's value one; a level piece has none.
-    The end of the last piece is rounded as well, and a turn more or less moves every row, so that another piece may be
-    read where one is near.
+    Each piece is taken as if all of it were risen. The end of the last one is rounded as well, and a turn more or less
+    moves every row, so that another piece may be read where one is near.
     """
-    angle, (start, value, slope) = np.asarray(motion.crank_angle), table.pieces(motion)
-    rise = slope * (angle - start)
-    x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
+    x, slope, own = _pieces(table)
+    angle = np.asarray(motion.crank_angle)
     turned = np.floor((angle - x[0]) / table.period) * table.period
-    reach = np.where(turned == 0.0, 0.0, np.abs(angle) + abs(x[0]) + 2.0 * table.period)
-    ending = np.where((angle - turned < x[-2]) | (x[0] == 0.0), 0.0, 2.0 * abs(x[-1]))
-    near = _distance(x, angle - turned) <= 4.0 * UNIT * reach
-    starting = np.where(turned == 0.0, 0.0, np.abs(turned) + np.abs(start))
-    moved = np.abs(slope) * (starting + ending) + np.where(near, _steepest(x, y) * 8.0 * reach, 0.0)
-    return MORE * UNIT * (5.0 * np.abs(rise) + np.where(slope == 0.0, 0.0, np.abs(value + rise)) + moved) + TINY
+    place = angle - turned
+    piece = rows.piece(np, x, place)
+    bound = own[piece]
+    on = turned != 0.0
+    if not on.any():
+        return bound
+    reach = np.abs(angle[on]) + np.abs(turned[on]) + abs(x[0]) + table.period
+    near = _distance(x, place[on]) <= 4.0 * UNIT * reach
+    moved = np.zeros_like(bound)
+    moved[on] = (MORE * UNIT) * (3.0 * slope[piece[on]] + np.where(near, 8.0 * slope.max(), 0.0)) * reach
+    return bound + moved
+
+
+@lru_cache(maxsize=64)
+def _pieces(table):
+    """Ends of the pieces of a table by angle; of each its slope and the error of values in the first turn."""
+    x, y = np.append(table.x, table.x[0] + table.period), np.append(table.y, table.y[0])
+    rise = np.abs(np.diff(y))
+    slope = rise / np.diff(x)
+    own = np.where(rise == 0.0, 0.0, 5.0 * rise + np.maximum(np.abs(y[1:]), np.abs(y[:-1])))
+    if x[0] != 0.0:
+        own[-1] += 2.0 * abs(x[-1]) * slope[-1]
+    return x, slope, MORE * UNIT * own + TINY
 
 
 def _steepest(x, y):
