@@ -12,7 +12,8 @@ machine
 ``--json`` prints one object: the command, the version, the case, and what the command found, by the names and with the
 units of the Python tables: ``variants.plain.extremes.balancing_torque.largest`` of ``run``, in the ``unit`` beside it.
 ``--csv`` prints one table, ``--csv FILE`` writes it beside what is printed. Nothing else is on standard output then;
-progress and warnings go to standard error, progress only on a terminal and never with ``--json``.
+progress and warnings go to standard error, progress only on a terminal and never with ``--json``. Folders of what is
+written are made where they are missing, whatever the option, and standard error tells.
 """
 
 import os
@@ -20,8 +21,10 @@ import signal
 import sys
 import threading
 from contextlib import contextmanager
+from pathlib import Path
 
 from ..errors import KinetostaticsError, ParameterError
+from ..numbers import files
 from . import machine
 from .options import parser
 from .printed import tell
@@ -42,12 +45,15 @@ def main(arguments=None):
             _require_output()
             options = parser().parse_args(arguments)
             machine.require(options)
-            options.command(options)
+            with _telling_new_folders(options):
+                options.command(options)
             sys.stdout.flush()
     except BrokenPipeError:
         pass
-    except (KinetostaticsError, OSError) as error:
+    except KinetostaticsError as error:
         status, message = 2, str(error)
+    except OSError as error:
+        status, message = 2, files.told(error)
     except MemoryError as error:
         status, message = 2, f"there is not enough memory; take fewer crank angles or designs ({error})"
     except KeyboardInterrupt:
@@ -75,6 +81,23 @@ def _ending_in_order():
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+WRITTEN = ("csv", "name", "out", "pdf", "plot")
+"""Options that name a file or a folder to be written."""
+
+
+@contextmanager
+def _telling_new_folders(options):
+    """Tell which folders the block makes, the outermost of each."""
+    given = [Path(path).absolute() for option in WRITTEN if (path := getattr(options, option, None))]
+    missing = [[place for place in (path, *path.parents) if not os.path.lexists(place)] for path in given]
+    try:
+        yield
+    finally:
+        for place in dict.fromkeys(places[-1] for places in missing if places):
+            if os.path.isdir(place):  # which of odd names only says no
+                tell(f"made folder {place}")
 
 
 def _require_output():

@@ -210,11 +210,15 @@ def is_varied(source):
     return not isinstance(source, type) and hasattr(source, "varied") and hasattr(source, "units")
 
 
-def chosen(case, variant=None, reference=None):
-    """The variant that designs vary, and the one that ratios refer to."""
+def names_of(case, variant=None, reference=None):
+    """Names of the variant that designs vary, and of the one that ratios refer to."""
     reference = reference or case.reference
-    variant = variant or next((name for name in case.variants if name != reference), reference)
-    return case.variant(variant), case.variant(reference)
+    return variant or next((name for name in case.variants if name != reference), reference), reference
+
+
+def chosen(case, variant=None, reference=None):
+    """These variants."""
+    return tuple(map(case.variant, names_of(case, variant, reference)))
 
 
 def _is_scene(item):
