@@ -12,8 +12,8 @@ machine
 ``--json`` prints one object: the command, the version, the case, and what the command found, by the names and with the
 units of the Python tables: ``variants.plain.extremes.balancing_torque.largest`` of ``run``, in the ``unit`` beside it.
 ``--csv`` prints one table, ``--csv FILE`` writes it beside what is printed. Nothing else is on standard output then;
-progress and warnings go to standard error, progress only on a terminal and never with ``--json``. Folders of what is
-written are made where they are missing, whatever the option, and standard error tells.
+progress and warnings go to standard error, progress only on a terminal and never with ``--json``. Folders are made
+where they are missing, whatever the option that names them or a file in them; of those for a file standard error tells.
 """
 
 import os
@@ -89,15 +89,13 @@ WRITTEN = ("csv", "name", "out", "pdf", "plot")
 
 @contextmanager
 def _telling_new_folders(options):
-    """Tell which folders the block makes, the outermost of each."""
+    """Tell which folders the block makes for files, the outermost of each; one that is asked for is no news."""
     given = [Path(path).absolute() for option in WRITTEN if (path := getattr(options, option, None))]
-    missing = [[place for place in (path, *path.parents) if not os.path.lexists(place)] for path in given]
-    try:
-        yield
-    finally:
-        for place in dict.fromkeys(places[-1] for places in missing if places):
-            if os.path.isdir(place):  # which of odd names only says no
-                tell(f"made folder {place}")
+    missing = [(path, place) for path in given for place in path.parents if not os.path.lexists(place)]
+    yield
+    outermost = {path: place for path, place in missing if place.exists() and not path.is_dir()}
+    for place in dict.fromkeys(outermost.values()):
+        tell(f"made folder {place}")
 
 
 def _require_output():

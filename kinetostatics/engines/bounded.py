@@ -17,7 +17,7 @@ def where_known(values, bounds):
 
 
 def with_bounds(program, state, leaves, compiled=False, tight=False):
-    """Values (outputs, *shape) of a program, and bounds on their errors; for tight ones that are infinite the others."""
+    """Values (outputs, *shape) of a program and bounds on their errors; where tight ones are infinite, the others."""
     count = len(program.outputs)
     rows = program.bounded(tight).run(state, leaves, compiled)
     values, bounds = rows[:count], rows[count:]

@@ -94,6 +94,6 @@ def test_names_that_no_file_can_have_are_told(name):
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc, where nothing can be made")
 @every("path", ["/proc/new.csv", "/proc/new/folder/new.csv"])
 def test_a_place_that_takes_no_file_is_told_by_an_error_of_our_own(path):
-    with pytest.raises(ks.FileError, match=f"{path} cannot be written: [A-Z][a-z ]*; give another place"):
-        with files.written_whole(path):
-            raise AssertionError("nothing is written there")
+    refused = pytest.raises(ks.FileError, match=f"{path} cannot be written: [A-Z][a-z ]*; give another place")
+    with refused, files.written_whole(path):
+        raise AssertionError("nothing is written there")
