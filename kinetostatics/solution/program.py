@@ -52,7 +52,7 @@ class Program:
         self.scene, self.quantities, self._backend, self._kept = scene, quantities, backend, kept
         self._compiled, self._is_own = backend.engine == "compiled", backend.is_own
         places = scene.places
-        checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
+        checks.require("compile", *(scene.unknown(path) for path in kept if path not in places))
         if scene.friction.acting:
             scene = _with_enough_passes(scene)
         scene = keeping(scene, places, kept)
@@ -290,7 +290,7 @@ class Program:
                 raise ParameterError(
                     f'program: {path} is {why} and so left out; keep it by compile(..., parameters=("{path}",))'
                 )
-        checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+        checks.require("program", *(self.scene.unknown(path, self._numbers) for path in names))
 
 
 def _parted(by, values):

@@ -112,7 +112,7 @@ class Scene(Parameters):
             There is no such path, or no machine has such a value.
         """
         known = self.places
-        checks.require("scene", *(checks.choice("parameter", path, tuple(known)) for path in values))
+        checks.require("scene", *(self.unknown(path) for path in values if path not in known))
         return paths.with_values(self, {known[path].steps: value for path, value in values.items()})
 
     def solve(self, angles=720, *, on_gap="raise", engine=None) -> Solution:

@@ -161,7 +161,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
     compared = chosen(source, variant, reference) if is_case(source) else (source, reference)
     known = compared[0].units if is_varied(compared[0]) else None
     wanted, problems = _outputs(outputs)
-    columns, wrong = si_columns(designs.columns, known)
+    columns, wrong = si_columns(designs.columns, known, getattr(compared[0], "unknown", None))
     problems += [
         *wrong,
         *_name_problems(designs.columns, wanted),
