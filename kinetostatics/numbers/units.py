@@ -54,9 +54,8 @@ def to_si(text, unit):
     found = _NUMBER_AND_UNIT.fullmatch(text) if readable else None
     if found is None:
         advice = respelled(text, _NUMBER_AND_UNIT.fullmatch) if readable else ""
-        example = (
-            _either(text, unit) if type(text) in (int, float) else f'"{" ".join(_USUAL.get(unit, ("1.5", unit)))}"'
-        )
+        is_number = type(text) in (int, float) and math.isfinite(text)
+        example = _either(text, unit) if is_number else f'"{" ".join(_USUAL.get(unit, ("1.5", unit)))}"'
         raise ValueError(
             f"must be text of a number and a unit that converts to {unit}, found {quoted(text)}"
             + (advice or f"; write for example {example}")
