@@ -90,6 +90,8 @@ def sweep(
     -------
     pandas.DataFrame
         The designs with a column for each output, in SI, and a column "failed": why a design has none, else empty.
+        Last bits may differ with the chunk: where a design comes near a singular place, all of its chunk are computed
+        by formulas made for that.
 
     Raises
     ------
