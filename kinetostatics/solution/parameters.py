@@ -31,17 +31,18 @@ class Parameters:
         """Where each number stands, by path, with its unit and rule."""
         return paths.places(self)
 
-    def unknown(self, path, known=None):
-        """What is wrong with a path that is none of the known ones, all unless told; or None."""
-        problem = checks.choice("parameter", path, tuple(self.places if known is None else known))
-        place = paths.places(self, absent=True).get(path) if problem and path not in self.places else None
-        if place is None:
-            return problem
-        within = place.steps[:-1]
-        others = [name for name, other in self.places.items() if other.steps[: len(within)] == within]
-        told = getattr(place._replace(steps=within).value(self), "instead", "")
-        beside = f"; beside it stand {', '.join(others)}" if others else ""
-        return f"parameter {path} has no number here{told}{beside}"
+
+def unknown(scene, path, known=None):
+    """What is wrong with a path that is none of the known ones of a scene, all unless told; or None."""
+    problem = checks.choice("parameter", path, tuple(scene.places if known is None else known))
+    place = paths.places(scene, absent=True).get(path) if problem and path not in scene.places else None
+    if place is None:
+        return problem
+    within = place.steps[:-1]
+    others = [name for name, other in scene.places.items() if other.steps[: len(within)] == within]
+    told = getattr(place._replace(steps=within).value(scene), "instead", "")
+    beside = f"; beside it stand {', '.join(others)}" if others else ""
+    return f"parameter {path} has no number here{told}{beside}"
 
 
 def leaves_of(places, state):

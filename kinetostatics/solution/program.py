@@ -19,7 +19,7 @@ from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.leaves import made, with_fields
 from .angles import crank_angles, problems
-from .parameters import fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping
+from .parameters import fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping, unknown
 from .scene import unchecked
 from .slopes import slopes
 
@@ -52,7 +52,7 @@ class Program:
         self.scene, self.quantities, self._backend, self._kept = scene, quantities, backend, kept
         self._compiled, self._is_own = backend.engine == "compiled", backend.is_own
         places = scene.places
-        checks.require("compile", *(scene.unknown(path) for path in kept if path not in places))
+        checks.require("compile", *(unknown(scene, path) for path in kept if path not in places))
         if scene.friction.acting:
             scene = _with_enough_passes(scene)
         scene = keeping(scene, places, kept)
@@ -290,7 +290,7 @@ class Program:
                 raise ParameterError(
                     f'program: {path} is {why} and so left out; keep it by compile(..., parameters=("{path}",))'
                 )
-        checks.require("program", *(self.scene.unknown(path, self._numbers) for path in names))
+        checks.require("program", *(unknown(self.scene, path, self._numbers) for path in names))
 
 
 def _parted(by, values):

@@ -20,6 +20,7 @@ from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.headings import parted, si_columns
 from ..results.reductions import Output, parsed
+from ..solution.parameters import unknown
 from ..solution.scene import WORTH_COMPILING, Scene
 from .chunks import FAILED, PROBED, Job, tried
 from .dataset import Dataset, Parts
@@ -163,7 +164,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
     compared = chosen(source, variant, reference) if is_case(source) else (source, reference)
     known = compared[0].units if is_varied(compared[0]) else None
     wanted, problems = _outputs(outputs)
-    columns, wrong = si_columns(designs.columns, known, getattr(compared[0], "unknown", None))
+    columns, wrong = si_columns(designs.columns, known, partial(unknown, source) if isinstance(source, Scene) else None)
     problems += [
         *wrong,
         *_name_problems(designs.columns, wanted),
