@@ -22,6 +22,7 @@ Then
     Scene(mechanism, crank_speed, ...)          all that together; .solve(angles), .varied({"slider.mass": 620.0})
     load_case("sawframe_2r63")                  the same from a file; shipped_cases() lists those that are here
     extremes, compare                           true peaks; how many times better than a reference
+    s.error_bound("O"), s.uncertainty("O", ...) how sure values are: rounding, proven (tight=True: nearer); tolerances
     drive.steady, drive.flywheel ...            running under a motor; flywheels, starting, coasting
     balancing, Counterweight                    counterweights: full, partial, optimal
     design.optimise, design.torque_free_cam     the best machine within bounds and limits; a cam that needs no torque

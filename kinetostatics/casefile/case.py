@@ -17,6 +17,7 @@ from ..results.comparison import Comparison
 from ..solution.solution import Solution
 from . import build, reading, schema
 from .designs import Design, designs_of
+from .named import Named
 from .pieces import PartsError
 from .reading import shipped_cases
 from .spreads import far_off, spread_problems
@@ -67,7 +68,7 @@ class Case:
         return {**vars(self), "variants": dict(self.variants)}
 
     def __setstate__(self, state):
-        vars(self).update(state, variants=MappingProxyType(state["variants"]))
+        vars(self).update(state, variants=_variants(state["path"], state["variants"]))
 
     @property
     def files(self):
@@ -76,9 +77,6 @@ class Case:
 
     def variant(self, name) -> Variant:
         """A variant by name."""
-        problem = checks.choice("variant", name, tuple(self.variants))
-        if problem:
-            raise CaseError(self.path, [problem])
         return self.variants[name]
 
     def solve(self, name, angles=720) -> Solution:
@@ -212,8 +210,12 @@ def load_case(path) -> Case:
     for name, item in variants.items():
         for hint in item.mechanism.hints:
             warnings.warn(f"{path}: variants.{name}: {hint}", HintWarning, stacklevel=2)
-    kept = MappingProxyType(variants)
-    return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, designs)
+    kept, wanted = _variants(path, variants), Named("design", path, designs)
+    return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted)
+
+
+def _variants(path, variants):
+    return MappingProxyType(Named("variant", path, variants))
 
 
 def _variant(name, own, common, folder, problems):

@@ -1,10 +1,10 @@
 """The designs of a case file: what is wrong with them, and the search that each describes."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from ..design import case_text
-from ..design.cam_start import begun
+from ..design.cam_start import Options, begun
 from ..design.demands import demand, wanted
 from ..design.found import Found
 from ..design.fronts import Front, pareto
@@ -15,7 +15,7 @@ from ..errors import DesignError, KinetostaticsError
 from ..numbers import checks
 from . import reading, schema
 
-CAM = ("cosine", "sine", "ends", "guide_offset", "coupler_spring", "counterweight", "cubic")
+CAM = tuple(item.name for item in fields(Options) if item.name in schema.TorqueFreeCamTable.model_fields)
 """Keys of a torque-free cam as `torque_free_cam` takes them."""
 
 
@@ -127,7 +127,7 @@ def _problems(table, source, reference):
     scene, vary, varied = source.scene, table.vary, source
     if isinstance(table, schema.TorqueFreeCamTable):
         try:
-            start = begun(scene, **{name: getattr(table, name) for name in CAM})
+            start = begun(scene, Options.checked(**{name: getattr(table, name) for name in CAM}))
         except DesignError:  # the search says so, with the numbers
             return
         except KinetostaticsError as error:

@@ -12,7 +12,8 @@ machine
 ``--json`` prints one object: the command, the version, the case, and what the command found, by the names and with the
 units of the Python tables: ``variants.plain.extremes.balancing_torque.largest`` of ``run``, in the ``unit`` beside it.
 ``--csv`` prints one table, ``--csv FILE`` writes it beside what is printed. Nothing else is on standard output then;
-progress and warnings go to standard error, progress only on a terminal and never with ``--json``.
+progress and warnings go to standard error, progress only on a terminal and never with ``--json``. Folders are made
+where they are missing, whatever the option that names them or a file in them; of those for a file standard error tells.
 """
 
 import os
@@ -20,8 +21,10 @@ import signal
 import sys
 import threading
 from contextlib import contextmanager
+from pathlib import Path
 
 from ..errors import KinetostaticsError, ParameterError
+from ..numbers import files
 from . import machine
 from .options import parser
 from .printed import tell
@@ -42,12 +45,15 @@ def main(arguments=None):
             _require_output()
             options = parser().parse_args(arguments)
             machine.require(options)
-            options.command(options)
+            with _telling_new_folders(options):
+                options.command(options)
             sys.stdout.flush()
     except BrokenPipeError:
         pass
-    except (KinetostaticsError, OSError) as error:
+    except KinetostaticsError as error:
         status, message = 2, str(error)
+    except OSError as error:
+        status, message = 2, files.told(error)
     except MemoryError as error:
         status, message = 2, f"there is not enough memory; take fewer crank angles or designs ({error})"
     except KeyboardInterrupt:
@@ -75,6 +81,21 @@ def _ending_in_order():
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+WRITTEN = ("csv", "name", "out", "pdf", "plot")
+"""Options that name a file or a folder to be written."""
+
+
+@contextmanager
+def _telling_new_folders(options):
+    """Tell which folders the block makes for files, the outermost of each; one that is asked for is no news."""
+    given = [Path(path).absolute() for option in WRITTEN if (path := getattr(options, option, None))]
+    missing = [(path, place) for path in given for place in path.parents if not os.path.lexists(place)]
+    yield
+    outermost = {path: place for path, place in missing if place.exists() and not path.is_dir()}
+    for place in dict.fromkeys(outermost.values()):
+        tell(f"made folder {place}")
 
 
 def _require_output():

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..numbers import checks, files
 from . import machine
-from .printed import of_variants, print_table, require_writable, say, tell
+from .printed import chosen, of_variants, print_table, require_writable, say, tell
 
 EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
 """What is written of an explanation, by the ending of its file."""
@@ -39,13 +39,24 @@ def list_cases(options):
 def new(options):
     from ..casefile.starters import starter
 
-    path = Path(options.name if options.name.lower().endswith(".toml") else f"{options.name}.toml")
+    path = Path(options.name)
+    if path.suffix.lower() != ".toml":
+        path = Path(f"{options.name}.toml")
+        checks.require("new", _other_ending(Path(options.name), path))
     checks.require("new", f"{path} is there already; give another name" if os.path.lexists(path) else None)
     checks.require("new", files.unwritable(path))
     with files.written_whole(path) as temporary:
         Path(temporary).write_text(starter(options.kind, path.stem), encoding="utf-8")
     name = f'"{path}"' if " " in str(path) else path
     print(f"wrote {path}; kinetostatics run {name}")
+
+
+def _other_ending(given, path):
+    """What is wrong with a name that ends as another kind of file does; digits after a point are none: press 2.5."""
+    kind = given.suffix
+    if not kind[1:2].isalpha():
+        return None
+    return f"{given} ends in {kind}, a case file in .toml: write {given.with_suffix('.toml')}, or {path} if you mean it"
 
 
 def run(options):
@@ -117,8 +128,9 @@ def explain(options):
 
     case = load_case(options.case)
     require_writable(case, "--out", options.out, tuple(EXPLANATIONS))
-    variant = case.variant(case.reference if options.variant is None else options.variant)
-    told = variant.scene.solve(options.angle).explain(options.quantity, options.angle)
+    name = case.reference if options.variant is None else options.variant
+    told = case.variant(name).scene.solve(options.angle).explain(options.quantity, options.angle)
+    say(f"{case.title}: {chosen(name, options, 'the reference')}\n")
     print(told)
     if options.out:
         written = getattr(told, EXPLANATIONS[Path(options.out).suffix.lower()])

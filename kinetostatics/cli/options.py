@@ -128,8 +128,10 @@ def _sweep(group):
     command.add_argument(
         "--output", action="append", type=_text, metavar="OUTPUT", help='"largest O", "ratio mean_absolute ..."'
     )
-    command.add_argument("--variant", type=_text, metavar="NAME", help="variant whose parameters vary")
-    command.add_argument("--reference", type=_text, metavar="NAME", help="variant that ratios refer to")
+    command.add_argument(
+        "--variant", type=_text, metavar="NAME", help="whose parameters vary (the first besides the reference)"
+    )
+    command.add_argument("--reference", type=_text, metavar="NAME", help="what ratios refer to (the reference)")
     command.add_argument(
         "--sample", type=_designs, metavar="N", help="N designs of a Latin hypercube in place of a grid"
     )

@@ -42,6 +42,11 @@ def tell(text):
         print(text, file=sys.stderr)
 
 
+def chosen(name, options, why):
+    """What is said of the variant that a command takes, and why it takes that one unless told."""
+    return f"variant {name}" if options.variant else f"variant {name}, {why} (another by --variant)"
+
+
 def width():
     """Letters of a line: of the terminal, or as many as COLUMNS says; 80 in a pipe or a file."""
     return max(shutil.get_terminal_size((80, 24)).columns, NARROWEST)

@@ -6,7 +6,7 @@ from ..errors import ParameterError
 from ..numbers import checks, files
 from ..numbers.headings import parted
 from . import machine
-from .printed import print_table, require_writable, say, write_table
+from .printed import chosen, print_table, require_writable, say, write_table
 
 OUTPUTS = ("mean_absolute balancing_torque", "largest O")
 """What a sweep tells unless asked for something else."""
@@ -29,7 +29,8 @@ def sweep(options):
     checks.require("--out", files.unwritable_folder(folder) if folder else None)
     spreads = _spreads(options.vary)
     table = designs.latin_hypercube(spreads, options.sample) if options.sample else designs.grid(spreads)
-    varied, _ = sweeps.chosen(case, options.variant, options.reference)
+    names = sweeps.names_of(case, options.variant, options.reference)
+    varied = case.variant(names[0])
     usual = (*OUTPUTS, LOST) if varied.friction else OUTPUTS
     wanted = [parsed(text).of(varied) for text in options.output or usual]
     outputs = [item.column for item in wanted]
@@ -56,9 +57,11 @@ def sweep(options):
         lines.append(str(written[-1]))
     if machine.wants_json(options):
         failed = int((found[sweeps.FAILED] != "").sum())
-        machine.print_json("sweep", case=machine.of_case(case), failed=failed, designs=found, files=written)
+        sides = dict(zip(("variant", "reference"), names, strict=True))
+        machine.print_json("sweep", case=machine.of_case(case), **sides, failed=failed, designs=found, files=written)
     elif not machine.quiet(options):
-        _print(case, found, wanted, varied)
+        say(f"{case.title}: {_taken(names, wanted, options)}\n")
+        _print(found, wanted, varied)
         for line in lines:
             print(line)
     if options.csv:
@@ -71,12 +74,20 @@ def _labels(wanted, varied):
     return {item.column: f"{item.label(varied)}{which[item.ratio]} [{parted(item.column)[1]}]" for item in wanted}
 
 
-def _print(case, found, wanted, varied):
+def _taken(names, wanted, options):
+    """What is said of the variant that designs vary, and of the one that ratios refer to."""
+    varied, reference = names
+    why = "the reference" if varied == reference else "the first besides the reference"
+    against = f"; ratios refer to {reference}" if any(item.ratio for item in wanted) else ""
+    return chosen(varied, options, why) + against
+
+
+def _print(found, wanted, varied):
     """Spread of the outputs, the best designs by the first, and why others failed."""
     from ..sweeps.sweeps import FAILED
 
     failed, outputs, first = found[found[FAILED] != ""], [item.column for item in wanted], wanted[0]
-    say(f"{case.title}: {len(found)} designs, {len(failed)} failed\n")
+    say(f"{len(found)} designs, {len(failed)} failed\n")
     print_table(found[outputs].describe().drop("count").rename_axis("over the designs"))
     words = "largest first: above 1 is in favour of the design" if first.ratio else "smallest first"
     say(f"\nbest five by {first.label(varied)}, {words}\n")

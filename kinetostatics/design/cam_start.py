@@ -1,6 +1,7 @@
 """Where the search for a torque-free cam begins: the machine with a cam for the cosine law, and what may vary of it."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -10,9 +11,20 @@ from ..machine.cams import CosineLaw
 from ..machine.guide import Guide
 from ..machine.harmonic_cam import Harmonic
 from ..machine.loads import Gravity, Spring, TorsionSpring
+from ..numbers import checks
 from ..results.extremes import extrema
 from ..solution.scene import Scene
 
+OWNER = "torque-free cam"
+MOST_HARMONICS = 64
+"""With which a search still ends within a minute; eight leave nothing that a workshop could cut."""
+ENDS = {"ends": checks.Optional(checks.Pair("m", parts=("low", "high")))}
+OWN: dict[str, tuple[str, dict]] = {
+    "guide_offset": ("m", {}),
+    "counterweight": ("kg", {"low": 0.0, "strict": True}),
+    "coupler_spring": ("rad", {}),
+}
+"""Units and limits of what the machine may have of its own."""
 REACH = 0.5
 """How far lengths may lie from where the search begins, relative to half the stroke."""
 STIFFEST = 3.0
@@ -90,18 +102,45 @@ class Start:
         return found
 
 
-def begun(
-    given,
-    cosine,
-    sine,
-    *,
-    ends=None,
-    gravity=True,
-    guide_offset=None,
-    coupler_spring=None,
-    counterweight=None,
-    cubic=None,
-) -> Start:
+@dataclass(frozen=True)
+class Options:
+    """Harmonics of the cam, and what else the machine may have of its own, as `torque_free_cam` takes them."""
+
+    cosine: int = 8
+    sine: int = 0
+    ends: Any = None
+    gravity: bool = True
+    guide_offset: float | None = None
+    coupler_spring: float | None = None
+    counterweight: float | None = None
+    cubic: Any = None
+
+    @classmethod
+    def checked(cls, *problems, **given):
+        """Options of what a user gives; all problems in one error, others that are known among them."""
+        asked = cls(**given)
+        sine, gravity = asked.sine, asked.gravity
+        own = {name: (given[name], *rule) for name, rule in OWN.items() if given.get(name) is not None}
+        found = checks.singles(
+            OWNER,
+            _harmonics_problem("cosine", asked.cosine),
+            _harmonics_problem("sine", sine) if sine or sine is False else None,
+            None if isinstance(gravity, bool) else f"gravity must be True or False, got {checks.shown(gravity)}",
+            *problems,
+            **own,
+        )
+        return replace(asked, **checks.examined(OWNER, ENDS, {"ends": asked.ends}), **found)
+
+
+def _harmonics_problem(name, value):
+    """What is wrong with a number of harmonics, as a sentence, or None."""
+    wrong = checks.count(name, value)
+    if wrong or value <= MOST_HARMONICS:
+        return wrong
+    return f"{name} must be at most {MOST_HARMONICS}, got {value}"
+
+
+def begun(given, options) -> Start:
     """The machine that a search begins with, made of the links and loads of a scene.
 
     Raises
@@ -112,31 +151,31 @@ def begun(
         A stroke that no coupler can make.
     """
     group, links = parts_of(given)
-    low, high = _ends(given, ends)
+    low, high = _ends(given, options.ends)
     half, mean, law = (high - low) / 2, (high + low) / 2, CosineLaw((high - low) / 2, (high + low) / 2)
-    offset = group.guide.guide_offset if guide_offset is None else float(guide_offset)
+    offset = group.guide.guide_offset if options.guide_offset is None else options.guide_offset
     guide = Guide(group.guide.guide_angle, offset)
     share = group.coupler.centre[0] / group.coupler_length
     links["coupler"] = _of_length(group.coupler, law.coupler_length, share)
     rate = group.slider.mass * given.crank_speed * given.crank_speed
-    loads = (*_kept(given.loads, gravity), Spring(rate, mean))
+    loads = (*_kept(given.loads, options.gravity), Spring(rate, mean))
     carried = group.coupler.mass * (1.0 - share)
-    weight = carried * (_across(loads, guide) if gravity else 0.0)
-    vary = _bounds(cosine, sine, half, mean, law.coupler_length, rate)
+    weight = carried * (_across(loads, guide) if options.gravity else 0.0)
+    vary = _bounds(options, half, mean, law.coupler_length, rate)
     first = frozenset(vary)
-    if cubic is not None:
-        vary["spring.cubic"] = cubic
-    if coupler_spring is not None:
-        found = _carrying(weight * law.coupler_length, float(coupler_spring))
+    if options.cubic is not None:
+        vary["spring.cubic"] = options.cubic
+    if options.coupler_spring is not None:
+        found = _carrying(weight * law.coupler_length, options.coupler_spring)
         loads += (found,)
         vary[SPRING] = (0.5 * found.stiffness, 1.5 * found.stiffness)
-    if counterweight is not None:
-        arm = -carried * half / counterweight
-        links["crank"] = replace(links["crank"], mass=float(counterweight), centre=(arm, 0.0))
+    if options.counterweight is not None:
+        arm = -carried * half / options.counterweight
+        links["crank"] = replace(links["crank"], mass=options.counterweight, centre=(arm, 0.0))
         first |= {OFFSET}
         near, reach = WEIGHT_REACH * arm, REACH * half
         vary |= {WEIGHT[0]: (arm + near, arm - near), WEIGHT[1]: (near, -near), OFFSET: (-reach, reach)}
-    mechanism = cam_crank_slider(_cam(law, group.guide, cosine, sine), law.coupler_length, guide=guide, **links)
+    mechanism = cam_crank_slider(_cam(law, group.guide, options), law.coupler_length, guide=guide, **links)
     scene = Scene(mechanism, given.crank_speed, loads=loads)
     unit = _mean_torque(half, mean, _of_length(links["coupler"], mean, share), group.slider, given.crank_speed)
     return Start(Machine(scene, share), (float(low), float(high)), vary, first, weight, unit)
@@ -176,21 +215,21 @@ def _kept(loads, gravity):
     return (item for item in loads if not isinstance(item, Spring) and (gravity or not isinstance(item, Gravity)))
 
 
-def _bounds(cosine, sine, half, mean, length, rate):
+def _bounds(options, half, mean, length, rate):
     """Bounds of the cam, the coupler and the linear spring, by path, about where the search begins."""
     reach = REACH * half
     vary = {"cam.cosine.0": (half - reach, half + reach)}
-    vary |= {f"cam.cosine.{order}": (-reach, reach) for order in range(1, cosine + 1)}
-    vary |= {f"cam.sine.{order}": (-reach, reach) for order in range(1, sine + 1)}
+    vary |= {f"cam.cosine.{order}": (-reach, reach) for order in range(1, options.cosine + 1)}
+    vary |= {f"cam.sine.{order}": (-reach, reach) for order in range(1, options.sine + 1)}
     vary |= {"coupler_length": (length - reach, length + reach), "spring.stiffness": (0.0, STIFFEST * rate)}
     return vary | {"spring.free_position": (mean - reach, mean + reach)}
 
 
-def _cam(law, guide, cosine, sine):
+def _cam(law, guide, options):
     """First harmonics of the cam for the cosine law."""
     angle = np.linspace(0.0, 2 * np.pi, 1024, endpoint=False)
     series = np.fft.rfft(law.radius(angle)[0]).real / angle.size
-    return Harmonic((series[0], *2 * series[1 : cosine + 1]), (0.0,) * sine, guide.guide_angle)
+    return Harmonic((series[0], *2 * series[1 : options.cosine + 1]), (0.0,) * options.sine, guide.guide_angle)
 
 
 def _mean_torque(crank_length, coupler_length, coupler, slider, speed):

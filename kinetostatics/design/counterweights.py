@@ -11,12 +11,14 @@ from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label_of
 from ..numbers import checks
 from ..results.extremes import extremes
+from ..results.rounding import zeroed
 from ..solution.scene import solve
 from .shapes import crank_sliders
 
 PARALLEL = 1e-9
 """Sine of the angle between guides up to which they are parallel."""
-
+UNCHANGED = 1e-10
+"""Change, per cent, that is rounding."""
 
 MASS, LENGTH = (checks.Optional(checks.Number(unit, low=0.0, strict=True)) for unit in ("kg", "m"))
 LIMITS = {
@@ -205,7 +207,7 @@ class Balanced:
         ]:
             rows[f"{name} [{unit}]"] = [abs(extremes(item, quantity).largest) for item in (before, after)]
         table = pd.DataFrame.from_dict(rows, orient="index", columns=["before", "after"])
-        table["change [%]"] = 100 * (table["after"] / table["before"] - 1)
+        table["change [%]"] = zeroed(100 * (table["after"] / table["before"] - 1), UNCHANGED)
         return table
 
 

@@ -21,7 +21,7 @@ from ..machine.loads import Gravity
 from ..numbers import checks
 from ..results.reductions import Output
 from ..solution.scene import Scene
-from .cam_start import begun
+from .cam_start import Options, begun
 from .demands import demands, wanted
 from .derived import scene_of
 from .found import Found, found_of, known
@@ -42,14 +42,10 @@ from .progress import moving_bar
 from .search import Goal
 from .torque_squares import POSITION, TORQUE, least_squares
 
-OWNER = "torque-free cam"
 FEWEST, ENOUGH = 360, 32
 """Crank angles at least, and for each harmonic of the cam."""
-MOST_HARMONICS = 64
-"""With which a search still ends within a minute; eight leave nothing that a workshop could cut."""
 NEARLY = 1.05
 """How far beyond the bound of symmetric cams a limit is refused at once: the bound moves a little with the cam."""
-ENDS = {"ends": checks.Optional(checks.Pair("m", parts=("low", "high")))}
 SHOWN = (
     "ratio mean_absolute balancing_torque",
     "mean_absolute balancing_torque",
@@ -140,11 +136,21 @@ def torque_free_cam(
     5.25e+04
     """
     source, reference = chosen(source, variant, reference)
-    own = {"guide_offset": guide_offset, "counterweight": counterweight, "coupler_spring": coupler_spring}
-    ends, own = _checked(cosine, sine, ends, own, gravity, vary, starts, seed)
+    options = Options.checked(
+        *searches(starts, seed),
+        None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}",
+        cosine=cosine,
+        sine=sine,
+        ends=ends,
+        gravity=gravity,
+        guide_offset=guide_offset,
+        coupler_spring=coupler_spring,
+        counterweight=counterweight,
+        cubic=cubic,
+    )
     given = _weighted(scene_of(source), gravity)
     compared = None if reference is None else _weighted(scene_of(reference), gravity)
-    start = begun(given, cosine, sine, ends=ends, gravity=gravity, cubic=cubic, **own)
+    start = begun(given, options)
     aims = _aims(start, compared, minimise, maximise, limits)
     problem = _problem(start, compared, aims, max(cosine, sine), dict(vary or {}), engine)
     generator = np.random.default_rng(seed)
@@ -166,22 +172,6 @@ def torque_free_cam(
         starts=as_asked(problem, aims.output, goal, came_to),
     )
     return replace(found, before=given, bound=bound(start, found.scene, compared))
-
-
-def _checked(cosine, sine, ends, own, gravity, vary, starts, seed):
-    """Ends of the stroke or None, and what else the machine may have of its own, None where it is not given."""
-    rules = {"guide_offset": ("m", {}), "counterweight": ("kg", {"low": 0.0, "strict": True})}
-    rules |= {"coupler_spring": ("rad", {})}
-    given = checks.singles(
-        OWNER,
-        _harmonics_problem("cosine", cosine),
-        _harmonics_problem("sine", sine) if sine or sine is False else None,
-        *searches(starts, seed),
-        None if isinstance(gravity, bool) else f"gravity must be True or False, got {checks.shown(gravity)}",
-        None if vary is None or hasattr(vary, "items") else f"vary must be a dict, got {checks.shown(vary)}",
-        **{name: (value, *rules[name]) for name, value in own.items() if value is not None},
-    )
-    return checks.examined(OWNER, ENDS, {"ends": ends})["ends"], {name: given.get(name) for name in own}
 
 
 class _Aims(NamedTuple):
@@ -226,14 +216,6 @@ def _advised(start, problem, compared, limits, first):
         torque = any(limit.output.quantity == TORQUE for limit in limits)
         advice = _advice(start, problem, compared, nearest) if torque else ""
         raise DesignError(f"{error}{advice}", error.values) from None
-
-
-def _harmonics_problem(name, value):
-    """What is wrong with a number of harmonics, as a sentence, or None."""
-    wrong = checks.count(name, value)
-    if wrong or value <= MOST_HARMONICS:
-        return wrong
-    return f"{name} must be at most {MOST_HARMONICS}, got {value}"
 
 
 def bound(start, scene, reference):

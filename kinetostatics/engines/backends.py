@@ -8,7 +8,7 @@ import numpy as np
 
 from . import accelerated, arithmetic
 from .arithmetic import BoundsElsewhere
-from .bounded import where_known
+from .bounded import where_known, with_bounds
 from .bounds import CAP
 from .programs import Program
 from .split import Split
@@ -63,8 +63,10 @@ class Backend:
             rows = split.by_loop(given) if self.engine == "compiled" else split.by_numpy(given)
         return rows if state.shape else rows[:, 0]
 
-    def bounds(self, program, state, leaves):
+    def bounds(self, program, state, leaves, tight=False):
         """Bounds (outputs, *shape), in double, on the errors of what `run` gives; infinite where there is none.
+
+        Tight ones there are of what `is_own`.
 
         Raises
         ------
@@ -73,15 +75,16 @@ class Backend:
         """
         if self.engine == "jax":
             accelerated.require_proven(accelerated.device_of(self.platform))
-        count = len(program.outputs)
-        rows = self._with_bounds(program).run(state, leaves, self.engine == "compiled")
-        values, found = rows[:count], rows[count:]
+        compiled = self.engine == "compiled"
+        if self.is_own:
+            values, found = with_bounds(program, state, leaves, compiled, tight)
+        else:
+            count, rows = len(program.outputs), self._elsewhere(program).run(state, leaves, compiled)
+            values, found = rows[:count], rows[count:]
         small = all(np.all(np.abs(leaf) <= CAP) for leaf in (*leaves.numbers, *leaves.tables))
         return where_known(values, found if small else np.nan)
 
-    def _with_bounds(self, program):
-        if self.is_own:
-            return program.bounded()
+    def _elsewhere(self, program):
         if program not in self._bounded:
             recording = program.recording
             bounds = BoundsElsewhere(recording.graph, recording.inputs, arithmetic.OF[self.precision])

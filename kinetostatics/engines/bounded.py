@@ -14,3 +14,13 @@ def of_magnitude(vector, bounds):
 def where_known(values, bounds):
     """Bounds as users have them: infinite where none is proven, NaN where there is no value."""
     return np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds), np.inf, bounds))
+
+
+def with_bounds(program, state, leaves, compiled=False, tight=False):
+    """Values (outputs, *shape) of a program and bounds on their errors; where tight ones are infinite, the others."""
+    count = len(program.outputs)
+    rows = program.bounded(tight).run(state, leaves, compiled)
+    values, bounds = rows[:count], rows[count:]
+    if tight and not np.isfinite(bounds).all():
+        bounds = np.fmin(bounds, with_bounds(program, state, leaves, compiled)[1])
+    return values, bounds

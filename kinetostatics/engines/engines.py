@@ -15,6 +15,7 @@ from ..mechanics.quantities import CHECKS, all_found, of_scene
 from ..numbers.elementary import read_only, stack
 from ..numbers.planar import plus
 from . import programs
+from .bounded import with_bounds
 from .bounds import CAP
 
 
@@ -76,8 +77,6 @@ class Recorded:
     def with_bounds(self, state, names, tight=False):
         """Values by name, and by name bounds on their rounding errors, infinite or NaN where there is none.
 
-        Tight ones take up to twice as long as the others, which stand in for them where they are infinite.
-
         Raises
         ------
         NotGivenError
@@ -86,13 +85,10 @@ class Recorded:
         if not is_plain(state.crank_angle):
             return KERNELS.with_bounds(state, names, tight)
         program, leaves = programs.of(state, names)
-        count = len(program.outputs)
-        rows = program.bounded(tight).run(state, leaves, self.compiled)
-        if tight and not np.isfinite(rows[count:]).all():
-            rows[count:] = np.fmin(rows[count:], program.bounded().run(state, leaves, self.compiled)[count:])
+        values, bounds = with_bounds(program, state, leaves, self.compiled, tight)
         named = program.recording.named
         small = all(map(_is_small, leaves.numbers))
-        return named(rows[:count]), named(rows[count:] if small else np.full_like(rows[count:], np.inf))
+        return named(values), named(bounds if small else np.full_like(bounds, np.inf))
 
 
 def _is_small(leaf):

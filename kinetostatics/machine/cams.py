@@ -39,6 +39,9 @@ TERMS = {
 class Circle(Cam):
     """Circular pitch curve around O.
 
+    Where O lies close to the circle, other formulas keep all digits; of designs together, those of all if it does in
+    any. So what one has may change in its last bits with those beside it.
+
     Parameters
     ----------
     radius : float or array

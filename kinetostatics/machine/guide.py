@@ -59,7 +59,7 @@ class Guide(checks.Checked):
             yield "it needs an angle, or an exact direction; use Guide.at"
         length = 1.0 if self.exact is None or not all(map(checks.known, self.exact)) else np.hypot(*self.exact)
         if np.any(np.abs(length - 1.0) > 1e-9):
-            yield f"direction must have length 1, got {length}; use Guide.at"
+            yield f"direction must have length 1, got {length}; change x and y together, or use Guide.at"
 
     RULES = checks.Rules(
         "guide",
@@ -111,6 +111,8 @@ class Guide(checks.Checked):
     def through(cls, W1, W2):
         """Guide through two fixed points; its direction and offset are rounded once.
 
+        Its numbers are `exact` and `guide_offset`; `Guide.at` makes one with an angle to be varied.
+
         Parameters
         ----------
         W1, W2 : (x, y)
@@ -148,6 +150,12 @@ class Guide(checks.Checked):
     def rounded(self):
         """What was rounded once when it was made: direction and offset of a guide through two points off the axes."""
         return () if self.exact is None or type(self.exact) is Axis else (*self.exact, self.guide_offset)
+
+    @property
+    def instead(self):
+        """What is said to somebody who wants to change the angle of a guide through two points."""
+        angle, offset = (np.asarray(part).tolist() for part in (self.guide_angle, self.guide_offset))
+        return f", as the guide runs through two points: make it by Guide.at({angle}, {offset}) to change its angle"
 
     @property
     def is_level(self):

@@ -233,7 +233,10 @@ def slotted(placement, on, pivot, offset, assembly):
 
 
 def is_near(throw, offset, pivot):
-    """Whether a pin comes close to a pivot, or to where a slot passes it at an offset, in any design."""
+    """Whether a pin comes close to a pivot, or to where a slot passes it at an offset, in any design.
+
+    It chooses formulas that keep all digits there, for all designs together: one has the last bits of its batch.
+    """
     x, y = pivot
     if type(x) is type(y) is float:
         return is_small(throw, offset, math.hypot(x, y))

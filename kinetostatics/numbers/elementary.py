@@ -6,6 +6,8 @@ on JAX, on dask, on object arrays of `arb` numbers and, with these three overloa
 
 import numpy as np
 
+from ..errors import ParameterError
+
 _namespaces = dict.fromkeys((np.ndarray, np.float64, float, int), np)
 
 
@@ -60,6 +62,8 @@ ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
 SPLIT = 2.0**27 + 1.0
 """Factor by which a number is split into two of half as many digits."""
+MOST_TERMS = 6
+"""Numbers that `total` takes, in every engine."""
 UNSEEN = 2.0**-310
 """Unit, m, of which what counts as nothing changes no digit of any other distance."""
 APART = 2.0**-90
@@ -122,9 +126,11 @@ def total(*terms):
     Absent numbers are none. Enclosures and others of any precision need no help from rounding.
     """
     present = [term for term in terms if term is not None]
+    if len(present) > MOST_TERMS:
+        raise ParameterError(f"elementary.total takes {MOST_TERMS} numbers at most, got {len(present)}; make two of it")
     recorded = next((term for term in present if hasattr(term, "total_with")), None)
     if recorded is not None:
-        return recorded.total_with(present)
+        return recorded.total_with(present) if len(present) > 1 else recorded
     if not _are_floats(present):
         return sum(present)
     *lost, whole = summed(summed(present))

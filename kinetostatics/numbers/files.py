@@ -168,7 +168,6 @@ def written_whole(path):
         yield path
         return
     path = Path(os.path.realpath(path))
-    path.parent.mkdir(parents=True, exist_ok=True)
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
     try:
@@ -182,12 +181,17 @@ def written_whole(path):
 
 
 def _create(temporary, mode, path):
-    """An empty file that is new; errors name what it is for."""
+    """An empty file that is new, in a folder made if missing; errors name what it is for."""
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
     except OSError as error:
-        error.filename = str(path)
-        raise
+        raise FileError(f"{path} cannot be written: {error.strerror}; give another place") from None
+
+
+def told(error):
+    """What the system says of an error, without its number."""
+    return ": ".join(map(str, filter(None, (error.filename, error.strerror)))) or str(error)
 
 
 def _resembling(path, before):

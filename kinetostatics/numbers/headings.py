@@ -19,7 +19,7 @@ def parted(text):
     return (found[1].strip(), (found[2] or "").strip()) if found else (str(text).strip(), "")
 
 
-def si_columns(columns, known=None):
+def si_columns(columns, known=None, unknown=None):
     """Name and factor to SI of each column of a table of designs, and what is wrong with them.
 
     Parameters
@@ -28,6 +28,8 @@ def si_columns(columns, known=None):
         Names, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI.
     known : mapping of name to SI unit, optional
         What there is to vary; any name and unit will do if not given.
+    unknown : function, optional
+        Says what is wrong with a name that is none of these.
 
     Returns
     -------
@@ -38,7 +40,9 @@ def si_columns(columns, known=None):
     problems = []
     for column in columns:
         name, unit = parted(column)
-        problem = checks.choice("parameter", name, tuple(known)) if known is not None else None
+        problem = None
+        if known is not None and name not in known:
+            problem = unknown(name) if unknown else checks.choice("parameter", name, tuple(known))
         if name in found:
             problem = f"parameter {name!r} has two columns"
         scale = 1.0

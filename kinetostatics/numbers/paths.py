@@ -25,14 +25,17 @@ class Place(NamedTuple):
         return item
 
 
-def places(item, prefix="", label="") -> dict[str, Place]:
-    """Place by path of every number of a part, zeros among them; a label goes behind the first name."""
+def places(item, prefix="", label="", absent=False) -> dict[str, Place]:
+    """Place by path of every number of a part, zeros among them; a label goes behind the first name.
+
+    If wanted, those `absent` too: numbers that might stand where there is None.
+    """
     names = getattr(type(item), "PATHS", {})
     found = {}
     for field, rule in _rules(item).items():
         name = names.get(field, field)
         path = f"{prefix}{name}{label}" if name else prefix.removesuffix(".")
-        for inner, place in _of_value(getattr(item, field), rule, path, label if not name else "").items():
+        for inner, place in _of_value(getattr(item, field), rule, path, label if not name else "", absent).items():
             found[inner] = place._replace(steps=(field, *place.steps))
     return found
 
@@ -46,9 +49,9 @@ def _rules(item):
     return {field.name: checks.Number("") for field in fields(item) if not is_structural(field)}
 
 
-def _of_value(value, rule, path, label):
+def _of_value(value, rule, path, label, absent):
     rule = rule.rule if isinstance(rule, checks.Optional | checks.OrFunction) else rule
-    if isinstance(rule, checks.Number) and _is_number(value):
+    if isinstance(rule, checks.Number) and (_is_number(value) or (absent and value is None)):
         return {path: Place((), rule)}
     if hasattr(rule, "numbers") and value is not None:
         return {f"{path}.{name}": Place(steps, inner) for name, steps, inner in rule.numbers(value)}
@@ -59,10 +62,10 @@ def _of_value(value, rule, path, label):
             named = getattr(part, "PATH", "")
             counts[named] = counts.get(named, 0) + 1
             again = str(counts[named]) if named and counts[named] > 1 else ""
-            inner = places(part, f"{named}{again}." if named else "", getattr(part, "label", ""))
+            inner = places(part, f"{named}{again}." if named else "", getattr(part, "label", ""), absent)
             found |= {name: place._replace(steps=(number, *place.steps)) for name, place in inner.items()}
         return found
-    return places(value, f"{path}." if path else "", label)
+    return places(value, f"{path}." if path else "", label, absent)
 
 
 def changed(item, **values):

@@ -16,7 +16,7 @@ LONGEST = 200
 _NUMBER_AND_UNIT = re.compile(
     rf"\s*({NUMBER})(?:\s*(?![eE][-+]?[0-9])((?:[^\W\d_]|[°%]).*?)|\s+(1(?:\s*(?:/|per\b).*?)?))?\s*", re.DOTALL
 )
-_USUAL = {"rad": ("90", "deg"), "rad/s": ("300", "rpm")}
+_USUAL = {"m": ("300", "mm"), "rad": ("90", "deg"), "rad/s": ("300", "rpm")}
 """What engineers write for a unit of SI, for advice."""
 _FACTOR = re.compile(r"([^\W\d_][A-Za-z_]*|°[CF]?|%)(?:(?:\^|\*\*)?([-+]?[1-9])|([²³]))?")
 _BETWEEN = re.compile(r"\s*(?:[*/·⋅]|\bper\b)\s*|\s+")
@@ -54,18 +54,24 @@ def to_si(text, unit):
     found = _NUMBER_AND_UNIT.fullmatch(text) if readable else None
     if found is None:
         advice = respelled(text, _NUMBER_AND_UNIT.fullmatch) if readable else ""
+        is_number = type(text) in (int, float) and math.isfinite(text)
+        example = _either(text, unit) if is_number else f'"{" ".join(_USUAL.get(unit, ("1.5", unit)))}"'
         raise ValueError(
             f"must be text of a number and a unit that converts to {unit}, found {quoted(text)}"
-            + (advice or f'; write for example "{" ".join(_USUAL.get(unit, ("1.5", unit)))}"')
+            + (advice or f"; write for example {example}")
         )
     number, given = found[1], found[2] or found[3]
     if given is None:
-        either = " or ".join(f'"{number} {one}"' for one in dict.fromkeys((_USUAL.get(unit, ("", unit))[1], unit)))
-        raise ValueError(f"has no unit; write for example {either}")
+        raise ValueError(f"has no unit; write for example {_either(number, unit)}")
     value = float(number) * factor(given, unit)
     if not math.isfinite(value) or (value == 0.0 and re.search("[1-9]", re.split("[eE]", number)[0])):
         raise ValueError(f"is too {'small' if value == 0.0 else 'large'} for double precision, found {text!r}")
     return value
+
+
+def _either(number, unit):
+    """A number in the unit that engineers write, or in that of SI."""
+    return " or ".join(f'"{number} {one}"' for one in dict.fromkeys((_USUAL.get(unit, ("", unit))[1], unit)))
 
 
 @cache

@@ -193,9 +193,9 @@ class Comparison:
         reference, matched = self.torque_extremes
         own, other = (known.errors(TORQUE)[counted(known.found[TORQUE])] for known in self._known)
         errors = zip(own, of_partners(partners(*self._between_jumps), other), strict=True)
-        rows = zip(zip(reference.value, matched, strict=True), self.torque_extremum_ratios, errors, strict=True)
-        for number, (pair, ratio, error) in enumerate(rows, 1):
-            yield _Row(f"torque extremum {number}", "N m", pair, ratio, error)
+        pairs = zip(reference.value, matched, strict=True)
+        for number, (pair, error) in enumerate(zip(pairs, errors, strict=True), 1):
+            yield self._row(f"torque extremum {number}", TORQUE, pair, error)
         paired = np.isfinite(matched)
         peaks = self._largest("largest |balancing torque|", TORQUE)
         for shown, peak in zip((reference.value, matched), peaks.values, strict=True):

@@ -196,6 +196,7 @@ def extrema(solution, quantity):
                 f"extremes: {quantity!r} has shape {samples.shape}, not one value for each of {turn.angle.shape} crank "
                 "angles"
             )
+        called = quantity if isinstance(quantity, str) else "a function of the solution"
         good = np.isfinite(samples) & (position | turn.usable)
         size, floor = _sizes(turn, quantity, samples, good, position)
         paths = [_Path(turn.angle, samples, floor, turn.period)]
@@ -205,7 +206,7 @@ def extrema(solution, quantity):
         if not any(maximum.size for *_, maximum in found):
             constant = float(np.max(samples[good])) if good.any() else np.nan
             nothing = np.empty(0)
-            return Extremes(str(quantity), nothing, nothing, nothing.astype(bool), constant, left_out, own)
+            return Extremes(called, nothing, nothing, nothing.astype(bool), constant, left_out, own)
         brackets, value, floor, maximum = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
         angle, sign = brackets[1], np.where(maximum, -1.0, 1.0)
         inner = brackets[0] < brackets[2]
@@ -222,7 +223,7 @@ def extrema(solution, quantity):
         order = np.argsort(angle, kind="stable")
         angle, value, maximum, inner = angle[order], value[order], maximum[order], inner[order]
         kept = _kept(angle, value, maximum, inner, CONTINUED * size)
-    return Extremes(str(quantity), angle[kept], value[kept], maximum[kept], np.nan, left_out, own)
+    return Extremes(called, angle[kept], value[kept], maximum[kept], np.nan, left_out, own)
 
 
 def _sizes(turn, quantity, samples, good, position):

@@ -15,7 +15,7 @@ from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.elementary import read_only
 from . import second_order
-from .parameters import Parameters, fixed, keeping, leaves_of, require_free
+from .parameters import Parameters, fixed, keeping, leaves_of, require_free, unknown
 from .slopes import slopes
 
 
@@ -162,7 +162,7 @@ class Certainty(Parameters):
         """
         named = isinstance(inputs, Mapping) and all(isinstance(path, str) for path in inputs)
         checks.require("uncertainty", None if named else f"inputs must map paths to numbers, got {inputs!r}")
-        checks.require("uncertainty", *(checks.choice("parameter", path, tuple(self.places)) for path in inputs))
+        checks.require("uncertainty", *(unknown(self, path) for path in inputs if path not in self.places))
         require_free("uncertainty", self.mechanism, inputs, fixed(self.places, self.mechanism))
         given = {path: (value, self.places[path].rule.unit, {"low": 0.0}) for path, value in inputs.items()}
         inputs = checks.singles("uncertainty", **given)

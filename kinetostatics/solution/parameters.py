@@ -32,6 +32,19 @@ class Parameters:
         return paths.places(self)
 
 
+def unknown(scene, path, known=None):
+    """What is wrong with a path that is none of the known ones of a scene, all unless told; or None."""
+    problem = checks.choice("parameter", path, tuple(scene.places if known is None else known))
+    place = paths.places(scene, absent=True).get(path) if problem and path not in scene.places else None
+    if place is None:
+        return problem
+    within = place.steps[:-1]
+    others = [name for name, other in scene.places.items() if other.steps[: len(within)] == within]
+    told = getattr(place._replace(steps=within).value(scene), "instead", "")
+    beside = f"; beside it stand {', '.join(others)}" if others else ""
+    return f"parameter {path} has no number here{told}{beside}"
+
+
 def leaves_of(places, state):
     """Which leaf of a `Dynamics` each number is, by path; of what is zero, and so absent, none."""
     numbered = programs.numbered(state)

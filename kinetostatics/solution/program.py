@@ -19,7 +19,7 @@ from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.leaves import made, with_fields
 from .angles import crank_angles, problems
-from .parameters import fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping
+from .parameters import fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping, unknown
 from .scene import unchecked
 from .slopes import slopes
 
@@ -52,7 +52,7 @@ class Program:
         self.scene, self.quantities, self._backend, self._kept = scene, quantities, backend, kept
         self._compiled, self._is_own = backend.engine == "compiled", backend.is_own
         places = scene.places
-        checks.require("compile", *(checks.choice("parameter", path, tuple(places)) for path in kept))
+        checks.require("compile", *(unknown(scene, path) for path in kept if path not in places))
         if scene.friction.acting:
             scene = _with_enough_passes(scene)
         scene = keeping(scene, places, kept)
@@ -130,7 +130,7 @@ class Program:
         """What computes: "cpu", or as JAX calls it, "gpu: NVIDIA H100" for instance."""
         return self._backend.device
 
-    def error_bound(self, angle, values=MappingProxyType({})):
+    def error_bound(self, angle, values=MappingProxyType({}), tight=False):
         """Proven bounds on the rounding errors of the values that a call gives, computed in double.
 
         Exact are numbers and crank angles as they are given, in double; `Solution.error_bound` says what is bounded.
@@ -139,6 +139,8 @@ class Program:
         ----------
         angle, values
             As for a call.
+        tight : bool
+            Whether it may take twice as long, and be up to ten times smaller; in double precision, not by JAX.
 
         Returns
         -------
@@ -148,6 +150,8 @@ class Program:
 
         Raises
         ------
+        ParameterError
+            Tight bounds are asked for of single precision, or of JAX.
         NotGivenError
             Code of your own rounds in a way that is not known, or so does the device.
 
@@ -159,8 +163,13 @@ class Program:
         >>> bool(program.error_bound(0.5)["balancing_torque"] < 1e-4)  # of 14.9 N m
         True
         """
+        if tight and not self._is_own:
+            raise ParameterError(
+                "program: there are tight bounds in double precision, by the engines compiled and numpy; this one runs "
+                f"by {self.engine} in {self.precision} precision, so leave tight out, or compile one of those"
+            )
         state, leaves = self._at(angle, values)
-        return self._program.recording.named(read_only(self._backend.bounds(self._program, state, leaves)))
+        return self._program.recording.named(read_only(self._backend.bounds(self._program, state, leaves, tight)))
 
     def unlooked(self, angle, values, compiled):
         """The same, compiled or not, where the caller sees to it that values are right, and looks at friction."""
@@ -179,8 +188,9 @@ class Program:
         ----------
         angle, values
             As for a call.
-        by : sequence of str, optional
-            Paths; all parameters unless told, but for lengths where change points are passed.
+        by : str or sequence of str, optional
+            Paths; all parameters unless told, but for lengths where change points are passed. `values`, a mapping, may
+            stand before it, as in a call.
 
         Returns
         -------
@@ -195,14 +205,14 @@ class Program:
         NotGivenError
             A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
+        by, values = _parted(by, values)
         every = tuple(path for path in self.parameters if path not in self._fixed)
         names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
         checks.require("program", None if names else "by names no parameter to derive by")
         self._require_known(names)
         require_free("program", self.scene.mechanism, names, self._fixed)
         state, leaves = self._at(angle, values)
-        by = {path: self._numbers[path][0] for path in names}
-        return slopes(self._program, by, state, leaves, self._backend)
+        return slopes(self._program, {path: self._numbers[path][0] for path in names}, state, leaves, self._backend)
 
     def _look_at_friction(self, state, leaves, values):
         """Refuse a crank at rest, and warn where friction takes more passes than the scene's own numbers do."""
@@ -280,7 +290,19 @@ class Program:
                 raise ParameterError(
                     f'program: {path} is {why} and so left out; keep it by compile(..., parameters=("{path}",))'
                 )
-        checks.require("program", *(checks.choice("parameter", path, tuple(self._numbers)) for path in names))
+        checks.require("program", *(unknown(self.scene, path, self._numbers) for path in names))
+
+
+def _parted(by, values):
+    """Names to derive by, and other numbers, in whichever order they stand: only numbers are a mapping."""
+    if not isinstance(by, Mapping):
+        return by, values
+    if isinstance(values, Mapping) and values:
+        raise ParameterError(
+            "program: by and values are both mappings: give the names to derive by as a list, "
+            f"by={list(values)!r} for instance"
+        )
+    return None if isinstance(values, Mapping) else values, by
 
 
 def _of_designs(rule):

@@ -20,7 +20,7 @@ from ..numbers.leaves import made
 from .angles import crank_angles, problems
 from .checked import checked
 from .drive_and_loads import in_a_line
-from .parameters import DRIVE, Parameters
+from .parameters import DRIVE, Parameters, unknown
 from .solution import Solution
 
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
@@ -112,7 +112,7 @@ class Scene(Parameters):
             There is no such path, or no machine has such a value.
         """
         known = self.places
-        checks.require("scene", *(checks.choice("parameter", path, tuple(known)) for path in values))
+        checks.require("scene", *(unknown(self, path) for path in values if path not in known))
         return paths.with_values(self, {known[path].steps: value for path, value in values.items()})
 
     def solve(self, angles=720, *, on_gap="raise", engine=None) -> Solution:

@@ -20,6 +20,7 @@ from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.headings import parted, si_columns
 from ..results.reductions import Output, parsed
+from ..solution.parameters import unknown
 from ..solution.scene import WORTH_COMPILING, Scene
 from .chunks import FAILED, PROBED, Job, tried
 from .dataset import Dataset, Parts
@@ -94,6 +95,8 @@ def sweep(
     -------
     pandas.DataFrame
         The designs with a column for each output, in SI, and a column "failed": why a design has none, else empty.
+        Last bits may differ with the chunk: where a design comes near a singular place, all of its chunk are computed
+        by formulas made for that.
 
     Raises
     ------
@@ -167,7 +170,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
     compared = chosen(source, variant, reference) if is_case(source) else (source, reference)
     known = compared[0].units if is_varied(compared[0]) else None
     wanted, problems = _outputs(outputs)
-    columns, wrong = si_columns(designs.columns, known)
+    columns, wrong = si_columns(designs.columns, known, partial(unknown, source) if isinstance(source, Scene) else None)
     problems += [
         *wrong,
         *_name_problems(designs.columns, wanted),
@@ -216,11 +219,15 @@ def is_varied(source):
     return not isinstance(source, type) and hasattr(source, "varied") and hasattr(source, "units")
 
 
-def chosen(case, variant=None, reference=None):
-    """The variant that designs vary, and the one that ratios refer to."""
+def names_of(case, variant=None, reference=None):
+    """Names of the variant that designs vary, and of the one that ratios refer to."""
     reference = reference or case.reference
-    variant = variant or next((name for name in case.variants if name != reference), reference)
-    return case.variant(variant), case.variant(reference)
+    return variant or next((name for name in case.variants if name != reference), reference), reference
+
+
+def chosen(case, variant=None, reference=None):
+    """These variants."""
+    return tuple(map(case.variant, names_of(case, variant, reference)))
 
 
 def _is_scene(item):

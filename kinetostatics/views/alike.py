@@ -21,12 +21,17 @@ def moves_alike(solution, other):
     )
 
 
+def loads_drawn(solution, angle):
+    """Signs of the loads of a machine in a pose, as strokes."""
+    return list(Shape(whole_turn(solution)).signs(solution.loads, posed(solution, angle)))
+
+
 def own_strokes(named, angle):
     """Counterweights and signs of loads in a pose, each stroke with the labels of those that have it, in order."""
     found: list[tuple[Any, list[str]]] = []
     for name, solution in named.items():
-        shape, pose = Shape(whole_turn(solution)), posed(solution, angle)
-        for stroke in (*shape.counterweights(pose), *shape.signs(solution.loads, pose)):
+        weights = Shape(whole_turn(solution)).counterweights(posed(solution, angle))
+        for stroke in (*weights, *loads_drawn(solution, angle)):
             same = (owners for other, owners in found if _same(stroke, other))
             owners = next(same, None)
             if owners is None:

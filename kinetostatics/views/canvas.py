@@ -154,16 +154,35 @@ BEYOND = 1e4
 """Times the ordinary values from which on others grow without bound."""
 SIGHT = 3.0
 """Times the ordinary values up to which those that grow without bound are drawn."""
+BESIDE = 36
+"""Share of the crank angles, 1 / `BESIDE`, on each side of a gap where values may grow without bound."""
 
 
 def ordinary(arrays):
-    """Largest size of all values; if some are far beyond most others, as forces near change points, of most of them."""
-    sizes = np.abs(np.concatenate([np.ravel(np.asarray(array, dtype=float)) for array in arrays]))
-    finite = sizes[np.isfinite(sizes)]
+    """Largest size of all values, unless some grow without bound: then of the others.
+
+    That are those far beyond most others, as forces near change points, and those beside a gap.
+    """
+    rows = [np.abs(np.atleast_1d(np.asarray(array, dtype=float))) for array in arrays]
+    sizes, away = (np.concatenate([np.ravel(row) for row in part]) for part in (rows, map(_away_from_gaps, rows)))
+    finite, others = sizes[np.isfinite(sizes)], away[np.isfinite(away)]
     if not finite.size:
         return 0.0
+    most, apart = float(finite.max()), float(np.max(others, initial=0.0))
+    if 0.0 < SIGHT * apart < most:
+        return apart
     usual, largest = float(np.quantile(finite, MOST)), float(np.nanmax(sizes))
-    return usual if 0.0 < BEYOND * usual < largest else float(finite.max())
+    return usual if 0.0 < BEYOND * usual < largest else most
+
+
+def _away_from_gaps(values):
+    """Values over the crank angles without those beside a gap, where there is one."""
+    missing = np.isnan(values)
+    if not missing.any():
+        return values
+    reach = max(1, values.shape[-1] // BESIDE)
+    beside = np.any([np.roll(missing, step, axis=-1) for step in range(-reach, reach + 1)], axis=0)
+    return np.where(beside, np.nan, values)
 
 
 def in_sight(arrays):

@@ -9,7 +9,21 @@ from ..mechanics import quantities
 from ..mechanics.quantities import of_mechanism, values
 from ..numbers.checks import choice, singles
 from ..results.extremes import extremes
-from .canvas import FROM_X, INK, axes, closed, display, drawn_over_turn, finished, in_order, labelled, styled
+from . import gaps
+from .canvas import (
+    FROM_X,
+    INK,
+    axes,
+    closed,
+    display,
+    drawn_over_turn,
+    finished,
+    in_order,
+    in_sight,
+    labelled,
+    ordinary,
+    styled,
+)
 from .labels import label
 from .studies import require_turning
 
@@ -49,7 +63,10 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     factor, shown = display(declared.unit, list(read.values()))
     curves = {name: in_order(named[name], factor * value, counted) for name, value in read.items()}
     drawn_over_turn(ax, curves)
-    return finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named), counted)
+    finished(ax, f"{declared.label} [{shown}]", len(curves) > 1, _longest(named), counted)
+    gaps.framed(ax, [value for _, value in curves.values()], shown)
+    gaps.shaded(ax, named, curves, counted)
+    return ax
 
 
 def torque(solutions, ax=None, counted=FROM_X):
@@ -199,12 +216,16 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
     declared = _declared(named, joint)
     factor, shown = display(declared.unit, curves.values())
-    extents = {name: factor * np.max(np.ptp(curve, axis=1)) for name, curve in curves.items()}
+    sizes = [np.hypot(*curve) for curve in curves.values()]
+    sight = in_sight(sizes)
+    curves = {name: np.where(np.hypot(*curve) <= sight, curve, np.nan) for name, curve in curves.items()}
+    most = 2.0 * ordinary(sizes)
+    extents = {name: factor * min(_extent(curve), most) for name, curve in curves.items()}
     for name, solution, style in styled(named):
         (line,) = ax.plot(*closed(factor * curves[name]), linestyle=style, label=name)
-        rows = _marked(solution, marks)
+        rows = [row for row in _marked(solution, marks) if np.isfinite(curves[name][0, row])]
         ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
-        near = max(0.06 * extents[name], 0.025 * max(extents.values()))
+        near = max(0.03 * extents[name], 0.02 * max(extents.values()))
         period = np.degrees(solution.period)
         texts = _shared(counted(_degrees(solution)[rows], period) % period, factor * curves[name][:, rows], near)
         for text, point in texts:
@@ -213,11 +234,19 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     ax.axvline(0, color=INK, lw=0.5)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.1)
+    if np.isfinite(sight):
+        gaps.beyond(ax, [factor * size for size in sizes], shown)
     ax.set_xlabel(f"{declared.label}, x [{shown}]")
     ax.set_ylabel(f"{declared.label}, y [{shown}]")
     if len(named) > 1 or isinstance(solutions, Mapping):
         ax.legend(frameon=False)
     return ax
+
+
+def _extent(curve):
+    """Largest extent of a curve (2, N) in x or y, where it has values."""
+    found = curve[:, np.isfinite(curve).all(axis=0)]
+    return float(np.max(np.ptp(found, axis=1))) if found.size else 0.0
 
 
 def _degrees(solution):

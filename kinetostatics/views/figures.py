@@ -15,7 +15,7 @@ from ..numbers import checks
 from ..numbers.files import unwritable, written_whole
 from ..results.losses import lose
 from . import curves, drawings, drives, lost_power, studies
-from .alike import moves_alike
+from .alike import loads_drawn, moves_alike
 from .canvas import FROM_X, FROM_Y_CLOCKWISE, distinct
 
 
@@ -198,14 +198,20 @@ LETTERING = 0.8
 """Height of title and labels of axes, inches."""
 
 
+def _most_loaded(solutions):
+    """Name of the variant of whose loads a drawing shows most, the last of several."""
+    strokes = {name: len(loads_drawn(solution, POSES[:1])) for name, solution in solutions.items()}
+    return max(reversed(strokes), key=strokes.__getitem__)
+
+
 def _overview(solutions, counted=FROM_X) -> Figure:
-    """The last variant, its torque against all others, and the support reaction of the first and the last.
+    """The variant with most loads, torques of all, and the support reaction of the first and the last.
 
     A wide mechanism is drawn across the page, others beside the torque, tall ones over the whole height.
     """
     shown = list(dict.fromkeys([next(iter(solutions)), next(reversed(solutions))]))
-    last = solutions[shown[-1]]
-    wide = _proportion(last)
+    drawn = _most_loaded(solutions)
+    wide = _proportion(solutions[drawn])
     many = len(shown)
     rows: list[Any] = [["mechanism", "torque"], shown]
     widths = heights = None
@@ -218,8 +224,8 @@ def _overview(solutions, counted=FROM_X) -> Figure:
     figure, axes = plt.subplot_mosaic(
         rows, figsize=(11, 6.4), layout="constrained", width_ratios=widths, height_ratios=heights
     )
-    drawings.mechanism(last, angles=counted.from_x(POSES), ax=axes["mechanism"], counted=counted)
-    axes["mechanism"].set_title(f"{shown[-1]}: {last.mechanism.name}")
+    drawings.mechanism(solutions[drawn], angles=counted.from_x(POSES), ax=axes["mechanism"], counted=counted)
+    axes["mechanism"].set_title(f"{drawn}: {solutions[drawn].mechanism.name}")
     curves.torque(solutions, ax=axes["torque"], counted=counted)
     axes["torque"].set_title("torque the drive must give")
     for name in shown:

@@ -36,18 +36,19 @@ class Labels(Artist):
         shown = [text for text in self.texts if np.isfinite(text.xy).all()]
         points = ax.transData.transform([text.xy for text in shown]) if shown else ()
         taken: list[Bbox] = []
+        leaders: list[Path] = []
         for text, point in zip(shown, points, strict=True):
             size = text.get_window_extent(renderer)
             places = list(_places(point, size.width, size.height, scale))
             costs = [
-                step + self._cost(box, taken, points, marks, paths)
-                for step, (_, box) in zip(STEPS, places, strict=True)
+                step + self._cost(box, taken, points, marks, paths) + _crossed(box, leader, taken, leaders)
+                for step, (_, box, leader) in zip(STEPS, places, strict=True)
             ]
-            best = int(np.argmin(costs))
-            offset, box = places[best]
+            offset, box, leader = places[int(np.argmin(costs))]
             text.set_position(offset / scale)
-            if DISTANCES[best // len(DIRECTIONS)] > LED:
-                _leader(point, box).draw(renderer)
+            if leader is not None:
+                Line2D(*leader.vertices.T, color="0.5", lw=0.5, transform=IdentityTransform()).draw(renderer)
+                leaders.append(leader)
             taken.append(box)
 
     def _cost(self, box, taken, points, marks, paths):
@@ -62,10 +63,18 @@ class Labels(Artist):
         )
 
 
+def _crossed(box, leader, taken, leaders):
+    """What it costs a label that it, or the line that leads to it, crosses other lines that lead, or other labels."""
+    met = [line.intersects_bbox(box, filled=False) for line in leaders]
+    if leader is not None:
+        met += [leader.intersects_bbox(other, filled=False) for other in taken]
+        met += [leader.intersects_path(line, filled=False) for line in leaders]
+    return ON_LABEL * sum(map(bool, met))
+
+
 def _leader(point, box):
-    """A thin line from a point to the nearest place of its label, in pixels."""
-    end = np.clip(point, (box.x0, box.y0), (box.x1, box.y1))
-    return Line2D(*np.transpose([point, end]), color="0.5", lw=0.5, transform=IdentityTransform())
+    """A line from a point to the nearest place of its label, in pixels."""
+    return Path([point, np.clip(point, (box.x0, box.y0), (box.x1, box.y1))])
 
 
 def _in_pixels(item):
@@ -83,12 +92,13 @@ STEPS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))
 
 
 def _places(point, width, height, scale):
-    """Offset of the label's lower left corner from the point, and its box, in pixels."""
+    """Offset of the label's lower left corner from the point, its box, and a line to it if it is far, in pixels."""
     for distance in DISTANCES:
         for way in DIRECTIONS:
             x = distance * scale * way.real + 0.5 * width * (np.sign(round(way.real, 9)) - 1.0)
             y = distance * scale * way.imag + 0.5 * height * (np.sign(round(way.imag, 9)) - 1.0)
-            yield np.array([x, y]), Bbox.from_bounds(point[0] + x, point[1] + y, width, height)
+            box = Bbox.from_bounds(point[0] + x, point[1] + y, width, height)
+            yield np.array([x, y]), box, _leader(point, box) if distance > LED else None
 
 
 def label(ax, text, point, **style):

@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -12,6 +13,7 @@ import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
 from kinetostatics.cli.commands import STARTERS
+from support.every import every
 
 
 @pytest.fixture
@@ -196,6 +198,44 @@ def test_a_new_case_never_takes_the_place_of_a_file(tmp_path, capsys):
     assert path.read_text(encoding="utf-8") == "old"
 
 
+@every("name", ["tw.csv", "saw.v2", "folder/press.json"])
+def test_a_new_case_that_ends_as_another_file_is_refused_with_the_names_it_may_have(
+    name, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", name]) == 2
+    suffix, stem = Path(name).suffix, str(Path(name).with_suffix(""))
+    told = f"{name} ends in {suffix}, a case file in .toml: write {stem}.toml, or {name}.toml if you mean it"
+    assert capsys.readouterr().err == f"kinetostatics: new: {told}\n"
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_point_before_digits_is_part_of_the_name_of_a_new_case(tmp_path, capsys):
+    assert main(["new", str(tmp_path / "press 2.5")]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["press 2.5.toml"]
+
+
+@every(
+    "arguments",
+    [
+        ["run", "compressor", "--variant", "unloaded", "--angles", "8", "--csv", "{}/deep/run.csv"],
+        ["new", "{}/deep/press"],
+        ["explain", "compressor", "--angle", "0 deg", "--out", "{}/deep/told.txt"],
+        ["plot", "compressor", "--only", "torque", "--out", "{}/deep"],
+    ],
+    ids=" ".join,
+)
+def test_folders_are_made_for_every_output_and_told_but_those_asked_for(arguments, tmp_path, capsys):
+    folder = tmp_path / arguments[0]
+    arguments = [text.format(folder) for text in arguments]
+    assert main(arguments) == 0
+    assert any((folder / "deep").iterdir())
+    assert capsys.readouterr().err == ("" if arguments[0] == "plot" else f"made folder {folder}\n")
+    if arguments[0] != "new":
+        assert main(arguments) == 0
+        assert capsys.readouterr().err == ""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["new\nline", 'say "when"', "b\\c", "\N{GREEK SMALL LETTER OMEGA}.toml"])
 def test_a_new_case_of_an_odd_name_is_read_again(tmp_path, name):
@@ -294,6 +334,14 @@ def test_explain_prints_the_hand_calculation_and_writes_it(tmp_path, capsys):
         assert "balancing torque at crank angle 0.685914 rad = 39.3 deg" in " ".join(printed.split())
         assert f"wrote {path}" in printed
         assert path.read_text(encoding="utf-8").startswith(start)
+
+
+@every(
+    "options, words", [([], "variant plain, the reference (another by --variant)"), (["--variant", "plain"], "plain")]
+)
+def test_explain_tells_the_variant(options, words, capsys):
+    assert main(["explain", "sawframe_2r63", "--angle", "39.3 deg", *options]) == 0
+    assert " ".join(capsys.readouterr().out.split("\n\n")[0].split()).endswith(words)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,9 @@ import json
 import pandas as pd
 import pytest
 
+import kinetostatics as ks
 from kinetostatics.cli import main
+from support.every import every
 
 SWEEP = ["sweep", "sawframe_2r63", "--variant", "cam-circle", "--vary", "slider.mass=600..650 kg:3"]
 
@@ -21,6 +23,30 @@ def test_json_and_csv_hold_every_design_in_full(tmp_path, capsys):
     assert found["failed"] == 0
     assert found["designs"] == table.assign(failed="").to_dict("records")
     assert len(table) == 3
+
+
+@every(
+    "options, words",
+    [
+        ([], "variant cam-circle, the first besides the reference (another by --variant)"),
+        (["--variant", "plain"], "variant plain"),
+        (["--reference", "cam-circle"], "variant plain, the first besides the reference (another by --variant)"),
+        (["--output", "ratio largest O"], "(another by --variant); ratios refer to plain"),
+        (["--variant", "plain", "--reference", "cam-cosine", "--output", "ratio largest O"], "refer to cam-cosine"),
+    ],
+)
+def test_the_variant_that_is_swept_is_told_and_why_it_is_that_one(options, words, capsys):
+    vary = ["--vary", "slider.mass=600..650 kg:2", "--angles", "12"]
+    assert main(["sweep", "sawframe_2r63", *vary, *options]) == 0
+    told = " ".join(capsys.readouterr().out.split("\n\n")[0].split())
+    assert told.startswith(ks.load_case("sawframe_2r63").title)
+    assert told.endswith(words)
+
+
+def test_json_tells_the_variant_that_is_swept_and_the_reference(capsys):
+    assert main(["sweep", "sawframe_2r63", "--vary", "slider.mass=600..650 kg:2", "--angles", "12", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["variant"], found["reference"]) == ("cam-circle", "plain")
 
 
 def test_best_designs_say_which_way_a_ratio_is_better(capsys):

@@ -1,9 +1,15 @@
 """Where the search for a torque-free cam begins: from any machine with a slider, its coupler and stroke kept."""
 
+import inspect
+from dataclasses import fields
+
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.casefile.designs import CAM
+from kinetostatics.design.cam_start import Options
 from support.shipped import shipped
 
 SAW, MOWER = shipped("sawframe_2r63"), shipped("mower_drive")
@@ -39,3 +45,22 @@ def test_a_turned_machine_has_the_turned_design():
     )
     one, other = (ks.design.torque_free_cam(scene, 2, 2, minimise=SQUARES) for scene in (plain, turned))
     assert_allclose(list(other.values.values()), list(one.values.values()), rtol=1e-5, atol=1e-7)
+
+
+def test_all_that_is_wrong_with_options_is_told_at_once_wherever_they_come_from():
+    wrong = {"cosine": 0, "sine": 100, "gravity": 1, "counterweight": -3.0, "guide_offset": "low"}
+    with pytest.raises(ks.ParameterError) as options:
+        Options.checked(**wrong)
+    with pytest.raises(ks.ParameterError) as found:
+        torque_free(**wrong, starts=0)
+    for told in map(str, (options.value, found.value)):
+        for name in wrong:
+            assert f"{name} must be" in told
+    assert "starts must be" in str(found.value)
+
+
+def test_options_are_those_of_the_function_and_of_case_files():
+    function = inspect.signature(ks.design.torque_free_cam).parameters
+    for option in fields(Options):
+        assert function[option.name].default == option.default
+    assert {"cosine", "sine", "ends", "guide_offset", "coupler_spring", "counterweight", "cubic"} == set(CAM)

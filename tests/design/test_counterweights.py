@@ -164,3 +164,13 @@ def test_what_is_no_counterweight_or_no_single_design_is_refused():
     ):
         with pytest.raises(ks.ParameterError):
             ask()
+
+
+def test_what_a_counterweight_on_the_crank_does_not_change_changes_by_nothing_without_a_sign():
+    found = ks.balancing.partial(
+        ks.crank_slider(0.038, 0.3, coupler=ks.Link(2.0, 0.1), slider=ks.Link(5.0)), crank=HEAVY
+    )
+    change = found.effect(crank_speed=62.8)["change [%]"]
+    for row in ("reaction A [N]", "reaction B [N]", "reaction guide [N]", "balancing torque [N m]"):
+        assert str(change[f"largest {row}"]) == "0.0"
+    assert abs(change["largest reaction O [N]"]) > 1.0

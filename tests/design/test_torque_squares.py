@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from kinetostatics.design.cam_start import begun
+from kinetostatics.design.cam_start import Options, begun
 from kinetostatics.design.problem import Problem
 from kinetostatics.design.torque_squares import least_squares, wave
 from support.shipped import shipped
@@ -15,7 +15,7 @@ SAW = shipped("sawframe_2r63")
 
 
 def search(cosine, sine):
-    start = begun(SAW.variant("cam-cosine").scene, cosine, sine)
+    start = begun(SAW.variant("cam-cosine").scene, Options(cosine, sine))
     return start, Problem(start.machine, start.vary, ["balancing_torque", "slider_position"], None, 360)
 
 

@@ -70,3 +70,18 @@ def test_the_first_page_goes_from_a_drawing_to_a_table_of_forces(tmp_path, monke
 def test_the_first_page_counts_its_lines():
     written = re.search(r"(\w+) lines of code", text_of(PAGES["index"]))[1]
     assert written == "Fifteen"
+
+
+def test_the_page_on_certainty_says_what_its_code_finds(capsys):
+    names: dict = {}
+    for code in code_cells(text_of(PAGES["this_number"])):
+        if "subprocess" not in code:
+            exec(compile(code, "this_number", "exec"), names)
+    printed = capsys.readouterr().out
+    s, peak = names["s"], names["peak"]
+    plain, tight = (s.error_bound("balancing_torque", tight)[peak] for tight in (False, True))
+    assert tight < plain < 1e-13 * s.balancing_torque[peak]
+    assert max(names["shares"], key=names["shares"].get) == "coupler_length"
+    assert f"{s.balancing_torque[peak]:.0f} N m +- " in printed
+    single, double = (float(line.split(" +- ")[1]) for line in sorted(printed.splitlines()[-3:-1], reverse=True))
+    assert double < 1e-10 < 1e-3 < single

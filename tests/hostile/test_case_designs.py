@@ -55,6 +55,7 @@ WRONG = {
         f'{HEAD}{VARY}{AIM}limits = ["mean O <= 3 kN", "largest O <= 3 m"]\n',
         'design.one.limits[2]: limit \'largest O <= 3 m\': "m" does not measure the same as "N"',
     ),
+    "no counterweight": (f'{CAM}counterweight = "0 kg"\n', "design.one: counterweight must be greater than 0, got 0.0"),
     "limits a text": (
         f'{HEAD}{VARY}{AIM}limits = "largest O <= 3 kN"\n',
         "design.one.limits: input should be a valid t",

@@ -89,3 +89,11 @@ def test_whatever_stops_the_writing_nothing_is_left_of_it(tmp_path, error):
 @pytest.mark.parametrize("name", ["a\0b.csv", "\ud800.csv"])
 def test_names_that_no_file_can_have_are_told(name):
     assert "is no name of a file here" in files.unwritable(name)
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc, where nothing can be made")
+@every("path", ["/proc/new.csv", "/proc/new/folder/new.csv"])
+def test_a_place_that_takes_no_file_is_told_by_an_error_of_our_own(path):
+    refused = pytest.raises(ks.FileError, match=f"{path} cannot be written: [A-Z][a-z ]*; give another place")
+    with refused, files.written_whole(path):
+        raise AssertionError("nothing is written there")

@@ -153,3 +153,14 @@ def test_a_circle_with_another_centre_tells_anew_whether_o_lies_close(before, af
     cams = [scene.mechanism.groups[0].cam for scene in (varied, made[1])]
     assert cams[0].is_close is cams[1].is_close is (after < -0.29)
     np.testing.assert_array_equal(*(scene.solve(9).reaction("O") for scene in (varied, made[1])))
+
+
+def test_a_circle_beside_one_that_o_lies_close_to_changes_by_rounding_only():
+    """One design decides on the formulas of all."""
+    circle = ks.cams.Circle(0.3, (np.array([[-0.0219], [0.299]]), 0.0))
+    alone, close = (ks.cams.Circle(0.3, (float(x), 0.0)) for x in (-0.0219, 0.299))
+    assert (circle.is_close, alone.is_close, close.is_close) == (True, False, True)
+    angle = np.linspace(0.0, 6.0, 50)
+    for both, one, other in zip(circle.radius(angle), alone.radius(angle), close.radius(angle), strict=True):
+        np.testing.assert_allclose(both[0], one, rtol=0, atol=4 * np.spacing(0.3))
+        assert np.array_equal(both[1], other)

@@ -1,13 +1,16 @@
 """The straight guide: the same line by angle and offset as by two points, and what passes none."""
 
+import re
 from collections import namedtuple
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import kinetostatics as ks
 from kinetostatics.numbers.leaves import Axis
+from support.every import every
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, -2.5, np.pi / 2])
@@ -38,13 +41,23 @@ def test_points_that_coincide_or_are_many_make_no_guide():
         ks.Guide(None, 0.0, (1.0, 1.0))
 
 
+def nested(structure):
+    """All that a structure is made of."""
+    yield structure
+    if isinstance(structure, tuple) and not isinstance(structure, Axis):
+        for part in structure:
+            yield from nested(part)
+
+
 @pytest.mark.parametrize("end", [(0.0, 2.0), (0.0, -2.0), (-2.0, 0.0), (2.0, 0.0), (1.0, 2.0)])
 def test_a_guide_through_points_along_an_axis_has_that_direction_in_its_structure(end):
     saw = ks.crank_slider(0.1, 3.0, guide=ks.Guide.through((0.0, 0.0), end), slider=ks.Link(1.0))
     s = ks.solve(saw, np.linspace(0, 6, 50), crank_speed=3.0)
     structure, leaves = s.apart
     along = 0.0 in end
-    assert (Axis(saw.groups[0].guide.exact) in structure[1][3][1][2]) == along
+    assert [part for part in nested(structure) if isinstance(part, Axis)] == (
+        [saw.groups[0].guide.exact] if along else []
+    )
     assert len(leaves.numbers) == (4 if along else 6)
     plain = ks.solve(
         ks.crank_slider(0.1, 3.0, guide_angle=saw.groups[0].guide.guide_angle, slider=ks.Link(1.0)),
@@ -65,3 +78,40 @@ def test_an_axis_has_one_zero(direction):
     """For structures that are equal share what is recorded of the first."""
     zero = next(part for part in ks.Guide(None, 0.0, direction).exact if not part)
     assert np.copysign(1.0, zero) == 1.0
+
+
+def two_guides():
+    groups = (
+        ks.SliderGroup(0.4, guide=ks.Guide.at(0.0)),
+        ks.SliderGroup(0.5, guide=ks.Guide.through((1.0, 0.2), (2.0, 0.25)), on="A", pin="C", label="2"),
+    )
+    return ks.Scene(ks.Mechanism("two", ks.Crank(0.1), groups), 10.0)
+
+
+@every(
+    "ask",
+    [
+        lambda scene: scene.varied({"guide_angle2": 0.1}),
+        lambda scene: ks.compile(scene, "C", parameters="guide_angle2", engine="numpy"),
+        lambda scene: ks.compile(scene, "C", engine="numpy")(0.3, {"guide_angle2": 0.1}),
+        lambda scene: ks.compile(scene, "C", engine="numpy").derivatives(0.3, "guide_angle2"),
+        lambda scene: scene.solve(12).uncertainty("C", {"guide_angle2": 1e-4}),
+        lambda scene: ks.sweep(scene, pd.DataFrame({"guide_angle2 [deg]": [1.0]}), ["largest C"], progress=False),
+    ],
+)
+def test_whoever_changes_the_angle_of_a_guide_through_points_is_told_how_to_make_it_and_what_it_has(ask):
+    with pytest.raises(ks.ParameterError) as raised:
+        ask(two_guides())
+    told = str(raised.value)
+    assert "parameter guide_angle2 has no number here, as the guide runs through two points" in told
+    assert told.endswith("to change its angle; beside it stand guide_offset2, exact2.x, exact2.y")
+    angle, offset = map(float, re.search(r"make it by Guide.at\((.*), (.*)\)", told).groups())
+    same = ks.Guide.at(angle, offset)
+    guide = two_guides().mechanism.guides["slider2"]
+    assert (*same.direction, same.guide_offset) == pytest.approx((*guide.direction, guide.guide_offset))
+
+
+def test_what_has_no_number_is_told_beside_what_has():
+    scene = ks.Scene(ks.crank_slider(0.1, 0.4), 10.0, friction={"guide": ks.GuideFriction(0.1)})
+    with pytest.raises(ks.ParameterError, match=r"half_length has no number here; beside it stand friction\.guide\.mu"):
+        scene.varied({"friction.guide.half_length": 0.1})

@@ -7,9 +7,12 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+import kinetostatics as ks
+from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers import elementary
 from kinetostatics.numbers.duals import Dual
 from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, rest, root, sign, stack, total
+from support.every import every
 
 
 @pytest.mark.parametrize("name", ["sin", "cos", "sqrt"])
@@ -96,6 +99,24 @@ def test_a_rest_of_numbers_with_slopes_has_none_and_enclosures_have_no_rest():
 
 def test_absent_terms_of_a_total_are_none():
     assert total(0.1, None, 0.2, -0.3, None) == math.fsum((0.1, 0.2, -0.3))
+
+
+NUMBERS = {
+    "float": 0.1,
+    "array": np.array([0.1, 0.2]),
+    "dual": Dual(np.array(0.1)),
+    "recorded": Graph().parameter(0),
+    "Fraction": Fraction(1, 10),
+}
+
+
+@every("name", NUMBERS)
+def test_a_total_takes_six_numbers_of_any_kind_and_absent_ones_do_not_count(name):
+    number = NUMBERS[name]
+    total(*[number] * 6, None)
+    assert type(total(None, number)) is type(number)
+    with pytest.raises(ks.ParameterError, match="takes 6 numbers at most, got 7; make two of it"):
+        total(*[number] * 7)
 
 
 def test_a_total_has_the_slopes_of_a_sum():

@@ -49,7 +49,17 @@ def test_long_values_are_shown_short():
 
 @pytest.mark.parametrize(
     ("text", "unit", "advice"),
-    [("250", "rad", '"250 deg" or "250 rad"'), ("60", "rad/s", '"60 rpm" or "60 rad/s"'), ("down", "rad", '"90 deg"')],
+    [
+        ("250", "rad", '"250 deg" or "250 rad"'),
+        ("60", "rad/s", '"60 rpm" or "60 rad/s"'),
+        ("down", "rad", '"90 deg"'),
+        ("450", "m", '"450 mm" or "450 m"'),
+        (450, "m", '"450 mm" or "450 m"'),
+        ("long", "m", '"300 mm"'),
+        (0.5, "kg", '"0.5 kg"'),
+        (math.nan, "m", '"300 mm"'),
+        (True, "m", '"300 mm"'),
+    ],
 )
 def test_advice_is_in_the_units_of_drawings(text, unit, advice):
     with pytest.raises(ValueError, match=f"write for example {advice}$"):

@@ -24,6 +24,23 @@ def test_the_mean_torque_is_that_of_a_sine():
     assert balanced == pytest.approx(3.0 * 0.01 * 25.0 / np.pi, rel=1e-9)
 
 
+def test_an_extremum_of_the_torque_that_is_rounding_stands_as_zero():
+    """A press at its lower dead centre: there the torque has a kink, and is 0."""
+    press = ks.crank_slider(0.1, 0.45, guide_angle=-np.pi / 2, coupler=ks.Link(38, 0.16, 0.9), slider=ks.Link(120))
+    work = ks.ProcessForce(ks.Table([0.35, 0.53, 0.55], [0, 0, -200e3], over="travel", back=[0, 0, 0]))
+    working, idle = (
+        ks.Scene(press, 2 * np.pi, loads=loads).solve(24) for loads in ((ks.Gravity(), work), ks.Gravity())
+    )
+    found = ks.compare(working, idle)
+    (row,) = np.flatnonzero(np.abs(found.torque_extremes[0].value) < 1e-6)
+    table, other = found.frame(), ks.compare(working, working).frame()
+    assert 0 < np.abs(found.torque_extremes[0].value[row]) < 1e-11
+    assert table.loc[f"torque extremum {row + 1}", "reference"] == 0.0
+    assert np.isnan(other.loc[f"torque extremum {row + 1}", "ratio"])
+    others = [f"torque extremum {k + 1}" for k in range(len(found.torque_extremum_ratios)) if k != row]
+    assert np.array_equal(table.loc[others, "ratio"], np.delete(found.torque_extremum_ratios, row), equal_nan=True)
+
+
 def test_the_table_has_a_row_for_each_coefficient_with_its_unit():
     table = ks.compare(yoke(6.0), yoke(3.0)).frame()
     row = table.loc["mean |balancing torque|"]

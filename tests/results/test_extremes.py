@@ -234,7 +234,8 @@ def test_extremes_are_printed_with_the_digits_that_are_known_and_rounding_as_0()
 
 def test_extremes_of_a_function_are_printed_to_six_digits():
     pump = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0)
-    (line, _) = repr(ks.extremes(pump, lambda s: s.slider_position)).splitlines()[1:]
+    first, line, _ = repr(ks.extremes(pump, lambda s: s.slider_position)).splitlines()
+    assert first == "2 extremes of a function of the solution"
     assert line.split()[-1] in ("2.3", "1.7")
 
 

@@ -47,6 +47,28 @@ def test_bounds_in_double_precision_are_those_of_a_solution():
         assert np.array_equal(bound, solution.error_bound(name))
 
 
+def test_tight_bounds_are_those_of_a_solution_in_double_precision():
+    solution, values = SAW.solve(ANGLES), {"slider.mass": 600.0}
+    for name, bound in made(engine="numpy").error_bound(ANGLES, values, tight=True).items():
+        assert np.array_equal(bound, solution.error_bound(name, tight=True))
+        assert not np.array_equal(bound, solution.error_bound(name))
+    with pytest.raises(ks.ParameterError, match="by numpy in single precision, so leave tight out"):
+        made(**SINGLE).error_bound(ANGLES, tight=True)
+
+
+def test_derivatives_take_other_numbers_before_or_behind_the_names():
+    program, values, name = made(quantities="balancing_torque", engine="numpy"), {"crank_length": 0.25}, "slider.mass"
+    wanted = program.derivatives(ANGLES, by=name, values=values)["balancing_torque"]
+    for given in [(name, values), (values, name), (values, [name]), ((name,), values)]:
+        assert np.array_equal(program.derivatives(ANGLES, *given)["balancing_torque"][name], wanted[name])
+    every = program.derivatives(ANGLES, values)["balancing_torque"]
+    assert every.keys() == program.parameters.keys()
+    assert np.array_equal(every[name], program.derivatives(ANGLES, values=values)["balancing_torque"][name])
+    assert not np.array_equal(wanted[name], program.derivatives(ANGLES)["balancing_torque"][name])
+    with pytest.raises(ks.ParameterError, match="both mappings: give the names to derive by as a list"):
+        program.derivatives(ANGLES, {name: 1.0}, values)
+
+
 def test_a_program_tells_what_runs_it_and_so_does_its_copy():
     program = pickle.loads(pickle.dumps(made(**SINGLE)))
     assert (program.engine, program.precision, program.device) == ("numpy", "single", "cpu")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views import figures
+from kinetostatics.views import figures, symbols
 from kinetostatics.views.canvas import FROM_X, FROM_Y_CLOCKWISE
 from kinetostatics.views.figures import draw_case
 from support.every import every
@@ -159,3 +159,14 @@ def test_drawing_leaves_the_settings_of_others_alone(tmp_path):
     before = dict(plt.rcParams), plt.get_fignums()
     draw_case(shipped("yoke_pump"), tmp_path, only="hodograph")
     assert (dict(plt.rcParams), plt.get_fignums()) == before
+
+
+@pytest.mark.parametrize(
+    ("case", "name"),
+    [("compressor", "loaded"), ("toggle_press", "coining"), ("shaper", "cutting"), ("sawframe_2r63", "cam-cosine")],
+)
+def test_an_overview_draws_the_variant_whose_loads_show(case, name):
+    ax = drawn(case, "overview", angles=36).axes[0]
+    assert ax.get_title().startswith(f"{name}: ")
+    assert any(len(line.get_xdata()) == len(symbols.ARROW) for line in ax.lines) or case == "sawframe_2r63"
+    plt.close(ax.figure)

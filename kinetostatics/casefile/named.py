@@ -1,0 +1,29 @@
+"""What a case has by name, and the error of a name that it has not."""
+
+from ..errors import CaseError
+from ..numbers import checks
+
+
+class Named(dict):
+    """Items of a case by name.
+
+    Attributes
+    ----------
+    kind : str
+        What they are: "variant".
+    path : Path
+        Of the case.
+    """
+
+    def __init__(self, kind, path, items):
+        super().__init__(items)
+        self.kind, self.path = kind, path
+
+    def __missing__(self, name):
+        raise NoSuchNameError(self.path, [checks.choice(self.kind, name, tuple(self))])
+
+
+class NoSuchNameError(CaseError, KeyError):
+    """A case has nothing of this name; those who look for a `KeyError` find it too."""
+
+    __str__ = Exception.__str__
