@@ -58,8 +58,8 @@ UNIT = 2.0**-53
 """Largest relative error of one rounding in double precision."""
 ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
-SPLIT = 2.0**27 + 1.0
-"""Factor by which a number is split into two of half as many digits."""
+SPLIT, SINGLE_SPLIT = 2.0**27 + 1.0, 2.0**12 + 1.0
+"""Factors by which a number, in double or single precision, is split into two of half as many digits."""
 UNSEEN = 2.0**-310
 """Unit, m, of which what counts as nothing changes no digit of any other distance."""
 APART = 2.0**-90
@@ -147,10 +147,14 @@ def rest(length, x, y):
 
 def squared(a):
     """Square of a number, rounded, and what that lost."""
-    whole, spread = a * a, SPLIT * a
+    whole, spread = a * a, (SINGLE_SPLIT if _is_single(a) else SPLIT) * a
     high = spread - (spread - a)
     low = a - high
     return whole, ((high * high - whole) + 2.0 * high * low) + low * low
+
+
+def _is_single(a):
+    return getattr(getattr(a, "dtype", None), "itemsize", 8) == 4
 
 
 def _are_floats(parts):
