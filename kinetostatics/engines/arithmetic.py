@@ -15,7 +15,8 @@ import numpy as np
 from ..errors import NotGivenError
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import SAFE, ULP, Bounds, Error, is_zero, size
+from .bounds import SAFE, Bounds, Error, is_zero, size
+from .functions import ULP, beside_one
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 
@@ -149,6 +150,11 @@ class BoundsElsewhere:
     def _positive(self, value):
         return self._graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
 
+    def of_sum(self, node, left, right=None):
+        if (near := beside_one(self._graph, node, self._arithmetic.unit)) is not None:
+            return Error(0.0, near)
+        return self.error(left) if right is None else Error(0.0, self.total(left) + self.total(right))
+
     def of_product(self, node, left, right):
         (first, own), (second, other) = self.error(left), self.error(right)
         if is_zero(node):  # of what may be none, it is none
@@ -177,10 +183,8 @@ class BoundsElsewhere:
 EXACTLY = ("abs", "held", "divisor", "sign")
 """Operations that round nothing."""
 RULES: dict[str, Callable[..., Error]] = {
-    "+": lambda bounds, node, left, right: Error(0.0, bounds.total(left) + bounds.total(right)),
-    "-": lambda bounds, node, *parts: (
-        Error(0.0, bounds.total(parts[0]) + bounds.total(parts[1])) if len(parts) == 2 else bounds.error(parts[0])
-    ),
+    "+": BoundsElsewhere.of_sum,
+    "-": BoundsElsewhere.of_sum,
     "total": BoundsElsewhere.of_total,
     "*": BoundsElsewhere.of_product,
     "/": BoundsElsewhere.of_quotient,

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..numbers.elementary import ROUNDING, rest, squared, total
+from ..numbers.elementary import ROUNDING, lost, rest, squared, total
 
 
 def _plain_root(square, unit):
@@ -59,6 +59,7 @@ PLAIN = {
     "divisor": _plain_divisor,
     "fma": lambda one, other, more: one * other + more,
     "total": _plain_total,
+    "lost": lost,
     "rest": _plain_rest,
     "nan": math.nan,
     "inf": math.inf,
@@ -74,6 +75,7 @@ BY_DESIGN = {
     "divisor": np.maximum,
     "fma": lambda one, other, more: one * other + more,
     "total": total,
+    "lost": lost,
     "rest": rest,
     "nan": math.nan,
     "inf": math.inf,

@@ -25,8 +25,9 @@ from collections import Counter
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
-from .bounds import DUST, SAFE, ULP, Bounds, is_scaling, is_zero, whole
+from .bounds import DUST, SAFE, Bounds, is_scaling, is_zero, whole
 from .counted import Counted
+from .functions import ULP, beside_one
 from .trace import BY_DESIGN, INPUTS, Node, needed
 
 KNOWN, CURVED, POWER = 0.1, 18.0, 16.0
@@ -117,6 +118,8 @@ class RunningBounds(Counted):
 
     def _of_sum(self, node):
         """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes, or of its own."""
+        if (near := beside_one(self._graph, node)) is not None:
+            return Absolute([(1.0 + MORE, self.size(node)), (1.0, near), (1.0, self._dust)], MORE)
         parts = [part for part in node.arguments if not is_zero(part)]
         own = 1.0 if len(parts) > 1 else 0.0
         reserve = min(

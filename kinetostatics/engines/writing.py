@@ -61,7 +61,7 @@ def summed(a, b):
 
 
 @njit(**options)
-def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
+def parted(one, two, three, four, five, six):
     whole, first = summed(one, two)
     whole, second = summed(whole, three)
     whole, third = summed(whole, four)
@@ -72,7 +72,19 @@ def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
     lost, third = summed(lost, fourth)
     lost, fourth = summed(lost, fifth)
     whole, fifth = summed(lost, whole)
+    return whole, first, second, third, fourth, fifth
+
+
+@njit(**options)
+def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
+    whole, first, second, third, fourth, fifth = parted(one, two, three, four, five, six)
     return whole + (first + second + third + fourth + fifth)
+
+
+@njit(**options)
+def lost(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
+    _, first, second, third, fourth, fifth = parted(one, two, three, four, five, six)
+    return abs(first) + abs(second) + abs(third) + abs(fourth) + abs(fifth)
 
 
 @njit(**options)

@@ -131,6 +131,12 @@ def total(*terms):
     return whole + sum(lost)
 
 
+def lost(*terms):
+    """Magnitudes of what a `total` adds up at last beside the sum; zero where that has not lost anything."""
+    *parts, _ = summed(summed(terms))
+    return sum(map(abs, parts))
+
+
 def rest(length, x, y):
     """What rounding took off the length of a vector: with it in a `total` that is as if exact.
 
