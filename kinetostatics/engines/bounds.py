@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .functions import ULP, beside_one, lost_by_total
+from .functions import ULP, beside_length, beside_one, lost_by_total
 from .trace import INPUTS, Node, is_negative, needed
 
 SAFE = 1.0 + 1e-9
@@ -128,10 +128,11 @@ class Bounds:
         self._parts[node] = left, own, right, across
         return self.fused(size(right), own, across)
 
-    def of_two_parts(self, whole, x, y):
+    def of_two_parts(self, rest):
         """Bound on the error of a length and its rest together, those of its components among it."""
-        own = plus((9.0 * UNIT) * whole, None if self._dust is None else self._dust / whole)
-        return reduce(plus, map(self.total, (x, y)), own)
+        whole, *parts = rest.arguments
+        own = plus(beside_length(self._graph, rest), None if self._dust is None else self._dust / whole)
+        return reduce(plus, map(self.total, parts), own)
 
     def uses(self, part):
         """How often a part is used."""
@@ -256,7 +257,7 @@ def _of_total(bounds, more, node, *parts):
         whole = (sign, part.arguments[0].index) if part.operation == "rest" else None
         if whole in places and places.index(whole) not in paired:
             paired |= {place, places.index(whole)}
-            more = plus(bounds.of_two_parts(*part.arguments), more)
+            more = plus(bounds.of_two_parts(part), more)
     others = (bounds.total(part) for place, (_, part) in enumerate(signed) if place not in paired)
     return Error(0.0, reduce(plus, others, more))
 

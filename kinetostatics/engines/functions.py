@@ -62,3 +62,10 @@ def lost_by_total(graph, node):
     if node.varies == BY_DESIGN:
         return 8.0 * graph.node("lost", *parts)
     return ((2.0 * (len(parts) - 1)) ** 3 * UNIT * UNIT) * reduce(add, map(abs, parts))
+
+
+def beside_length(graph, rest):
+    """Bound on the error of a length and its rest together, in `UNIT`: none where rounding took nothing."""
+    length = rest.arguments[0]
+    lost = graph.node("lost_by_squares", *rest.arguments)
+    return 4.0 * abs(rest) + (rest * rest * (1.0 / UNIT) + 8.0 * lost) / length

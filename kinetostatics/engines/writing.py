@@ -96,11 +96,21 @@ def squared(a):
 
 
 @njit(**options)
-def rest(length, x, y):
+def off_square(length, x, y):
     one, first = squared(x)
     two, second = squared(y)
     three, third = squared(length)
-    return total(one, first, two, second, -three, -third) / (2.0 * length)
+    return one, first, two, second, -three, -third
+
+
+@njit(**options)
+def rest(length, x, y):
+    return total(*off_square(length, x, y)) / (2.0 * length)
+
+
+@njit(**options)
+def lost_by_squares(length, x, y):
+    return lost(*off_square(length, x, y))
 
 
 """

@@ -147,8 +147,13 @@ def rest(length, x, y):
         return recorded.rest_with(length, x, y)
     if not _are_floats((length, x, y)):
         return None
+    return total(*off_square(length, x, y)) / (2.0 * length)
+
+
+def off_square(length, x, y):
+    """Terms of what the square of a length lacks of that of a vector, exactly."""
     (one, first), (two, second), (three, third) = map(squared, (x, y, length))
-    return total(one, first, two, second, -three, -third) / (2.0 * length)
+    return one, first, two, second, -three, -third
 
 
 def squared(a):
