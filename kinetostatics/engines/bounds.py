@@ -130,9 +130,8 @@ class Bounds:
 
     def of_two_parts(self, rest):
         """Bound on the error of a length and its rest together, those of its components among it."""
-        whole, *parts = rest.arguments
-        own = plus(beside_length(self._graph, rest), None if self._dust is None else self._dust / whole)
-        return reduce(plus, map(self.total, parts), own)
+        dust = None if self._dust is None else self._dust / rest.arguments[0]
+        return reduce(plus, map(self.total, rest.arguments[1:]), plus(beside_length(self._graph, rest), dust))
 
     def uses(self, part):
         """How often a part is used."""
