@@ -30,11 +30,12 @@ class Gaps:
             self._bits.append(bits)
 
     def added(self, output, name):
-        """An output of a quantity, with the roots that it lacks."""
+        """An output of a quantity, with the roots that it lacks: the last ones, which have no value without others."""
         parts = (np.ravel(part)[0] for part in places(self._placement, self._behind[name]))
         missing = self._of(parts) & ~self._of([output])
-        for place, root in enumerate(self._roots):
+        for place, root in reversed([*enumerate(self._roots)]):
             if missing >> place & 1:
+                missing &= ~self._of([root])
                 nothing = 0.0 * root.held()
                 output = output + nothing if isinstance(output, Node) or output else nothing
         return output

@@ -44,8 +44,8 @@ BETTER_THAN = 1e-6
 def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None):
     """Time and error of every method for one quantity.
 
-    The reference is certified, but with friction, which the independent path does not know: then it is the library's
-    kernels on intervals alone, and no crank angle may be one at which a link or slider turns back: it jumps there.
+    The reference is certified. With friction no crank angle may be one at which a link or slider turns back: it jumps
+    there.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
     import pandas as pd
 
     checks.require("precision", checks.solution("solution", solution), checks.quantity(quantity))
-    reference = (enclosure if solution.friction else certified)(solution, quantity)
+    reference = certified(solution, quantity)
     rows: list[dict] = []
     runs = {}
     for method in METHODS if methods is None else methods:

@@ -9,6 +9,10 @@ from .acting import Acting
 from .constraints import ACCELERATION, FORCE, RATE
 from .followers import gap
 from .method import NotGivenError
+from .rubbing import Rubbing
+
+SETTLED = 1e-15
+"""How much forces with friction may change the last time, relative to the largest."""
 
 
 class Configuration:
@@ -111,14 +115,34 @@ class Configuration:
                     push = pushed(item, solution)
                 force[..., link] -= push * along
             elif not isinstance(item, Gravity):
-                for name, applied, at, couple in _Acting(self, rates).of(settled(item, solution)):
-                    if name in model.names:
-                        link = model.names.index(name)
-                        force[..., link] -= applied
-                        moment[..., link] -= couple
-                        lever = at - self._plane(self.q)[..., link]
-                        moment[..., link] -= (np.conj(lever) * applied).imag
+                self._take(_Acting(self, rates).of(settled(item, solution)), force, moment)
         return np.concatenate([force.real, force.imag, moment], axis=-1)
+
+    def _take(self, effects, force, moment):
+        """Take effects, forces at points of links with couples, from forces and moments at the reference joints."""
+        for name, applied, at, couple in effects:
+            if name in self.model.names:
+                link = self.model.names.index(name)
+                force[..., link] -= applied
+                moment[..., link] -= couple + (np.conj(at - self._plane(self.q)[..., link]) * applied).imag
+
+    def forces(self, rates, demand, solution):
+        """Reactions, complex, scalar forces and drive torque that supply a demand, and the friction they cause."""
+        readings = {name: part for name, (order, part) in self.model.readings.items() if order == FORCE}
+
+        def solve(effects):
+            force, moment = np.zeros((2, *demand.shape[:-1], self.model.size), complex)
+            self._take(effects, force, moment)
+            more = np.concatenate([force.real, force.imag, moment.real], axis=-1)
+            return self.solve(demand + more, transposed=True)
+
+        def named(multipliers):
+            parts = {name: part @ multipliers.T for name, part in readings.items()}
+            return {name: part[0] if len(part) == 1 else part[0] + 1j * part[1] for name, part in parts.items()}
+
+        rubbing = Rubbing(_Acting(self, rates), solution)
+        found = named(rubbing.settled(solve, named, lambda multipliers: np.abs(multipliers).max(), SETTLED))
+        return found | {name: found[name] + force for name, force in rubbing.along(found).items() if name in found}
 
     def _plane(self, part):
         """The x and y of all links as complex numbers."""
@@ -178,5 +202,6 @@ def components(model, solution, quantity, q, rates=None):
     if order >= ACCELERATION:
         found = at.accelerations(rates, solution.crank_acceleration)
     if order >= FORCE:
-        found = at.solve(at.demand(rates, found, solution), transposed=True)
+        force = at.forces(rates, at.demand(rates, found, solution), solution)[quantity]
+        return (force.real, force.imag) if np.iscomplexobj(force) else (force,)
     return tuple(coefficients @ found.T)

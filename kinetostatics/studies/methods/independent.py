@@ -16,8 +16,9 @@ from ...mechanics.quantities import RATES
 from ...numbers import checks
 from .acting import Acting
 from .enclosures import library, on_arb, require_one_design
-from .method import require_frictionless
+from .method import require_moving
 from .postures import Posture, cross, dot, left
+from .rubbing import Rubbing
 from .structures import structure
 
 
@@ -44,13 +45,13 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
     Raises
     ------
     NotGivenError
-        There are no such formulas for a group or cam, or for friction, or no such quantity.
+        There are no such formulas for a group or cam, no such quantity, or friction does not settle.
     MissingLibraryError
         mpmath is not installed.
     """
     mp = library("mpmath").mp
     require_one_design(solution)
-    require_frictionless(solution)
+    require_moving(solution)
     with mp.workdps(working_digits(digits)):
         found = [Machine(mp, solution, index, digits).components(quantity) for index in indices]
     return tuple(np.array(part, dtype=object) for part in zip(*found, strict=True))
@@ -120,23 +121,38 @@ class Machine(Posture, Acting):
             self.enter(right, 0, name, pin, -self.push(name, dot(along, pin)) * along, 0)
         for item in self.solution.loads:
             if not isinstance(item, Gravity | Spring | ProcessForce) and isinstance(item, Load):
-                for name, force, at, couple in self.of(item):
-                    if name in links:
-                        self.enter(right, 0, name, self.position["centre", name] if force == 0 else at, -force, -couple)
+                self.apply(self.of(item), right)
+        triangles, order = mp.LU_decomp(matrix)
 
-        found: dict[str, Any] = {}
-        for (name, force, *_), size in zip(unknowns, mp.lu_solve(matrix, right), strict=True):
-            found[name] = found.get(name, 0) + size * force if name in self.solution.reactions else size
+        def solve(effects):
+            self.apply(effects, given := right.copy())
+            return mp.U_solve(triangles, mp.L_solve(triangles, given, order))
+
+        def named(sizes):
+            forces: dict[str, Any] = {}
+            for (name, force, *_), size in zip(unknowns, sizes, strict=True):
+                forces[name] = forces.get(name, 0) + size * force if name in self.solution.reactions else size
+            return forces
+
+        rubbing = Rubbing(self, self.solution)
+        found = named(rubbing.settled(solve, named, lambda sizes: mp.norm(sizes, mp.inf), self.step))
+        along = rubbing.along(found)
         for group in self.mechanism.groups:
             for name in group.guides:
-                normal = left(self.position["direction", name])
-                found["guide" + group.label] = found["guide_force" + group.label] * normal
+                guide, across = "guide" + group.label, left(self.position["direction", name])
+                found[guide] = found["guide_force" + group.label] * across + along.get(guide, 0)
         turning = (cross(self.position["centre", name], force) + moment for name, (force, moment) in shaking.items())
         return found | {
             "balancing_torque_by_power": found["balancing_torque"],
             "shaking_force": sum(force for force, _ in shaking.values()),
             "shaking_moment": sum(turning),
         }
+
+    def apply(self, effects, right):
+        """Take effects, forces at points of links with couples, to the right side of the equations."""
+        for link, force, at, couple in effects:
+            if link in self.mechanism.links:
+                self.enter(right, 0, link, self.position["centre", link] if force == 0 else at, -force, -couple)
 
     def enter(self, matrix, column, link, at, force, moment):
         """Add a wrench to the three equations of a link, of moments about its mass centre; None is the ground."""

@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import NotGivenError
 from ...machine.change_points import SIDES
 
-__all__ = ["Method", "NotGivenError", "on_a_side", "require_frictionless", "require_one_design"]
+__all__ = ["Method", "NotGivenError", "on_a_side", "require_frictionless", "require_moving", "require_one_design"]
 
 
 def on_a_side(mechanism):
@@ -72,6 +72,12 @@ def require_frictionless(solution):
     """Raise `NotGivenError` for friction, whose forces depend on the reactions that they change."""
     if solution.friction:
         raise NotGivenError(f"its equations know no friction, but there is some in {', '.join(solution.friction)}")
+
+
+def require_moving(solution):
+    """Raise `NotGivenError` for friction where the crank rests, which has no sense then."""
+    if solution.friction and not np.all(solution.crank_speed):
+        raise NotGivenError("friction of a crank at rest has no sense")
 
 
 def require_one_design(solution):

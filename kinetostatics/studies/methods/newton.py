@@ -4,7 +4,7 @@ import numpy as np
 
 from .configurations import Configuration, components
 from .constraints import Model
-from .method import Method, NotGivenError, require_frictionless, require_one_design
+from .method import Method, NotGivenError, require_moving, require_one_design
 
 STEP = np.radians(15.0)
 """Step, at most, of the table of positions from which iterations start: 24 over a turn."""
@@ -17,7 +17,7 @@ CLOSED = 1e-9
 def modelled(solution, quantity):
     """Model of a solution's mechanism, which gives the quantity."""
     require_one_design(solution)
-    require_frictionless(solution)
+    require_moving(solution)
     model = Model(solution.mechanism)
     if quantity not in model.readings:
         raise NotGivenError(f"the constraint equations give no {quantity}, but {', '.join(model.readings)}")

@@ -1,0 +1,82 @@
+"""Friction in the equations of independent methods, which share no formula with the kernels'."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.errors import NotGivenError
+from kinetostatics.studies.methods import certified, independent, integration, kane, newton
+from support.every import every
+from support.rubbing_machines import KINDS, Drawn
+from support.shipped import shipped
+
+ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False) + 0.05
+(NEWTON,) = newton.METHODS
+
+
+def drawn(kind, seed=1, angles=ANGLES):
+    return Drawn(kind, seed).scene.solve(angles)
+
+
+def difference(s, quantity, found):
+    own = ks.precision.components(s, quantity)
+    return max(np.abs(a - b).max() for a, b in zip(own, found, strict=True)) / np.abs(own).max()
+
+
+@every("kind", KINDS)
+def test_one_linear_system_after_the_other_finds_the_forces_of_the_kernels(kind):
+    s = drawn(kind)
+    for quantity in ("balancing_torque", *s.reactions, *(name for name in s.scalars if "force" in name)):
+        assert difference(s, quantity, NEWTON.prepare(s, quantity, 6)()) < 1e-11, quantity
+
+
+@every("kind", KINDS)
+def test_independent_path_confirms_the_kernels_to_30_digits(flint, kind):
+    s = drawn(kind, 2, ANGLES[:2])
+    for quantity in ("balancing_torque", *(name for name in s.reactions if "guide" in name)):
+        assert certified.certified(s, quantity).agreement < 1e-30
+
+
+@pytest.mark.slow
+@every("variant", shipped("sawframe_2r63_friction").variants)
+def test_friction_of_the_shipped_saw_is_certified_and_known_to_two_other_methods(flint, variant):
+    s = shipped("sawframe_2r63_friction").variants[variant].scene.solve(ANGLES)
+    assert s.friction
+    for quantity in ("balancing_torque", "O", "B"):
+        reference = certified.certified(s, quantity)
+        for method in (NEWTON, *integration.METHODS):
+            found = method.prepare(s, quantity, method.settings[-1])()
+            assert ks.precision.relative_errors(found, reference).max() < (1e-13 if method is NEWTON else 1e-8)
+
+
+def test_more_friction_moves_what_a_pin_bears_from_what_it_bears_without():
+    """So that agreement is not that of forces which friction leaves alone."""
+    s = drawn("four-bar")
+    idle = replace(s, friction=type(s.friction)())
+    without, with_friction = (NEWTON.prepare(one, "B", 6)() for one in (idle, s))
+    assert difference(s, "B", without) > 1e-3 > 1e-11 > difference(s, "B", with_friction)
+
+
+def test_what_cannot_be_found_is_refused():
+    rests = Drawn("slider", 1).scene
+    rests = replace(rests, crank_speed=0.0, crank_acceleration=5.0).solve(ANGLES)
+    for prepare in (NEWTON.prepare, lambda s, quantity, _: independent.independent(s, quantity, [0])):
+        with pytest.raises(NotGivenError, match="friction of a crank at rest has no sense"):
+            prepare(rests, "O", 6)
+    with pytest.raises(NotGivenError, match="its equations know no friction, but there is some in O, A, B, guide"):
+        kane.METHODS[0].prepare(drawn("slider"), "O", None)
+
+
+def test_friction_that_does_not_settle_is_told(monkeypatch):
+    monkeypatch.setattr("kinetostatics.studies.methods.rubbing.TIMES", 2)
+    with pytest.raises(NotGivenError, match="forces and friction still change after being found 2 times"):
+        NEWTON.prepare(drawn("slider"), "O", 6)()
+
+
+def test_friction_in_a_given_sense_is_refused():
+    s = drawn("slider")
+    held = replace(s, friction=replace(s.friction, rubs=tuple(replace(rub, sense=1.0) for rub in s.friction.rubs)))
+    with pytest.raises(NotGivenError, match="friction of a sense that is given"):
+        NEWTON.prepare(held, "O", 6)()
