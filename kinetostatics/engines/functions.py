@@ -46,7 +46,16 @@ def _beside_one(node):
 
 
 def _is_sign(part):
-    return isinstance(part, Node) and part.operation == "sign"
+    """Whether a part is the sign of a given number, or of that moved by a constant: no rounding turns it."""
+    if not isinstance(part, Node) or part.operation != "sign":
+        return False
+    (given,) = part.arguments
+    parts = given.arguments if given.operation in ("+", "-") else (given,)
+    return all(not isinstance(one, Node) or one.operation == "parameter" for one in parts) and _nodes(parts) == 1
+
+
+def _nodes(parts):
+    return sum(isinstance(part, Node) for part in parts)
 
 
 def _is_of_angle(part):

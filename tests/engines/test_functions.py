@@ -71,6 +71,17 @@ def test_one_less_a_sine_or_cosine_is_bounded_as_the_square_of_the_other_is_smal
 
 
 @every("way", WAYS)
+def test_a_sign_that_may_be_the_other_is_no_known_one(way):
+    graph = Graph()
+    given, other = graph.parameter(0), graph.parameter(1)
+    angle, values = 1e-9, (0.1 + 0.2, 0.3)
+    for unsure in (given * given - other * other, graph.angle() - other, given - other):
+        folded = sign(unsure) * graph.angle().cos() - 1.0
+        assert not bound_of(way, graph, folded, angle, *values) < UNIT
+    assert bound_of(way, graph, sign(given + 1e-300) * graph.angle().cos() - 1.0, angle, *values) < 1e-17
+
+
+@every("way", WAYS)
 def test_a_total_of_given_numbers_that_loses_nothing_is_exact(way):
     """As where lengths fall in line: an error of their sum would count beside what is however small."""
     graph = Graph()
