@@ -1,7 +1,7 @@
 """Random chains of every kind of group and pin, and how far the library is from two full systems of equations."""
 
-import mpmath as mp
 import numpy as np
+from mpmath import mp
 
 import kinetostatics as ks
 from kinetostatics.machine.group import FRAME
