@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import MissingLibraryError, NotGivenError, ParameterError
-from ..numbers.elementary import ROUNDING
+from ..numbers.elementary import ROUNDING, total
 from . import programs, writing
 
 PROVEN = "cpu"
@@ -65,7 +65,8 @@ class OnDevice:
         self._options = AS_WRITTEN if device.platform == PROVEN else None
         outputs = split.at_angles.outputs
         scope = {name: getattr(xp, name) for name in ("sin", "cos", "sqrt", "abs", "copysign", "nan", "inf")}
-        scope |= {"atan": xp.arctan, "divisor": xp.maximum, "fma": lambda one, other, more: one * other + more}
+        scope |= {"atan": xp.arctan, "divisor": xp.maximum, "total": total}
+        scope["fma"] = lambda one, other, more: one * other + more
         scope["root"] = lambda square, unit: xp.where(
             square > -ROUNDING * unit, xp.sqrt(xp.maximum(square, 0.0)), xp.nan
         )

@@ -7,6 +7,7 @@ order of roundings the other takes, each result is within its unit of the exact 
 
 from collections.abc import Callable, Mapping
 from functools import partial, reduce
+from operator import add
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,8 @@ import numpy as np
 from ..errors import NotGivenError
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import SAFE, ULP, Bounds, Error, is_zero, size
+from .bounds import SAFE, Bounds, Error, is_zero, size
+from .functions import ULP, beside_one
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 
@@ -122,6 +124,8 @@ class BoundsElsewhere:
         reaches = [self._reaches[part] for part in parts]
         if not parts or node.operation in ("+", "-", "*", "/", "divisor"):
             reaches.append(self.largest(node))
+        if node.operation == "total":
+            reaches.append(reduce(add, map(self.largest, node.arguments)))
         self._reaches[node] = reduce(partial(self._graph.node, "divisor"), reaches)
 
     def error(self, part) -> Error:
@@ -150,10 +154,15 @@ class BoundsElsewhere:
     def _positive(self, value):
         return self._graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
 
+    def of_sum(self, node, left, right=None):
+        if (near := beside_one(self._graph, node, self._arithmetic.unit)) is not None:
+            return Error(0.0, near)
+        return self.error(left) if right is None else Error(0.0, self.total(left) + self.total(right))
+
     def of_product(self, node, left, right):
-        if is_zero(node):
-            return Error(0.0, 0.0)
         (first, own), (second, other) = self.error(left), self.error(right)
+        if is_zero(node):  # of what may be none, it is none
+            return Error(0.0, 0.0 * own + 0.0 * other)
         return Error(first + second, self._fused(size(right), own, self.largest(left) * other))
 
     def of_quotient(self, node, above, below):
@@ -164,6 +173,11 @@ class BoundsElsewhere:
         relative, rest = self.error(square)
         return Error(0.5 * relative, 0.5 * rest * (node / self.clear(square, square)))
 
+    def of_total(self, node, *parts):
+        """Sums without loss, and what those of their losses lose, more if products are fused with them."""
+        lost = (2.0 * (len(parts) - 1)) ** 3 * self._arithmetic.unit
+        return Error(0.0, reduce(add, (self._fused(lost, self.largest(part), self.total(part)) for part in parts)))
+
     def of_divisor(self, node, root, unit):
         """None is proven where the guard may act."""
         relative, rest = self.error(root)
@@ -173,10 +187,9 @@ class BoundsElsewhere:
 EXACTLY = ("abs", "held", "divisor", "sign")
 """Operations that round nothing."""
 RULES: dict[str, Callable[..., Error]] = {
-    "+": lambda bounds, node, left, right: Error(0.0, bounds.total(left) + bounds.total(right)),
-    "-": lambda bounds, node, *parts: (
-        Error(0.0, bounds.total(parts[0]) + bounds.total(parts[1])) if len(parts) == 2 else bounds.error(parts[0])
-    ),
+    "+": BoundsElsewhere.of_sum,
+    "-": BoundsElsewhere.of_sum,
+    "total": BoundsElsewhere.of_total,
     "*": BoundsElsewhere.of_product,
     "/": BoundsElsewhere.of_quotient,
     "sqrt": BoundsElsewhere.of_root,

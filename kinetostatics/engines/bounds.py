@@ -9,11 +9,11 @@ inputs gives a number within ``UNIT (k |v| + E)`` of v. Products, quotients and 
 import math
 from collections.abc import Callable
 from functools import reduce
-from operator import add
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
+from .functions import ULP, beside_length, beside_one, lost_by_total
 from .trace import INPUTS, Node, is_negative, needed
 
 SAFE = 1.0 + 1e-9
@@ -24,8 +24,6 @@ CAP = 2.0**100
 """Largest number of a scene, in SI, for which dust stays dust; of tables each value counts."""
 LARGEST = 2.0**1000
 """Less than what has a reciprocal too small for a double."""
-ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
-"""Largest relative error of a function of any backend, in `UNIT`; a test holds NumPy and compiled loops to it."""
 
 
 class Error(NamedTuple):
@@ -97,7 +95,7 @@ class Bounds:
         if kind in ("*", "/"):
             return Error(0.0 if any(map(is_scaling, arguments[kind == "/" :])) else 1.0, self._dust)
         if kind == "total":
-            return Error(1.0, ((2.0 * (len(arguments) - 1)) ** 3 * UNIT * UNIT) * reduce(add, map(size, arguments)))
+            return Error(1.0, lost_by_total(self._graph, node))
         if kind in ("+", "-"):
             return Error(1.0, None) if len(arguments) == 2 else EXACT
         if kind == "divisor":  # none is proven where the guard may act
@@ -130,10 +128,10 @@ class Bounds:
         self._parts[node] = left, own, right, across
         return self.fused(size(right), own, across)
 
-    def of_two_parts(self, whole, x, y):
+    def of_two_parts(self, rest):
         """Bound on the error of a length and its rest together, those of its components among it."""
-        own = plus((9.0 * UNIT) * whole, None if self._dust is None else self._dust / whole)
-        return reduce(plus, map(self.total, (x, y)), own)
+        dust = None if self._dust is None else self._dust / rest.arguments[0]
+        return reduce(plus, map(self.total, rest.arguments[1:]), plus(beside_length(self._graph, rest), dust))
 
     def uses(self, part):
         """How often a part is used."""
@@ -241,6 +239,8 @@ def is_scaling(part):
 
 
 def _of_sum(bounds, more, node, *parts):
+    if (near := beside_one(bounds._graph, node)) is not None:
+        return Error(0.0, near)
     others = [part for part in parts if not is_zero(part)]
     if len(others) < 2 and more is None:
         return bounds.error(others[0]) if others else EXACT
@@ -256,7 +256,7 @@ def _of_total(bounds, more, node, *parts):
         whole = (sign, part.arguments[0].index) if part.operation == "rest" else None
         if whole in places and places.index(whole) not in paired:
             paired |= {place, places.index(whole)}
-            more = plus(bounds.of_two_parts(*part.arguments), more)
+            more = plus(bounds.of_two_parts(part), more)
     others = (bounds.total(part) for place, (_, part) in enumerate(signed) if place not in paired)
     return Error(0.0, reduce(plus, others, more))
 

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import SAFE, ULP, Error, fused, is_scaling, is_zero
+from .bounds import SAFE, Error, fused, is_scaling, is_zero
+from .functions import ULP
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 ROUNDED = SAFE * UNIT

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..numbers.elementary import ROUNDING, rest, squared, total
+from ..numbers.elementary import ROUNDING, lost, off_square, rest, total
 
 
 def _plain_root(square, unit):
@@ -35,8 +35,11 @@ def _plain_total(*terms):
 
 
 def _plain_rest(length, x, y):
-    (one, first), (two, second), (three, third) = map(squared, (x, y, length))
-    return _plain_total(one, first, two, second, -three, -third) / (2.0 * length)
+    return _plain_total(*off_square(length, x, y)) / (2.0 * length)
+
+
+def _lost_by_squares(length, x, y):
+    return lost(*off_square(length, x, y))
 
 
 def _total_of(*terms_and_out):
@@ -66,6 +69,8 @@ PLAIN = {
     "divisor": _plain_divisor,
     "fma": lambda one, other, more: one * other + more,
     "total": _plain_total,
+    "lost": lost,
+    "lost_by_squares": _lost_by_squares,
     "rest": _plain_rest,
     "nan": math.nan,
     "inf": math.inf,
@@ -81,6 +86,8 @@ BY_DESIGN = {
     "divisor": np.maximum,
     "fma": lambda one, other, more: one * other + more,
     "total": total,
+    "lost": lost,
+    "lost_by_squares": _lost_by_squares,
     "rest": rest,
     "nan": math.nan,
     "inf": math.inf,

@@ -37,8 +37,9 @@ from collections import Counter
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
-from .bounds import DUST, SAFE, ULP, Bounds, is_scaling, is_zero
+from .bounds import DUST, SAFE, Bounds, is_scaling, is_zero
 from .counted import ROUNDED, Counted, varies
+from .functions import ULP, beside_one
 from .trace import BY_DESIGN, Node, needed
 
 KNOWN = 2.0**-4
@@ -129,6 +130,9 @@ class RunningBounds(Counted):
 
     def _of_sum(self, node):
         """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes, or of its own."""
+        if (near := beside_one(self._graph, node)) is not None:
+            terms = [((1.0 + RESERVE) * ROUNDED, self.size(node)), (ROUNDED, near), (1.0, self._lost)]
+            return Absolute(terms, RESERVE)
         parts = [part for part in node.arguments if not is_zero(part)]
         own = 1.0 if len(parts) > 1 else 0.0
         reserve = min(

@@ -63,7 +63,7 @@ def summed(a, b):
 
 
 @njit(**options)
-def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
+def parted(one, two, three, four, five, six):
     whole, first = summed(one, two)
     whole, second = summed(whole, three)
     whole, third = summed(whole, four)
@@ -74,7 +74,19 @@ def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
     lost, third = summed(lost, fourth)
     lost, fourth = summed(lost, fifth)
     whole, fifth = summed(lost, whole)
+    return whole, first, second, third, fourth, fifth
+
+
+@njit(**options)
+def total(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
+    whole, first, second, third, fourth, fifth = parted(one, two, three, four, five, six)
     return whole + (first + second + third + fourth + fifth)
+
+
+@njit(**options)
+def lost(one, two, three=0.0, four=0.0, five=0.0, six=0.0):
+    _, first, second, third, fourth, fifth = parted(one, two, three, four, five, six)
+    return abs(first) + abs(second) + abs(third) + abs(fourth) + abs(fifth)
 
 
 @njit(**options)
@@ -86,11 +98,21 @@ def squared(a):
 
 
 @njit(**options)
-def rest(length, x, y):
+def off_square(length, x, y):
     one, first = squared(x)
     two, second = squared(y)
     three, third = squared(length)
-    return total(one, first, two, second, -three, -third) / (2.0 * length)
+    return one, first, two, second, -three, -third
+
+
+@njit(**options)
+def rest(length, x, y):
+    return total(*off_square(length, x, y)) / (2.0 * length)
+
+
+@njit(**options)
+def lost_by_squares(length, x, y):
+    return lost(*off_square(length, x, y))
 
 
 """

@@ -209,7 +209,7 @@ class Passer:
     assembly: Any
     passage: Any
     on: str
-    is_close = False
+    is_close: bool
     through: bool
     found_on: Any
     start: Any

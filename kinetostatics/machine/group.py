@@ -52,11 +52,10 @@ what `resolve` wants to find again. A group may put its joints into ``placement.
 
 *resolve.* A pure function from what acts on its links to what it finds: nothing is written to, and nothing is kept.
 ``loads`` holds by link the wrench on it, inertia, weight and all that groups further out ask of it, a force and its
-moment about the link's reference joint, either of them None where there is none. ``along`` holds by slider the applied
-force along its guide, kept apart since it may nearly cancel with inertia. Write down the equilibrium of the links for
-the unknown forces *on* them; what the group needs from others goes into ``demands`` with the sign that it has on the
-group: the mechanism sees to the reaction on the link that carries the joint. No joint outside `hangs_on` and no link
-but the crank can be asked.
+moment about the link's reference joint, None where there is none. ``along`` holds by slider the applied force along its
+guide, apart since it may nearly cancel with inertia. Write down the equilibrium of the links for the unknown forces
+*on* them; what the group needs from others, joints of `hangs_on` and the crank, goes into ``demands`` with the sign
+that it has on the group: the mechanism sees to the reaction on the link that carries the joint.
 
 *Change points.* Most groups have none to pass. One that does says in `on_crank(throws)` how, by a text `passage` that
 belongs to its structure, and gives `turns` and `change_points`; `kink(throws)` says what becomes of a chosen side
@@ -294,8 +293,8 @@ class Group:
 
     LAW = ("r", "m")
     """What a curve in its field `cam` gives: its letter, and unit."""
-    passage = ""
-    """How it passes change points, which belongs to its structure; "" where there are none."""
+    passage, is_close = "", False
+    """How it passes change points, "" for none; whether it is so close to a limit that forces may outgrow torque."""
 
     @property
     def passes(self):

@@ -16,7 +16,11 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.planar import added, cross, left, minus, moment, plus, product, stretched, subtracted, vector, work
 
-TERMS = {"tip.reach": ("h", "from the pivot to the pin")}
+TERMS = {
+    "tip.reach": ("h", "from the pivot to the pin"),
+    "load.scale": ("W", "mass times the square of the crank speed"),
+    "load.across": ("Z", "weight and inertia without the pull of the mass centre toward the reference joint"),
+}
 """What hand calculations call lines of the kernels, and what they are."""
 
 
@@ -198,26 +202,23 @@ def angular_acceleration(ratio, ratio_slope, speed_squared, crank_acceleration):
 
 
 def load(link, body, speed_squared, crank_acceleration, gravity):
-    """Wrench of inertia (d'Alembert) and weight of a link about its reference joint; None for a massless link."""
-    to_centre = arm(link.direction, body.along, body.across)
-    force = _mass_force(link, to_centre, body.mass, speed_squared, crank_acceleration, gravity)
-    inertia = body.inertia
+    """Wrench of inertia (d'Alembert) and weight of a link about its reference joint; None for a massless link.
+
+    The pull of its mass centre along the arm has no moment, and is left out of it: where a link turns fast it does not
+    have to cancel.
+    """
+    to_centre, mass, inertia = arm(link.direction, body.along, body.across), body.mass, body.inertia
+    across, pull = None, None
+    if mass is not None:
+        scale, turned = mass * speed_squared, _turned(to_centre, link.ratio_slope)
+        first = first_at(link, to_centre) if crank_acceleration is not None else None
+        moved = accelerated(first, added(link.joint.second, turned), scale, product(mass, crank_acceleration))
+        across = subtracted(stretched(mass, gravity), moved)
+        pull = stretched(product(scale, product(link.ratio, link.ratio)), to_centre)
     turning = angular_acceleration(
         link.ratio, link.ratio_slope, product(inertia, speed_squared), product(inertia, crank_acceleration)
     )
-    return Wrench(force, minus(moment(to_centre, force), turning))
-
-
-def _mass_force(link, to_centre, mass, speed_squared, crank_acceleration, gravity):
-    if mass is None:
-        return None
-    inertia = accelerated(
-        first_at(link, to_centre) if crank_acceleration is not None else None,
-        second_at(link, to_centre),
-        mass * speed_squared,
-        product(mass, crank_acceleration),
-    )
-    return subtracted(stretched(mass, gravity), inertia)
+    return Wrench(added(across, pull), minus(moment(to_centre, across), turning))
 
 
 def virtual_work(link, wrench):

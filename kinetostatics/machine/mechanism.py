@@ -101,6 +101,11 @@ class Mechanism(Batched):
         """Whether it passes change points: motion is smooth there, but forces grow without bound."""
         return any(group.passes for group in self.groups)
 
+    @cached_property
+    def outgrown(self):
+        """Whether forces may grow far beyond the balancing torque, which is found by powers then."""
+        return any(group.passes or group.is_close for group in self.groups)
+
     @property
     def led_by_ground(self):
         """Groups that a cam fixed to the frame leads."""

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import APART, UNSEEN, apart, divisor, root, total
+from ..numbers.elementary import APART, UNSEEN, apart, divisor, root, sign, total
 from ..numbers.planar import (
     length,
     length_and_rest,
@@ -116,8 +116,7 @@ def directed(start):
 
 
 def _sign(part):
-    part = apart(part, UNSEEN)
-    return part / abs(part)
+    return sign(apart(part, UNSEEN))
 
 
 def spread(ray, direction, reach):

@@ -53,7 +53,7 @@ class Dynamics(Motion):
             found = self.mechanism.resolve(self.placement, loads, along, self.rubbing)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
-        if self.mechanism.passes:  # the crank's equilibrium has reactions that grow without bound
+        if self.mechanism.outgrown:  # the crank's equilibrium has reactions that grow without bound
             rubbed = {} if self.rubbing is None else self.rubbing.found
             found.scalars["balancing_torque"] = self._torque_with(rubbed)
         return found
@@ -158,7 +158,7 @@ class Dynamics(Motion):
     def balancing_torque(self):
         """Torque on the crank that keeps the prescribed motion, from the crank's equilibrium, N m.
 
-        From the balance of powers where change points are passed.
+        From the balance of powers where change points are passed, and where a pin of the crank comes close to a pivot.
         """
         return self.scalar("balancing_torque")
 

@@ -60,8 +60,8 @@ UNIT = 2.0**-53
 """Largest relative error of one rounding in double precision."""
 ROUNDING = 4e-15
 """How far below zero, in its unit, a square counts as zero that rounding made negative."""
-SPLIT = 2.0**27 + 1.0
-"""Factor by which a number is split into two of half as many digits."""
+SPLIT, SINGLE_SPLIT = 2.0**27 + 1.0, 2.0**12 + 1.0
+"""Factors by which a number, in double or single precision, is split into two of half as many digits."""
 MOST_TERMS = 6
 """Numbers that `total` takes, in every engine."""
 UNSEEN = 2.0**-310
@@ -137,6 +137,12 @@ def total(*terms):
     return whole + sum(lost)
 
 
+def lost(*terms):
+    """Magnitudes of what a `total` adds up at last beside the sum; zero where that has not lost anything."""
+    *parts, _ = summed(summed(terms))
+    return sum(map(abs, parts))
+
+
 def rest(length, x, y):
     """What rounding took off the length of a vector: with it in a `total` that is as if exact.
 
@@ -147,16 +153,27 @@ def rest(length, x, y):
         return recorded.rest_with(length, x, y)
     if not _are_floats((length, x, y)):
         return None
+    return total(*off_square(length, x, y)) / (2.0 * length)
+
+
+def off_square(length, x, y):
+    """Terms of what the square of a length lacks of that of a vector, exactly."""
     (one, first), (two, second), (three, third) = map(squared, (x, y, length))
-    return total(one, first, two, second, -three, -third) / (2.0 * length)
+    return one, first, two, second, -three, -third
 
 
-def squared(a, split=SPLIT):
+def squared(a, split=None):
     """Square of a number, rounded, and what that lost."""
+    if split is None:
+        split = SINGLE_SPLIT if _is_single(a) else SPLIT
     whole, spread = a * a, split * a
     high = spread - (spread - a)
     low = a - high
     return whole, ((high * high - whole) + 2.0 * high * low) + low * low
+
+
+def _is_single(a):
+    return getattr(getattr(a, "dtype", None), "itemsize", 8) == 4
 
 
 def _are_floats(parts):

@@ -114,9 +114,7 @@ class Certainty(Parameters):
         """
         name = self._inner(quantity)
         values, bounds = self._with_bounds(name, tight)
-        if name != quantity:
-            values, bounds = np.hypot(*values), of_magnitude(values, bounds)
-        return read_only(where_known(values, bounds))[()]
+        return _rounding(values, bounds, name != quantity)
 
     def uncertainty(self, quantity, inputs):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
@@ -148,9 +146,9 @@ class Certainty(Parameters):
         Warns
         -----
         ConditionWarning
-            At some crank angle the second order of the inputs, each by itself, is more than a tenth of the first and
-            more than a thousandth of the first's median, or there is no value with an input larger or smaller by its
-            uncertainty.
+            At some crank angle what the second order of the inputs makes, products of two among it, is more than a
+            tenth of the first and more than a thousandth of the first's median, or there is no value with an input
+            larger or smaller by its uncertainty, or with two larger.
 
         Examples
         --------
@@ -167,14 +165,15 @@ class Certainty(Parameters):
         given = {path: (value, self.places[path].rule.unit, {"low": 0.0}) for path, value in inputs.items()}
         inputs = checks.singles("uncertainty", **given)
         name = self._inner(quantity)
-        rounding = self.error_bound(quantity)
-        found = self._slopes(name, inputs, rounding) if inputs else {}
+        values, bounds = self._with_bounds(name)
+        rounding = _rounding(values, bounds, name != quantity)
+        found = self._slopes(name, inputs, values, rounding) if inputs else {}
         if name != quantity:
             vector = quantities.components(self, name)
             found = {path: _of_magnitude(vector, slope) for path, slope in found.items()}
         return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in found.items()}, rounding)
 
-    def _slopes(self, name, inputs, rounding):
+    def _slopes(self, name, inputs, values, rounding):
         """Derivatives of a quantity by numbers of the scene, by path; a warning where they change with the inputs."""
         state = keeping(self, self.places, inputs).dynamics
         program, leaves = programs.of(state, (name,))
@@ -183,8 +182,9 @@ class Certainty(Parameters):
         backend = Backend("compiled" if self.engine.compiled else "numpy")
         found = slopes(program, by, state, leaves, backend)[name]
         first = {path: np.reshape(found[path] * inputs[path], (-1, *self.shape)) for path in by}
-        second = second_order.seconds(lambda leaves: backend.run(program, state, leaves), leaves, by, inputs)
-        beyond = second_order.beyond(self.crank_angle, first, second, np.reshape(rounding, (-1, *self.shape)))
+        values, rounding = (np.reshape(part, (-1, *self.shape)) for part in (values, rounding))
+        terms = second_order.Terms(lambda leaves: backend.run(program, state, leaves), values, leaves, by, inputs)
+        beyond = second_order.found(terms, len(by), self.crank_angle, first, rounding)
         if beyond is not None:
             text = beyond.told(name, quantities.unit_of(self, name), inputs)
             warnings.warn(f"{self.mechanism.name}: {text}", ConditionWarning, stacklevel=3)
@@ -203,6 +203,13 @@ class Certainty(Parameters):
         checks.require("quantity", checks.quantity(name))
         quantities.quantity(self, name)
         return name
+
+
+def _rounding(values, bounds, of_its_magnitude):
+    """Bound on the error of a quantity, or of the magnitude of a vector."""
+    if of_its_magnitude:
+        values, bounds = np.hypot(*values), of_magnitude(values, bounds)
+    return read_only(where_known(values, bounds))[()]
 
 
 def _of_magnitude(vector, slope):

@@ -1,6 +1,7 @@
 """Bounds on single precision and on other engines: never less than the true error, and none where nothing is known."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,9 +12,11 @@ from kinetostatics.engines.arithmetic import DOUBLE, SINGLE, BoundsElsewhere, is
 from kinetostatics.engines.backends import Backend
 from kinetostatics.engines.trace import Graph
 from kinetostatics.errors import NotGivenError
+from kinetostatics.numbers.elementary import UNIT
 from support.bounded import FAMILIES, over_worst, solution
 from support.elsewhere import errors, exact_values
 from support.every import every
+from support.inclined import INCLINED
 
 U = 2.0**-24
 ANGLES = np.linspace(0.01, 6.2, 40)
@@ -27,6 +30,28 @@ def test_no_value_in_single_precision_of_random_machines_is_off_by_more_than_its
     found = errors(made, exact, [NUMPY])[NUMPY]
     assert found.values > 10
     assert found.wrong == []
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("place", INCLINED, ids=lambda place: place.name)
+def test_a_value_near_an_inclined_place_that_single_precision_does_not_have_has_no_finite_bound(flint, place):
+    for number in place.numbers[4::9]:
+        scene = place.scene(number)
+        made = ks.Scene(scene.mechanism, scene.crank_speed, 0.0, scene.loads).solve(
+            scene.crank_angle[:: max(1, scene.crank_angle.size // 4)], on_gap="nan"
+        )
+        found = errors(made, exact_values(made), [NUMPY])[NUMPY]
+        assert found.values > 10
+        assert found.wrong == []
+
+
+def test_what_is_nothing_times_a_value_that_may_be_none_has_no_bound():
+    """A moment that is zero wherever the mechanism closes is NaN where single precision cannot tell that it does."""
+    lever = ks.slotted_lever(5 / 16, pivot=(3 / 16, 4 / 16), lever=ks.Link(1.0, 0.1, 0.1), block=ks.Link(1.0))
+    angle = float(np.arctan2(4.0, 3.0)) + np.array([1e-9, 0.5])
+    program = ks.compile(ks.Scene(lever, 10.0), "slot_moment", engine="numpy", precision="single")
+    value, bound = program(angle)["slot_moment"], program.error_bound(angle)["slot_moment"]
+    assert np.isnan(value).tolist() == np.isinf(bound).tolist() == [True, False]
 
 
 @every("case, variant, most", over_worst("single"))
@@ -62,6 +87,22 @@ def test_in_double_precision_nothing_is_rounded_when_it_is_handed_over():
     mass, turn = graph.parameter(0), graph.angle().sin()
     (found,) = bounds_of([mass * turn], [3.0], DOUBLE)
     assert found == pytest.approx(3.0 * np.sin(0.5) * 3 * 2.0**-53, rel=1e-6)
+
+
+def test_a_total_is_within_its_bound_by_every_engine(numba, jax):
+    graph = Graph()
+    turn, mass, length = graph.angle().sin(), graph.parameter(0), graph.parameter(1)
+    outputs = [graph.node("total", mass * turn, -1.0 * length, 1.0)]
+    recording = SimpleNamespace(graph=graph, inputs={}, tables=())
+    state = SimpleNamespace(crank_angle=np.linspace(0.1, 1.5, 60), shape=(60,))
+    leaves = SimpleNamespace(numbers=[0.7, 1.3], tables=())
+    exact = 0.7 * np.sin(state.crank_angle.astype(np.longdouble)) - 1.3 + 1.0
+    for engine, precision in (("numpy", "single"), ("compiled", "single"), ("jax", "single"), ("jax", "double")):
+        program, backend = programs.Program(recording, outputs), Backend(engine, precision, "cpu")
+        error = np.abs(backend.run(program, state, leaves)[0] - exact)
+        bound = backend.bounds(program, state, leaves)[0]
+        assert np.all(error <= bound)
+        assert np.max(bound) < 40 * (U if precision == "single" else UNIT)
 
 
 def test_a_constant_that_is_no_single_number_is_rounded_too():

@@ -8,8 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
-from kinetostatics.engines import bounds, loops, programs
-from kinetostatics.engines.compiled import available
+from kinetostatics.engines import bounds, programs
 from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, rest, total
@@ -73,9 +72,9 @@ def test_a_sign_is_no_rounding_of_what_it_multiplies(tight):
 
 
 def test_where_a_divisor_may_vanish_or_a_root_be_clamped_there_is_no_bound():
-    folded = ks.crank_slider(0.5, 0.5, coupler=ks.Link(1.0), slider=ks.Link(1.0))
+    folded = ks.crank_slider(0.5, 0.5, guide_angle=1.0, coupler=ks.Link(1.0), slider=ks.Link(1.0))
     with pytest.warns(ConditionWarning):
-        s = ks.solve(folded, [0.3, np.pi / 2], crank_speed=1.0, on_gap="nan")
+        s = ks.solve(folded, [1.3, 1.0 + np.pi / 2], crank_speed=1.0, on_gap="nan")
     found = s.error_bound("B")
     assert np.isfinite(found[:, 0]).all()
     assert not np.isfinite(found[:, 1]).any()
@@ -185,21 +184,6 @@ def _worst(solution, quantity, tight):
     pairs = zip(enclosure(solution, quantity).exact, solution.reaction(quantity), strict=True)
     found = [[float(truth - float(own)) for truth, own in zip(*pair, strict=True)] for pair in pairs]
     return np.max(np.hypot(*found)), np.max(np.hypot(*solution.error_bound(quantity, tight)))
-
-
-@every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")])
-def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(flint, function, exact):
-    random = np.random.default_rng(1)
-    angles = np.concatenate(
-        [random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)]
-    )
-    found = [getattr(np, function)(angles)]
-    if available() and function != "arctan":
-        found.append(loops.turn(angles[None])[function == "cos"][0])
-    with flint.ctx.workprec(200):
-        truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
-        error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
-    assert max(error) <= bounds.ULP.get(function, bounds.ULP["atan"]) * UNIT
 
 
 def test_a_total_of_given_numbers_is_bounded_by_one_rounding_of_itself():

@@ -45,6 +45,7 @@ def warned(made):
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("family", FAMILIES)
 @every("seed", range(1))
 def test_where_a_bound_is_wide_the_condition_is_large(family, seed):

@@ -51,5 +51,15 @@ def test_load_is_weight_less_mass_times_acceleration_about_the_joint():
     assert links.virtual_work(LINK, found) == pytest.approx(work, rel=1e-14)
 
 
+def test_what_turns_a_link_is_as_exact_however_fast_it_spins():
+    """The pull of its mass centre, 1e16 times as large, goes through its reference joint."""
+    body = links.Body(2.0, ALONG, ACROSS, 0.3)
+    spinning = LINK._replace(ratio=1e8)
+    arm = links.arm(LINK.direction, ALONG, ACROSS)
+    slow, fast = (links.load(link, body, SPEED**2, None, (0.0, -9.81)) for link in (LINK._replace(ratio=0.0), spinning))
+    assert fast.moment == slow.moment
+    assert z(fast.force) == pytest.approx(2.0 * SPEED**2 * 1e16 * z(arm), rel=1e-14)
+
+
 def test_a_massless_link_has_no_load():
     assert links.load(LINK, ks.Link().body, SPEED**2, ACCELERATION, None) == (None, None)

@@ -13,6 +13,8 @@ from kinetostatics.engines.trace import BY_ANGLE, needed
 from kinetostatics.machine import lever_group, on_crank, rocker_group, slider_group
 from kinetostatics.machine.group import Throw
 from kinetostatics.machine.guide import Line
+from kinetostatics.mechanics.quantities import scale
+from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from support.every import every
 
 TURN = np.linspace(-7.0, 7.0, 41)
@@ -164,3 +166,34 @@ def test_a_four_bar_on_the_crank_takes_few_more_operations_and_fewer_divisions(m
     whole_before, slow_before = counted(structure)
     assert whole <= whole_before + 2  # the pin itself, which hangs on nothing here, would save two
     assert slow < slow_before
+
+
+HEAVY = ks.Link(3.0, 0.2, 5e-2)
+INCLINED = {
+    "lever": (ks.LeverGroup((3 / 16, 4 / 16), lever=HEAVY, block=ks.Link(1.0)), math.atan2(4.0, 3.0)),
+    "cylinder": (ks.CylinderGroup((3 / 16, 4 / 16), rod=HEAVY, cylinder=HEAVY), math.atan2(4.0, 3.0)),
+    "slider": (ks.SliderGroup(5 / 16, ks.Guide.at(1.0, 0.0), coupler=HEAVY, slider=HEAVY), 1.0 + 0.5 * math.pi),
+}
+"""A at an inclined pivot, or B at O: joints bear more without end, but the crank does not."""
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("name", INCLINED)
+def test_torque_keeps_its_digits_where_reactions_that_it_is_balanced_by_lose_them(flint, name):
+    group, angle = INCLINED[name]
+    machine = ks.Mechanism(name, ks.Crank(5 / 16, ks.Link(1.0, 0.1)), (group,))
+    for distance in (1e-12, 1e-8, 1e-4):
+        s = ks.solve(machine, angle + distance * np.linspace(0.5, 1.0, 6), crank_speed=33.0, loads=ks.Gravity())
+        torque, support = (enclosure(s, quantity) for quantity in ("balancing_torque", "O"))
+        assert support.largest * distance > 30.0
+        error = np.max(relative_errors(s.balancing_torque[None], torque)) * torque.largest
+        assert error < 1e-14 * scale(s, "balancing_torque")
+        assert np.max(relative_errors(s.reaction("O"), support)) < 5e-16 / distance
+
+
+def test_torque_of_what_stays_clear_of_its_pivot_is_that_of_the_crank_in_equilibrium():
+    clear = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=HEAVY)
+    assert not clear.outgrown
+    s = ks.solve(clear, TURN, crank_speed=9.0)
+    (x, y), (along, up) = s.position("A"), s.reaction("A")
+    np.testing.assert_allclose(s.balancing_torque, x * up - y * along, rtol=1e-13, atol=1e-13)

@@ -89,6 +89,16 @@ def test_a_length_with_its_rest_has_twice_the_digits():
     assert 2.0**-60 < np.max(np.abs(found / length)) < 2.0**-52
 
 
+def test_a_rest_in_single_precision_is_all_that_rounding_took_from_numpy_and_from_jax(jax):
+    x, y = np.random.default_rng(3).uniform(0.1, 1.0, (2, 50)).astype(np.float32)
+    length = np.sqrt(x * x + y * y)
+    lost = np.sqrt(x.astype(float) ** 2 + y.astype(float) ** 2) - length
+    for parts in ((length, x, y), map(jax.numpy.asarray, (length, x, y))):
+        found = rest(*parts)
+        assert found.dtype == np.float32
+        np.testing.assert_allclose(found, lost, rtol=1e-6, atol=1e-14)
+
+
 def test_a_rest_of_numbers_with_slopes_has_none_and_enclosures_have_no_rest():
     seeded = [Dual(np.array(part), np.ones((1, 1))) for part in (0.5, 0.3, 0.4)]
     found = rest(*seeded)

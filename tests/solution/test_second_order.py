@@ -2,12 +2,14 @@
 
 import re
 import warnings
+from itertools import permutations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.solution.second_order import beyond, seconds
+from kinetostatics.solution.second_order import Terms, beyond, found
 from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
@@ -32,15 +34,20 @@ def test_ordinary_machines_are_of_first_order(quantity, inputs):
     assert told(SAW, TURN, quantity, inputs) == []
 
 
+def orders(text):
+    """What both orders make, as told."""
+    return tuple(float(number) for number in re.search(r"makes (\S+) \S+(?: m)?, the second (\S+),", text).groups())
+
+
 def test_close_to_a_toggle_both_orders_are_told_with_their_numbers():
-    """Half of the second difference of sqrt(l^2 - r^2 sin^2) + r cos over r +- u, by hand."""
+    """Second difference of sqrt(l^2 - r^2 sin^2) + r cos over r +- u, by hand: half of it is the mean, and a spread."""
     coupler, r, u, angle = 0.3001, 0.3, 6e-5, 1.56
     low, here, high = (np.sqrt(coupler**2 - (x * np.sin(angle)) ** 2) + x * np.cos(angle) for x in (r - u, r, r + u))
     slope = np.cos(angle) - r * np.sin(angle) ** 2 / (here - r * np.cos(angle))
     (text,) = told(FOLDING, angle, "slider_position", {"crank_length": u})
-    first, second = (float(number) for number in re.search(r"makes (\S+) m, the second (\S+),", text).groups())
+    first, second = orders(text)
     assert first == pytest.approx(u * abs(slope), rel=0.05)
-    assert second == pytest.approx(0.5 * abs(low + high - 2 * here), rel=0.05)
+    assert second == pytest.approx(np.sqrt(3.0) * 0.5 * abs(low + high - 2 * here), rel=0.05)
     assert "most of it of crank_length" in text
     assert "vary the inputs there" in text
     assert told(FOLDING, angle, "slider_position", {"crank_length": 0.1 * u}) == []
@@ -53,7 +60,7 @@ def test_an_input_that_opens_the_mechanism_is_named():
 
 def test_a_value_that_no_input_moves_to_first_order_is_told():
     (text,) = told(SAW, 0.0, "slider_position", {"guide_offset": 1e-4})
-    assert "1 of 1 crank angles: at 0 deg the first makes 0 m, the second 2.5e-09" in text
+    assert "1 of 1 crank angles: at 0 deg the first makes 0 m, the second 4.3e-09" in text
 
 
 def test_designs_of_a_batch_are_told_together():
@@ -64,11 +71,69 @@ def test_designs_of_a_batch_are_told_together():
 
 @every("sizes", [0.0, 1e-9])
 def test_differences_within_rounding_are_no_second_order(sizes):
-    first, second = {"a": np.full((1, 3), 1e-12)}, {"a": np.full((1, 3), sizes)}
+    first, second = {"a": np.full((1, 3), 1e-12)}, {("a",): np.full((1, 3), sizes)}
     assert beyond(np.zeros(3), first, second, np.full((1, 3), 1e-9)) is None
 
 
-def test_second_differences_are_exact_for_squares():
-    leaves = ks.solve(SAW, 0.0, crank_speed=1.0).apart[1]
-    found = seconds(lambda leaves: np.array([[leaves.numbers[0] ** 2]]), leaves, {"x": 0}, {"x": 0.5})
-    assert found["x"] == pytest.approx(0.25)
+def terms_of(compute, deviations, numbers=(0.0,) * 9):
+    """Terms of a function of the numbers of a scene, one for each path that is given."""
+    leaves = SimpleNamespace(numbers=list(numbers), with_numbers=lambda moved: SimpleNamespace(numbers=moved))
+    places = {path: place for place, path in enumerate(deviations)}
+    return Terms(lambda moved: compute(*moved.numbers), compute(*numbers), leaves, places, deviations)
+
+
+def test_differences_are_exact_for_squares_and_products():
+    terms = terms_of(lambda x, y, *_: np.array([[x * x + 3.0 * x * y]]), {"x": 0.5, "y": 0.25}, [2.0, 7.0])
+    assert terms.of_one() == {("x",): 0.25, ("y",): 0.0}
+    assert terms.of_two() == {("x", "y"): 0.375}
+
+
+@every("count", range(2, 9))
+@every("signs", [(1.0, 1.0), (1.0, -1.0)])
+def test_no_two_products_with_a_common_input_hide_each_other(count, signs):
+    """As of a spring's stiffness and the two ends of its elongation, equally uncertain."""
+    paths = list("abcdefgh")[:count]
+    for one, other, common in permutations(range(count), 3):
+
+        def compute(*given, one=one, other=other, common=common):
+            return np.array([[given[common] * (signs[0] * given[one] + signs[1] * given[other])]])
+
+        terms = terms_of(compute, dict.fromkeys(paths, 0.5))
+        told = found(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        assert paths[common] in told.paths
+        assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
+
+
+def test_of_many_inputs_that_count_to_first_order_few_sums_are_looked_at():
+    calls = []
+
+    def compute(*given):
+        calls.append(given)
+        return np.array([[sum(given)]])
+
+    paths = [f"x{place}" for place in range(20)]
+    terms = terms_of(compute, dict.fromkeys(paths, 0.5), [0.0] * 20)
+    assert found(terms, 20, np.zeros(1), dict.fromkeys(paths, np.ones((1, 1))), np.zeros((1, 1))) is None
+    assert len(calls) == 1 + 40 + 6
+
+
+def test_a_product_of_two_inputs_is_told_as_a_monte_carlo_simulation_finds_it():
+    """At a dead centre the guide's offset alone moves the slider, and a force has a torque by that: T = F r e / l."""
+    inputs, random = {"process_force.force": 300.0, "guide_offset": 2e-4}, np.random.default_rng(4)
+    s = ks.solve(SAW, 0.0, crank_speed=0.0, loads=ks.ProcessForce(0.0))
+    with pytest.warns(ks.ConditionWarning, match="together") as caught:
+        linear = s.uncertainty("balancing_torque", inputs)
+    text = str(caught[0].message)
+    first, second = orders(text)
+    force, offset = (random.normal(0.0, size, (20_000, 1)) for size in inputs.values())
+    moved = ks.crank_slider(0.3, 2.0, guide_offset=offset)
+    torque = ks.solve(moved, 0.0, crank_speed=0.0, loads=ks.ProcessForce(force)).balancing_torque
+    assert first == float(linear.tolerance) == 0.0
+    assert second == pytest.approx(np.sqrt(np.mean(torque**2)), rel=0.03)
+    assert second == pytest.approx(300.0 * 2e-4 * 0.3 / 2.0, rel=0.03)
+    assert "most of it of process_force.force and guide_offset together" in text
+
+
+def test_two_inputs_that_open_the_mechanism_only_together_are_named():
+    (text,) = told(FOLDING, 1.5 * np.pi, "|O|", {"crank_length": 6e-5, "guide_offset": 6e-5, "slider.mass": 0.01})
+    assert "with crank_length 6e-05 and guide_offset 6e-05 larger there is no value" in text

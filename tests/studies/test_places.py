@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies import stability
 from kinetostatics.studies.methods import METHODS
@@ -15,6 +16,9 @@ from support.inclined import INCLINED
 
 DIGITS = 0.05
 """Largest share of a result that one rounding of the crank angle may make, so that it has digits."""
+BOUND, MEETING = 200, 20_000
+"""How many times what that makes bounds may be, and where A meets O2: a link's direction is bounded across it as along.
+"""
 
 
 @pytest.mark.parametrize("place", PLACES, ids=lambda place: place.name)
@@ -31,6 +35,24 @@ def test_names_are_told_apart_and_axes_have_units():
     assert all(place.axis.endswith("]") for place in PLACES)
 
 
+FOLDING = [
+    place
+    for place in PLACES
+    if place.name in ("four-bar change point", "rhombus", "kite", "coupler as long as the crank")
+    or place.name in ("kite, A passing O2", "parallelogram, folded", "four-bar that only just turns")
+]
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("place", FOLDING, ids=lambda place: place.name)
+@every("tight", [False, True])
+def test_bounds_follow_linkages_however_near_to_where_their_links_lie_in_line(place, tight):
+    for number in place.numbers[:-2:3]:
+        solution = place.scene(number)
+        bound, size = solution.error_bound(place.quantity, tight), np.abs(components(solution, place.quantity)).max()
+        assert np.max(bound) < 4e-14 * size, number
+
+
 @pytest.mark.slow
 @every("place", INCLINED, ids=lambda place: place.name)
 def test_inclined_twins_of_places_are_as_near_as_the_crank_angle_allows(flint, place):
@@ -38,6 +60,8 @@ def test_inclined_twins_of_places_are_as_near_as_the_crank_angle_allows(flint, p
     counted = rows[rows["angle rounding"] < DIGITS]
     assert len(counted) >= 3
     assert np.all(counted["error"] <= 30 * (UNIT + counted["angle rounding"]))
+    most = MEETING if place.name in (f"{name}, inclined" for name in ("rhombus", "kite, A passing O2")) else BOUND
+    assert np.all(counted["bound"] <= most * (20 * UNIT + counted["angle rounding"]))
     assert not rows[["lost", "flipped", "nan"]].any(axis=None)
     assert set(rows["raised"]) == {""}
 

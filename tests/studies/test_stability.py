@@ -34,14 +34,14 @@ FAILURES = {
     "limit position": LIMIT,
     "coupler barely long enough": COARSE | {NEWTON: ["given up"]},
     "singular angle of the cosine cam": COARSE | {PAPERS: ["lost", "nan"], KANE: ["lost", "nan"]},
-    "pressure angle toward 90 deg": COARSE | {SINGLE: ["lost", "nan"], NEWTON: ["lost"]},
+    "pressure angle toward 90 deg": COARSE | {NEWTON: ["lost"]},
     "four-bar toggle": LIMIT,
     "four-bar change point": COARSE | {PAPERS: ["nan"], KANE: ["nan"], NEWTON: ["given up"]},
     "four-bar that only just turns": COARSE,
     "slotted lever that only just turns": {SINGLE: ["lost"]},
     "rhombus": COARSE | {PAPERS: ["nan"], NEWTON: ["flipped"], MASSES: []},
     "kite": COARSE | {NEWTON: ["given up"]},
-    "kite, A passing O2": COARSE | {PAPERS: ["nan"], NEWTON: ["raised"], SERIES: ["lost", "nan"]},
+    "kite, A passing O2": COARSE | {PAPERS: ["nan"], NEWTON: ["raised"]},
     "parallelogram, folded": COARSE | {NEWTON: ["given up"]},
     "coupler as long as the crank": COARSE | {KANE: ["nan"], NEWTON: ["given up"], MASSES: []},
     "size": COARSE,
@@ -143,7 +143,7 @@ def test_given_floats_are_taken_as_exact_and_the_crank_angle_as_rounded_once(tab
 def test_at_change_points_no_digit_is_lost_and_the_proven_bound_says_so(table, place):
     rows = table[table["ours"] & (table["place"] == place) & (table["not given"] == "")]
     assert np.all(rows["error"] < 5e-15)
-    assert np.all(rows.loc[rows["number"] > 1e-8, "bound"] < 1e-12)
+    assert np.all(rows.loc[rows["number"] > 1e-16, "bound"] < 3e-13)
     assert rows["condition"].max() > 1e20
 
 

@@ -19,7 +19,10 @@ from .inclined import INCLINED
 from .shipped import shipped
 
 BITS = 200
-FAMILIES = "chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped", "inclined", "steep"
+FAMILIES = (
+    *("chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped", "inclined"),
+    *("steep", "lever", "passing"),
+)
 AT_PLACES = {"place": PLACES, "inclined": INCLINED}
 """Families of few structures, whose numbers are exact."""
 CASES = "sawframe_2r63", "chain_unit", "toggle_press", "mower_drive", "v_twin", "shaper", "compressor"
@@ -93,6 +96,12 @@ def _made(family, rng, count):
         variants = shipped(str(rng.choice(CASES))).variants
         scene = variants[str(rng.choice(list(variants)))].scene
         return scene.solve(rng.uniform(-7, 7, count), on_gap="nan")
+    if family in PASSING:
+        mechanism, angles = PASSING[family](rng)
+        steps = rng.choice((-1.0, 1.0), count) * 10.0 ** -rng.uniform(0.0, 17.0, count)
+        return _solved(
+            mechanism, rng.uniform(1, 50), rng.uniform(-50, 50), [ks.Gravity()], {}, rng.choice(angles) + steps
+        )
     size, mass = (10.0 ** rng.uniform(-6, 6), 10.0 ** rng.uniform(-12, 12)) if family == "scaled" else (1.0, 1.0)
     mechanism = _mechanism("plain" if family in ("scaled", "rubbing") else family, rng, size, mass)
     made = [loads.load(rng, kind, mechanism, size) for kind in rng.choice(loads.KINDS, 3)]
@@ -130,11 +139,47 @@ def _steep(rng, count):
     return _solved(base.mechanism, base.crank_speed, base.crank_acceleration, given, {}, beside)
 
 
+def _body(rng, size=1.0, mass=1.0):
+    return ks.Link(
+        mass * rng.uniform(0.1, 9), tuple(size * rng.uniform(-1, 1, 2)), mass * size**2 * rng.uniform(0.1, 2)
+    )
+
+
+def _slotted(rng):
+    """Slotted lever whose pivot stands anywhere, and the crank angles at which the pin is nearest and farthest."""
+    crank, ahead = rng.uniform(0.1, 0.5), rng.choice((0.0, 0.5 * np.pi, rng.uniform(-3, 3)))
+    away = crank * rng.choice((1.0 + 10.0 ** -rng.uniform(0, 15) * rng.choice((-1, 1)), rng.uniform(0.2, 4)))
+    offset = rng.choice((0.0, rng.uniform(-1, 1) * abs(away - crank), 0.9 * crank))
+    bodies = dict(zip(("crank", "lever", "block"), (_body(rng) for _ in range(3)), strict=True))
+    pivot = away * np.cos(ahead), away * np.sin(ahead)
+    lever = ks.slotted_lever(crank, pivot=pivot, offset=offset, assembly=int(rng.choice((-1, 1))), **bodies)
+    return lever, (ahead, ahead + np.pi)
+
+
+def _on_a_word(rng):
+    """Linkage that passes change points, its pivot anywhere where its distance is exact, and their crank angles."""
+    a, b, h, d = rng.choice([(1, 2, 1, 2), (2, 2, 1, 1), (1, 2, 2, 1), (1, 1, 1, 1), (1, 3, 2, 4), (2, 5, 4, 1)]) / 8.0
+    (x, y), word = (
+        ((1, 0), (0, -1), (-1, 0), (0.6, 0.8), (-0.8, 0.6))[rng.integers(5)],
+        str(rng.choice(("open", "crossed"))),
+    )
+    pivot, ahead = (5 * d * x, 5 * d * y), np.arctan2(y, x)
+    if rng.integers(2):
+        bodies = dict(zip(("crank", "coupler", "rocker"), (_body(rng) for _ in range(3)), strict=True))
+        made = ks.four_bar(5 * a, 5 * b, 5 * h, rocker_pivot=pivot, assembly=word, **bodies)
+    else:
+        bodies = dict(zip(("crank", "lever", "block"), (_body(rng) for _ in range(3)), strict=True))
+        made = ks.slotted_lever(5 * a, pivot=pivot, offset=5 * (d - a), assembly=word, **bodies)
+    return made, (ahead, ahead + np.pi)
+
+
+PASSING = {"lever": _slotted, "passing": _on_a_word}
+"""Families looked at around crank angles: mechanism and angles of a random one."""
+
+
 def _mechanism(family, rng, size, mass):
     def body():
-        return ks.Link(
-            mass * rng.uniform(0.1, 9), tuple(size * rng.uniform(-1, 1, 2)), mass * size**2 * rng.uniform(0.1, 2)
-        )
+        return _body(rng, size, mass)
 
     crank = size * rng.uniform(0.1, 0.5)
     if family == "four-bar":

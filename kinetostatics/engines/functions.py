@@ -1,0 +1,80 @@
+"""What is known of functions however they are computed: of sines and cosines next to one, of totals."""
+
+from functools import reduce
+from operator import add
+
+from ..numbers.elementary import UNIT
+from .trace import BY_DESIGN, Node
+
+ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
+"""Largest relative error of a function of any backend, in `UNIT`; a test holds NumPy and compiled loops to it."""
+OTHER = {"sin": "cos", "cos": "sin"}
+SMALL = 2.0**-27
+"""Sine or cosine below which the other is a sign exactly; a test holds NumPy and compiled loops to it."""
+SHARE = 4.5
+"""Part of its other squared that a sine or cosine is off at most: half of it below `SMALL`, and above by `ULP`.
+
+In single precision, too, to which it is rounded once.
+"""
+LOST = 2.0**-900
+"""In units: what the square may have lost as too small."""
+
+
+def beside_one(graph, node, unit=UNIT):
+    """Bound on the error, in units, that a sum of one and a sine or cosine of the crank angle has of that.
+
+    None for other nodes. Where the sum vanishes, as linkages fold, this does so as well, which `ULP` does not tell.
+    """
+    turn = _beside_one(node)
+    if turn is None:
+        return None
+    other = graph.node(OTHER[turn.operation], *turn.arguments)
+    return -graph.node("divisor", (-SHARE / unit) * (other * other) - LOST, -ULP[turn.operation])
+
+
+def _beside_one(node):
+    """The sine or cosine of the crank angle to which, or to its opposite, one is added."""
+    if node.operation not in "+-" or len(node.arguments) != 2:
+        return None
+    turn, one = sorted(node.arguments, key=lambda part: not isinstance(part, Node))
+    if isinstance(one, Node) or abs(one) != 1.0:
+        return None
+    if turn.operation == "*":  # along an axis
+        signs = [_is_sign(part) for part in turn.arguments]
+        turn = turn.arguments[not signs[1]] if any(signs) else turn
+    return turn if _is_of_angle(turn) else None
+
+
+def _is_sign(part):
+    """Whether a part is the sign of a given number, or of that moved by a constant: no rounding turns it."""
+    if not isinstance(part, Node) or part.operation != "sign":
+        return False
+    (given,) = part.arguments
+    parts = given.arguments if given.operation in ("+", "-") else (given,)
+    return all(not isinstance(one, Node) or one.operation == "parameter" for one in parts) and _nodes(parts) == 1
+
+
+def _nodes(parts):
+    return sum(isinstance(part, Node) for part in parts)
+
+
+def _is_of_angle(part):
+    return isinstance(part, Node) and part.operation in OTHER and part.arguments[0].operation == "angle"
+
+
+def lost_by_total(graph, node):
+    """Bound on the error of a total, in `UNIT`, beside the rounding of itself.
+
+    Of numbers of a design nothing is lost where the last losses are zero, as they are where lengths fall in line.
+    """
+    parts = node.arguments
+    if node.varies == BY_DESIGN:
+        return 8.0 * graph.node("lost", *parts)
+    return ((2.0 * (len(parts) - 1)) ** 3 * UNIT * UNIT) * reduce(add, map(abs, parts))
+
+
+def beside_length(graph, rest):
+    """Bound on the error of a length and its rest together, in `UNIT`: none where rounding took nothing."""
+    length = rest.arguments[0]
+    lost = graph.node("lost_by_squares", *rest.arguments)
+    return 4.0 * abs(rest) + (rest * rest * (1.0 / UNIT) + 8.0 * lost) / length

@@ -1,0 +1,93 @@
+"""Functions keep to what bounds take for granted of them, and bounds of what vanishes as linkages fold vanish too."""
+
+from fractions import Fraction
+
+import numpy as np
+
+from kinetostatics.engines import loops, programs
+from kinetostatics.engines.bounds import Bounds
+from kinetostatics.engines.compiled import available
+from kinetostatics.engines.functions import OTHER, SMALL, ULP
+from kinetostatics.engines.running import RunningBounds
+from kinetostatics.engines.tight import tight_bound
+from kinetostatics.engines.trace import Graph
+from kinetostatics.numbers.elementary import UNIT, sign, total
+from support.every import every
+
+WAYS = {
+    "running": lambda graph, output: RunningBounds(graph).of([output])[0],
+    "by design": lambda graph, output: Bounds(graph).of([output])[0],
+    "tight": lambda graph, output: tight_bound(graph, {}, output),
+}
+
+
+def bound_of(way, graph, output, angle, *values):
+    return programs.Program(None, [WAYS[way](graph, output)])._by_numbers(np.array([angle]), values, (1,))[0, 0]
+
+
+@every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan")])
+def test_elementary_functions_of_numpy_and_of_compiled_loops_keep_to_their_ulp(flint, function, exact):
+    random = np.random.default_rng(1)
+    angles = np.concatenate(
+        [random.uniform(-7, 7, 400), random.uniform(-1, 1, 400) * 10.0 ** random.uniform(-12, 6, 400)]
+    )
+    found = [getattr(np, function)(angles)]
+    if available() and function != "arctan":
+        found.append(loops.turn(angles[None])[function == "cos"][0])
+    with flint.ctx.workprec(200):
+        truth = [getattr(flint.arb(float(angle)), exact)() for angle in angles]
+        error = [float(abs((flint.arb(float(v)) - t) / t)) for own in found for v, t in zip(own, truth, strict=True)]
+    assert max(error) <= ULP.get(function, ULP["atan"]) * UNIT
+
+
+@every("function", OTHER)
+def test_a_sine_or_cosine_is_a_sign_where_the_other_is_small(function):
+    random = np.random.default_rng(2)
+    folds = (np.arange(-3000, 3000) + 0.5 * (function == "sin")) * np.pi
+    angles = [folds, folds + random.choice([-1, 1], 6000) * 10.0 ** -random.uniform(8, 17, 6000)]
+    angles = np.concatenate([*angles, 10.0 ** -np.arange(8.2, 320) if function == "cos" else []])
+    turns = [(np.sin(angles), np.cos(angles))]
+    if available():
+        turns.append([part[0] for part in loops.turn(angles[None])])
+    for turn in turns:
+        own, other = turn if function == "sin" else turn[::-1]
+        small = np.abs(other) < SMALL
+        assert np.count_nonzero(small) > 6000
+        assert np.all(np.abs(own[small]) == 1.0)
+
+
+@every("way", WAYS)
+@every("function", OTHER)
+@every("side", [1.0, -1.0])
+def test_one_less_a_sine_or_cosine_is_bounded_as_the_square_of_the_other_is_small(way, function, side):
+    for distance in (1e-12, 1e-9, 3e-8, 1e-4):
+        graph = Graph()
+        part = sign(graph.parameter(0)) * getattr(graph.angle(), function)()
+        angle = {"sin": 0.5 * np.pi, "cos": 0.0}[function] + (np.pi if side < 0.0 else 0.0) + distance
+        other = getattr(np, OTHER[function])(angle)
+        for output in (part - side, side - part, part + -side):
+            bound = bound_of(way, graph, output, angle, 0.3)
+            assert 0.5 * other * other * (distance < SMALL) <= bound < 8.0 * min(other * other, UNIT)
+
+
+@every("way", WAYS)
+def test_a_sign_that_may_be_the_other_is_no_known_one(way):
+    graph = Graph()
+    given, other = graph.parameter(0), graph.parameter(1)
+    angle, values = 1e-9, (0.1 + 0.2, 0.3)
+    for unsure in (given * given - other * other, graph.angle() - other, given - other):
+        folded = sign(unsure) * graph.angle().cos() - 1.0
+        assert not bound_of(way, graph, folded, angle, *values) < UNIT
+    assert bound_of(way, graph, sign(given + 1e-300) * graph.angle().cos() - 1.0, angle, *values) < 1e-17
+
+
+@every("way", WAYS)
+def test_a_total_of_given_numbers_that_loses_nothing_is_exact(way):
+    """As where lengths fall in line: an error of their sum would count beside what is however small."""
+    graph = Graph()
+    parts = [graph.parameter(place) for place in range(5)]
+    for values, least in (([0.5, 0.2, -0.5, -0.2, 0.0], 1e-290), ([0.1, 0.2, -0.3, 1e-40, 1e-60], 1e-46)):
+        exact = sum(map(Fraction, values))
+        off = abs(Fraction(total(*values)) - exact)
+        bound = Fraction(bound_of(way, graph, total(*parts) * graph.angle(), 1.0, *values))
+        assert off <= bound <= 9 * UNIT * abs(exact) + Fraction(least)
