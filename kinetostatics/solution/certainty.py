@@ -10,7 +10,7 @@ import numpy as np
 from ..engines import programs
 from ..engines.backends import Backend
 from ..engines.bounded import of_magnitude, where_known
-from ..errors import ConditionWarning, QuantityError
+from ..errors import ConditionWarning, ParameterError, QuantityError
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.elementary import read_only
@@ -183,10 +183,13 @@ class Certainty(Parameters):
         found = slopes(program, by, state, leaves, backend)[name]
         first = {path: np.reshape(found[path] * inputs[path], (-1, *self.shape)) for path in by}
         values, rounding = (np.reshape(part, (-1, *self.shape)) for part in (values, rounding))
-        terms = second_order.Terms(lambda leaves: backend.run(program, state, leaves), values, leaves, by, inputs)
-        beyond = second_order.found(terms, len(by), self.crank_angle, first, rounding)
-        if beyond is not None:
-            text = beyond.told(name, quantities.unit_of(self, name), inputs)
+        try:
+            terms = second_order.Terms(lambda leaves: backend.run(program, state, leaves), values, leaves, by, inputs)
+            beyond = second_order.found(terms, len(by), self.crank_angle, first, rounding)
+            text = None if beyond is None else beyond.told(name, quantities.unit_of(self, name), inputs)
+        except ParameterError as why:  # a slider beyond its table, for one
+            text = f"the uncertainty of {name} is of first order in the inputs, and may be more: with them moved, {why}"
+        if text is not None:
             warnings.warn(f"{self.mechanism.name}: {text}", ConditionWarning, stacklevel=3)
         return found
 

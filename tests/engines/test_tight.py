@@ -84,13 +84,14 @@ def test_tight_bounds_of_values_of_every_size_are_finite_and_no_larger():
 
 
 @every("family", FAMILIES)
-def test_a_tight_bound_is_never_larger_than_the_plain_one(family):
+def test_a_tight_bound_is_no_larger_than_the_plain_one_but_for_its_remainder(family):
+    """That is a coarse bound over 2^16; where it is hundreds of times the plain one, it is seen."""
     made = next(found for found in (solution(family, seed, 40) for seed in range(9)) if found is not None)
     names = ("balancing_torque", "O")
     plain, tight = (NUMPY.with_bounds(made.dynamics, names, way)[1] for way in (False, True))
     for name in names:
         known = np.isfinite(plain[name])
-        assert np.all(tight[name][known] <= MORE * plain[name][known])
+        assert np.all(tight[name][known] <= 1.01 * plain[name][known])
 
 
 def test_a_tight_bound_is_no_larger_where_a_table_steps_at_dead_centres():

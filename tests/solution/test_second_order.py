@@ -137,3 +137,19 @@ def test_a_product_of_two_inputs_is_told_as_a_monte_carlo_simulation_finds_it():
 def test_two_inputs_that_open_the_mechanism_only_together_are_named():
     (text,) = told(FOLDING, 1.5 * np.pi, "|O|", {"crank_length": 6e-5, "guide_offset": 6e-5, "slider.mass": 0.01})
     assert "with crank_length 6e-05 and guide_offset 6e-05 larger there is no value" in text
+
+
+def test_inputs_that_move_a_slider_beyond_its_table_are_told_and_the_first_order_stands():
+    pump = ks.crank_slider(0.1, 0.45, slider=ks.Link(mass=120.0))
+    whole, longer = (
+        ks.Scene(pump, 6.0, loads=[ks.ProcessForce(ks.Table([0.35 - more, 0.55 + more], [0.0, 2e3], over="travel"))])
+        for more in (1e-9, 0.01)
+    )
+    inputs, angles = {"crank_length": 1e-4}, np.linspace(0.0, 6.0, 25)
+    with pytest.warns(ks.ConditionWarning, match=r"may be more: with them moved, table over travel: the slider goes"):
+        found = whole.solve(angles).uncertainty("O", inputs)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        longer.solve(angles).uncertainty("O", inputs)
+    assert np.all(np.isfinite(found.tolerance))
+    assert found.tolerance.max() > 0.0
