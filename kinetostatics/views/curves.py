@@ -178,9 +178,10 @@ def acceleration_error(solutions, ax=None, slider=None):
         error = (solution.travel_acceleration(slider) - law) / (half_stroke * square)
         curves[name] = in_order(solution, 100 * error, FROM_X)
     drawn_over_turn(ax, curves)
-    return finished(
-        ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named)
-    )
+    finished(ax, "deviation of slider acceleration\nfrom cosine law [% of amplitude]", len(named) > 1, _longest(named))
+    gaps.framed(ax, [value for _, value in curves.values()], "%")
+    gaps.shaded(ax, named, curves, FROM_X)
+    return ax
 
 
 def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):

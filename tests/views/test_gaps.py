@@ -90,3 +90,10 @@ def test_a_hodograph_beside_a_gap_shows_what_is_ordinary_and_its_marks_by_themse
     assert "nan" not in told
     assert not {"150°", "180°", "210°"} & set(told.replace(",", " ").split())
     assert {"0°", "30°", "300°", "330°"} <= {text.get_text() for text in axes.texts}
+
+
+def test_deviations_of_the_acceleration_are_limited_and_shaded_as_other_curves(axes):
+    ks.plots.acceleration_error(solved(SHORT), ax=axes)
+    assert words(axes) == ["cannot be assembled"] * 2
+    assert any(text.get_text().startswith("beyond the frame: up to ") for text in axes.texts)
+    assert np.max(np.abs(axes.get_ylim())) < 1e4
