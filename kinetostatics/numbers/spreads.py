@@ -25,7 +25,10 @@ _FORMS = {
 }
 _COUNTS = {"uniform": 2, "triangular": 3, "normal": 2}
 """Numbers that each kind of distribution takes."""
+_NO_UNIT = re.compile(rf"(?:[a-z]+\s+)?{_NUMBER}(?:{_TO}{_NUMBER})*(?:\s*(?:\+-|±)\s*{_NUMBER})?\s*(?::\s*[0-9]+)?")
 _OTHER = "it has another form"
+_UNITLESS = 'it has no unit ("1" where there is none)'
+_BARE = "it must be text of numbers with a unit, or quantities of pint, each with its unit"
 _HELP = (
     '"600..900 kN/m:40" for a grid; "600..900 kN/m", "normal 712 kN/m +- 5 kN/m" or "triangular 690..710..740 kN/m" '
     "for samples"
@@ -69,7 +72,7 @@ def read(spreads, reader):
             found[name] = reader(given)
         except ValueError as error:
             problems.append(f"cannot read {quoted(given)} for {name}: {error}")
-    if any(_OTHER in problem for problem in problems):
+    if any(fault in problem for problem in problems for fault in (_OTHER, _UNITLESS, _BARE)):
         problems.append(f"write {_HELP}")
     checks.require("designs", *problems)
     return found
@@ -94,7 +97,7 @@ def _measured(given):
     """Numbers of quantities of pint, of one or several, and their unit: that of the first."""
     parts = given if isinstance(given, list | tuple) else [given]
     if not parts or not all(map(checks.is_quantity, parts)):
-        raise ValueError("it must be text of numbers with a unit, or quantities of pint, each with its unit")
+        raise ValueError(_BARE)
     unit = of_quantity(parts[0])
     try:
         numbers = np.asarray(checks.plain(given, unit))
@@ -163,6 +166,8 @@ def _spread(given):
 
 
 def _other(text):
+    if _NO_UNIT.fullmatch(text):
+        return _UNITLESS
     return _OTHER + respelled(text, lambda reading: any(form.fullmatch(reading) for form in _FORMS.values()))
 
 
