@@ -125,7 +125,7 @@ class Options:
             OWNER,
             _harmonics_problem("cosine", asked.cosine),
             _harmonics_problem("sine", sine) if sine or sine is False else None,
-            None if isinstance(gravity, bool) else f"gravity must be True or False, got {checks.shown(gravity)}",
+            checks.truth("gravity", gravity),
             *problems,
             **own,
         )

@@ -85,7 +85,7 @@ def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwi
         _points_problem(points),
         checks.choice("units", units, tuple(UNITS)),
         checks.choice("side", side, tuple(SIDES)),
-        None if isinstance(clockwise, bool) else f"clockwise must be True or False, got {checks.shown(clockwise)}",
+        checks.truth("clockwise", clockwise),
         None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
         **{name: (radius, "m", POSITIVE) for name, radius in radii.items()},
     )

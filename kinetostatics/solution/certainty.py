@@ -113,6 +113,7 @@ class Certainty(Parameters):
         True
         """
         name = self._inner(quantity)
+        checks.require("error_bound", checks.truth("tight", tight))
         values, bounds = self._with_bounds(name, tight)
         return _rounding(values, bounds, name != quantity)
 

@@ -163,6 +163,7 @@ class Program:
         >>> bool(program.error_bound(0.5)["balancing_torque"] < 1e-4)  # of 14.9 N m
         True
         """
+        checks.require("program", checks.truth("tight", tight))
         if tight and not self._is_own:
             raise ParameterError(
                 "program: there are tight bounds in double precision, by the engines compiled and numpy; this one runs "

@@ -123,3 +123,13 @@ def test_a_number_that_is_zero_may_be_uncertain_and_a_length_that_makes_change_p
     turning = ks.solve(parallelogram, TURN, crank_speed=10.0)
     with pytest.raises(ParameterError, match="change points"):
         turning.uncertainty("balancing_torque", {"crank_length": 1e-5})
+
+
+@every("tight", ["tight", "x", 1, None])
+def test_tight_is_yes_or_no_and_no_other_word(tight):
+    s = solved()
+    program = ks.compile(ks.Scene(SAW, 5.0), "O", engine="numpy")
+    for bound in (lambda: s.error_bound("O", tight), lambda: program.error_bound(0.5, tight=tight)):
+        with pytest.raises(ParameterError, match="tight must be True or False, got "):
+            bound()
+    assert np.array_equal(s.error_bound("O", np.True_), s.error_bound("O", tight=True))

@@ -36,6 +36,7 @@ from .problems import (
     seed,
     shown,
     solution,
+    truth,
 )
 from .rules import (
     UNSURE,
@@ -88,5 +89,6 @@ __all__ = [
     "single",
     "singles",
     "solution",
+    "truth",
     "unfit",
 ]

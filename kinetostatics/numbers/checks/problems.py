@@ -65,6 +65,11 @@ def count(name, value, *, size=None):
     return None
 
 
+def truth(name, value):
+    """What is wrong with a yes or no, as a sentence, or None."""
+    return None if isinstance(value, bool | np.bool_) else f"{name} must be True or False, got {shown(value)}"
+
+
 def seed(name, value):
     """What is wrong with what random numbers begin with, or None."""
     if value is None:
