@@ -64,7 +64,7 @@ def read(path):
     except (OSError, ValueError):  # no path at all: reading it says why
         missing = False
     if missing:
-        names = f"{', '.join(shipped)}{checks.hint(path.stem, shipped)}"
+        names = f"{', '.join(shipped)}{_meant(path) or checks.hint(path.stem, shipped)}"
         raise CaseError(path, [f"no such file, and no shipped case of that name ({names})"])
     text = read_text(path, LARGEST_CASE)
     try:
@@ -76,6 +76,12 @@ def read(path):
     if raw is None or _deeper(raw, DEEPEST):
         raise CaseError(path, [f"holds tables or lists within each other more than {DEEPEST} deep"])
     return path, raw
+
+
+def _meant(path):
+    """Question that names the file beside it that may be meant: its ending left out, or a letter wrong."""
+    beside, whole = [str(file) for file in path.parent.glob("*.toml")], f"{path}.toml"
+    return f"; did you mean {whole!r}?" if whole in beside else checks.hint(path, beside)
 
 
 def _deeper(table, depth):

@@ -8,6 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from support.case_files import problems
+from support.every import every
 from support.plain_case import PLAIN
 
 
@@ -115,3 +116,24 @@ def test_the_name_of_a_shipped_case_means_that_case_whatever_lies_here(tmp_path,
 def test_what_stands_for_a_table_is_told_in_the_words_of_the_file(tmp_path, key):
     found = problems(tmp_path, PLAIN.replace("[common]\n", f'[common]\n{key} = "x"\n', 1))
     assert f"common.{key} must be a table of keys and values, found 'x'" in found
+
+
+@every(
+    "given, meant",
+    [("p", "p.toml"), ("mypress", "mypress.toml"), ("mypres.toml", "mypress.toml"), ("in/saw", "in/saw.toml")],
+)
+def test_a_file_whose_ending_is_left_out_or_misspelt_is_asked_for(tmp_path_factory, given, meant):
+    folder = tmp_path_factory.mktemp("cases")
+    for name in ("p.toml", "mypress.toml", "in/saw.toml"):
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(PLAIN)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        with pytest.raises(ks.CaseError, match=f"; did you mean '{meant}'\\?\\)"):
+            ks.load_case(given)
+
+
+def test_a_misspelt_shipped_case_is_asked_for_where_no_file_is_like_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ks.CaseError, match=r"; did you mean 'sawframe_2r63'\?\)"):
+        ks.load_case("sawframe")
