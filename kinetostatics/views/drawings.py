@@ -115,8 +115,10 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
             ax.plot(*poses.position(name)[:, 0], **style)
     for names, point in _together(poses, shape):
         label(ax, ", ".join(names), point, color=INK, fontsize="small")
+    gaps = np.isnan([poses.position(name)[0] for name in moving]).any(axis=0)
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
-        label(ax, f"{counted(angle):g}°", poses.position(leading(poses.mechanism))[:, row], alpha=shade)
+        text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
+        label(ax, text, poses.position(leading(poses.mechanism))[:, row], alpha=shade)
     _draw_own(ax, [(stroke, owners) for stroke, owners in own_strokes(named, angles[:1]) if len(owners) < len(named)])
     equal_scales(ax, [point - [0.0, FOOT * shape.unit] for point in shape.grounds(solution.loads)])
     return ax

@@ -225,3 +225,11 @@ def test_fixed_pivots_stand_within_the_axes_with_their_ground(axes):
             (x, y) = axes.transData.transform(line.get_xydata()[0])
             assert axes.bbox.y0 + 0.5 * line.get_markersize() < y
             assert axes.bbox.x0 < x < axes.bbox.x1
+
+
+def test_a_crank_angle_at_which_the_machine_does_not_close_is_said_to_be_one(axes):
+    machine = ks.crank_slider(0.2, 0.3, guide_offset=0.15, slider=ks.Link(1.0))
+    solution = ks.solve(machine, np.radians(np.arange(0.0, 360.0, 5.0)), crank_speed=1.0, on_gap="nan")
+    ks.plots.mechanism(solution, ax=axes, angles=(40, 160, 280))
+    told = [text.get_text() for text in axes.texts if "°" in text.get_text()]
+    assert told == ["40°", "160°", "280°: cannot be assembled"]
