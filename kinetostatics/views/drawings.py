@@ -115,7 +115,7 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
             ax.plot(*poses.position(name)[:, 0], **style)
     for names, point in _together(poses, shape):
         label(ax, ", ".join(names), point, color=INK, fontsize="small")
-    gaps = np.isnan([poses.position(name)[0] for name in moving]).any(axis=0)
+    gaps = np.any([np.isnan(poses.position(name)[0]) for name in moving], axis=0)
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
         text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
         label(ax, text, poses.position(leading(poses.mechanism))[:, row], alpha=shade)
