@@ -5,6 +5,7 @@ from functools import partial
 
 from ..errors import ParameterError
 from ..numbers import checks, spreads
+from ..numbers.shown import at_most
 from ..numbers.units import factor, to_si
 from ..solution.tolerated import largest_with_uncertainty, with_uncertainty
 from .printed import print_table, say
@@ -46,8 +47,9 @@ def tell(solution, given):
     table = largest_with_uncertainty(solution, given)
     rounding = table["rounding"].fillna(0.0)
     both = zip(table["largest"], table["tolerance"] + rounding, strict=True)
-    shown = table.assign(largest=[with_uncertainty(*pair) for pair in both])
     columns = {"tolerance": "from tolerances", "rounding": "from rounding"}
+    bounds = {name: list(map(at_most, table[name])) for name in columns}
+    shown = table.assign(largest=[with_uncertainty(*pair) for pair in both], **bounds)
     print()
     print_table(shown.rename(columns=columns), _of_two_digits(table))
     say(
@@ -57,8 +59,8 @@ def tell(solution, given):
 
 
 def _of_two_digits(table):
-    """Bounds with which uncertainties and shares are told with two digits."""
-    return (0.1 * table[["tolerance", "rounding", "share [%]"]]).reindex(columns=table.columns)
+    """Bounds with which shares are told with two digits."""
+    return (0.1 * table[["share [%]"]]).reindex(columns=table.columns)
 
 
 def _parted(text):

@@ -69,3 +69,19 @@ def test_json_has_all_digits(capsys):
     found = ks.extremes(solution, "O")
     wanted = solution.at(found.angle[found.value.argmax()]).uncertainty("|O|", told["inputs"])
     assert told["largest"]["reaction O"]["tolerance"] == pytest.approx(float(wanted.tolerance), rel=1e-12)
+
+
+@pytest.mark.filterwarnings("ignore:toggle press. the uncertainty of .* is of first order")
+def test_no_part_of_an_uncertainty_is_told_smaller_than_it_is_and_where_it_is_all_like_all(monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "130")
+    press = ["run", "toggle_press", "--variant", "coining", "--angles", "36", "--uncertain", "crank_length=0.05 mm"]
+    assert main([*press, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["variants"]["coining"]["uncertainty"]["largest"]
+    assert main(press) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if "+-" in line]
+    assert len(lines) == len(found) > 10
+    for line, row in zip(lines, found.values(), strict=True):
+        total, (tolerance, rounding) = line.partition("+-")[2].split()[0], line.split()[-4:-2]
+        assert float(tolerance) >= row["tolerance"]
+        assert float(rounding) >= row["rounding"]
+        assert (total == tolerance) or row["tolerance"] < 1e6 * row["rounding"]
