@@ -20,6 +20,7 @@ import os
 import signal
 import sys
 import threading
+import warnings
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -41,7 +42,7 @@ def main(arguments=None):
     """
     status, message = 0, ""
     try:
-        with _ending_in_order():
+        with _ending_in_order(), _warning_in_plain_words():
             _require_output()
             options = parser().parse_args(arguments)
             machine.require(options)
@@ -64,6 +65,22 @@ def main(arguments=None):
         tell(f"kinetostatics: {message}")
     _drop_what_cannot_be_written()
     return status
+
+
+@contextmanager
+def _warning_in_plain_words():
+    """A warning meant for the user is told without the line of the library that gives it."""
+    before = warnings.formatwarning
+
+    def words(message, category, *place):
+        plain = issubclass(category, UserWarning)
+        return f"kinetostatics: warning: {message}\n" if plain else before(message, category, *place)
+
+    warnings.formatwarning = words
+    try:
+        yield
+    finally:
+        warnings.formatwarning = before
 
 
 @contextmanager

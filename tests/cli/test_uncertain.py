@@ -1,6 +1,8 @@
 """The option that tells how sure the largest values are."""
 
 import json
+import sys
+import warnings
 
 import pytest
 
@@ -85,3 +87,16 @@ def test_no_part_of_an_uncertainty_is_told_smaller_than_it_is_and_where_it_is_al
         assert float(tolerance) >= row["tolerance"]
         assert float(rounding) >= row["rounding"]
         assert (total == tolerance) or row["tolerance"] < 1e6 * row["rounding"]
+
+
+def test_a_warning_is_told_without_the_line_of_code_that_gives_it(capsys):
+    press = ["run", "toggle_press", "--variant", "coining", "--angles", "36", "--uncertain", "crank_length=0.05 mm"]
+    before = warnings.formatwarning
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        warnings.showwarning = lambda *given, **_: sys.stderr.write(warnings.formatwarning(*given[:4]))
+        assert main(press) == 0
+    told = [line for line in capsys.readouterr().err.splitlines() if "first order" in line]
+    assert told
+    assert all(line.startswith("kinetostatics: warning: toggle press: the uncertainty of") for line in told)
+    assert warnings.formatwarning is before
