@@ -121,8 +121,10 @@ def between(near, chosen, sqrt):
     top = _polynomial(series, place)
     fewer = top - _polynomial(INNER, place) * (series[-2] + series[-1] * place)
 
+    bent = chosen("<", first, 0.0, chosen("<", last, 0.0, bend, 0.0), 0.0)  # beside what is infinite one is none
+
     def if_smooth(one, other):
-        return chosen("<", larger(larger(first, last), bend), 0.0, one, other)
+        return chosen("<", bent, 0.0, one, other)
 
     def if_it_fits(one, other):
         return chosen("<", abs(top - height), 0.05 * abs(bend), chosen("<", abs(place), 1.0, one, other), other)

@@ -5,7 +5,9 @@ Of independent normal inputs with deviations u the terms of second order, 1/2 su
 shift nothing, but they spread. What the second order makes is the root of their mean square.
 """
 
+from functools import lru_cache
 from itertools import combinations
+from itertools import count as numbers
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -98,11 +100,25 @@ class Terms:
         return {pair: self._together(dict.fromkeys(pair, 1.0)) for pair in combinations(self._places, 2)}
 
     def of_all(self):
-        """Sums of all products of two: any two inputs have like signs in one of them, and unlike ones in another."""
-        paths = list(self._places)
-        bits = [0, *(1 << row for row in range((len(paths) - 1).bit_length()))]
-        signs = ({path: -1.0 if place & bit else 1.0 for place, path in enumerate(paths)} for bit in bits)
+        """Sums of all products of two, with such signs that no two products take each other away in all of them."""
+        codes = dict(zip(self._places, _codes(len(self._places)), strict=True))
+        bits = [0, *(1 << row for row in range(max(codes.values()).bit_length()))]
+        signs = ({path: -1.0 if code & bit else 1.0 for path, code in codes.items()} for bit in bits)
         return {("all", str(row)): self._together(part) for row, part in enumerate(signs)}
+
+
+@lru_cache(maxsize=64)
+def _codes(count):
+    """Whole numbers, of few bits, of which no two differ in the same bits as two others do."""
+    codes: list[int] = []
+    known: set[int] = set()
+    for code in numbers():
+        if len(codes) == count:
+            return codes
+        differences = {code ^ other for other in codes}
+        if known.isdisjoint(differences):
+            codes.append(code)
+            known |= differences
 
 
 def found(terms, count, angle, first, rounding) -> Beyond | None:

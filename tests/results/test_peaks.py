@@ -38,3 +38,16 @@ def test_designs_are_taken_so_many_at_a_time_that_they_fit_and_scratch_is_the_sa
     first, second = (peaks.scratch(float, 3, 4) for _ in range(2))
     assert np.shares_memory(first, second)
     assert peaks.scratch(float, peaks.SCRATCH).shape == (peaks.SCRATCH,)
+
+
+def test_beside_what_is_infinite_a_peak_is_the_highest_of_its_samples():
+    """A difference of infinities is none, and makes nothing smooth."""
+    values = np.cos(np.arange(12.0))
+    for first in range(12):
+        for count in range(1, 4):
+            holed = values.copy()
+            holed[(first + np.arange(count)) % 12] = -np.inf
+            for sign in (1.0, -1.0):
+                height, place, _ = peaks.peak(sign * holed[None], sign)
+                assert holed.max() <= height[0] < 1.3, (first, count, sign)
+                assert 0.0 <= place[0] < 1.0

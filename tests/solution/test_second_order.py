@@ -104,6 +104,24 @@ def test_no_two_products_with_a_common_input_hide_each_other(count, signs):
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
 
+@every("count", range(4, 9))
+def test_no_two_products_without_a_common_input_hide_each_other(count):
+    """As the moments of two masses that balance each other, equally uncertain."""
+    paths = list("abcdefgh")[:count]
+    for one, other, third, fourth in permutations(range(count), 4):
+        if one > other or third > fourth:
+            continue
+
+        def compute(*given, pairs=((one, other), (third, fourth))):
+            first, second = (given[i] * given[j] for i, j in pairs)
+            return np.array([[first - second]])
+
+        terms = terms_of(compute, dict.fromkeys(paths, 0.5))
+        told = found(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        assert set(told.paths) in ({paths[one], paths[other]}, {paths[third], paths[fourth]})
+        assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
+
+
 def test_of_many_inputs_that_count_to_first_order_few_sums_are_looked_at():
     calls = []
 
@@ -114,7 +132,7 @@ def test_of_many_inputs_that_count_to_first_order_few_sums_are_looked_at():
     paths = [f"x{place}" for place in range(20)]
     terms = terms_of(compute, dict.fromkeys(paths, 0.5), [0.0] * 20)
     assert found(terms, 20, np.zeros(1), dict.fromkeys(paths, np.ones((1, 1))), np.zeros((1, 1))) is None
-    assert len(calls) == 1 + 40 + 6
+    assert len(calls) == 1 + 40 + 10
 
 
 def test_a_product_of_two_inputs_is_told_as_a_monte_carlo_simulation_finds_it():
