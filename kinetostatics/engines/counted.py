@@ -17,6 +17,8 @@ from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
+NO_POWER = 2.0**-60
+"""Stands for the power 0 of a pivot with a guard, so that a bound is infinite where that acts."""
 
 
 class Relative(NamedTuple):
@@ -123,7 +125,7 @@ class Counted:
         own = 0.0 if is_exactly(left) or is_exactly(right) else 1.0
         return Relative(
             one.roundings + other.roundings + own,
-            {pivot: power for pivot, power in pivots.items() if power},
+            {pivot: power or NO_POWER for pivot, power in pivots.items() if power or pivot in self._guards},
             self._dust_of_product(node, one, other, sign),
         )
 
