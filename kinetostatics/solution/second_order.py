@@ -98,10 +98,12 @@ class Terms:
         return {pair: self._together(dict.fromkeys(pair, 1.0)) for pair in combinations(self._places, 2)}
 
     def of_all(self):
-        """Sums of all products of two: any two inputs have like signs in one of them, and unlike ones in another."""
-        paths = list(self._places)
-        bits = [0, *(1 << row for row in range((len(paths) - 1).bit_length()))]
-        signs = ({path: -1.0 if place & bit else 1.0 for place, path in enumerate(paths)} for bit in bits)
+        """Sums of all products of two: any two of these have like signs in one of them, and unlike ones in another."""
+        codes = _codes(len(self._places))
+        bits = [0, *(1 << row for row in range(codes[-1].bit_length()))]
+        signs = (
+            {path: -1.0 if code & bit else 1.0 for path, code in zip(self._places, codes, strict=True)} for bit in bits
+        )
         return {("all", str(row)): self._together(part) for row, part in enumerate(signs)}
 
 
@@ -141,6 +143,20 @@ def beyond(angle, first, second, rounding) -> Beyond | None:
     at = float(np.broadcast_to(angle, more.shape).flat[worst])
     paths = list(second)[most]
     return Beyond(int(too_much.sum()), too_much.size, at, paths, float(own.flat[worst]), float(more.flat[worst]))
+
+
+def _codes(count):
+    """So many numbers, from 0 on: which bits two of them differ in tells which two these are."""
+    codes: list[int] = []
+    differing: set[int] = set()
+    number = 0
+    while len(codes) < count:
+        found = {number ^ code for code in codes}
+        if found.isdisjoint(differing):
+            codes.append(number)
+            differing |= found
+        number += 1
+    return codes
 
 
 def _size(part: Any, axis: Any = 0):

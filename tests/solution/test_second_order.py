@@ -104,6 +104,23 @@ def test_no_two_products_with_a_common_input_hide_each_other(count, signs):
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
 
+@every("count", [4, 5, 8])
+@every("sign", [1.0, -1.0])
+def test_no_two_products_without_a_common_input_hide_each_other(count, sign):
+    """As of the moments of two masses that balance each other, with their arms, equally uncertain."""
+    paths = list("abcdefgh")[:count]
+    for one, two, three, four in permutations(range(count), 4):
+        if not (one < two and three < four and one < three):
+            continue
+
+        def compute(*given, one=one, two=two, three=three, four=four):
+            return np.array([[given[one] * given[two] + sign * given[three] * given[four]]])
+
+        terms = terms_of(compute, dict.fromkeys(paths, 0.5), [0.0] * 8)
+        told = found(terms, count, np.zeros(1), dict.fromkeys(paths, np.zeros((1, 1))), np.zeros((1, 1)))
+        assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
+
+
 def test_of_many_inputs_that_count_to_first_order_few_sums_are_looked_at():
     calls = []
 
@@ -114,7 +131,7 @@ def test_of_many_inputs_that_count_to_first_order_few_sums_are_looked_at():
     paths = [f"x{place}" for place in range(20)]
     terms = terms_of(compute, dict.fromkeys(paths, 0.5), [0.0] * 20)
     assert found(terms, 20, np.zeros(1), dict.fromkeys(paths, np.ones((1, 1))), np.zeros((1, 1))) is None
-    assert len(calls) == 1 + 40 + 6
+    assert len(calls) == 1 + 40 + 10
 
 
 def test_a_product_of_two_inputs_is_told_as_a_monte_carlo_simulation_finds_it():
