@@ -76,8 +76,7 @@ def test_the_page_on_certainty_says_what_its_code_finds(capsys):
     names: dict = {}
     codes = [code for code in code_cells(text_of(PAGES["this_number"])) if "subprocess" not in code]
     with pytest.warns(UserWarning, match="236.5 deg the first makes 0.89 N m, the second 1.2e"):
-        for code in codes:
-            exec(compile(code, "this_number", "exec"), names)
+        exec(compile("\n".join(codes), "this_number", "exec"), names)
     printed = capsys.readouterr().out
     s, peak = names["s"], names["peak"]
     plain, tight = (s.error_bound("balancing_torque", tight)[peak] for tight in (False, True))
