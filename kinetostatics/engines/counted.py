@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .bounds import SAFE, Error, fused, is_scaling, is_zero
-from .functions import ULP
+from .functions import ULP, moved_apart
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 ROUNDED = SAFE * UNIT
@@ -106,11 +106,11 @@ class Counted:
         if len(parts) == 1:
             return errors[0]
         if all(map(is_exact, errors)) and node.operation != "total":
-            return Relative(1.0, {}, None)
+            return Relative(1.0, {}, moved_apart(parts))
         is_plus = node.operation == "+" and all(map(self.is_positive, parts))
         if None in errors or not is_plus or any(error.pivots for error in errors):
             return None
-        dust = reduce(plus, (error.dust for error in errors))
+        dust = reduce(plus, (error.dust for error in errors), moved_apart(parts))
         return Relative(1.0 + max(error.roundings for error in errors), {}, dust)
 
     def _counted_product(self, node, sign, is_exactly):
