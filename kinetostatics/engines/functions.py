@@ -1,4 +1,4 @@
-"""What is known of functions however they are computed: of sines and cosines next to one, of totals."""
+"""What is known of functions however they are computed: of sines and cosines next to one, of totals, of what is moved apart."""
 
 from functools import reduce
 from operator import add
@@ -82,6 +82,5 @@ def beside_length(graph, rest):
 
 def moved_apart(parts):
     """What a number is off, in `UNIT`, that `elementary.apart` moved off zero; None where it did not."""
-    return (
-        APART * UNSEEN / UNIT if any(not isinstance(part, Node) and part == APART * UNSEEN for part in parts) else None
-    )
+    is_moved = any(not isinstance(part, Node) and part == APART * UNSEEN for part in parts)
+    return APART * UNSEEN / UNIT if is_moved else None
