@@ -30,6 +30,8 @@ def turn(angle):
 
 def table_of_parameters(numbers, shape):
     """Parameters (designs, P) from numbers, each a float or an array (..., 1), for designs of a batch shape."""
+    if not shape:
+        return np.array([numbers], dtype=float)
     table = np.empty((math.prod(shape), len(numbers)))
     table[...] = [0.0 if np.ndim(number) else number for number in numbers]
     for place, number in enumerate(numbers):
