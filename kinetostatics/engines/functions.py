@@ -1,4 +1,4 @@
-"""What is known of functions however they are computed: of sines and cosines next to one, of totals, of what is moved apart."""
+"""What is known of functions however computed: of sines and cosines next to one, of totals, of what is moved apart."""
 
 from functools import reduce
 from operator import add
