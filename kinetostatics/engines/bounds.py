@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .functions import ULP, beside_length, beside_one, lost_by_total
+from .functions import ULP, beside_length, beside_one, lost_by_total, moved_apart
 from .trace import INPUTS, Node, is_negative, needed
 
 SAFE = 1.0 + 1e-9
@@ -97,7 +97,7 @@ class Bounds:
         if kind == "total":
             return Error(1.0, lost_by_total(self._graph, node))
         if kind in ("+", "-"):
-            return Error(1.0, None) if len(arguments) == 2 else EXACT
+            return Error(1.0, moved_apart(arguments)) if len(arguments) == 2 else EXACT
         if kind == "divisor":  # none is proven where the guard may act
             root, unit = arguments
             return Error(0.0, 0.0 / self.above(root, self.total(root), unit))

@@ -12,11 +12,13 @@ from typing import Any, NamedTuple
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .bounds import SAFE, Error, fused, is_scaling, is_zero
-from .functions import ULP
+from .functions import ULP, moved_apart
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
+NO_POWER = 2.0**-60
+"""Stands for the power 0 of a pivot with a guard, so that a bound is infinite where that acts."""
 
 
 class Relative(NamedTuple):
@@ -104,11 +106,11 @@ class Counted:
         if len(parts) == 1:
             return errors[0]
         if all(map(is_exact, errors)) and node.operation != "total":
-            return Relative(1.0, {}, None)
+            return Relative(1.0, {}, moved_apart(parts))
         is_plus = node.operation == "+" and all(map(self.is_positive, parts))
         if None in errors or not is_plus or any(error.pivots for error in errors):
             return None
-        dust = reduce(plus, (error.dust for error in errors))
+        dust = reduce(plus, (error.dust for error in errors), moved_apart(parts))
         return Relative(1.0 + max(error.roundings for error in errors), {}, dust)
 
     def _counted_product(self, node, sign, is_exactly):
@@ -123,7 +125,7 @@ class Counted:
         own = 0.0 if is_exactly(left) or is_exactly(right) else 1.0
         return Relative(
             one.roundings + other.roundings + own,
-            {pivot: power for pivot, power in pivots.items() if power},
+            {pivot: power or NO_POWER for pivot, power in pivots.items() if power or pivot in self._guards},
             self._dust_of_product(node, one, other, sign),
         )
 

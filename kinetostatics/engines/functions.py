@@ -1,9 +1,9 @@
-"""What is known of functions however they are computed: of sines and cosines next to one, of totals."""
+"""What is known of functions however computed: of sines and cosines next to one, of totals, of what is moved apart."""
 
 from functools import reduce
 from operator import add
 
-from ..numbers.elementary import UNIT
+from ..numbers.elementary import APART, UNIT, UNSEEN
 from .trace import BY_DESIGN, Node
 
 ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
@@ -78,3 +78,9 @@ def beside_length(graph, rest):
     length = rest.arguments[0]
     lost = graph.node("lost_by_squares", *rest.arguments)
     return 4.0 * abs(rest) + (rest * rest * (1.0 / UNIT) + 8.0 * lost) / length
+
+
+def moved_apart(parts):
+    """What a number is off, in `UNIT`, that `elementary.apart` moved off zero; None where it did not."""
+    is_moved = any(not isinstance(part, Node) and part == APART * UNSEEN for part in parts)
+    return APART * UNSEEN / UNIT if is_moved else None

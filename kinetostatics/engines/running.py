@@ -39,7 +39,7 @@ from typing import Any, NamedTuple
 from ..numbers.elementary import UNIT
 from .bounds import DUST, SAFE, Bounds, is_scaling, is_zero
 from .counted import ROUNDED, Counted, varies
-from .functions import ULP, beside_one
+from .functions import ULP, beside_one, moved_apart
 from .trace import BY_DESIGN, Node, needed
 
 KNOWN = 2.0**-4
@@ -139,7 +139,8 @@ class RunningBounds(Counted):
             (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=RESERVE
         )
         is_charged = reserve < 0.0 or node.operation == "total"
-        terms = [(1.0, self._lost)]
+        moved = moved_apart(parts)
+        terms = [(1.0, self._lost) if moved is None else (ROUNDED, moved)]
         if is_charged:
             terms.append(((own + RESERVE) * ROUNDED, self.size(node)))
         for part in parts:

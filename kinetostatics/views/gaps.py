@@ -45,8 +45,9 @@ def framed(ax, arrays, unit):
     """Limit the axis to what is ordinary of values (N,), as they are drawn, if some grow far beyond it."""
     sight = in_sight(arrays)
     if np.isfinite(sight):
-        seen = [np.clip(np.asarray(array)[np.isfinite(array)], -sight, sight) for array in arrays]
-        low, high = min(map(np.min, seen)), max(map(np.max, seen))
+        values = np.concatenate(arrays)
+        seen = np.clip(values[np.isfinite(values)], -sight, sight)
+        low, high = seen.min(), seen.max()
         room = ax.margins()[1] * (high - low)
         ax.set_ylim(low - room, high + room)
         beyond(ax, arrays, unit)
@@ -54,7 +55,7 @@ def framed(ax, arrays, unit):
 
 def beyond(ax, arrays, unit):
     """Say up to what size values (N,) go that lie beyond the axes."""
-    largest = max(float(np.nanmax(np.abs(array))) for array in arrays)
+    largest = float(np.nanmax(np.abs(np.concatenate(arrays))))
     size = f"up to {largest:.3g} {unit}" if np.isfinite(largest) else "without bound"
     box = {"boxstyle": "square,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.7}
     ax.text(0.01, 0.01, f"beyond the frame: {size}", transform=ax.transAxes, va="bottom", bbox=box, **WORDS)

@@ -3,7 +3,9 @@
 from fractions import Fraction
 
 import numpy as np
+import pytest
 
+import kinetostatics as ks
 from kinetostatics.engines import loops, programs
 from kinetostatics.engines.bounds import Bounds
 from kinetostatics.engines.compiled import available
@@ -12,6 +14,7 @@ from kinetostatics.engines.running import RunningBounds
 from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, sign, total
+from support import bounded
 from support.every import every
 
 WAYS = {
@@ -91,3 +94,20 @@ def test_a_total_of_given_numbers_that_loses_nothing_is_exact(way):
         off = abs(Fraction(total(*values)) - exact)
         bound = Fraction(bound_of(way, graph, total(*parts) * graph.angle(), 1.0, *values))
         assert off <= bound <= 9 * UNIT * abs(exact) + Fraction(least)
+
+
+@every("family, seed", [("place", 70019), ("place", 70138), ("inclined", 70017), ("inclined", 70115)])
+@every("tight", [False, True])
+def test_what_is_moved_off_zero_to_have_a_direction_is_in_bounds(flint, family, seed, tight):
+    """Where linkages fold, 4e-121 of their lengths make 6e-93 of an acceleration that is truly none."""
+    assert bounded.errors(bounded.solution(family, seed, 8), tight=tight).wrong == []
+
+
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("angle", [1e-100, 1e-121, 1e-150, -1e-150, 1e-300])
+def test_however_near_to_a_change_point_bounds_hold_or_are_infinite(flint, angle):
+    links = {name: ks.Link(1.0, (0.15, 0.0), 0.01) for name in ("crank", "coupler", "rocker")}
+    for assembly in (1, "open", "crossed"):
+        rhombus = ks.four_bar(0.3, 0.3, 0.3, rocker_pivot=(0.3, 0.0), assembly=assembly, **links)
+        s = ks.solve(rhombus, [angle, 2.0 * angle], crank_speed=3.0, loads=[ks.Gravity()], on_gap="nan")
+        assert bounded.errors(s).wrong == []

@@ -43,6 +43,17 @@ def test_what_is_divided_by_a_sum_is_bounded_as_long_as_that_is_known(digits, fi
     assert np.isfinite(bound) == finite
 
 
+@every("form", [lambda root, kept: root / kept, lambda root, kept: root * (1.0 / kept), lambda root, kept: kept / root])
+def test_a_root_over_itself_kept_off_zero_has_no_bound_where_that_acts(form):
+    graph = Graph()
+    one, other, unit = map(graph.parameter, range(3))
+    root = (graph.angle().cos() * one - other).forgiving_root(unit)
+    share = form(root, root.kept_off_zero(unit))
+    (known,), (acting,) = (bounds_of(graph, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, 2.0**-40))
+    assert known < 8.0 * UNIT
+    assert not np.isfinite(acting)
+
+
 @every("power", [1, 3, 12, 20])
 def test_errors_of_pivots_make_others_larger_that_they_multiply(power):
     """A difference that is lost has an error of 1e-16, and what divides it one of a hundredth each time."""

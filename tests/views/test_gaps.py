@@ -79,6 +79,19 @@ def test_limits_are_those_of_what_is_ordinary_however_near_to_the_gap_the_soluti
     plt.close(figure)
 
 
+@every("first", [True, False])
+def test_what_has_no_value_at_all_limits_no_axis_and_hides_no_size(first):
+    never = solved(ks.crank_slider(0.3, 0.9, guide_offset=5.0, slider=ks.Link(60.0)))
+    named = {"short": solved(SHORT), "never": never}
+    named = dict(reversed(named.items())) if first else named
+    for draw in (ks.plots.torque, ks.plots.hodograph):
+        figure, ax = plt.subplots()
+        draw(named, ax=ax)
+        assert any(text.get_text().startswith("beyond the frame: up to") for text in ax.texts)
+        assert np.all(np.isfinite(ax.get_ylim()))
+        plt.close(figure)
+
+
 def test_a_hodograph_beside_a_gap_shows_what_is_ordinary_and_its_marks_by_themselves(axes):
     four_bar = ks.four_bar(0.3, 0.4, 0.3, rocker_pivot=(0.51, 0.0), rocker=ks.Link(3, 0.1, 0.05))
     solution = solved(four_bar, loads=ks.Gravity())
