@@ -82,5 +82,10 @@ def beside_length(graph, rest):
 
 def moved_apart(parts):
     """What a number is off, in `UNIT`, that `elementary.apart` moved off zero; None where it did not."""
-    is_moved = any(not isinstance(part, Node) and part == APART * UNSEEN for part in parts)
-    return APART * UNSEEN / UNIT if is_moved else None
+    for part in parts:
+        if not isinstance(part, Node):
+            if part == APART * UNSEEN:
+                return APART * UNSEEN / UNIT
+        elif part.operation == "*" and APART in (factor for factor in part.arguments if not isinstance(factor, Node)):
+            return part * (1.0 / UNIT)
+    return None

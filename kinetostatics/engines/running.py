@@ -140,7 +140,9 @@ class RunningBounds(Counted):
         )
         is_charged = reserve < 0.0 or node.operation == "total"
         moved = moved_apart(parts)
-        terms = [(1.0, self._lost) if moved is None else (ROUNDED, moved)]
+        terms = [(1.0, self._lost)]
+        if moved is not None:
+            terms.append((ROUNDED, moved))
         if is_charged:
             terms.append(((own + RESERVE) * ROUNDED, self.size(node)))
         for part in parts:

@@ -13,7 +13,7 @@ from kinetostatics.engines.functions import OTHER, SMALL, ULP
 from kinetostatics.engines.running import RunningBounds
 from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
-from kinetostatics.numbers.elementary import UNIT, sign, total
+from kinetostatics.numbers.elementary import APART, UNIT, apart, sign, total
 from support import bounded
 from support.every import every
 
@@ -101,6 +101,13 @@ def test_a_total_of_given_numbers_that_loses_nothing_is_exact(way):
 def test_what_is_moved_off_zero_to_have_a_direction_is_in_bounds(flint, family, seed, tight):
     """Where linkages fold, 4e-121 of their lengths make 6e-93 of an acceleration that is truly none."""
     assert bounded.errors(bounded.solution(family, seed, 8), tight=tight).wrong == []
+
+
+@every("way", WAYS)
+def test_what_is_moved_by_a_share_of_lengths_is_in_bounds(way):
+    graph = Graph()
+    moved = apart(0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1))
+    assert bound_of(way, graph, moved, 0.0, 3.0, 4.0) >= APART * 7.0
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
