@@ -47,6 +47,7 @@ DESIGN = np.array([SPEED, CRANK, COUPLER, CENTRE, COUPLER_MASS, COUPLER_INERTIA,
 VARIED = {
     "plain": {"crank_length": "0.25..0.35 m", "slider.mass": "500..700 kg"},
     "cam-circle": {"spring.stiffness": "600..900 kN/m", "cam.centre.x": "-30..-10 mm"},
+    "cam-cosine": {"spring.stiffness": "600..900 kN/m", "slider.mass": "500..700 kg"},
 }
 OUTPUTS = ("largest O", "mean_absolute balancing_torque", "range guide_force")
 MANY = 100_000
@@ -253,6 +254,23 @@ def test_sweep_of_many_designs_takes_seconds_and_no_more_memory_than_its_table(b
             )
             assert spent_10 < 13 * spent
             assert memory_10 - memory < 2 * (size_10 - size)
+
+
+def test_sweep_of_saws_with_cams_takes_at_most_1_6_times_as_long_as_of_plain_ones(benchmark, tell):
+    designs = {variant: ks.designs.random(given, MANY) for variant, given in VARIED.items()}
+    benchmark.pedantic(swept, ("plain", designs["plain"]), rounds=1, warmup_rounds=1)
+    plain, *cams = (
+        min(times)
+        for times in zip(
+            *([swept(variant, given)[1] for variant, given in designs.items()] for _ in range(6)), strict=True
+        )
+    )
+    told = ", ".join(
+        f"{variant} {spent:.3f} s, {spent / plain:.2f} times"
+        for variant, spent in zip([*designs][1:], cams, strict=True)
+    )
+    tell(f"{MANY} designs x 360 angles, three reductions: plain {plain:.3f} s; {told}")
+    assert max(cams) <= 1.6 * plain
 
 
 def test_sweep_takes_at_most_twice_as_long_as_its_bare_loop(benchmark, tell):

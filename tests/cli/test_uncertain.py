@@ -73,6 +73,7 @@ def test_json_has_all_digits(capsys):
     assert told["largest"]["reaction O"]["tolerance"] == pytest.approx(float(wanted.tolerance), rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:toggle press. the uncertainty of .* is of first order")
 def test_no_part_of_an_uncertainty_is_told_smaller_than_it_is_and_where_it_is_all_like_all(monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "130")
@@ -89,6 +90,7 @@ def test_no_part_of_an_uncertainty_is_told_smaller_than_it_is_and_where_it_is_al
         assert (total == tolerance) or row["tolerance"] < 1e6 * row["rounding"]
 
 
+@pytest.mark.slow
 def test_a_warning_is_told_without_the_line_of_code_that_gives_it(capsys):
     press = ["run", "toggle_press", "--variant", "coining", "--angles", "36", "--uncertain", "crank_length=0.05 mm"]
     before = warnings.formatwarning

@@ -96,6 +96,7 @@ def test_a_total_of_given_numbers_that_loses_nothing_is_exact(way):
         assert off <= bound <= 9 * UNIT * abs(exact) + Fraction(least)
 
 
+@pytest.mark.slow
 @every("family, seed", [("place", 70019), ("place", 70138), ("inclined", 70017), ("inclined", 70115)])
 @every("tight", [False, True])
 def test_what_is_moved_off_zero_to_have_a_direction_is_in_bounds(flint, family, seed, tight):

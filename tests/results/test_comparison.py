@@ -24,6 +24,7 @@ def test_the_mean_torque_is_that_of_a_sine():
     assert balanced == pytest.approx(3.0 * 0.01 * 25.0 / np.pi, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_an_extremum_of_the_torque_that_is_rounding_stands_as_zero():
     """A press at its lower dead centre: there the torque has a kink, and is 0."""
     press = ks.crank_slider(0.1, 0.45, guide_angle=-np.pi / 2, coupler=ks.Link(38, 0.16, 0.9), slider=ks.Link(120))

@@ -36,6 +36,7 @@ def test_a_label_leaves_the_curve_beneath_it(axes):
     assert box.y0 > height or box.y1 < height
 
 
+@pytest.mark.slow
 def test_lines_that_lead_to_labels_cross_neither_each_other_nor_labels(monkeypatch):
     """Points in heaps, from which labels must be led away."""
     count = 0

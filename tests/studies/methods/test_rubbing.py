@@ -25,6 +25,7 @@ def difference(s, quantity, found):
     return max(np.abs(a - b).max() for a, b in zip(own, found, strict=True)) / np.abs(own).max()
 
 
+@pytest.mark.slow
 @every("kind", KINDS)
 def test_one_linear_system_after_the_other_finds_the_forces_of_the_kernels(kind):
     s = drawn(kind)
@@ -32,6 +33,7 @@ def test_one_linear_system_after_the_other_finds_the_forces_of_the_kernels(kind)
         assert difference(s, quantity, NEWTON.prepare(s, quantity, 6)()) < 1e-11, quantity
 
 
+@pytest.mark.slow
 @every("kind", KINDS)
 def test_independent_path_confirms_the_kernels_to_30_digits(flint, kind):
     s = drawn(kind, 2, ANGLES[:2])
