@@ -6,6 +6,8 @@ from . import checks
 from .units import factor
 
 _HEADING = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")
+_ROUND = re.compile(r"(.*?)\s*\(([^()]*)\)")
+"""A heading with its unit in brackets that are not meant for it."""
 
 
 def heading(name, unit):
@@ -42,7 +44,8 @@ def si_columns(columns, known=None, unknown=None):
         name, unit = parted(column)
         problem = None
         if known is not None and name not in known:
-            problem = unknown(name) if unknown else checks.choice("parameter", name, tuple(known))
+            problem = _in_round_brackets(name, known)
+            problem = problem or (unknown(name) if unknown else checks.choice("parameter", name, tuple(known)))
         if name in found:
             problem = f"parameter {name!r} has two columns"
         scale = 1.0
@@ -54,3 +57,11 @@ def si_columns(columns, known=None, unknown=None):
         found[name] = (column, name, scale)
         problems += [problem] if problem else []
     return tuple(found.values()), problems
+
+
+def _in_round_brackets(text, known):
+    """What is wrong with the heading of a known name that has its unit in round brackets, or None."""
+    found = _ROUND.fullmatch(text)
+    if not found or found[1] not in known:
+        return None
+    return f"parameter {text!r} has its unit in round brackets; write {heading(*found.groups())!r}"

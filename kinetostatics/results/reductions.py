@@ -251,7 +251,9 @@ def parsed(text) -> Output:
     if quantity and (reduction in FOUND or found.order is not None):
         return found
     names = ", ".join((*FOUND, "harmonic_1", "harmonic_2 ..."))
+    meant = None if reduction in FOUND else checks.nearest(reduction, FOUND)
+    advice = f"; did you mean {' '.join([*words[:ratio], meant, *quantity])!r}?" if meant else ""
     raise ParameterError(
         f'output {text!r} must be a reduction and a quantity, such as "largest O" or "ratio mean_absolute '
-        f'balancing_torque"; reductions: {names}{"" if reduction in FOUND else checks.hint(reduction, FOUND)}'
+        f'balancing_torque"; reductions: {names}{advice}'
     )

@@ -99,7 +99,7 @@ def test_outputs_are_read_with_any_name_of_a_quantity():
     for text in ("largest", "larges O", "harmonic_x O", "ratio", "", "O largest"):
         with pytest.raises(ks.ParameterError, match=r"must be a reduction and a quantity.*harmonic_1"):
             parsed(text)
-    with pytest.raises(ks.ParameterError, match="did you mean 'largest'"):
+    with pytest.raises(ks.ParameterError, match="did you mean 'largest O'"):
         parsed("larges O")
 
 

@@ -4,6 +4,8 @@ measured
     Quantities of pint, converted to the unit wanted.
 values
     What a value is: a number, an array, a truth value, a text ...; copies that nobody writes to.
+meant
+    Which of the allowed words is meant by another: synonyms, and what is spelled alike.
 problems
     What is wrong, as sentences, and the one `ParameterError` that lists them: ``require(owner, *problems)``.
 single
@@ -20,6 +22,7 @@ object keeps floats and locked copies of arrays, so nothing it holds changes beh
 """
 
 from .checked import Checked, Rules, examined
+from .meant import nearest
 from .measured import DimensionError, converted, is_quantity, plain
 from .problems import (
     ANGLE,
@@ -30,7 +33,6 @@ from .problems import (
     fitting,
     hint,
     mechanism,
-    nearest,
     quantity,
     require,
     seed,

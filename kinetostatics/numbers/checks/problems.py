@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import ParameterError
+from .meant import nearest
 
 
 class Problem(str):
@@ -126,10 +127,3 @@ def hint(value, allowed):
     """Question that names the nearest allowed word, empty if none is near."""
     near = nearest(value, allowed)
     return f"; did you mean {near!r}?" if near else ""
-
-
-def nearest(value, allowed):
-    """The allowed word that is like the one given, or None."""
-    import difflib
-
-    return next(iter(difflib.get_close_matches(str(value)[:100], list(allowed), n=1)), None)
