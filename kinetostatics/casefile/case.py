@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
+
 from ..design import linkage
 from ..design.balancing_table import balancing_table
 from ..errors import AssemblyError, CaseError, ConditionWarning, HintWarning, KinetostaticsError
@@ -14,6 +16,7 @@ from ..mechanics import assembly
 from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..results.comparison import Comparison
+from ..solution import slips
 from ..solution.solution import Solution
 from . import build, reading, schema
 from .designs import Design, designs_of
@@ -208,7 +211,7 @@ def load_case(path) -> Case:
     for doubt in far_off(head.tolerances, variants):
         warnings.warn(f"{path}: {doubt}", HintWarning, stacklevel=2)
     for name, item in variants.items():
-        for hint in item.mechanism.hints:
+        for hint in slips.of_scene(item.scene.unsolved(np.zeros(1))):
             warnings.warn(f"{path}: variants.{name}: {hint}", HintWarning, stacklevel=2)
     kept, wanted = _variants(path, variants), Named("design", path, designs)
     return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted)

@@ -5,7 +5,7 @@ A group declares in `pairs`, by the name of the reaction, which of its links tur
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -14,8 +14,11 @@ from ..numbers import checks
 from ..numbers.batched import Batched
 from .links import present
 
-COEFFICIENT = checks.Number("1", low=0.0)
+COEFFICIENT = checks.Number(
+    "1", low=0.0, usual=checks.Usual(2.0, "nothing rubs so much; does it stand in place of a size, or in percent?")
+)
 SIZE = checks.Number("m", low=0.0, strict=True)
+PIN = replace(SIZE, usual=checks.Usual(1.0, "is it in mm?", in_links=True))
 PASSES = (3, 6, 12)
 """Times that the directions of all reactions are found anew, each with twice as many digits; more where not enough."""
 
@@ -91,7 +94,7 @@ class PinFriction(checks.Checked, Batched):
     radius: Any
 
     PAIR: ClassVar = Turning
-    RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=SIZE)
+    RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=PIN)
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,7 +206,7 @@ class RollerFriction(checks.Checked, Batched):
             )
 
     PAIR: ClassVar = Rolling
-    RULES = checks.Rules("roller friction", _rolls, mu=COEFFICIENT, pin_radius=SIZE, roller_radius=SIZE)
+    RULES = checks.Rules("roller friction", _rolls, mu=COEFFICIENT, pin_radius=PIN, roller_radius=SIZE)
 
 
 KINDS = (PinFriction, GuideFriction, SlotFriction, RollerFriction)

@@ -7,47 +7,109 @@ from ..numbers.elementary import sqrt
 from .group import FRAME
 from .links import present
 
-FAR = 20.0
-"""Lengths of the longest link beyond which nobody puts a mass centre: millimetres beside metres make 1000."""
 THIN = 1000.0
 """How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
+THICK = 1000.0
+"""How many times mass times length squared it may be; kg mm2 make a million of it."""
+LONGEST = 100.0
+"""Length of a link, m, that none has."""
+SLENDER = 2000.0
+"""How many times the longest link may be as long as the shortest: millimetres beside metres make more."""
+SOUND = 340.0
+"""Speed of sound, m/s, below which all pins stay."""
+TURN_TWICE = 2.0 * np.pi * np.pi / 180.0
+"""A turn in radians that was taken for degrees."""
 
 
 def of_mechanism(mechanism):
-    """Sentences on sliders that stand still, and on mass centres and inertias that look like those of another unit."""
-    return (*_still(mechanism), *_of_units(mechanism))
+    """Sentences on sliders that stand still, and on lengths and inertias of links that look like another unit's."""
+    bars = [bar for bar in mechanism.bars if checks.known(bar.length)]
+    inertias = (text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link), mechanism.crank)))
+    return (*_still(mechanism), *_lengths(bars), *inertias)
+
+
+def of_scene(mechanism, crank_speed, numbers):
+    """The same on a mechanism with its drive, and on `numbers` of which something is usual: path, value and rule."""
+    longest = max((_most(bar.length) for bar in mechanism.bars if checks.known(bar.length)), default=0.0)
+    odd = [text for path, value, rule in numbers if (text := _unusual(path, value, rule, longest))]
+    return (*mechanism.hints, *odd, *_fast(mechanism.crank.length, crank_speed, longest))
+
+
+def _unusual(path, value, rule, longest):
+    """What is odd about a number, as a sentence, or None."""
+    most, advice, least, in_links = checks.usual_of(rule)
+    unit = longest if in_links else 1.0
+    if not checks.known(value) or not unit:
+        return None
+    low, high = _sizes(value)
+    if high <= most * unit and (low >= least * unit or low == 0.0):
+        return None
+    worst = high if high > most * unit else low
+    own = "" if rule.unit == "1" else " " + rule.unit.replace("**", "").replace("*", " ")
+    beside = f", {worst / longest:.4g} times the longest link ({longest:.4g} m)" if in_links else ""
+    return f"{path} is {-worst if np.any(np.equal(value, -worst)) else worst:.6g}{own}{beside}; {advice}"
+
+
+def _sizes(value):
+    """Smallest and largest size of a number, or of an array of them."""
+    sizes = np.abs(value) if isinstance(value, np.ndarray) else abs(value)
+    return (sizes, sizes) if isinstance(sizes, float) else (float(sizes.min()), float(sizes.max()))
+
+
+def _lengths(bars):
+    """What is odd about the lengths of links."""
+    lengths = [(_most(bar.length), bar.link) for bar in bars]
+    if not lengths:
+        return
+    (longest, link), (shortest, other) = max(lengths), min(lengths)
+    if longest > LONGEST:
+        yield f"the {link} is {longest:.6g} m long; are lengths in mm?"
+    elif longest > SLENDER * shortest:
+        yield (
+            f"the {link} is {longest:.6g} m long, {longest / shortest:.4g} times the {other} ({shortest:.4g} m); is one "
+            "of them in mm?"
+        )
+
+
+def _fast(length, crank_speed, longest):
+    """What is odd about the speed of the crank's pin."""
+    if length is None or not (checks.known(length) and checks.known(crank_speed)) or longest > LONGEST:
+        return
+    _, speed = _sizes(crank_speed)
+    if _most(length) * speed > SOUND:
+        yield (
+            f"the pin of the crank goes at {_most(length) * speed:.4g} m/s, faster than sound; is crank_speed, "
+            f"{speed:.6g} rad/s, in rpm?"
+        )
 
 
 def sizes(mechanism):
     """What a first look compares, of any numbers.
 
-    In turn all lengths together, those of which the shortest counts, the bars, pairs of inertia and mass, and pairs of
-    a bar's length and how far that is from the arm of its inner joint. There are no hints where no bar is as long as
-    its arm, all lengths together are less than `FAR` of the longest bar, and no inertia is small even beside that bar.
+    In turn all lengths together, those of which the shortest counts, the bars, pairs of inertia and mass, triples of
+    them and the length of a bar, and pairs of a bar's length and how far that is from the arm of its inner joint. There
+    are no hints of the mechanism where no bar is as long as its arm, the longest is neither huge nor huge beside the
+    shortest, and no inertia is small even beside that bar, or large.
     """
     reaches = [reach for part in mechanism.parts for reach in part.reaches]
     bodies = [(link.inertia, link.mass) for link in mechanism.links.values() if present(link.inertia) is not None]
+    turning = [
+        (link.inertia, link.mass, bar.length)
+        for bar in mechanism.bars
+        if (link := mechanism.links.get(bar.link)) is not None and _is_moved(bar, mechanism.crank)
+        if present(link.inertia) is not None and present(link.mass) is not None
+    ]
     arms = []
     for bar, _ in _on_arms(mechanism):
         _, along, across = mechanism.joints[bar.start]
         away = abs(along) if present(across) is None else sqrt(along * along + across * across)
         arms.append((bar.length, away - bar.length))
-    return mechanism.extent, reaches, [bar.length for bar in mechanism.bars], bodies, arms
+    return mechanism.extent, reaches, [bar.length for bar in mechanism.bars], bodies, turning, arms
 
 
-def _of_units(mechanism):
-    bars = [bar for bar in mechanism.bars if checks.known(bar.length)]
-    if not bars:
-        return ()
-    longest, found = max(_most(bar.length) for bar in bars), []
-    for name, link in mechanism.links.items():
-        away = max((_most(abs(part)) for part in link.centre if checks.known(part)), default=0.0)
-        if away > FAR * longest:
-            found.append(
-                f"the mass centre of the {name} is {away:.4g} m from its reference joint, {away / longest:.3g} times "
-                f"the longest link ({longest:.4g} m); is it in mm?"
-            )
-    return (*found, *(text for bar in bars if (text := _inertia(bar, mechanism.links.get(bar.link)))))
+def _is_moved(bar, crank):
+    """Whether a bar is no part of the crank, whose inertia may be that of all the drive."""
+    return bar.link not in crank.links
 
 
 def _still(mechanism):
@@ -86,32 +148,63 @@ def _as_long_as_its_arm(mechanism, bar):
     return bool(np.any(np.abs(np.hypot(along, across) - bar.length) <= 1e-9 * bar.length))
 
 
-def _inertia(bar, link):
+def _inertia(bar, link, crank):
     """What is odd about a link's inertia beside its mass and length; none at all makes a point mass."""
     if link is None or not (checks.known(link.mass) and checks.known(link.inertia)):
         return None
     inertia, unit = link.inertia, link.mass * bar.length * bar.length
-    thin = (inertia > 0) & (THIN * 12.0 * inertia < unit)
-    if thin is False or not np.any(thin):
+    if np.any((inertia > 0) & (THIN * 12.0 * inertia < unit)):
+        beside, advice = "less than a thousandth", "is it in kg m2? 0 makes it a point mass"
+    elif _is_moved(bar, crank) and np.any((inertia > THICK * unit) & (unit > 0)):
+        beside, advice = "more than ten thousand times", "is it in kg mm2?"
+    else:
         return None
-    return (
-        f"the inertia of the {bar.link}, {np.min(inertia):.4g} kg m2, is less than a thousandth of that of a uniform "
-        f"rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m; is it in kg m2? 0 makes it a point mass"
-    )
+    of_rod = f"of a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
+    return f"the inertia of the {bar.link}, {np.min(inertia):.4g} kg m2, is {beside} of that {of_rod}; {advice}"
 
 
 def of_angles(angle):
-    """Say if crank angles look like degrees: an even grid over quarters of a turn counted in them."""
-    if not isinstance(angle, np.ndarray) or angle.dtype == object or angle.size < 3:
+    """Say if crank angles look like degrees, or like radians taken for degrees."""
+    if not isinstance(angle, np.ndarray) or angle.dtype == object or not angle.size:
         return ()
-    if -4 * np.pi < angle.item(0) < 4 * np.pi and -4 * np.pi < angle.item(-1) < 4 * np.pi:
-        return ()
+    first, last = angle.item(0), angle.item(-1)
+    if -4 * np.pi < first < 4 * np.pi and -4 * np.pi < last < 4 * np.pi:
+        return _converted_twice(angle) if angle.size > 2 and _is_small(last - first) else ()
+    if angle.size < 3:
+        return _few(np.ravel(angle))
     row = np.ravel(angle)
     step, reach = row[1] - row[0], row[-1] - row[0]
     even = abs(step) >= 0.25 and _whole(360.0 / step) and np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))
     if not even or not (_whole(reach / 90.0) or _whole((reach + step) / 90.0)):
         return ()
     return (f"crank angles from {row[0]:g} to {row[-1]:g} by {step:g} look like degrees; they are taken as radians",)
+
+
+def _few(row):
+    """Say if one crank angle or two look like degrees: twelfths of a turn counted in them."""
+    if not all(_whole(angle / 30.0) for angle in row.tolist()):
+        return ()
+    text = " and ".join(f"{angle:g}" for angle in row.tolist())
+    if row.size == 1:
+        return (f"the crank angle {text} looks like degrees; it is taken as radians",)
+    return (f"crank angles {text} look like degrees; they are taken as radians",)
+
+
+def _is_small(reach):
+    return 0.9 * TURN_TWICE < abs(reach) < 1.01 * TURN_TWICE
+
+
+def _converted_twice(angle):
+    """Say if crank angles are an even turn of radians that were taken for degrees."""
+    row = np.ravel(angle)
+    step, reach = row[1] - row[0], row[-1] - row[0]
+    even = np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step))
+    if not even or not any(abs(abs(whole) - TURN_TWICE) < 1e-9 for whole in (reach, reach + step)):
+        return ()
+    return (
+        f"crank angles from {row[0]:g} to {row[-1]:g} are a turn in radians, converted from degrees once more; they "
+        "are taken as radians",
+    )
 
 
 def _whole(number):

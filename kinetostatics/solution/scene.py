@@ -18,6 +18,7 @@ from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from ..numbers.leaves import made
 from .angles import crank_angles, problems
+from . import slips
 from .checked import checked
 from .drive_and_loads import in_a_line
 from .parameters import DRIVE, Parameters, unknown
@@ -262,7 +263,7 @@ def unchecked(scene, crank_angle, engine=None):
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
     _, odd = solution.first_look or (None, True)
-    for text in (*(mechanism.hints if odd else ()), *hints.of_angles(angle)):
+    for text in (*(slips.of_scene(solution) if odd else ()), *hints.of_angles(angle)):
         warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=4)
     vars(solution)["engine"] = _engine(engine, angle, solution)
     return solution

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ..engines.engines import NUMPY
-from ..engines.first_look import first_look
 from ..errors import ConditionWarning, ParameterError
 from ..machine.friction import Turning
 from ..machine.loads import period_of
@@ -20,7 +19,7 @@ from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import made
 from ..results.turn import Turn
-from . import contents
+from . import contents, slips
 from .angles import crank_angles
 from .certainty import Certainty
 from .contacts import Contacts
@@ -48,7 +47,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
     def first_look(self):
         """Sum of all lengths over the shortest, and whether hints may be due; None unless all numbers are plain."""
         _, leaves = self.apart
-        look = self.kind.answer(first_look) if leaves.are_plain and not leaves.parts else None
+        look = self.kind.answer(slips.look) if leaves.are_plain and not leaves.parts else None
         return look and look(leaves.numbers)
 
     @property

@@ -63,7 +63,7 @@ UNKNOWN = {
     "variant of precision": (["precision", "{case}", "--out", "x", "--variant", "x"], "variant is 'x'"),
     "variant of a sweep": (["sweep", "{case}", *VARY, "--variant", "x"], "variant is 'x'"),
     "reference of a sweep": (["sweep", "{case}", *VARY, "--reference", "x"], "variant is 'x'"),
-    "reduction": (["sweep", "{case}", *VARY, "--output", "larges O"], "did you mean 'largest'?"),
+    "reduction": (["sweep", "{case}", *VARY, "--output", "larges O"], "did you mean 'largest O'?"),
     "output": (["sweep", "{case}", *VARY, "--output", "O"], "must be a reduction and a quantity"),
     "parameter": (["sweep", "{case}", "--vary", "slider.mas=1..2 kg:2"], "did you mean 'slider.mass'?"),
     "unit": (["sweep", "{case}", "--vary", "slider.mass=1..2 zork:2"], "zork"),

@@ -41,7 +41,7 @@ def test_angles_in_degrees_are_hinted_at(angles):
 
 @pytest.mark.parametrize(
     "angles",
-    [TURN, 10 * TURN, np.arange(7.0), np.arange(0, 100, 0.1), np.linspace(0, 50, 101), 90.0, [3.0, 90.0], TURN - 100],
+    [TURN, 10 * TURN, np.arange(7.0), np.arange(0, 100, 0.1), np.linspace(0, 50, 101), 100.0, [3.0, 90.0], TURN - 100],
 )
 def test_angles_in_radians_are_not(angles):
     with warnings.catch_warnings():
@@ -52,11 +52,11 @@ def test_angles_in_radians_are_not(angles):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"coupler": ks.Link(2.0, 200.0)}, "mass centre of the coupler is 200 m .* 500 times the longest link .*mm?"),
-        ({"slider": ks.Link(2.0, (0.0, 9.0))}, "mass centre of the slider is 9 m"),
+        ({"coupler": ks.Link(2.0, 200.0)}, r"coupler.centre.along is 200 m, 500 times the longest link .*mm\?"),
+        ({"slider": ks.Link(2.0, (0.0, 9.0))}, "slider.centre.across is 9 m"),
         ({"coupler": ks.Link(150.0, 0.2, 1e-3)}, "inertia of the coupler, 0.001 kg m2, is less than a thousandth"),
         ({"coupler": ks.Link(np.array([[1.0], [150.0]]), 0.2, 1e-3)}, "inertia of the coupler"),
-        ({"coupler": ks.Link(1.0, np.array([[1.0], [150.0]]))}, "mass centre of the coupler is 150 m"),
+        ({"coupler": ks.Link(1.0, np.array([[1.0], [150.0]]))}, "coupler.centre.along is 150 m"),
     ],
 )
 def test_slips_of_units_in_links_are_hinted_at_by_solve_and_not_by_constructors(changes, words):

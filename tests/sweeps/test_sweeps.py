@@ -115,7 +115,7 @@ def test_all_that_is_wrong_is_told_at_once():
         "did you mean 'slider.mass'",
         '"kg" does not measure the same as "m"',
         "column 'cam.centre.x [mm]' must hold numbers",
-        "did you mean 'largest'",
+        "did you mean 'largest O'",
         "output 'harmonic_180 O' takes more than 360 crank angles, got 360",
         "chunk must be a whole number of at least 1, got 0",
         "engine is 'fortran', allowed: 'compiled', 'numpy'",

@@ -41,7 +41,11 @@ class Gravity(Load):
     direction: Any = -math.pi / 2
 
     PATH = "gravity"
-    RULES = checks.Rules("gravity", acceleration=checks.Number("m/s**2", low=0.0), direction=checks.Number("rad"))
+    RULES = checks.Rules(
+        "gravity",
+        acceleration=checks.Number("m/s**2", low=0.0, usual=checks.Usual(100.0, "is it in mm/s2?")),
+        direction=checks.Number("rad"),
+    )
 
     @cached_property
     def vector(self):

@@ -12,6 +12,8 @@ single
     Single numbers, where no arrays of designs are taken.
 rules
     What a value must be: `Number`, `Pair`, `Name` ...
+usual
+    What is beyond the sizes that a number usually has looks like a slip of units, and is asked about.
 checked
     `Checked` dataclasses, whose fields keep to a table of `Rules`.
 
@@ -53,6 +55,7 @@ from .rules import (
     Sign,
 )
 from .single import single, singles
+from .usual import Usual, usual_of
 from .values import kept, known, unfit
 
 __all__ = [
@@ -71,6 +74,7 @@ __all__ = [
     "Rules",
     "Series",
     "Sign",
+    "Usual",
     "case",
     "choice",
     "converted",
@@ -93,4 +97,5 @@ __all__ = [
     "solution",
     "truth",
     "unfit",
+    "usual_of",
 ]

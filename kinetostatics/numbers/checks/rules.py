@@ -10,6 +10,7 @@ import numpy as np
 from ..content import LIBRARY
 from .measured import DimensionError, is_quantity, plain
 from .problems import Problem, shown
+from .usual import Usual
 from .values import UnfitError, kept, known, number, unfit
 
 HUGE, LONG = 1e150, 1e75
@@ -23,6 +24,7 @@ class Number:
     """A number in a unit, or an array (designs, 1) of them; as a `table`, one for each crank angle.
 
     The unit is "1" of a ratio and "" where nobody knows it; quantities of pint are converted to it.
+    What is beyond the `usual` is taken, and asked about.
 
     A rule has ``quick(value)``, which answers what to keep or `UNSURE`, and ``taken(value, field)``, which gives what
     to keep and what is wrong with it, if anything, as a sentence; ``plainly(value)`` may add the source of a condition
@@ -34,6 +36,7 @@ class Number:
     low: float | None = None
     strict: bool = False
     table: bool = False
+    usual: Usual | None = None
 
     above: float = dataclass_field(init=False)
     below: float = dataclass_field(init=False)

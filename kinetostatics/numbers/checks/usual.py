@@ -1,0 +1,37 @@
+"""Sizes that a number of a machine usually has: one beyond them looks like a slip of units."""
+
+import math
+from typing import NamedTuple
+
+
+class Usual(NamedTuple):
+    """Sizes, without sign, between which a number lies that is not zero.
+
+    Attributes
+    ----------
+    most, least : float
+        In its SI unit, or in lengths of the machine's longest link.
+    advice : str
+        What is asked about one that does not.
+    in_links : bool
+        Whether they are in lengths of the longest link.
+    """
+
+    most: float
+    advice: str
+    least: float = 0.0
+    in_links: bool = False
+
+
+FAR = 20.0
+"""Lengths of the longest link beyond which nobody puts anything: millimetres beside metres make 1000."""
+BY_UNIT = {
+    "rad": Usual(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees? np.radians converts them"),
+    "m": Usual(FAR, "is it in mm?", in_links=True),
+}
+"""What holds for all numbers in a unit whose rule says nothing else."""
+
+
+def usual_of(rule):
+    """What is usual of a number by its rule; None where anything is."""
+    return rule.usual or BY_UNIT.get(rule.unit)
