@@ -159,6 +159,13 @@ class Certainty(Parameters):
         >>> s.uncertainty("balancing_torque", {"crank_length": 1e-5, "slider.mass": 0.01}).tolerance.round(4)
         array([0.1489, 0.1048])
         """
+        found, doubt = self.with_doubt(quantity, inputs)
+        if doubt is not None:
+            warnings.warn(f"{self.mechanism.name}: {second_order.told([doubt])}", ConditionWarning, stacklevel=2)
+        return found
+
+    def with_doubt(self, quantity, inputs):
+        """The same, and the `second_order.Doubt` that it says too little, or None."""
         named = isinstance(inputs, Mapping) and all(isinstance(path, str) for path in inputs)
         checks.require("uncertainty", None if named else f"inputs must map paths to numbers, got {inputs!r}")
         checks.require("uncertainty", *(unknown(self, path) for path in inputs if path not in self.places))
@@ -168,14 +175,14 @@ class Certainty(Parameters):
         name = self._inner(quantity)
         values, bounds = self._with_bounds(name)
         rounding = _rounding(values, bounds, name != quantity)
-        found = self._slopes(name, inputs, values, rounding) if inputs else {}
+        found, doubt = self._slopes(name, inputs, values, rounding) if inputs else ({}, None)
         if name != quantity:
             vector = quantities.components(self, name)
             found = {path: _of_magnitude(vector, slope) for path, slope in found.items()}
-        return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in found.items()}, rounding)
+        return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in found.items()}, rounding), doubt
 
     def _slopes(self, name, inputs, values, rounding):
-        """Derivatives of a quantity by numbers of the scene, by path; a warning where they change with the inputs."""
+        """Derivatives of a quantity by numbers of the scene, by path; and a doubt where they change with the inputs."""
         state = keeping(self, self.places, inputs).dynamics
         program, leaves = programs.of(state, (name,))
         known = leaves_of(self.places, state)
@@ -187,12 +194,10 @@ class Certainty(Parameters):
         try:
             terms = second_order.Terms(lambda leaves: backend.run(program, state, leaves), values, leaves, by, inputs)
             beyond = second_order.found(terms, len(by), self.crank_angle, first, rounding)
-            text = None if beyond is None else beyond.told(name, quantities.unit_of(self, name), inputs)
+            doubt = None if beyond is None else beyond.doubt(name, quantities.unit_of(self, name), inputs)
         except ParameterError as why:  # a slider beyond its table, for one
-            text = f"the uncertainty of {name} is of first order in the inputs, and may be more: with them moved, {why}"
-        if text is not None:
-            warnings.warn(f"{self.mechanism.name}: {text}", ConditionWarning, stacklevel=3)
-        return found
+            doubt = second_order.Doubt(name, "and may be more", f"with them moved, {why}")
+        return found, doubt
 
     def _with_bounds(self, name, tight=False):
         """Values of a quantity, and bounds on their errors."""

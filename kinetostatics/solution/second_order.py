@@ -42,18 +42,38 @@ class Beyond(NamedTuple):
     first: float
     second: float
 
-    def told(self, quantity, unit, inputs):
-        """What must be said of it, as a sentence."""
+    def doubt(self, quantity, unit, inputs):
+        """What must be said of it, as a `Doubt`."""
         moved, way = " and ".join(f"{path} {inputs[path]:.3g}" for path in self.paths), " or smaller"
         found = f"with {moved} larger{way if len(self.paths) == 1 else ''} there is no value"
         if np.isfinite(self.second):
             most = " and ".join(self.paths) + (" together" if len(self.paths) > 1 else "")
             found = f"the first makes {self.first:.2g} {unit}, the second {self.second:.2g}, most of it of {most}"
-        return (
-            f"the uncertainty of {quantity} is of first order in the inputs, which says too little at {self.values} of "
-            f"{self.of} crank angles: at {np.degrees(self.angle):.9g} deg {found}; vary the inputs there, as "
-            "ks.tolerances does"
-        )
+        where = f"at {np.degrees(self.angle):.9g} deg {found}; vary the inputs there, as ks.tolerances does"
+        places = f"which says too little at {self.values} of {self.of} crank angles"
+        return Doubt(quantity, places, where, self.second / self.first if self.first > 0.0 else np.inf)
+
+
+class Doubt(NamedTuple):
+    """Why the uncertainty of a quantity to first order says too little: what it does, where or when, and how much."""
+
+    quantity: str
+    what: str
+    where: str
+    share: float = np.inf
+
+
+def told(doubts):
+    """What must be said of some quantities, as one sentence."""
+    if len(doubts) == 1:
+        (doubt,) = doubts
+        return f"the uncertainty of {doubt.quantity} is of first order in the inputs, {doubt.what}: {doubt.where}"
+    worst = max(doubts, key=lambda doubt: np.nan_to_num(doubt.share, nan=np.inf))
+    *names, last = dict.fromkeys(doubt.quantity for doubt in doubts)
+    return (
+        f"the uncertainties of {', '.join(names)} and {last} are of first order in the inputs, and may be more; that of "
+        f"{worst.quantity} most: {worst.where}"
+    )
 
 
 class Terms:

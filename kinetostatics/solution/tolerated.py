@@ -1,11 +1,15 @@
 """How sure the largest values of a machine are: what tolerances of its numbers make, and what rounding does."""
 
+import warnings
+
 import numpy as np
 
+from ..errors import ConditionWarning
 from ..mechanics.quantities import of_scene
 from ..numbers.shown import at_most, number
 from ..results.extremes import extrema
 from ..results.rounding import Known
+from .second_order import told
 
 COLUMNS = ("quantity", "unit", "largest", "at [deg]", "tolerance", "rounding", "most from", "share [%]")
 KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")
@@ -38,22 +42,34 @@ def largest_with_uncertainty(solution, inputs):
     ------
     NotGivenError, ParameterError
         As for `Solution.uncertainty`.
+
+    Warns
+    -----
+    ConditionWarning
+        As for `Solution.uncertainty`, once for all quantities.
     """
     import pandas as pd
 
     quantities = {name: item for name, item in of_scene(solution).items() if item.kind in KINDS and name != AGAIN}
     known = Known(solution, {name: found for name in quantities if len(found := extrema(solution, name))})
-    rows = [_row(known, name, quantities[name], inputs) for name in known.found]
+    rows, doubts = [], []
+    for name in known.found:
+        row, doubt = _row(known, name, quantities[name], inputs)
+        rows.append(row)
+        doubts += [] if doubt is None else [doubt]
+    if doubts:
+        warnings.warn(f"{solution.mechanism.name}: {told(doubts)}", ConditionWarning, stacklevel=2)
     return pd.DataFrame(rows, columns=COLUMNS).set_index("quantity")
 
 
 def _row(known, name, quantity, inputs):
+    """A row of the table, and the doubt that it says too little, or None."""
     value, angle, rounding = known.end(name, lambda values: np.argmax(np.abs(values)))
-    sure = known.solution.at(angle).uncertainty(f"|{name}|" if quantity.vector else name, inputs)
+    sure, doubt = known.solution.at(angle).with_doubt(f"|{name}|" if quantity.vector else name, inputs)
     tolerance = float(sure.tolerance)
     most = max(sure.inputs, key=sure.inputs.__getitem__) if tolerance > 0.0 else ""
     share = 100.0 * float(sure.inputs[most] / tolerance) ** 2 if most else np.nan
-    return quantity.label, quantity.unit, value, np.degrees(angle), tolerance, rounding, most, share
+    return (quantity.label, quantity.unit, value, np.degrees(angle), tolerance, rounding, most, share), doubt
 
 
 def with_uncertainty(value, uncertainty):

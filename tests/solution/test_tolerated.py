@@ -41,3 +41,13 @@ def test_what_does_not_vary_and_what_says_the_torque_again_is_left_out():
 ])  # fmt: skip
 def test_a_number_is_told_to_the_second_digit_of_its_uncertainty(value, uncertainty, text):
     assert with_uncertainty(value, uncertainty) == text
+
+
+def test_a_doubt_is_told_once_and_names_the_quantities():
+    """Half of a crank's length more makes a fourth more of the square that a force grows by, beyond first order."""
+    with pytest.warns(ks.ConditionWarning) as caught:
+        largest_with_uncertainty(YOKE, {"crank_length": 0.05})
+    (told,) = [str(item.message) for item in caught]
+    assert told.startswith("Scotch yoke: the uncertainties of balancing_torque")
+    assert "are of first order in the inputs, and may be more; that of balancing_torque most: at " in told
+    assert told.count("vary the inputs there") == 1
