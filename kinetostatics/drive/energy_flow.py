@@ -15,6 +15,7 @@ from ..machine.friction import NONE
 from ..mechanics.pushes import title_of
 from ..numbers import checks
 from ..numbers.leaves import with_fields
+from ..numbers.shown import number
 
 ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
 SOURCE, LOSS, LOAD, JOINT, HELD = "source", "loss", "load", "joint", "held"
@@ -75,6 +76,15 @@ class EnergyFlow:
         if problem:
             raise QuantityError(f"energy flow: {problem}")
         return found[name]
+
+    def __repr__(self):
+        wide = max((len(part.name) for part in self.parts), default=0)
+        noise = NOISE * np.nanmax([0.0, *(max(abs(part.energy), part.swing) for part in self.parts)])
+        lines = [f"<EnergyFlow: energy in a turn of {self.turn_time:.6g} s"]
+        for part in self.parts:
+            held = f", {number(part.swing, bound=noise)} J held and returned" if part.swing == part.swing else ""
+            lines.append(f"  {part.name:<{wide}}  {part.kind:<6}  {number(part.energy):>11} J{held}")
+        return "\n".join(lines) + ">"
 
     @property
     def residual(self):

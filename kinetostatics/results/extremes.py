@@ -79,6 +79,11 @@ class Extremes:
         return at.error_bound(f"|{self.quantity}|" if vector else self.quantity)
 
     @property
+    def unit(self):
+        """SI unit of the values; "" for a function of the user's."""
+        return "" if self.solution is None else unit_of(self.solution, self.quantity)
+
+    @property
     def range(self):
         """Smallest and largest value over the turn; both are the constant if it has no extremum."""
         return (self.value.min(), self.value.max()) if len(self) else (self.constant, self.constant)
@@ -92,9 +97,13 @@ class Extremes:
         return len(self.angle)
 
     def __repr__(self):
-        known = zip(self.angle, *known_values(self), strict=True)
-        rows = (f"{np.degrees(angle):12.6f} deg  {number(value, bound=error):>11}" for angle, value, error in known)
+        known = zip(np.degrees(self.angle), *known_values(self), strict=True)
+        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        rows = [f"{angle:12.6f} deg  {number(value, bound=error):>11}{unit}" for angle, value, error in known]
         gaps = self.solution.sampled.unclosed if self.solution else ""
+        if not rows:
+            same = "no value" if np.isnan(self.constant) else f"{number(self.constant)}{unit} all over the period"
+            return f"no extremes of {self.quantity}: {same}{gaps and f'; it {gaps}'}"
         return "\n".join([f"{len(self)} extremes of {self.quantity}{gaps and f'; it {gaps}'}", *rows])
 
 

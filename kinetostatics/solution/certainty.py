@@ -29,6 +29,8 @@ class Uncertainty:
         What the standard uncertainty of each input alone makes.
     rounding : array
         Proven bound on the rounding error.
+    unit : str
+        SI unit of all of them.
 
     Examples
     --------
@@ -41,6 +43,7 @@ class Uncertainty:
 
     inputs: dict[str, Any]
     rounding: Any
+    unit: str
 
     @property
     def tolerance(self):
@@ -60,7 +63,7 @@ class Uncertainty:
         rows = {**self.inputs, "all inputs": self.tolerance, "rounding": self.rounding}
         with np.errstate(all="ignore"):
             lines = [f"{np.nanmax(values, initial=0.0):12.3g}  {name}" for name, values in rows.items()]
-        return "\n".join(["largest over the crank angles, SI:", *lines])
+        return "\n".join([f"largest over the crank angles [{self.unit}]:", *lines])
 
 
 class Certainty(Parameters):
@@ -179,7 +182,8 @@ class Certainty(Parameters):
         if name != quantity:
             vector = quantities.components(self, name)
             found = {path: _of_magnitude(vector, slope) for path, slope in found.items()}
-        return Uncertainty({path: np.abs(slope) * inputs[path] for path, slope in found.items()}, rounding), doubt
+        parts = {path: np.abs(slope) * inputs[path] for path, slope in found.items()}
+        return Uncertainty(parts, rounding, quantities.unit_of(self, name)), doubt
 
     def _slopes(self, name, inputs, values, rounding):
         """Derivatives of a quantity by numbers of the scene, by path; and a doubt where they change with the inputs."""

@@ -179,6 +179,7 @@ def test_near_a_toggle_study_and_library_lose_the_digits_that_rounded_lengths_co
         assert rates < 0.1 * allowed / margin
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @pytest.mark.parametrize("longer", [1e2, 1e4, 1e6])
 def test_long_rocker_costs_the_study_the_digits_that_the_library_keeps(longer):
     """A coupler of 1 and a rocker of `longer`: the cosine from which psi comes is 1 but for 1 / longer^2."""

@@ -89,3 +89,12 @@ def test_a_period_of_two_turns_counts_each():
     flow = running(ks.Torque(pulse, on="crank"), CUT).energy_flow
     assert flow["Torque on 'crank'"] == pytest.approx(-900.0 * np.radians(200.0) / 2 / 2, rel=1e-9)
     assert flow["ProcessForce on 'slider'"] == pytest.approx(4800.0, rel=1e-12)
+
+
+def test_parts_are_printed_with_their_units():
+    flow = running(CUT).energy_flow
+    told = repr(flow).splitlines()
+    assert told[0].startswith("<EnergyFlow: energy in a turn of 0.1")
+    assert told[0].endswith(" s")
+    assert len(told) == 1 + len(flow.parts)
+    assert all(line.rstrip(">").endswith((" J", " J held and returned")) for line in told[1:])

@@ -74,6 +74,7 @@ def test_where_terms_of_second_order_are_not_small_the_forward_bound_stands_in()
     assert np.array_equal(np.isfinite(s.error_bound("O", tight=True)), np.isfinite(forward))
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_tight_bounds_of_values_of_every_size_are_finite_and_no_larger():
     for size in (1e-9, 1.0, 1e9):
         pump = ks.crank_slider(0.05 * size, 0.2 * size, slider=ks.Link(mass=1e-12), coupler=ks.Link(1e9, 0.1 * size))

@@ -96,6 +96,7 @@ def test_unknown_paths_and_joints_are_refused():
         scene.solve(4).pin_load("Z")
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @every("mu", [1e-300, 1e-12, 0.999, 5.0, 1e6, 1e140])
 @every("name", ["O", "A", "B", "guide"])
 def test_any_coefficient_gives_numbers_or_is_said_to_jam(mu, name):

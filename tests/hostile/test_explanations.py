@@ -55,6 +55,7 @@ def test_odd_names_of_pins(names):
     assert told.latex
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @every("size", [1e-9, 1e-3, 1e3, 1e6])
 def test_machines_of_any_size(size):
     pump = ks.crank_slider(0.05 * size, 0.2 * size, slider=ks.Link(1.0))

@@ -178,6 +178,7 @@ def test_any_real_number_becomes_a_float(kind, field, value):
     assert float(np.ravel(value)[0]) in found or "balancing" in kind or field == "guide_angle"
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_small_integers_do_not_overflow():
     """300 squared is more than 16 bits hold."""
     small = ks.crank_slider(np.int16(300), np.int16(900), slider=ks.Link(np.int8(100)))

@@ -46,6 +46,7 @@ def scaled(machine, length, mass):
     )
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @every_kind
 @pytest.mark.parametrize("length", [1e-3, 0.37, 1e3])
 @pytest.mark.parametrize("mass", [1e-3, 5.3, 1e3])
@@ -251,6 +252,7 @@ def test_process_force_as_a_function_of_the_motion_equals_the_table_of_its_value
     assert_equal(results(machine.solve(loads=by_function)), results(machine.solve(loads=ks.ProcessForce(drag))))
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @pytest.mark.parametrize("ratio", [1e-2, 1e-4, 1e-8, 1e-12])
 def test_long_coupler_makes_a_scotch_yoke(ratio):
     """Slider acceleration -(cos + ratio cos 2) r omega^2, the rest of order ratio^3; torque m r^2 omega^2 sin cos."""

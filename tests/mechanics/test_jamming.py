@@ -15,6 +15,7 @@ def solved(mu, **options):
     return ks.solve(PUMP, TURN, crank_speed=3.0, loads=loads, friction=friction, **options)
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_a_rod_within_the_angle_of_friction_jams_and_says_at_which_angles():
     """The rod leans by at most 30 degrees: a slider jams where mu times its slope reaches one."""
     assert np.isfinite(solved(1.7).balancing_torque).all()
@@ -24,6 +25,7 @@ def test_a_rod_within_the_angle_of_friction_jams_and_says_at_which_angles():
     assert set(caught.value.angles) <= set(TURN[2.5 * slope >= 1.0].tolist())
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_it_is_left_open_where_asked():
     found = solved(2.5, on_gap="nan").balancing_torque
     assert 0 < np.isnan(found).sum() < found.size
@@ -45,6 +47,7 @@ def states(kappa, free):
     return [force for force, sign in zip(both, (1.0, -1.0), strict=True) if sign * force > 0.0]
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_of_a_guide_alone_the_margin_tells_exactly_whether_there_is_one_state_of_forces():
     s = solved(2.5, on_gap="nan")
     kappa = 1.0 - s.friction_margin

@@ -178,6 +178,7 @@ def test_a_slow_machine_at_a_limit_position_keeps_its_spring(speed):
     assert np.allclose(springs.acting(run)[1]["slider"], run.pushes["slider"], rtol=3e-16, atol=0.0)
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @every("strokes", [1.0, 1e2, 1e4, 1e6])
 def test_a_soft_spring_that_is_long_loses_no_digit(flint, strokes):
     """Its force is as large as inertia, its elongation many times the stroke."""

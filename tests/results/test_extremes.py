@@ -227,9 +227,15 @@ def test_extremes_are_printed_with_the_digits_that_are_known_and_rounding_as_0()
     found = ks.extremes(ks.load_case("sawframe_2r63").solve("cam-circle"), "O")
     lines = repr(found).splitlines()
     assert lines[0] == "8 extremes of O"
-    assert lines[1].split() == ["51.543504", "deg", "22285.3"]
-    assert lines[2].split() == ["93.042671", "deg", "0"]
+    assert lines[1].split() == ["51.543504", "deg", "22285.3", "N"]
+    assert lines[2].split() == ["93.042671", "deg", "0", "N"]
     assert 0.0 < found.value[1] < 1e-10
+
+
+def test_what_has_no_extremes_is_printed_with_its_value_and_unit():
+    s = ks.solve(ks.crank_slider(0.3, 2.0), 0.0, crank_speed=1.0)
+    assert repr(ks.extremes(s, "guide_moment")) == "no extremes of guide_moment: 0 N m all over the period"
+    assert repr(ks.extremes(s, "crank_rate")) == "no extremes of crank_rate: 1 rad/s all over the period"
 
 
 def test_extremes_of_a_function_are_printed_to_six_digits():

@@ -82,7 +82,7 @@ def test_uncertainty_adds_rounding_to_the_root_sum_of_squares():
     np.testing.assert_allclose(found.total, np.sqrt((parts**2).sum(axis=0)) + s.error_bound("|O|"), rtol=1e-14)
     np.testing.assert_array_equal(np.asarray(found), found.total)
     assert "rounding" in repr(found)
-    assert repr(found).startswith("largest over the crank angles, SI:")
+    assert repr(found).startswith("largest over the crank angles [N")
     assert np.all(s.uncertainty("O", {}).total == s.error_bound("O"))
 
 

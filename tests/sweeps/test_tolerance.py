@@ -128,7 +128,7 @@ def test_workers_give_the_same_study():
 def test_texts_and_outputs_that_cannot_be_read_are_refused():
     with pytest.raises(ks.ParameterError, match=r"cannot read '1 kg' for mass: .*cannot read 'much' for push"):
         tolerances(ram, OUTPUT, {"mass": "1 kg", "push": "much"}, count=16)
-    with pytest.raises(ks.ParameterError, match="did you mean 'largest'"):
+    with pytest.raises(ks.ParameterError, match="did you mean 'largest B'"):
         tolerances(ram, "larges B", SPREADS, count=16)
 
 
