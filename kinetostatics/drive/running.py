@@ -57,7 +57,8 @@ class Running(Powers):
             f"  mean speed      {self.mean_speed:.9g} rad/s",
             f"  fluctuation     {self.fluctuation:.9g} ({self.speed_range[0]:.9g} to {self.speed_range[1]:.9g} rad/s)",
             f"  energy a turn   {self.energy_per_turn:.9g} J",
-            f"  motor power     {self.mean_power:.9g} W mean, {self.rms_power:.9g} W rms, {self.peak_power:.9g} W peak>",
+            f"  motor power     {self.mean_power:.9g} W mean, {self.rms_power:.9g} W rms, "
+            f"{self.peak_power:.9g} W peak>",
         ]
         return "\n".join(lines)
 

@@ -66,8 +66,8 @@ def _lengths(bars):
         yield f"the {link} is {longest:.6g} m long; are lengths in mm?"
     elif longest > SLENDER * shortest:
         yield (
-            f"the {link} is {longest:.6g} m long, {longest / shortest:.4g} times the {other} ({shortest:.4g} m); is one "
-            "of them in mm?"
+            f"the {link} is {longest:.6g} m long, {longest / shortest:.4g} times the {other} ({shortest:.4g} m); is "
+            "one of them in mm?"
         )
 
 

@@ -10,9 +10,7 @@ from ..numbers.lazy import cached_property
 from . import hertz
 
 SIZE = checks.Number("m", low=0.0, strict=True)
-MODULUS = checks.Number(
-    "Pa", low=0.0, strict=True, usual=checks.Usual(1e13, "is it in GPa, or in N/mm2?", least=1e6)
-)
+MODULUS = checks.Number("Pa", low=0.0, strict=True, usual=checks.Usual(1e13, "is it in GPa, or in N/mm2?", least=1e6))
 RATIO = checks.Number("1", low=0.0)
 MATERIALS = {
     "youngs_modulus": MODULUS,

@@ -17,8 +17,8 @@ from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from ..numbers.leaves import made
-from .angles import crank_angles, problems
 from . import slips
+from .angles import crank_angles, problems
 from .checked import checked
 from .drive_and_loads import in_a_line
 from .parameters import DRIVE, Parameters, unknown

@@ -71,8 +71,8 @@ def told(doubts):
     worst = max(doubts, key=lambda doubt: np.nan_to_num(doubt.share, nan=np.inf))
     *names, last = dict.fromkeys(doubt.quantity for doubt in doubts)
     return (
-        f"the uncertainties of {', '.join(names)} and {last} are of first order in the inputs, and may be more; that of "
-        f"{worst.quantity} most: {worst.where}"
+        f"the uncertainties of {', '.join(names)} and {last} are of first order in the inputs, and may be more; "
+        f"that of {worst.quantity} most: {worst.where}"
     )
 
 

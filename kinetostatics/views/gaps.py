@@ -1,5 +1,7 @@
 """Crank angles without a value, shaded and named, and axes that what grows without bound beside them does not set."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .canvas import in_order, in_sight
@@ -50,12 +52,51 @@ def framed(ax, arrays, unit):
         low, high = seen.min(), seen.max()
         room = ax.margins()[1] * (high - low)
         ax.set_ylim(low - room, high + room)
-        beyond(ax, arrays, unit)
+        noted(ax, [f"beyond the frame: {size(arrays, unit)}"])
 
 
-def beyond(ax, arrays, unit):
-    """Say up to what size values (N,) go that lie beyond the axes."""
+def size(arrays, unit):
+    """Up to what size values (N,) go, in words."""
     largest = float(np.nanmax(np.abs(np.concatenate(arrays))))
-    size = f"up to {largest:.3g} {unit}" if np.isfinite(largest) else "without bound"
+    return f"up to {largest:.3g} {unit}" if np.isfinite(largest) else "without bound"
+
+
+def noted(ax, lines):
+    """Write lines into the corner of the axes."""
     box = {"boxstyle": "square,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.7}
-    ax.text(0.01, 0.01, f"beyond the frame: {size}", transform=ax.transAxes, va="bottom", bbox=box, **WORDS)
+    ax.text(0.01, 0.01, "\n".join(lines), transform=ax.transAxes, va="bottom", bbox=box, **WORDS)
+
+
+class End(NamedTuple):
+    """Where a curve ends that is closed but for gaps, and for what is beyond the frame.
+
+    Attributes
+    ----------
+    row : int
+    angle : float
+        Direction in which it goes on, degrees.
+    why : str
+        What it ends for; "" where it goes on beyond the frame.
+    """
+
+    row: int
+    angle: float
+    why: str
+
+
+def ends(solution, curve, drawn):
+    """Each `End` of a curve (2, N) of a solution over its period, of which some is drawn and the rest is NaN."""
+    there, missing = np.isfinite(drawn).all(axis=0), np.isnan(curve).any(axis=0)
+    for step in (1, -1):
+        for row in np.flatnonzero(there & ~np.roll(there, -step)).tolist():
+            before, behind = (row - step) % there.size, (row + step) % there.size
+            x, y = drawn[:, row] - (drawn[:, before] if there[before] else 0.0)
+            why = _why(solution.closed[[behind]], solution) if missing[behind] else ""
+            yield End(row, float(np.degrees(np.arctan2(y, x))), why)
+
+
+def marked(ax, found, points, color):
+    """Mark ends of a curve (2, N): a cross where it stops, a head of an arrow where it goes on."""
+    for end in found:
+        style = {"marker": "x", "ms": 6, "mew": 1.5} if end.why else {"marker": (3, 0, end.angle - 90.0), "ms": 8}
+        ax.plot(*points[:, end.row], ls="", color=color, zorder=4, **style)

@@ -152,7 +152,7 @@ def test_single_precision_angles_are_warned_of():
         (lambda s: s.reaction("guid"), "crank-slider: reaction is 'guid', allowed: .*'guide'.*; did you mean 'guide'?"),
         (
             lambda s: s.position("b"),
-            "crank-slider: joint or link is 'b', allowed: 'O', 'A', 'B', 'crank', 'coupler', 'slider'; did you mean 'B'?",
+            "joint or link is 'b', allowed: 'O', 'A', 'B', 'crank', 'coupler', 'slider'; did you mean 'B'",
         ),
         (
             lambda s: s.rate("couplr"),

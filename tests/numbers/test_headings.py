@@ -36,6 +36,6 @@ def test_unknown_double_and_unlike_columns_are_all_told():
 
 
 def test_a_unit_in_round_brackets_is_told_to_stand_in_square_ones():
-    columns, problems = si_columns(["length (mm)", "size (mm)"], {"length": "m"})
+    _, problems = si_columns(["length (mm)", "size (mm)"], {"length": "m"})
     assert problems[0] == "parameter 'length (mm)' has its unit in round brackets; write 'length [mm]'"
     assert "allowed: 'length'" in problems[1]

@@ -5,12 +5,12 @@ from itertools import product
 
 import numpy as np
 import pytest
-from support.every import every
-from support.scenes import SCENES, solve
 
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.solution import slips
+from support.every import every
+from support.scenes import SCENES, solve
 
 TURN = 2.0 * np.pi * np.arange(24) / 24
 ROD, RAM = ks.Link(150.0, 1.0, 20.5), ks.Link(600.0)
@@ -68,7 +68,10 @@ CIRCLE = ks.cams.Circle(0.2, (-0.05, 0.0))
         (lambda: hints(crank_speed=np.linspace(1.0, 3200.0, 24)), "the pin of the crank goes at 960 m/s"),
         (made(saw, crank_length=300.0, coupler_length=2000.0), "the coupler is 2000 m long; are lengths in mm?"),
         (made(saw, crank_length=0.005, coupler_length=20.0), "4000 times the crank (0.005 m); is one of them in mm?"),
-        (made(saw, coupler=ks.Link(150.0, 1.0, 20.5e6)), "the inertia of the coupler, 2.05e+07 kg m2, is more than ten"),
+        (
+            made(saw, coupler=ks.Link(150.0, 1.0, 20.5e6)),
+            "the inertia of the coupler, 2.05e+07 kg m2, is more than ten",
+        ),
         (made(saw, coupler=ks.Link(150.0, 1.0, 20.5e-6)), "the inertia of the coupler, 2.05e-05 kg m2, is less than"),
         (made(saw, coupler=ks.Link(150.0, (0.0, 1e3), 20.5)), "coupler.centre.across is 1000 m"),
         (made(ks.four_bar, 0.1, 0.4, 0.3, rocker_pivot=(400.0, 0.0)), "rocker_pivot.x is 400 m, 1000 times"),

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.views import canvas
+from kinetostatics.views import canvas, gaps
 from support.every import every
 
 TURN = np.radians(np.arange(0.0, 360.0, 0.5))
@@ -87,7 +87,7 @@ def test_what_has_no_value_at_all_limits_no_axis_and_hides_no_size(first):
     for draw in (ks.plots.torque, ks.plots.hodograph):
         figure, ax = plt.subplots()
         draw(named, ax=ax)
-        assert any(text.get_text().startswith("beyond the frame: up to") for text in ax.texts)
+        assert any("beyond the frame: up to" in text.get_text() for text in ax.texts)
         assert np.all(np.isfinite(ax.get_ylim()))
         plt.close(figure)
 
@@ -103,6 +103,38 @@ def test_a_hodograph_beside_a_gap_shows_what_is_ordinary_and_its_marks_by_themse
     assert "nan" not in told
     assert not {"150°", "180°", "210°"} & set(told.replace(",", " ").split())
     assert {"0°", "30°", "300°", "330°"} <= {text.get_text() for text in axes.texts}
+
+
+def test_a_hodograph_ends_at_heads_of_arrows_where_it_goes_on_and_at_crosses_where_it_stops(axes):
+    pump = ks.crank_slider(0.3, 0.6, slider=ks.Link(600.0))
+    loads, friction = [ks.Gravity(), ks.ProcessForce(500.0)], {"guide": ks.GuideFriction(1.9)}
+    solution = solved(pump, 30.0, loads=loads, friction=friction)
+    ks.plots.hodograph(solution, ax=axes)
+    whole, drawn = solution.reaction("O"), np.array(axes.lines[0].get_data())[:, :-1]
+    found = list(gaps.ends(solution, whole, drawn))
+    there, missing = np.isfinite(drawn[0]), np.isnan(whole[0])
+    assert len(found) == np.sum(there & ~np.roll(there, -1)) + np.sum(there & ~np.roll(there, 1)) > 2
+    for end in found:
+        beside = [row % TURN.size for row in (end.row - 1, end.row + 1) if not there[row % TURN.size]]
+        assert {"jams" if missing[row] else "" for row in beside} == {end.why}
+    assert {end.why for end in found} == {"", "jams"}
+    marks = [line.get_marker() for line in axes.lines if len(line.get_xdata()) == 1]
+    assert {mark if isinstance(mark, str) else mark[0] for mark in marks} == {"x", 3}
+    (note,) = [text.get_text() for text in axes.texts if "beyond" in text.get_text()]
+    assert note.splitlines()[1] == "× jams"
+    assert {f"{np.degrees(TURN[end.row]):.4g}°" for end in found if not end.why} & {
+        text.get_text() for text in axes.texts
+    }
+
+
+def test_the_head_of_an_arrow_points_along_the_curve():
+    x = np.array([0.0, 1.0, 2.0, np.nan, np.nan, -1.0])
+    curve = np.array([x, 0.5 * x])
+    solution = solved(SHORT)
+    first, second = gaps.ends(solution, np.nan_to_num(curve, nan=9.0), curve)
+    assert (first.row, second.row) == (2, 5)
+    assert first.angle == pytest.approx(np.degrees(np.arctan2(0.5, 1.0)))
+    assert second.angle == pytest.approx(np.degrees(np.arctan2(-0.5, -1.0)))
 
 
 def test_deviations_of_the_acceleration_are_limited_and_shaded_as_other_curves(axes):

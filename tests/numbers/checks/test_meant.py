@@ -1,10 +1,11 @@
 """Suggestions come from declared synonyms, and from spelling where there are none."""
 
-from support.every import every
+import pytest
 
 import kinetostatics as ks
 from kinetostatics.numbers.checks.meant import SYNONYMS, nearest
 from kinetostatics.results.reductions import FOUND
+from support.every import every
 
 SCENE = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 33.5)
 FOUR_BAR = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.4, 0.0))
@@ -59,9 +60,6 @@ def test_what_is_meant_is_found(word, allowed, meant):
     ],
 )
 def test_errors_ask_for_what_is_meant(wrong, told):
-    try:
+    with pytest.raises(ks.KinetostaticsError) as caught:
         wrong()
-    except ks.KinetostaticsError as error:
-        assert told in str(error)
-    else:
-        raise AssertionError("nothing was wrong")
+    assert told in str(caught.value)
