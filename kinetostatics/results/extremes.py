@@ -12,8 +12,7 @@ from ..mechanics.quantities import scale, unit_of, values
 from ..numbers import checks
 from ..numbers.elementary import UNIT
 from ..numbers.lazy import cached_property
-from ..numbers.shown import number
-from .rounding import FLOOR, known_values
+from .rounding import FLOOR, told
 from .turn import SAME, require_single, runs
 
 CALM = 1e6
@@ -97,14 +96,8 @@ class Extremes:
         return len(self.angle)
 
     def __repr__(self):
-        known = zip(np.degrees(self.angle), *known_values(self), strict=True)
-        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
-        rows = [f"{angle:12.6f} deg  {number(value, bound=error):>11}{unit}" for angle, value, error in known]
-        gaps = self.solution.sampled.unclosed if self.solution else ""
-        if not rows:
-            same = "no value" if np.isnan(self.constant) else f"{number(self.constant)}{unit} all over the period"
-            return f"no extremes of {self.quantity}: {same}{gaps and f'; it {gaps}'}"
-        return "\n".join([f"{len(self)} extremes of {self.quantity}{gaps and f'; it {gaps}'}", *rows])
+        return told(self)
+
 
 
 def extremes(solution, quantity):

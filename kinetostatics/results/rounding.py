@@ -11,6 +11,7 @@ from ..engines.engines import NUMPY
 from ..errors import NotGivenError
 from ..mechanics.quantities import of_scene, scale
 from ..numbers.lazy import cached_property
+from ..numbers.shown import number
 
 FLOOR = 1e-13
 """Size, relative to the terms that a quantity is made of, below which it is rounding: neither a value nor a rise."""
@@ -105,6 +106,19 @@ def known_values(extremes):
         return extremes.value, np.full(len(extremes), np.nan)
     errors = Known(solution, {name: extremes}).errors(name)
     return without_rounding(solution, name, extremes.value, errors), errors
+
+
+def told(extremes):
+    """Extremes as text, with their unit and the digits that are known."""
+    known = zip(np.degrees(extremes.angle), *known_values(extremes), strict=True)
+    unit = f" {extremes.unit}" if extremes.unit not in ("", "1") else ""
+    gaps = extremes.solution.sampled.unclosed if extremes.solution else ""
+    beside = gaps and f"; it {gaps}"
+    if not len(extremes):
+        same = "no value" if np.isnan(extremes.constant) else f"{number(extremes.constant)}{unit} all over the period"
+        return f"no extremes of {extremes.quantity}: {same}{beside}"
+    rows = (f"{angle:12.6f} deg  {number(value, bound=error):>11}{unit}" for angle, value, error in known)
+    return "\n".join([f"{len(extremes)} extremes of {extremes.quantity}{beside}", *rows])
 
 
 def zeroed(values, floor):
