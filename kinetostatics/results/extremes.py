@@ -78,11 +78,6 @@ class Extremes:
         return at.error_bound(f"|{self.quantity}|" if vector else self.quantity)
 
     @property
-    def unit(self):
-        """SI unit of the values; "" for a function of the user's."""
-        return "" if self.solution is None else unit_of(self.solution, self.quantity)
-
-    @property
     def range(self):
         """Smallest and largest value over the turn; both are the constant if it has no extremum."""
         return (self.value.min(), self.value.max()) if len(self) else (self.constant, self.constant)
@@ -97,7 +92,6 @@ class Extremes:
 
     def __repr__(self):
         return told(self)
-
 
 
 def extremes(solution, quantity):

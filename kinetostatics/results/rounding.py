@@ -9,7 +9,7 @@ import numpy as np
 from ..engines.bounded import of_magnitude
 from ..engines.engines import NUMPY
 from ..errors import NotGivenError
-from ..mechanics.quantities import of_scene, scale
+from ..mechanics.quantities import of_scene, scale, unit_of
 from ..numbers.lazy import cached_property
 from ..numbers.shown import number
 
@@ -111,9 +111,10 @@ def known_values(extremes):
 def told(extremes):
     """Extremes as text, with their unit and the digits that are known."""
     known = zip(np.degrees(extremes.angle), *known_values(extremes), strict=True)
-    unit = f" {extremes.unit}" if extremes.unit not in ("", "1") else ""
-    gaps = extremes.solution.sampled.unclosed if extremes.solution else ""
-    beside = gaps and f"; it {gaps}"
+    solution, unit, beside = extremes.solution, "", ""
+    if solution is not None:
+        own, gaps = unit_of(solution, extremes.quantity), solution.sampled.unclosed
+        unit, beside = f" {own}" if own != "1" else "", gaps and f"; it {gaps}"
     if not len(extremes):
         same = "no value" if np.isnan(extremes.constant) else f"{number(extremes.constant)}{unit} all over the period"
         return f"no extremes of {extremes.quantity}: {same}{beside}"

@@ -48,15 +48,16 @@ def _spectral(solution, quantity, samples):
     require_one_design(solution)
     angle = solution.crank_angle
     if not _is_even_turn(angle):
-        raise NotGivenError("spectral differentiation needs crank angles evenly over one turn from 0")
+        raise NotGivenError("spectral differentiation needs crank angles evenly over one turn, its end excluded")
     if samples > angle.size:
         raise NotGivenError(f"{samples} samples are more than the {angle.size} crank angles asked for")
     sampled = np.linspace(0.0, 2 * np.pi, samples, endpoint=False)
     closed_paths(solution.mechanism, sampled)
     harmonic = 1j * np.arange((samples + 1) // 2)
+    onward = np.exp(harmonic * angle[0])
 
     def way(mechanism, angle):
-        spectrum = np.fft.rfft(positions(mechanism, sampled))[..., : harmonic.size] * (angle.size / samples)
+        spectrum = np.fft.rfft(positions(mechanism, sampled))[..., : harmonic.size] * (onward * (angle.size / samples))
         parts = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
         return assembled(mechanism, angle, joints_of(mechanism, *parts))
 
@@ -77,7 +78,7 @@ def _approximated(run):
 
 def _is_even_turn(angle):
     turn = np.linspace(0.0, 2 * np.pi, np.size(angle), endpoint=False)
-    return np.ndim(angle) == 1 and np.allclose(angle, turn, atol=1e-9)
+    return np.ndim(angle) == 1 and np.allclose(angle - angle[0], turn, atol=1e-9)
 
 
 def _series(solution, order):

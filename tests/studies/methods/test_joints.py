@@ -54,6 +54,19 @@ def test_error_of_spectral_differentiation_falls_geometrically_with_the_samples(
     assert rates == pytest.approx(SINGULARITY / 2, rel=0.03)
 
 
+def test_spectral_differentiation_takes_a_turn_from_any_angle_as_studies_of_friction_begin_between_dead_centres():
+    pump = ks.crank_slider(0.1, 0.5, coupler=ks.Link(2.0, 0.2, 0.03), slider=ks.Link(3.0))
+    turn = np.linspace(0, 2 * np.pi, 36, endpoint=False) + np.pi / 36
+    rubbing = {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.05, 0.02)}
+    solution = ks.solve(pump, turn, crank_speed=10.0, loads=ks.Gravity(), friction=rubbing)
+    (method,) = [method for method in METHODS if method.name == "spectral differentiation"]
+    found = method.prepare(solution, "balancing_torque", 32)()
+    assert np.abs(found - solution.balancing_torque).max() < 1e-10 * np.abs(solution.balancing_torque).max()
+    uneven = solution.at(turn**1.01)
+    with pytest.raises(ks.NotGivenError, match="evenly over one turn, its end excluded"):
+        method.prepare(uneven, "balancing_torque", 32)
+
+
 def test_error_of_harmonic_series_falls_geometrically_with_the_harmonics(torque):
     """The plain crank-slider on a guide through O has even harmonics only."""
     harmonics, error = curve(torque, "harmonic series", 2, 6)
