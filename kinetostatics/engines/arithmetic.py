@@ -155,7 +155,7 @@ class BoundsElsewhere:
         return self._graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
 
     def of_sum(self, node, left, right=None):
-        if (near := beside_one(self._graph, node, self._arithmetic.unit)) is not None:
+        if (near := beside_one(self._graph, node, self.total, self._arithmetic.unit)) is not None:
             return Error(0.0, near)
         return self.error(left) if right is None else Error(0.0, self.total(left) + self.total(right))
 

@@ -239,7 +239,7 @@ def is_scaling(part):
 
 
 def _of_sum(bounds, more, node, *parts):
-    if (near := beside_one(bounds._graph, node)) is not None:
+    if (near := beside_one(bounds._graph, node, bounds.total)) is not None:
         return Error(0.0, near)
     others = [part for part in parts if not is_zero(part)]
     if len(others) < 2 and more is None:

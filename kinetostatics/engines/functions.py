@@ -4,6 +4,7 @@ from functools import reduce
 from operator import add
 
 from ..numbers.elementary import APART, UNIT, UNSEEN
+from ..numbers.planar import plus
 from .trace import BY_DESIGN, Node
 
 ULP = {"sin": 2.0, "cos": 2.0, "atan": 2.0, "sqrt": 1.0, "root": 1.0}
@@ -20,42 +21,35 @@ LOST = 2.0**-900
 """In units: what the square may have lost as too small."""
 
 
-def beside_one(graph, node, unit=UNIT):
+def beside_one(graph, node, of_sign, unit=UNIT):
     """Bound on the error, in units, that a sum of one and a sine or cosine of the crank angle has of that.
 
     None for other nodes. Where the sum vanishes, as linkages fold, this does so as well, which `ULP` does not tell.
+    Along an axis it is times a sign that a design has; ``of_sign(sign)`` bounds the error of that: 0 or None where it is
+    known, else infinite or NaN, as then the whole is. Both are numbers of the design, so this costs no angle anything.
     """
-    turn = _beside_one(node)
+    turn, sign = _beside_one(node)
     if turn is None:
         return None
     other = graph.node(OTHER[turn.operation], *turn.arguments)
-    return -graph.node("divisor", (-SHARE / unit) * (other * other) - LOST, -ULP[turn.operation])
+    unsure = None if sign is None else of_sign(sign)
+    square = (-SHARE / unit) * (other * other)
+    return -graph.node("divisor", square - plus(LOST, unsure), -plus(ULP[turn.operation], unsure))
 
 
 def _beside_one(node):
-    """The sine or cosine of the crank angle to which, or to its opposite, one is added."""
+    """The sine or cosine of the crank angle to which, or to its opposite, one is added, and the sign it is times."""
     if node.operation not in "+-" or len(node.arguments) != 2:
-        return None
+        return None, None
     turn, one = sorted(node.arguments, key=lambda part: not isinstance(part, Node))
     if isinstance(one, Node) or abs(one) != 1.0:
-        return None
+        return None, None
+    sign = None
     if turn.operation == "*":  # along an axis
-        signs = [_is_sign(part) for part in turn.arguments]
-        turn = turn.arguments[not signs[1]] if any(signs) else turn
-    return turn if _is_of_angle(turn) else None
-
-
-def _is_sign(part):
-    """Whether a part is the sign of a given number, or of that moved by a constant: no rounding turns it."""
-    if not isinstance(part, Node) or part.operation != "sign":
-        return False
-    (given,) = part.arguments
-    parts = given.arguments if given.operation in ("+", "-") else (given,)
-    return all(not isinstance(one, Node) or one.operation == "parameter" for one in parts) and _nodes(parts) == 1
-
-
-def _nodes(parts):
-    return sum(isinstance(part, Node) for part in parts)
+        sign, turn = sorted(turn.arguments, key=_is_of_angle)
+        if not (isinstance(sign, Node) and sign.operation == "sign" and sign.varies == BY_DESIGN):
+            return None, None
+    return (turn, sign) if _is_of_angle(turn) else (None, None)
 
 
 def _is_of_angle(part):

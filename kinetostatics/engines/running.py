@@ -130,7 +130,7 @@ class RunningBounds(Counted):
 
     def _of_sum(self, node):
         """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes, or of its own."""
-        if (near := beside_one(self._graph, node)) is not None:
+        if (near := beside_one(self._graph, node, self._of_sign)) is not None:
             terms = [((1.0 + RESERVE) * ROUNDED, self.size(node)), (ROUNDED, near), (1.0, self._lost)]
             return Absolute(terms, RESERVE)
         parts = [part for part in node.arguments if not is_zero(part)]
@@ -156,6 +156,11 @@ class RunningBounds(Counted):
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
             terms += [(lost, self.size(part)) for part in parts]
         return Absolute(terms, RESERVE if is_charged else reserve)
+
+    def _of_sign(self, sign):
+        """Bound on the error of a sign that a design has."""
+        self._by_design.of([sign])
+        return self._by_design.total(sign)
 
     def _of_product(self, node):
         left, right = node.arguments

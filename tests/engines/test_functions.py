@@ -7,13 +7,13 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import loops, programs
-from kinetostatics.engines.bounds import Bounds
+from kinetostatics.engines.bounds import Bounds, Error
 from kinetostatics.engines.compiled import available
 from kinetostatics.engines.functions import OTHER, SMALL, ULP
 from kinetostatics.engines.running import RunningBounds
 from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
-from kinetostatics.numbers.elementary import APART, UNIT, apart, sign, total
+from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart, sign, total
 from support import bounded
 from support.every import every
 
@@ -78,10 +78,11 @@ def test_a_sign_that_may_be_the_other_is_no_known_one(way):
     graph = Graph()
     given, other = graph.parameter(0), graph.parameter(1)
     angle, values = 1e-9, (0.1 + 0.2, 0.3)
-    for unsure in (given * given - other * other, graph.angle() - other, given - other):
+    for unsure in ((given + 1.0) - (other + 1.0), graph.angle() - other):
         folded = sign(unsure) * graph.angle().cos() - 1.0
         assert not bound_of(way, graph, folded, angle, *values) < UNIT
-    assert bound_of(way, graph, sign(given + 1e-300) * graph.angle().cos() - 1.0, angle, *values) < 1e-17
+    for sure in (given + 1e-300, given - other):  # one rounding turns no sign
+        assert bound_of(way, graph, sign(sure) * graph.angle().cos() - 1.0, angle, *values) < 1e-17
 
 
 @every("way", WAYS)
@@ -119,3 +120,29 @@ def test_however_near_to_a_change_point_bounds_hold_or_are_infinite(flint, angle
         rhombus = ks.four_bar(0.3, 0.3, 0.3, rocker_pivot=(0.3, 0.0), assembly=assembly, **links)
         s = ks.solve(rhombus, [angle, 2.0 * angle], crank_speed=3.0, loads=[ks.Gravity()], on_gap="nan")
         assert bounded.errors(s).wrong == []
+
+
+@every("way", WAYS)
+@every("given", [-1e-130, -0.9 * APART * UNSEEN])
+def test_a_sign_that_is_turned_by_what_moves_it_off_zero_is_no_known_one(way, given):
+    """Along an axis a pivot so near to O is taken to lie on its other side."""
+    graph = Graph()
+    folded = sign(apart(graph.parameter(0), UNSEEN)) * graph.angle().cos() - 1.0
+    assert not bound_of(way, graph, folded, 1e-9, given) < 1.0
+    assert bound_of(way, graph, folded, 1e-9, 0.3) < 1e-17
+
+
+@every("way", ["running", "by design", "tight"])
+def test_a_sign_of_what_is_no_exact_number_is_known_only_where_its_error_cannot_turn_it(way):
+    graph = Graph()
+    given = graph.parameter(0)
+    inputs = {given: lambda bounds: Error(4.0, None)}
+    bound = {
+        "running": lambda output: RunningBounds(graph, inputs).of([output])[0],
+        "by design": lambda output: Bounds(graph, inputs).of([output])[0],
+        "tight": lambda output: tight_bound(graph, inputs, output),
+    }[way]
+    folded = sign(given - 0.3) * graph.angle().cos() - 1.0
+    for value, is_known in ((0.3 + 2.0**-54, False), (0.3 + 1e-9, True)):
+        found = programs.Program(None, [bound(folded)])._by_numbers(np.array([1e-9]), [value], (1,))[0, 0]
+        assert (found < 1e-17) == is_known
