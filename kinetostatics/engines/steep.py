@@ -80,7 +80,7 @@ class SteepTable:
             return *kinks, 0.0
         with np.errstate(all="ignore"):
             exact = self._in_two_parts(known, motion, leaves, bounded=True)
-        off = abs((travel[0] - exact.value) + (travel[1] - number(exact.rest))) + exact.error
+        off = apart(travel, exact)
         found = np.zeros(known.shape)
         rounded = 8.0 * np.abs(rise) + np.abs(_at(known, value) + rise) + table_errors.TINY / UNIT
         found[known] = MORE * (np.abs(_at(known, slope)) * (off / UNIT) + rounded)
@@ -163,6 +163,15 @@ class SteepTable:
     @cached_property
     def _twofold(self):
         return made(line(self._outputs[:1]), _TWOFOLD)
+
+
+def apart(travel, exact):
+    """Bound on how far a travel in two parts is from the exact one, which is known by a `Twofold`.
+
+    Their first parts are so near that the difference is exact. That of the others is rounded, and may cancel with it.
+    """
+    rest = travel[1] - number(exact.rest)
+    return abs((travel[0] - exact.value) + rest) + UNIT * abs(rest) + exact.error
 
 
 @kept_for_same_angles

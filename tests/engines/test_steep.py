@@ -1,5 +1,7 @@
 """Tables over travel where they are steep: as near to exact arithmetic as others, by whichever numbers."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import kinetostatics as ks
 from kinetostatics.engines import programs, steep
 from kinetostatics.engines.engines import COMPILED, NUMPY
 from kinetostatics.machine.loads import tables
+from kinetostatics.numbers.twofold import Twofold
 from support.enclosed import ordinary_angles, worst
 from support.every import every
 
@@ -149,3 +152,11 @@ def test_programs_read_it_with_the_numbers_they_are_given():
         varied = ks.Scene(machine, 30.0, loads=scene.loads)
         expected = varied.solve(angles, engine="numpy").reaction("B")
         np.testing.assert_allclose(program(angles, values)["B"], expected, rtol=0.0, atol=1e-11)
+
+
+def test_the_rounding_of_a_difference_of_travels_that_cancels_is_in_its_bound():
+    """Second parts whose difference is off by 2^-107, which first parts take away but for that."""
+    travel = 0.75 + 2.0**-53, -(2.0**-54) - 2.0**-55
+    exact = Twofold(0.75, 2.0**-55 + 2.0**-107, 0.0)
+    difference = sum(map(Fraction, travel)) - Fraction(exact.value) - Fraction(exact.rest)
+    assert 0 < abs(difference) <= Fraction(steep.apart(travel, exact)) < 4 * abs(difference)
