@@ -16,7 +16,7 @@ from ..errors import NotGivenError
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .bounds import SAFE, Bounds, Error, is_zero, size
-from .functions import ULP, beside_one
+from .functions import ULP, beside_one, moved_apart
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 
@@ -157,7 +157,10 @@ class BoundsElsewhere:
     def of_sum(self, node, left, right=None):
         if (near := beside_one(self._graph, node, self.total, self._arithmetic.unit)) is not None:
             return Error(0.0, near)
-        return self.error(left) if right is None else Error(0.0, self.total(left) + self.total(right))
+        if right is None:
+            return self.error(left)
+        moved = moved_apart((left, right), self._arithmetic.unit)
+        return Error(0.0, plus(self.total(left) + self.total(right), moved))
 
     def of_product(self, node, left, right):
         (first, own), (second, other) = self.error(left), self.error(right)

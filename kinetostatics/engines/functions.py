@@ -74,12 +74,12 @@ def beside_length(graph, rest):
     return 4.0 * abs(rest) + (rest * rest * (1.0 / UNIT) + 8.0 * lost) / length
 
 
-def moved_apart(parts):
-    """What a number is off, in `UNIT`, that `elementary.apart` moved off zero; None where it did not."""
+def moved_apart(parts, unit=UNIT):
+    """What a number is off, in units, that `elementary.apart` moved off zero; None where it did not."""
     for part in parts:
         if not isinstance(part, Node):
             if part == APART * UNSEEN:
-                return APART * UNSEEN / UNIT
+                return APART * UNSEEN / unit
         elif part.operation == "*" and APART in (factor for factor in part.arguments if not isinstance(factor, Node)):
-            return part * (1.0 / UNIT)
+            return part * (1.0 / unit)
     return None

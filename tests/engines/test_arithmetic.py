@@ -12,7 +12,7 @@ from kinetostatics.engines.arithmetic import DOUBLE, SINGLE, BoundsElsewhere, is
 from kinetostatics.engines.backends import Backend
 from kinetostatics.engines.trace import Graph
 from kinetostatics.errors import NotGivenError
-from kinetostatics.numbers.elementary import UNIT
+from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart
 from support.bounded import FAMILIES, over_worst, solution
 from support.elsewhere import errors, exact_values
 from support.every import every
@@ -209,3 +209,26 @@ def test_functions_of_jax_on_the_processor_keep_to_their_ulp(jax, function, name
     assert off(single, exact.astype(float), U) <= SINGLE.ulp[name]
     if np.finfo(np.longdouble).eps < 1e-18:
         assert np.max(np.abs(double - exact) / np.abs(exact)) <= DOUBLE.ulp[name] * 2.0**-53
+
+
+@every("arithmetic, unit", [(SINGLE, U), (DOUBLE, UNIT)])
+def test_what_is_moved_off_zero_is_in_bounds(arithmetic, unit):
+    """By a share of lengths, or by a unit that no distance sees; exact arithmetic moves neither."""
+    graph = Graph()
+    half, sizes = 0.5 * graph.angle(), graph.parameter(0) + graph.parameter(1)
+    for moved, least in ((apart(half, sizes), APART * 7.0), (apart(half, UNSEEN), APART * UNSEEN)):
+        (bound,) = BoundsElsewhere(graph, {}, arithmetic).of([moved])
+        assert programs.Program(None, [bound])._by_numbers(np.array([0.0]), [3.0, 4.0], (1,))[0, 0] >= least
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("engine, precision", [("numpy", "single"), ("jax", "single"), ("jax", "double")])
+def test_however_near_to_a_change_point_bounds_elsewhere_hold_or_are_infinite(flint, jax, engine, precision):
+    links = {name: ks.Link(1.0, (0.15, 0.0), 0.01) for name in ("crank", "coupler", "rocker")}
+    backend = Backend(engine, precision)
+    for assembly in (1, "open", "crossed"):
+        rhombus = ks.four_bar(0.3, 0.3, 0.3, rocker_pivot=(0.3, 0.0), assembly=assembly, **links)
+        angles = [1e-30, 1e-45, 1e-100, 1e-121, -1e-150, 1e-300]
+        s = ks.solve(rhombus, angles, crank_speed=3.0, loads=[ks.Gravity()], on_gap="nan")
+        assert errors(s, exact_values(s), [backend])[backend].wrong == []
