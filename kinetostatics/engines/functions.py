@@ -25,8 +25,8 @@ def beside_one(graph, node, of_sign, unit=UNIT):
     """Bound on the error, in units, that a sum of one and a sine or cosine of the crank angle has of that.
 
     None for other nodes. Where the sum vanishes, as linkages fold, this does so as well, which `ULP` does not tell.
-    Along an axis it is times a sign that a design has; ``of_sign(sign)`` bounds the error of that: 0 or None where it is
-    known, else infinite or NaN, as then the whole is. Both are numbers of the design, so this costs no angle anything.
+    Along an axis it is times a sign that a design has; ``of_sign(sign)`` bounds the error of that: 0 or None where it
+    is known, else infinite or NaN, as then the whole is. It is a number of the design, so it costs no angle anything.
     """
     turn, sign = _beside_one(node)
     if turn is None:
