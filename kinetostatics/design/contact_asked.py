@@ -1,9 +1,12 @@
 """What a contact of a roller with its cam is asked with: the roller, both materials, limits."""
 
+from typing import Any
+
 from ..errors import ParameterError
 from ..machine import hertz
 from ..machine.profile import POSITIVE
 from ..machine.profile import profile as working_curve
+from ..machine.roller import MODULUS
 from ..numbers import checks
 from ..results.turn import require_single
 from .cam_contact import UNITS, Contact
@@ -11,7 +14,10 @@ from .cam_rollers import Roller
 
 SIZE = {"low": 0.0}
 PARTS = ("roller", "cam")
-MATERIAL = {"youngs_modulus": ("Pa", POSITIVE), "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12})}
+MATERIAL: dict[str, tuple[str, dict[str, Any]]] = {
+    "youngs_modulus": ("Pa", {**POSITIVE, "usual": MODULUS.usual}),
+    "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12}),
+}
 """Unit and bounds of what is told of each part's material."""
 
 
@@ -104,7 +110,9 @@ def contact(
 
 def _contact_rules(told):
     """Values and rules of what is told of a contact, a material of roller and cam each."""
-    rules = {name: (told[name], "m", POSITIVE) for name in ("roller_radius", "width")}
+    rules: dict[str, tuple[Any, str, dict[str, Any]]] = {
+        name: (told[name], "m", POSITIVE) for name in ("roller_radius", "width")
+    }
     pairs = [
         value if isinstance(value, list | tuple) and len(value) == 2 else (value, value)
         for value in map(told.get, MATERIAL)

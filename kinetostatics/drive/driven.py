@@ -18,7 +18,7 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
 from ..solution.scene import scene_problem
-from .motor import Motor, single
+from .motor import Motor
 
 INERTIA, SLOPE, TORQUE, CLOSURE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque", "closure")
 SAME = 1e-12
@@ -43,7 +43,7 @@ class Driven:
     """
 
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
-        flywheel, wrong = single(flywheel, "kg*m**2", name="flywheel", low=0.0)
+        flywheel, wrong = checks.single("flywheel", flywheel, "kg*m**2", low=0.0)
         checks.require(
             owner,
             scene_problem(scene),

@@ -72,11 +72,11 @@ class Motor:
         >>> round(float(motor.torque(153.9) * 153.9), 6)
         55000.0
         """
-        found = _numbers(
+        found = checks.singles(
             "Motor.kloss",
             power=(power, "W", POSITIVE),
             speed=(speed, "rad/s", POSITIVE),
-            synchronous_speed=(synchronous_speed, "rad/s", POSITIVE),
+            synchronous_speed=(synchronous_speed, "rad/s", FIELD),
             overload=(overload, "1", {"low": 1.0, "strict": True}),
             **_shared(transmission, inertia),
         )
@@ -102,7 +102,7 @@ class Motor:
         >>> float(ks.drive.Motor.linear(10.0, 100.0).torque(50.0))
         5.0
         """
-        found = _numbers(
+        found = checks.singles(
             "Motor.linear",
             standstill_torque=(torque, "N*m", {**POSITIVE, "name": "torque"}),
             idle_speed=(speed, "rad/s", {**POSITIVE, "name": "speed"}),
@@ -120,7 +120,7 @@ class Motor:
         >>> float(ks.drive.Motor.constant(10.0).torque(50.0))
         10.0
         """
-        found = _numbers(
+        found = checks.singles(
             "Motor.constant",
             own_torque=(torque, "N*m", {"name": "torque", "unequal": 0.0}),
             **_shared(transmission, inertia),
@@ -148,7 +148,7 @@ class Motor:
         >>> float(motor.torque(150.0))
         200.0
         """
-        found = _numbers("Motor.table", **_shared(transmission, inertia))
+        found = checks.singles("Motor.table", **_shared(transmission, inertia))
         rows = checks.examined("Motor.table", ROWS, {"speed": speed, "torque": torque})
         checks.require("Motor.table", *_row_problems(*rows.values()))
         return Tabled(*(read_only(np.array(row)) for row in rows.values()), **found)
@@ -299,31 +299,12 @@ class Tabled(Motor):
 # What a motor must be given
 
 POSITIVE = {"low": 0.0, "strict": True}
+FIELD = {**POSITIVE, "usual": checks.Usual(700.0, "is it in rpm? times pi / 30 it is in rad/s")}
 ROWS = {"speed": checks.Number("rad/s", table=True), "torque": checks.Number("N*m", table=True)}
 
 
 def _shared(transmission, inertia):
     return {"transmission": (transmission, "1", {"unequal": 0.0}), "inertia": (inertia, "kg*m**2", {"low": 0.0})}
-
-
-def _numbers(owner, **given):
-    """Single numbers by name, each given with unit and rule; one `ParameterError` for all that is wrong."""
-    found, wrong = {}, []
-    for field_name, (value, unit, rule) in given.items():
-        found[field_name], problem = single(value, unit, **{"name": field_name, **rule})
-        wrong.append(problem)
-    checks.require(owner, *wrong)
-    return found
-
-
-def single(value, unit, name, unequal=None, **rule):
-    """One number in a unit as a float, and what is wrong with it, as a sentence, or None."""
-    found, problem = checks.Number(unit, name, **rule).taken(value)
-    if problem is None and type(found) is not float:
-        problem = f"{name} must be one number, got {checks.shown(value)}"
-    if problem is None and found == unequal:
-        problem = f"{name} must not be {unequal:g}"
-    return found, problem
 
 
 def _below(speed, synchronous_speed):

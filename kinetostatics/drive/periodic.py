@@ -11,7 +11,6 @@ from ..solution.angles import crank_angles
 from ..solution.scene import scene_problem
 from .bends import parted
 from .following import from_above
-from .motor import single
 from .newton import interpolated, looked_at, settled, unresolved
 from .operating import operating_speed, require_known
 from .pieces import LEVELS, MOST_PIECES, TAIL
@@ -171,7 +170,7 @@ def _at_mean_speed(driven, pieces, inertia, gained, speed):
 def _direction(scene):
     """Sign of the crank speed of a scene that is to be run without motor."""
     checks.require("steady", scene_problem(scene))
-    speed, wrong = single(scene.crank_speed, "rad/s", name="crank_speed of the scene", unequal=0.0)
+    speed, wrong = checks.single("crank_speed of the scene", scene.crank_speed, "rad/s", unequal=0.0)
     checks.require("steady", wrong)
     return math.copysign(1.0, speed)
 

@@ -5,7 +5,6 @@ from typing import Any
 
 from ..errors import DriveError
 from ..numbers import checks
-from .motor import single
 
 LARGEST = 60
 """How often a flywheel is doubled, or halved, in search of one that is large, or small, enough."""
@@ -16,7 +15,7 @@ LIGHTEST = 1e-3
 
 def fluctuation_wanted(owner, fluctuation):
     """A coefficient of fluctuation as a float, between 0 and 2."""
-    wanted, wrong = single(fluctuation, "1", name="fluctuation", low=0.0, strict=True)
+    wanted, wrong = checks.single("fluctuation", fluctuation, "1", low=0.0, strict=True)
     if not wrong and not wanted < 2.0:
         wrong = f"fluctuation must be less than 2, got {wanted:g}"
     checks.require(owner, wrong)

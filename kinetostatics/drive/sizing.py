@@ -7,7 +7,6 @@ from functools import partial
 import numpy as np
 
 from ..numbers import checks
-from .motor import single
 from .periodic import steady
 from .resolution import resolved
 from .rubbing import driven_by
@@ -88,7 +87,7 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
 
 
 def _textbook(scene, wanted, engine):
-    speed, wrong = single(getattr(scene, "crank_speed", 1.0), "rad/s", name="crank_speed of the scene", unequal=0.0)
+    speed, wrong = checks.single("crank_speed of the scene", getattr(scene, "crank_speed", 1.0), "rad/s", unequal=0.0)
     checks.require("flywheel", wrong)
     driven = driven_by("flywheel", scene, None, 0.0, engine, math.copysign(1.0, speed))
     pieces = resolved(driven, speed)

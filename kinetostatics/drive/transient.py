@@ -7,14 +7,16 @@ of motor and loads beside it: what kinetic energy and work differ by at the end 
 
 import itertools
 import math
+import warnings
 
 import numpy as np
 
-from ..errors import DriveError
+from ..errors import DriveError, HintWarning
+from ..machine import hints
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.elementary import read_only
-from .motor import Motor, single
+from .motor import Motor
 from .operating import require_known
 from .periodic import steady
 from .rubbing import RubbingDriven, driven_by
@@ -74,7 +76,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     """
     driven, flywheel, angle, speed = _begun("coast", scene, motor, flywheel, from_angle, from_speed, engine)
     if not (isinstance(until, str) and until == "standstill"):
-        until, wrong = single(until, "s", name="until", low=0.0, strict=True)
+        until, wrong = checks.single("until", until, "s", low=0.0, strict=True)
         checks.require("coast", wrong and f'until must be a time in s, or "standstill": {wrong}')
     elif speed == 0.0:
         checks.require("coast", 'until "standstill" needs a from_speed that is not 0')
@@ -128,7 +130,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     if until is None:
         target = READY * steady(scene, motor, flywheel, engine=engine).mean_speed
     else:
-        until, wrong = single(until, "s", name="until", low=0.0, strict=True)
+        until, wrong = checks.single("until", until, "s", low=0.0, strict=True)
         checks.require("start", wrong)
     pushing, _ = driven.at_rest(angle, driven.direction)
     if not pushing * driven.direction > SMALL * _most_torque(driven):
@@ -141,12 +143,14 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
 
 def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     """The machine and where it begins, looked at."""
-    angle, wrong_angle = single(from_angle, "rad", name="from_angle")
+    angle, wrong_angle = checks.single("from_angle", from_angle, "rad")
     if not wrong_angle and abs(angle) > FARTHEST:
         wrong_angle = f"from_angle must be at most {FARTHEST:g} rad in size, got {angle:g}; take whole turns off"
-    speed, wrong_speed = single(from_speed, "rad/s", name="from_speed")
-    inertia, wrong_inertia = single(flywheel, "kg*m**2", name="flywheel", low=0.0)
+    speed, wrong_speed = checks.single("from_speed", from_speed, "rad/s")
+    inertia, wrong_inertia = checks.single("flywheel", flywheel, "kg*m**2", low=0.0)
     checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
+    for hint in hints.of_angles(np.array([angle])):
+        warnings.warn(f"{owner}: {hint}", HintWarning, stacklevel=3)
     driven = driven_by(owner, scene, motor, inertia, engine)
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)
     if not here[0] > 1e-12 * here.max():

@@ -31,29 +31,8 @@ def of_mechanism(mechanism):
 def of_scene(mechanism, crank_speed, numbers):
     """The same on a mechanism with its drive, and on `numbers` of which something is usual: path, value and rule."""
     longest = max((_most(bar.length) for bar in mechanism.bars if checks.known(bar.length)), default=0.0)
-    odd = [text for path, value, rule in numbers if (text := _unusual(path, value, rule, longest))]
+    odd = [text for path, value, rule in numbers if (text := checks.unusual(path, value, rule, longest))]
     return (*mechanism.hints, *odd, *_fast(mechanism.crank.length, crank_speed, longest))
-
-
-def _unusual(path, value, rule, longest):
-    """What is odd about a number, as a sentence, or None."""
-    most, advice, least, in_links = checks.usual_of(rule)
-    unit = longest if in_links else 1.0
-    if not checks.known(value) or not unit:
-        return None
-    low, high = _sizes(value)
-    if high <= most * unit and (low >= least * unit or low == 0.0):
-        return None
-    worst = high if high > most * unit else low
-    own = "" if rule.unit == "1" else " " + rule.unit.replace("**", "").replace("*", " ")
-    beside = f", {worst / longest:.4g} times the longest link ({longest:.4g} m)" if in_links else ""
-    return f"{path} is {-worst if np.any(np.equal(value, -worst)) else worst:.6g}{own}{beside}; {advice}"
-
-
-def _sizes(value):
-    """Smallest and largest size of a number, or of an array of them."""
-    sizes = np.abs(value) if isinstance(value, np.ndarray) else abs(value)
-    return (sizes, sizes) if isinstance(sizes, float) else (float(sizes.min()), float(sizes.max()))
 
 
 def _lengths(bars):
@@ -75,7 +54,7 @@ def _fast(length, crank_speed, longest):
     """What is odd about the speed of the crank's pin."""
     if length is None or not (checks.known(length) and checks.known(crank_speed)) or longest > LONGEST:
         return
-    _, speed = _sizes(crank_speed)
+    speed = float(np.max(np.abs(crank_speed)))
     if _most(length) * speed > SOUND:
         yield (
             f"the pin of the crank goes at {_most(length) * speed:.4g} m/s, faster than sound; is crank_speed, "

@@ -139,3 +139,31 @@ def test_shipped_cases_have_no_slips():
             case = ks.load_case(name)
         for variant in case.variants.values():
             assert slips.of_scene(variant.scene.unsolved(np.zeros(1))) == (), (name, variant)
+
+
+@every(
+    ("ask", "words"),
+    [
+        (
+            lambda: ks.drive.Motor.kloss(55e3, 1470.0, synchronous_speed=1500.0, overload=2.5),
+            "Motor.kloss: synchronous_speed is 1500 rad/s; is it in rpm?",
+        ),
+        (
+            lambda: ks.drive.start(
+                ks.Scene(saw(), 1.0), ks.drive.Motor.constant(9e3), flywheel=1.0, from_angle=90.0, until=0.01
+            ),
+            "start: the crank angle 90 looks like degrees",
+        ),
+        (
+            lambda: ks.design.contact(
+                ks.solve(cam_saw(CIRCLE, slider=RAM), 0.5, crank_speed=10.0), 0.05, 0.04, 210.0, 0.3
+            ),
+            "contact: youngs_modulus of the roller is 210 Pa; is it in GPa, or in N/mm2?",
+        ),
+    ],
+)
+def test_slips_are_told_where_no_scene_is_solved(ask, words):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        ask()
+    assert [words in str(item.message) for item in caught if item.category is ks.HintWarning] == [True]

@@ -55,7 +55,7 @@ from .rules import (
     Sign,
 )
 from .single import single, singles
-from .usual import Usual, usual_of
+from .usual import Usual, unusual, usual_of
 from .values import kept, known, unfit
 
 __all__ = [
@@ -97,5 +97,6 @@ __all__ = [
     "solution",
     "truth",
     "unfit",
+    "unusual",
     "usual_of",
 ]

@@ -3,6 +3,10 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+
+from .values import known
+
 
 class Usual(NamedTuple):
     """Sizes, without sign, between which a number lies that is not zero.
@@ -35,3 +39,24 @@ BY_UNIT = {
 def usual_of(rule):
     """What is usual of a number by its rule; None where anything is."""
     return rule.usual or BY_UNIT.get(rule.unit)
+
+
+def unusual(path, value, rule, longest=0.0):
+    """What is odd about a number, as a sentence, or None."""
+    most, advice, least, in_links = usual_of(rule)
+    unit = longest if in_links else 1.0
+    if not known(value) or not unit:
+        return None
+    low, high = _sizes(value)
+    if high <= most * unit and (low >= least * unit or low == 0.0):
+        return None
+    worst = high if high > most * unit else low
+    own = "" if rule.unit == "1" else " " + rule.unit.replace("**", "").replace("*", " ")
+    beside = f", {worst / longest:.4g} times the longest link ({longest:.4g} m)" if in_links else ""
+    return f"{path} is {-worst if np.any(np.equal(value, -worst)) else worst:.6g}{own}{beside}; {advice}"
+
+
+def _sizes(value):
+    """Smallest and largest size of a number, or of an array of them."""
+    sizes = np.abs(value) if isinstance(value, np.ndarray) else abs(value)
+    return (sizes, sizes) if isinstance(sizes, float) else (float(sizes.min()), float(sizes.max()))
