@@ -299,7 +299,7 @@ class Tabled(Motor):
 # What a motor must be given
 
 POSITIVE = {"low": 0.0, "strict": True}
-FIELD = {**POSITIVE, "usual": checks.Usual(700.0, "is it in rpm? times pi / 30 it is in rad/s")}
+FIELD = {**POSITIVE, "usual": checks.Usual(700.0, "is it in rpm?", math.pi / 30.0)}
 ROWS = {"speed": checks.Number("rad/s", table=True), "torque": checks.Number("N*m", table=True)}
 
 

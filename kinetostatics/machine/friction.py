@@ -18,7 +18,7 @@ COEFFICIENT = checks.Number(
     "1", low=0.0, usual=checks.Usual(2.0, "nothing rubs so much; does it stand in place of a size, or in percent?")
 )
 SIZE = checks.Number("m", low=0.0, strict=True)
-PIN = replace(SIZE, usual=checks.Usual(1.0, "is it in mm?", in_links=True))
+PIN = replace(SIZE, usual=checks.Usual(1.0, "is it in mm?", 1e-3, in_links=True))
 PASSES = (3, 6, 12)
 """Times that the directions of all reactions are found anew, each with twice as many digits; more where not enough."""
 

@@ -54,7 +54,10 @@ CIRCLE = ks.cams.Circle(0.2, (-0.05, 0.0))
         (rubbing(O=ks.PinFriction(0.05, 2.5)), "friction.O.radius is 2.5 m"),
         (rubbing(guide=ks.GuideFriction(0.1, 100.0)), "friction.guide.half_length is 100 m"),
         (rubbing(guide=ks.GuideFriction(10.0)), "friction.guide.mu is 10"),
-        (made(saw, guide_angle=90), "guide_angle is 90 rad; more than a whole turn; is it in degrees? np.radians"),
+        (
+            made(saw, guide_angle=90),
+            "guide_angle is 90 rad; more than a whole turn; is it in degrees? That makes 1.5708 rad",
+        ),
         (made(saw, guide_angle=np.array([[0.0], [-90.0]])), "guide_angle is -90 rad"),
         (loaded(ks.Gravity(direction=-90)), "gravity.direction is -90 rad"),
         (loaded(ks.Gravity(9810.0)), "gravity.acceleration is 9810 m/s2; is it in mm/s2?"),

@@ -43,7 +43,7 @@ class Gravity(Load):
     PATH = "gravity"
     RULES = checks.Rules(
         "gravity",
-        acceleration=checks.Number("m/s**2", low=0.0, usual=checks.Usual(100.0, "is it in mm/s2?")),
+        acceleration=checks.Number("m/s**2", low=0.0, usual=checks.Usual(100.0, "is it in mm/s2?", 1e-3)),
         direction=checks.Number("rad"),
     )
 

@@ -149,7 +149,9 @@ class TorsionSpring(Couple):
     RULES = checks.Rules(
         "torsion spring",
         stiffness=checks.Number("N*m/rad", low=0.0),
-        free_angle=checks.Number("rad", usual=checks.Usual(20.0, "more than three turns; is it in degrees?")),
+        free_angle=checks.Number(
+            "rad", usual=checks.Usual(20.0, "more than three turns; is it in degrees?", np.pi / 180.0)
+        ),
         on=checks.Name(),
         against=checks.Optional(checks.Name()),
         moment=checks.Number("N*m"),

@@ -17,12 +17,15 @@ class Usual(NamedTuple):
         In its SI unit, or in lengths of the machine's longest link.
     advice : str
         What is asked about one that does not.
+    factor : float
+        To SI from the unit that is asked about; 0 where it is none.
     in_links : bool
         Whether they are in lengths of the longest link.
     """
 
     most: float
     advice: str
+    factor: float = 0.0
     least: float = 0.0
     in_links: bool = False
 
@@ -30,8 +33,8 @@ class Usual(NamedTuple):
 FAR = 20.0
 """Lengths of the longest link beyond which nobody puts anything: millimetres beside metres make 1000."""
 BY_UNIT = {
-    "rad": Usual(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees? np.radians converts them"),
-    "m": Usual(FAR, "is it in mm?", in_links=True),
+    "rad": Usual(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees?", math.pi / 180.0),
+    "m": Usual(FAR, "is it in mm?", 1e-3, in_links=True),
 }
 """What holds for all numbers in a unit whose rule says nothing else."""
 
@@ -43,7 +46,7 @@ def usual_of(rule):
 
 def unusual(path, value, rule, longest=0.0):
     """What is odd about a number, as a sentence, or None."""
-    most, advice, least, in_links = usual_of(rule)
+    most, advice, factor, least, in_links = usual_of(rule)
     unit = longest if in_links else 1.0
     if not known(value) or not unit:
         return None
@@ -53,7 +56,9 @@ def unusual(path, value, rule, longest=0.0):
     worst = high if high > most * unit else low
     own = "" if rule.unit == "1" else " " + rule.unit.replace("**", "").replace("*", " ")
     beside = f", {worst / longest:.4g} times the longest link ({longest:.4g} m)" if in_links else ""
-    return f"{path} is {-worst if np.any(np.equal(value, -worst)) else worst:.6g}{own}{beside}; {advice}"
+    odd = -worst if np.any(np.equal(value, -worst)) else worst
+    meant = f" That makes {factor * odd:.6g}{own}" if factor else ""
+    return f"{path} is {odd:.6g}{own}{beside}; {advice}{meant}"
 
 
 def _sizes(value):
