@@ -24,7 +24,7 @@ import warnings
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..errors import KinetostaticsError, ParameterError
+from ..errors import HintWarning, KinetostaticsError, ParameterError
 from ..numbers import files
 from . import machine
 from .options import parser
@@ -69,12 +69,22 @@ def main(arguments=None):
 
 @contextmanager
 def _warning_in_plain_words():
-    """A warning meant for the user is told without the line of the library that gives it."""
+    """A warning meant for the user is told without the line of the library that gives it.
+
+    A hint is told once: where the case is read, and not of its mechanism again when that is solved.
+    """
     before = warnings.formatwarning
+    told: list[str] = []
 
     def words(message, category, *place):
-        plain = issubclass(category, UserWarning)
-        return f"kinetostatics: warning: {message}\n" if plain else before(message, category, *place)
+        if not issubclass(category, UserWarning):
+            return before(message, category, *place)
+        text = str(message)
+        _, _, hint = text.partition(": ")
+        if issubclass(category, HintWarning) and any(other.endswith(f": {hint}") for other in told):
+            return ""
+        told.append(text)
+        return f"kinetostatics: warning: {text}\n"
 
     warnings.formatwarning = words
     try:

@@ -134,7 +134,8 @@ A reaction acts on the body named last, on the other body the other way round:
 
 For groups and loads of one's own there are `placement` (joints and links as kinematic coefficients), `spot`,
 `as_vector`, `accelerating`; inside the library `dynamics`, `sampled`, `sampled_for_forces`, `apart`, `kind`,
-`places`, `PATHS`, `RULES`, `first_look`, `proportion`, `farthest`, `loads_are_given`, `is_given`, `check` and `warn`.
+`places`, `PATHS`, `RULES`, `first_look`, `with_doubt`, `proportion`, `farthest`, `loads_are_given`, `is_given`, `check`
+and `warn`.
 
 Examples
 --------

@@ -376,3 +376,18 @@ def test_stability_tells_each_method_in_a_line_and_not_each_place(tmp_path, monk
     assert lines["series"] == ["0", "0", "2", "2"]
     assert "toggle" not in printed
     assert "kite   ours, NumPy" in printed
+
+
+def test_a_slip_of_units_in_a_case_is_told_once_for_all_its_variants(tmp_path, capsys):
+    """Where it is read, and not again where it is solved."""
+    case = Path(ks.load_case("sawframe_2r63").path).read_text()
+    path = tmp_path / "turned.toml"
+    path.write_text(re.sub('direction = "-90 deg"', 'direction = "-90 rad"', case))
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        warnings.showwarning = lambda *given, **_: sys.stderr.write(warnings.formatwarning(*given[:4]))
+        assert main(["run", str(path), "--variant", "plain", "--angles", "36"]) == 0
+    (told,) = [
+        line for line in capsys.readouterr().err.splitlines() if "is it in degrees? That makes -1.5708 rad" in line
+    ]
+    assert told.startswith(f"kinetostatics: warning: {path}: variants.plain, variants.cam-circle, ")
