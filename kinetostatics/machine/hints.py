@@ -29,10 +29,15 @@ def of_mechanism(mechanism):
 
 
 def of_scene(mechanism, crank_speed, numbers):
-    """The same on a mechanism with its drive, and on `numbers` of which something is usual: path, value and rule."""
-    longest = max((_most(bar.length) for bar in mechanism.bars if checks.known(bar.length)), default=0.0)
-    odd = [text for path, value, rule in numbers if (text := checks.unusual(path, value, rule, longest))]
+    """The same on a mechanism with its drive, and on `numbers` of which something is usual: path, value and that."""
+    longest = _longest(mechanism)
+    odd = [text for path, value, usual in numbers if (text := checks.unusual(path, value, usual, longest))]
     return (*mechanism.hints, *odd, *_fast(mechanism.crank.length, crank_speed, longest))
+
+
+def _longest(mechanism):
+    """Length of the longest link between two joints, m; 0 where none is known."""
+    return max((_most(bar.length) for bar in mechanism.bars if checks.known(bar.length)), default=0.0)
 
 
 def _lengths(bars):
@@ -54,10 +59,10 @@ def _fast(length, crank_speed, longest):
     """What is odd about the speed of the crank's pin."""
     if length is None or not (checks.known(length) and checks.known(crank_speed)) or longest > LONGEST:
         return
-    speed = float(np.max(np.abs(crank_speed)))
-    if _most(length) * speed > SOUND:
+    radius, speed = _most(length), _most(abs(crank_speed))
+    if radius * speed > SOUND:
         yield (
-            f"the pin of the crank goes at {_most(length) * speed:.4g} m/s, faster than sound; is crank_speed, "
+            f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than sound; is crank_speed, "
             f"{speed:.6g} rad/s, in rpm?"
         )
 
@@ -132,9 +137,9 @@ def _inertia(bar, link, crank):
     if link is None or not (checks.known(link.mass) and checks.known(link.inertia)):
         return None
     inertia, unit = link.inertia, link.mass * bar.length * bar.length
-    if np.any((inertia > 0) & (THIN * 12.0 * inertia < unit)):
+    if _any((inertia > 0) & (THIN * 12.0 * inertia < unit)):
         beside, advice = "less than a thousandth", "is it in kg m2? 0 makes it a point mass"
-    elif _is_moved(bar, crank) and np.any((inertia > THICK * unit) & (unit > 0)):
+    elif _is_moved(bar, crank) and _any((inertia > THICK * unit) & (unit > 0)):
         beside, advice = "more than ten thousand times", "is it in kg mm2?"
     else:
         return None
@@ -188,6 +193,10 @@ def _converted_twice(angle):
 
 def _whole(number):
     return abs(number - round(number)) < 1e-9
+
+
+def _any(condition):
+    return condition if isinstance(condition, bool) else bool(np.any(condition))
 
 
 def _most(values):

@@ -34,7 +34,7 @@ def singles(owner, *problems, **given):
     require(owner, *(problem for _, problem in found.values()), *problems)
     values = {field: value for field, (value, _) in found.items()}
     odd = (
-        unusual(rule.get("name", field), values[field], Number(unit, usual=rule["usual"]))
+        unusual(rule.get("name", field), values[field], rule["usual"]._replace(unit=unit))
         for field, (_, unit, rule) in given.items()
         if "usual" in rule
     )

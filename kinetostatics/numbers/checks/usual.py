@@ -21,6 +21,8 @@ class Usual(NamedTuple):
         To SI from the unit that is asked about; 0 where it is none.
     in_links : bool
         Whether they are in lengths of the longest link.
+    unit : str
+        SI unit, where the rule of the number has told it.
     """
 
     most: float
@@ -28,6 +30,7 @@ class Usual(NamedTuple):
     factor: float = 0.0
     least: float = 0.0
     in_links: bool = False
+    unit: str = ""
 
 
 FAR = 20.0
@@ -41,27 +44,24 @@ BY_UNIT = {
 
 def usual_of(rule):
     """What is usual of a number by its rule; None where anything is."""
-    return rule.usual or BY_UNIT.get(rule.unit)
+    found = rule.usual or BY_UNIT.get(rule.unit)
+    return found and found._replace(unit=rule.unit)
 
 
-def unusual(path, value, rule, longest=0.0):
+def unusual(path, value, usual, longest=0.0):
     """What is odd about a number, as a sentence, or None."""
-    most, advice, factor, least, in_links = usual_of(rule)
+    most, advice, factor, least, in_links, si = usual
     unit = longest if in_links else 1.0
     if not known(value) or not unit:
         return None
-    low, high = _sizes(value)
-    if high <= most * unit and (low >= least * unit or low == 0.0):
-        return None
-    worst = high if high > most * unit else low
-    own = "" if rule.unit == "1" else " " + rule.unit.replace("**", "").replace("*", " ")
+    sizes = abs(value)
+    worst = sizes if isinstance(sizes, float) else float(sizes.max())
+    if worst <= most * unit:
+        worst = 0.0 if least == 0.0 else float(np.min(sizes))
+        if worst == 0.0 or worst >= least * unit:
+            return None
+    own = "" if si == "1" else " " + si.replace("**", "").replace("*", " ")
     beside = f", {worst / longest:.4g} times the longest link ({longest:.4g} m)" if in_links else ""
     odd = -worst if np.any(np.equal(value, -worst)) else worst
     meant = f" That makes {factor * odd:.6g}{own}" if factor else ""
     return f"{path} is {odd:.6g}{own}{beside}; {advice}{meant}"
-
-
-def _sizes(value):
-    """Smallest and largest size of a number, or of an array of them."""
-    sizes = np.abs(value) if isinstance(value, np.ndarray) else abs(value)
-    return (sizes, sizes) if isinstance(sizes, float) else (float(sizes.min()), float(sizes.max()))
