@@ -200,7 +200,7 @@ def solve(
     ConditionWarning
         Half of the digits are lost at some crank angle: `Solution.condition` exceeds 1e8.
     HintWarning
-        Something looks like a slip of units: angles in degrees, a mass centre far outside, hardly any inertia.
+        Something looks like a slip of units: angles in degrees, lengths in mm, a speed in rpm, hardly any inertia.
     UserWarning
         The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
 
