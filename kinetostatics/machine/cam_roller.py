@@ -205,7 +205,12 @@ class CamRoller(checks.Checked, Group):
         return atan(slope / radius)
 
     def place(self, placement):
-        polar = self.cam.polar(placement.angle, placement.ray)
+        if "about_mean" in vars(type(self.cam)):  # what is derived from it may have another radius
+            mean, wave, *derivatives = self.cam.about_mean(placement.angle, placement.ray)
+            polar = mean + wave, *derivatives
+            placement.orbits["A"] = mean, wave
+        else:
+            polar = self.cam.polar(placement.angle, placement.ray)
         self._set(placement, place(placement.ray, *polar), polar)
         placement.departures["A"] = departure(placement.ray, *polar[1:])
 

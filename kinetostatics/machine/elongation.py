@@ -53,3 +53,16 @@ def departure(placement, drawn_in, joint, direction, reach, short):
         return None
     departing = unturned(placement.departures[joint], direction)[0]
     return departing - drawn_in + (reach - short)
+
+
+def outward(placement, joint, direction, reach, short):
+    """Magnitude of that coordinate, negative where it is on the other side of 0 than the joint, in two parts.
+
+    The first is the length by which the joint goes round O; None of one that does not.
+    """
+    if joint not in placement.orbits:
+        return None
+    length, wave = placement.orbits[joint]
+    cosine, sine = unturned(placement.ray, direction)
+    size = abs(cosine)
+    return length, wave * size - shortfall(length, sine, size) + sign(cosine) * (reach - short)

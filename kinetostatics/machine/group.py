@@ -29,10 +29,11 @@ frozen dataclass derived from `Group`. It declares, by name,
     motion(name, placement)           a quantity of `motions`
     elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
     departure(placement, position)    second derivative of that coordinate plus the elongation, in the same way, or None
+    outward(placement, position)      length that no crank angle changes, and what the elongation has besides, or None
     sliding(name, placement)          direction and rate of a sliding pair: a `friction.Slide`
     relative_radius(name, placement, side)  of both curvatures of a contact together, by the sign of its force
 
-The last six may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
+The last seven may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
 not be arithmetic: engines then tabulate it.
 
 How to write one
@@ -48,7 +49,8 @@ derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`n
 (x, y). Put into ``placement.joints`` each joint of `joints`, into ``placement.links`` a `LinkMotion` for each link: its
 reference joint, its direction (unit vector), d theta / d phi and the slope of that (None: it never turns); into
 ``placement.travels`` for each slider its coordinate along its guide with both derivatives; into ``placement.details``
-what `resolve` wants to find again. A group may put its joints into ``placement.departures`` and ``placement.swings``.
+what `resolve` wants to find again. A group may put its joints into ``placement.departures``, ``placement.swings`` and
+``placement.orbits``.
 
 *resolve.* A pure function from what acts on its links to what it finds: nothing is written to, and nothing is kept.
 ``loads`` holds by link the wrench on it, inertia, weight and all that groups further out ask of it, a force and its
@@ -172,7 +174,8 @@ class Placement:
 
     `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
     to find again; `throws` by joint the pins of the crank, each a `Throw`; `departures` by other joints the sum of
-    position and second derivative, where it is known by itself; `swings` by joint what swings it, a `Swing`.
+    position and second derivative, where it is known by itself; `swings` by joint what swings it, a `Swing`; `orbits`
+    by joints on the crank ray how far from O they are, as a length that no crank angle changes and what it is besides.
     """
 
     angle: Any
@@ -184,6 +187,7 @@ class Placement:
     throws: dict = field(default_factory=dict)
     departures: dict = field(default_factory=dict)
     swings: dict = field(default_factory=dict)
+    orbits: dict = field(default_factory=dict)
 
 
 class Group:

@@ -68,7 +68,11 @@ class Harmonic(checks.Checked, Cam):
         return np.min(self.polar(GRID, ray_at(GRID))[0])
 
     def polar(self, angle, ray):
-        """Sums over the harmonics, whose sines and cosines follow from each other."""
+        mean, wave, slope, second = self.about_mean(angle, ray)
+        return mean + wave, slope, second
+
+    def about_mean(self, angle, ray):
+        """The mean radius, what r has besides, r' and r'': sums over the harmonics, which follow from each other."""
         psi = ray if present(self.guide_angle) is None else unturned(ray, ray_at(self.guide_angle))
         mean, *even = self.cosine
         radius, slope, second, wave = None, None, None, psi
@@ -82,4 +86,4 @@ class Harmonic(checks.Checked, Cam):
                 second = plus(second, float(-order * order) * term)
             wave = turned(wave, psi)
         radius, slope, second = (0.0 * psi[0] if part is None else part for part in (radius, slope, second))
-        return mean + radius, slope, second
+        return mean, radius, slope, second

@@ -316,6 +316,12 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
             return None
         return elongation.departure(placement, drawn_in, *self._from(position, placement))
 
+    def outward(self, placement, position):
+        """Magnitude of that elongation as a length that no crank angle changes and some more, m; None if not known."""
+        if self.passage:
+            return None
+        return elongation.outward(placement, *self._from(position, placement))
+
     def _from(self, position, placement):
         """What reaches from a position on, as `elongation` takes it."""
         motion, length, side = placement.details[self._slider], self.coupler_length, self.side

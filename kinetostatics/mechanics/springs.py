@@ -20,6 +20,7 @@ from ..machine.links import Wrench
 from ..numbers.planar import added, minus, plus, product, stretched
 from .pushes import pushed
 
+RATE, PARTED = "spring_rate", "parted_rate"
 UNSEEN = 2.0**-120
 """Rate, N/m, that counts as nothing: where there is neither spring nor inertia something is to be divided by."""
 
@@ -53,9 +54,11 @@ def _along(dynamics, slider):
         share = share / len(springs)
     force = minus(None, product(product(mass, alpha), travel.first))
     for item, departure in zip(springs, departures, strict=True):
-        both, inertia, rate = _parted(share, item.spring_rate(dynamics))
-        left = inertia * travel.second + rate * dynamics.elongation(item.free_position, slider)
-        force = minus(force, both * departure + left)
+        constant, besides = item.parted_rate(dynamics) if PARTED in _telling(item) else (item.spring_rate(dynamics), None)
+        both, inertia, rate = _parted(share, constant)
+        elongation = dynamics.elongation(item.free_position, slider)
+        force = minus(force, both * departure + (inertia * travel.second + rate * elongation))
+        force = minus(force, product(besides, elongation))
     others = (pushed(item, dynamics) for item in items if not _is_spring(item))
     return reduce(plus, others, force)
 
@@ -70,8 +73,12 @@ def _parted(inertia, rate):
 
 def _is_spring(item):
     """Whether a load's rate tells all its push: not where a kind derived from a spring pushes in another way."""
-    telling = (vars(kind) for kind in type(item).__mro__ if {"push", "spring_rate"} & vars(kind).keys())
-    return "spring_rate" in next(telling, ())
+    return RATE in _telling(item)
+
+
+def _telling(item):
+    """What the class of a load has that says last how it pushes."""
+    return next((vars(kind) for kind in type(item).__mro__ if {"push", RATE} & vars(kind).keys()), ())
 
 
 def _without_inertia(dynamics, slider):

@@ -119,6 +119,19 @@ class Spring(OnSlider):
         elongation = motion.elongation(self.free_position, self.on)
         return self.stiffness + self.cubic * elongation * elongation
 
+    def parted_rate(self, motion):
+        """The same as a rate that no crank angle changes, where one is known, and what it has besides; None: nothing.
+
+        The rest is (|e| - l) (|e| + l) for a length l, and is small where |e| is near to that.
+        """
+        if present(self.cubic) is None:
+            return self.stiffness, None
+        found = motion.outward(self)
+        if found is None:
+            return self.spring_rate(motion), None
+        length, more = found
+        return self.stiffness + self.cubic * length * length, self.cubic * (more * (2.0 * length + more))
+
     def potential(self, motion):
         """Energy stored, J."""
         elongation = motion.elongation(self.free_position, self.on)
