@@ -1,6 +1,8 @@
 """A cam as a Fourier series: each harmonic a number of its own, so that designs may vary it."""
 
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -75,15 +77,14 @@ class Harmonic(checks.Checked, Cam):
         """The mean radius, what r has besides, r' and r'': sums over the harmonics, which follow from each other."""
         psi = ray if present(self.guide_angle) is None else unturned(ray, ray_at(self.guide_angle))
         mean, *even = self.cosine
-        radius, slope, second, wave = None, None, None, psi
+        terms, wave = [], psi
         for order in range(1, 1 + max(len(even), len(self.sine))):
             a, b = (present(part[order - 1]) if order <= len(part) else None for part in (even, self.sine))
             if a is not None or b is not None:
                 cosine, sine = wave
                 term = plus(product(a, cosine), product(b, sine))
-                radius = plus(radius, term)
-                slope = plus(slope, float(order) * minus(product(b, cosine), product(a, sine)))
-                second = plus(second, float(-order * order) * term)
+                slope = float(order) * minus(product(b, cosine), product(a, sine))
+                terms.append((term, slope, float(-order * order) * term))
             wave = turned(wave, psi)
-        radius, slope, second = (0.0 * psi[0] if part is None else part for part in (radius, slope, second))
-        return mean, radius, slope, second
+        found = (reduce(add, reversed(parts)) for parts in zip(*terms, strict=True))
+        return mean, *(found if terms else [0.0 * psi[0]] * 3)
