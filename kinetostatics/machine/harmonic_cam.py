@@ -70,11 +70,14 @@ class Harmonic(checks.Checked, Cam):
         return np.min(self.polar(GRID, ray_at(GRID))[0])
 
     def polar(self, angle, ray):
-        mean, wave, slope, second = self.about_mean(angle, ray)
-        return mean + wave, slope, second
+        mean, farther, slope, second = self.about_mean(angle, ray)
+        return mean + farther, slope, second
 
     def about_mean(self, angle, ray):
-        """The mean radius, what r has besides, r' and r'': sums over the harmonics, which follow from each other."""
+        """The mean radius, what r has besides, r' and r'': sums over the harmonics, from the highest down.
+
+        Their sines and cosines follow from each other; they mostly grow smaller, so that little is lost by rounding.
+        """
         psi = ray if present(self.guide_angle) is None else unturned(ray, ray_at(self.guide_angle))
         mean, *even = self.cosine
         terms, wave = [], psi

@@ -12,6 +12,10 @@ leaves nothing on the right that cancels where c is near w, if h is near both. W
 
 lose no digit that w - c has, and no term is much larger than inertia and spring are, be elongations as long as they
 may, or s'' near a limit position.
+
+The force of a spring that stiffens, c = k + q e^2, rounds several times where it is largest, and takes three roundings
+for each of e. Where e, or its opposite, is known as a length l of the design and a part p that is small there, it is
+that of a spring whose rate does not change and little more, (k + q l^2) e + q p (2 l + p) e.
 """
 
 from functools import reduce
@@ -20,7 +24,6 @@ from ..machine.links import Wrench
 from ..numbers.planar import added, minus, plus, product, stretched
 from .pushes import pushed
 
-RATE, PARTED = "spring_rate", "parted_rate"
 UNSEEN = 2.0**-120
 """Rate, N/m, that counts as nothing: where there is neither spring nor inertia something is to be divided by."""
 
@@ -54,8 +57,8 @@ def _along(dynamics, slider):
         share = share / len(springs)
     force = minus(None, product(product(mass, alpha), travel.first))
     for item, departure in zip(springs, departures, strict=True):
-        constant, besides = item.parted_rate(dynamics) if PARTED in _telling(item) else (item.spring_rate(dynamics), None)
-        both, inertia, rate = _parted(share, constant)
+        rate, besides = _rates(item, dynamics)
+        both, inertia, rate = _parted(share, rate)
         elongation = dynamics.elongation(item.free_position, slider)
         force = minus(force, both * departure + (inertia * travel.second + rate * elongation))
         force = minus(force, product(besides, elongation))
@@ -71,14 +74,15 @@ def _parted(inertia, rate):
     return 2.0 * c * c * over * inertia, apart * (w + c) * over * inertia, apart * apart * over * rate
 
 
-def _is_spring(item):
+def _rates(item, dynamics):
+    """Rate of a spring that no crank angle changes, if it tells of one, and what it has besides."""
+    return item.parted_rate(dynamics) if _is_spring(item, "parted_rate") else (item.spring_rate(dynamics), None)
+
+
+def _is_spring(item, rate="spring_rate"):
     """Whether a load's rate tells all its push: not where a kind derived from a spring pushes in another way."""
-    return RATE in _telling(item)
-
-
-def _telling(item):
-    """What the class of a load has that says last how it pushes."""
-    return next((vars(kind) for kind in type(item).__mro__ if {"push", RATE} & vars(kind).keys()), ())
+    telling = (vars(kind) for kind in type(item).__mro__ if {"push", "spring_rate"} & vars(kind).keys())
+    return rate in next(telling, ())
 
 
 def _without_inertia(dynamics, slider):

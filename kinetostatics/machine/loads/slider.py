@@ -9,6 +9,9 @@ from .load import Load, Sign, valued
 from .period import TURN, WholeTurns
 from .tables import Table
 
+TERMS = {"more": ("u", "by how much the elongation, or its opposite, is more than the mean radius of the cam")}
+"""What hand calculations call lines of the kernels, and what they are."""
+
 
 class OnSlider(Load):
     """A load on the slider `on` along its guide."""
@@ -120,10 +123,7 @@ class Spring(OnSlider):
         return self.stiffness + self.cubic * elongation * elongation
 
     def parted_rate(self, motion):
-        """The same as a rate that no crank angle changes, where one is known, and what it has besides; None: nothing.
-
-        The rest is (|e| - l) (|e| + l) for a length l, and is small where |e| is near to that.
-        """
+        """The same as a rate that no crank angle changes, if there is one, and what it has besides; None: nothing."""
         if present(self.cubic) is None:
             return self.stiffness, None
         found = motion.outward(self)
