@@ -1,62 +1,62 @@
-"""Knuckles: rockers on whose pin a slider hangs that moves along a line through their pivot, as the ram of a toggle press.
+"""Knuckles: a rocker, and on its pin a slider that moves along a line through its pivot, as the ram of a toggle press.
 
-What a straightening knuckle passes on goes with how far its pin is from the guide, which of the rocker's direction p is
-known no better than to a rounding of 1. With the guide along one axis and a coupler of direction q that reaches along
-the other one, its component there is what lengths leave, with b, h, g and A as for the group,
+What a knuckle passes on as it straightens goes with the distance of its pin from that line, which of the directions of
+links is known to a rounding of their lengths. With the line along one axis, and for the other one the coordinates g of
+the pivot and A of the inner joint, and the component q of the coupler's direction, b being its length and e the other
+component, it is what lengths leave of each other,
 
-    h p = (+-b - g) + A -+ b (1 - |q|),    b (1 - |q|) = b q_aside^2 / (1 + |q|)
+    b q - g + A = (+-b - g) + A - b e^2 / (+-1 + q)
 
-of which no part is large where the crank is short. It is less good where the coupler leans, or is much longer than the
-rocker; only such are taken that always reach to one side of the guide.
+by the sign of q. Where the coupler may lean much, or is much longer than the rocker, that is no nearer, and not used.
 """
 
 import numpy as np
 
 from ..numbers import checks
+from ..numbers.elementary import sign
 from ..numbers.leaves import Axis, with_fields
 from ..numbers.planar import cross
-from .elongation import shortfall
 
 BESIDE = 2.0**-5
-"""Share of the rocker's length up to which its pivot counts as on the guide."""
+"""Share of the rocker's length by which its pivot may be off the line."""
 REACH, LONGEST = 0.25, 2.0
 """Least share of its length that the coupler reaches along the axis, and how many times the rocker's it is at most."""
-AXES = {"+x": (0, 1.0), "-x": (0, -1.0), "+y": (1, 1.0), "-y": (1, -1.0)}
-"""Axis along which a coupler reaches, and its way, by what a group calls them."""
+AXES = ("x", "y")
+TERMS = {
+    "straight": ("j", "what the pin would be off the line on which the slider moves were the coupler across it"),
+}
+"""What hand calculations call lines of the kernels, and what they are."""
 
 
 def told(groups, throws):
-    """Groups of a chain, those that may be knuckles as they are among the others."""
+    """Groups of a chain, of which some may be knuckles by the guides of others."""
     return tuple([_told(group, groups, throws) if hasattr(group, "knuckle") else group for group in groups])
 
 
 def _told(group, groups, throws):
-    guides = [guide for other in groups if group.pin in other.hangs_on for guide in other.guides.values()]
-    kinds = (_kind(group, guide, throws[group.on]) for guide in guides if group.on in throws)
-    knuckle = next(filter(None, kinds), "")
+    throw, knuckle = throws.get(group.on), ""
+    for other in groups if throw is not None else ():
+        for guide in other.guides.values() if group.pin in other.hangs_on else ():
+            knuckle = knuckle or _axis_reached(group, guide, throw)
     return group if knuckle == group.knuckle else with_fields(group, knuckle=knuckle)
 
 
-def _kind(group, guide, throw):
-    """What the knuckle of a group is called for a guide of a slider on its pin, in all designs together; "" for none."""
-    direction = guide.direction if guide.exact is None else guide.exact
-    given = *group.pivot, group.coupler_length, group.rocker_length, guide.guide_offset, *throw.at
-    if not (guide.is_level or type(direction) is Axis) or not all(map(checks.known, given)):
+def _axis_reached(group, guide, throw):
+    """Axis along which the coupler reaches across a guide that is the other one's, through the pivot; "" for others."""
+    b, h, given = group.coupler_length, group.rocker_length, (*group.pivot, guide.guide_offset, *throw.at)
+    if not (guide.is_level or type(guide.exact) is Axis) or not all(map(checks.known, (b, h, *given))):
         return ""
-    axis = 0 if direction[0] == 0.0 else 1
-    pivot, b, h, a = group.pivot, group.coupler_length, group.rocker_length, throw.polar[0]
-    beside = abs(cross(direction, pivot) - guide.guide_offset) <= BESIDE * h
-    reached = (abs(pivot[axis]) >= a + h + REACH * b) & (b <= LONGEST * h) & beside
-    for name, (along, way) in AXES.items():
-        if along == axis and np.all(reached & (way * pivot[axis] > 0.0)):
-            return name
-    return ""
+    axis = 1 if guide.direction[0] else 0
+    off, away = cross(guide.direction, group.pivot) - guide.guide_offset, abs(group.pivot[axis])
+    reached = (abs(off) <= BESIDE * h) & (away - throw.polar[0] - h >= REACH * b) & (b <= LONGEST * h)
+    return AXES[axis] if np.all(reached) else ""
 
 
 def straightened(direction, coupler, joint, coupler_length, rocker_length, pivot, knuckle):
-    """Direction of the rocker of a knuckle, one component by those of the coupler and its joint (kernel)."""
-    axis, way = AXES[knuckle]
-    short = shortfall(coupler_length, coupler[1 - axis], way * coupler[axis])
-    whole = (way * coupler_length - pivot[axis]) + joint.position[axis]
-    part = (whole - way * short) / rocker_length
-    return (part, direction[1]) if axis == 0 else (direction[0], part)
+    """Direction of the rocker, its component along the axis of a knuckle by way of the coupler (kernel)."""
+    axis = AXES.index(knuckle)
+    along, lean = coupler[axis], coupler[1 - axis]
+    way = sign(along)
+    straight = (way * coupler_length - pivot[axis]) + joint.position[axis]
+    part = (straight - coupler_length * lean * lean / (way + along)) / rocker_length
+    return (direction[0], part) if axis else (part, direction[1])
