@@ -14,7 +14,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import sign
-from ..numbers.leaves import Axis, with_fields
+from ..numbers.leaves import FLOATS, Axis, with_fields
 from ..numbers.planar import cross
 
 BESIDE = 2.0**-5
@@ -43,8 +43,10 @@ def _told(group, groups, throws):
 
 def _axis_reached(group, guide, throw):
     """Axis along which the coupler reaches across a guide that is the other one's, through the pivot; "" for others."""
-    b, h, given = group.coupler_length, group.rocker_length, (*group.pivot, guide.guide_offset, *throw.at)
-    if not (guide.is_level or type(guide.exact) is Axis) or not all(map(checks.known, (b, h, *given))):
+    b, h = group.coupler_length, group.rocker_length
+    given = b, h, *group.pivot, guide.guide_offset, *throw.at
+    are_known = FLOATS.issuperset(map(type, given)) or all(map(checks.known, given))
+    if not are_known or not (guide.is_level or type(guide.exact) is Axis):
         return ""
     axis = 1 if guide.direction[0] else 0
     off, away = cross(guide.direction, group.pivot) - guide.guide_offset, abs(group.pivot[axis])
