@@ -43,7 +43,6 @@ TERMS = {
     "second": ("p''", "second derivative by phi of that"),
     "across": ("d", "from the inner joint across to the guide"),
     "along": ("w", "reach of the coupler along the guide"),
-    "short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
     "drawn_in": ("z", "what the coupler's turning takes from the second derivative of that reach"),
     "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
     "resolve.along": ("U", "force of the pin on the slider along the guide"),

@@ -9,9 +9,6 @@ from .load import Load, Sign, valued
 from .period import TURN, WholeTurns
 from .tables import Table
 
-TERMS = {"more": ("u", "by how much the elongation, or its opposite, is more than the mean radius of the cam")}
-"""What hand calculations call lines of the kernels, and what they are."""
-
 
 class OnSlider(Load):
     """A load on the slider `on` along its guide."""
