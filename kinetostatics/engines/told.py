@@ -209,6 +209,16 @@ class Told(Dynamics):
         words = f"second derivative of the coordinate of the {item.on} plus the elongation of its spring"
         return self.names.number(super().departure(item), Symbol("w", "", item.on), words, "m")
 
+    def outward(self, item):
+        """Elongation of a spring on a slider, or its opposite, as a length of the design and some more, m."""
+        if (found := super().outward(item)) is None:
+            return None
+        length, more = found
+        words = (
+            f"how much the elongation of the spring on the {item.on}, or its opposite, is more than a length of the cam"
+        )
+        return length, self.names.number(more, Symbol("u", "", item.on), words, "m")
+
     @cached_property
     def powers(self):
         """Power of each load divided by the crank speed."""

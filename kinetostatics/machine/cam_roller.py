@@ -37,6 +37,7 @@ MOTIONS = {"pressure_angle": Output("rad", False, "of the cam pair, atan(r'/r), 
 TERMS = {
     "place.radius": ("r", "radius of the pitch curve"),
     "place.slope": ("r'", "its first derivative by phi"),
+    "place.farther": ("p", "by how much that is more than the mean radius"),
     "place.curvature": ("r''", "its second derivative by phi"),
     "departing": ("b", "second derivative of the roller centre plus its place"),
     "resolve.force": ("Q", "all that acts on the block, with friction"),
@@ -205,7 +206,12 @@ class CamRoller(checks.Checked, Group):
         return atan(slope / radius)
 
     def place(self, placement):
-        polar = self.cam.polar(placement.angle, placement.ray)
+        if "about_mean" in vars(type(self.cam)):  # what is derived from it may have another radius
+            mean, farther, *derivatives = self.cam.about_mean(placement.angle, placement.ray)
+            polar = mean + farther, *derivatives
+            placement.orbits["A"] = mean, farther
+        else:
+            polar = self.cam.polar(placement.angle, placement.ray)
         self._set(placement, place(placement.ray, *polar), polar)
         placement.departures["A"] = departure(placement.ray, *polar[1:])
 

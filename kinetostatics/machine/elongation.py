@@ -1,8 +1,11 @@
 """Where a slider is along its guide less a position, and how it departs from the motion of a pin of the crank.
 
-Kernels without the rounding of its coordinate: a length reaches along a line that it leans from less l (1 - cos) =
-l sin^2 / (1 + cos), which is small beside it near a dead centre, as is what is left of the lengths themselves.
+Kernels without the rounding of its coordinate, and what a group has of them: a length reaches along a line that it
+leans from less l (1 - cos) = l sin^2 / (1 + cos), which is small beside it near a dead centre, as is what is left of
+the lengths themselves.
 """
+
+from typing import Any
 
 from ..numbers.elementary import sign
 from ..numbers.planar import minus, unturned
@@ -11,6 +14,7 @@ TERMS = {
     "elongation.cosine": ("c", "cosine of the angle from the guide to what swings the inner joint"),
     "elongation.sine": ("s", "sine of that angle"),
     "turning": ("j", "place of the inner joint along the guide where that angle is 0 or half a turn"),
+    "short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
     "departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
 }
 """What hand calculations call lines of the kernels, and what they are."""
@@ -53,3 +57,44 @@ def departure(placement, drawn_in, joint, direction, reach, short):
         return None
     departing = unturned(placement.departures[joint], direction)[0]
     return departing - drawn_in + (reach - short)
+
+
+def outward(placement, joint, direction, reach, short):
+    """That coordinate as seen from the side of the joint, in two parts, the first of which no crank angle changes.
+
+    It is the length by which the joint goes round O, if it does. Near a dead centre the second is small beside it, and
+    has no rounding of the whole.
+    """
+    if joint not in placement.orbits:
+        return None
+    length, farther = placement.orbits[joint]
+    cosine, sine = unturned(placement.ray, direction)
+    size = abs(cosine)
+    return length, farther * size - shortfall(length, sine, size) + sign(cosine) * (reach - short)
+
+
+class Reaching:
+    """What a group has whose slider a coupler reaches."""
+
+    def elongation(self: Any, placement, free_position):
+        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
+        if self.passage:
+            return placement.travels[self._slider].position - free_position
+        return elongation(placement, *self._from(free_position, placement))
+
+    def departure(self: Any, placement, position):
+        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large."""
+        drawn_in = placement.details[self._slider].drawn_in
+        if self.passage or drawn_in is None:
+            return None
+        return departure(placement, drawn_in, *self._from(position, placement))
+
+    def outward(self, placement, position):
+        """That elongation, or its opposite, as a length of the design and some more, m; None if it is not known so."""
+        return outward(placement, *self._from(position, placement))
+
+    def _from(self: Any, position, placement):
+        """What reaches from a position on, as `elongation` takes it."""
+        motion, length, side = placement.details[self._slider], self.coupler_length, self.side
+        short = side * shortfall(length, motion.sine, side * motion.cosine)
+        return self.on, self.guide.line.direction, side * length - position, short

@@ -29,10 +29,11 @@ frozen dataclass derived from `Group`. It declares, by name,
     motion(name, placement)           a quantity of `motions`
     elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
     departure(placement, position)    second derivative of that coordinate plus the elongation, in the same way, or None
+    outward(placement, position)      the elongation, or its opposite, as a length of the design and some more, or None
     sliding(name, placement)          direction and rate of a sliding pair: a `friction.Slide`
     relative_radius(name, placement, side)  of both curvatures of a contact together, by the sign of its force
 
-The last six may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
+The last seven may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
 not be arithmetic: engines then tabulate it.
 
 How to write one
@@ -48,7 +49,7 @@ derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`n
 (x, y). Put into ``placement.joints`` each joint of `joints`, into ``placement.links`` a `LinkMotion` for each link: its
 reference joint, its direction (unit vector), d theta / d phi and the slope of that (None: it never turns); into
 ``placement.travels`` for each slider its coordinate along its guide with both derivatives; into ``placement.details``
-what `resolve` wants to find again. A group may put its joints into ``placement.departures`` and ``placement.swings``.
+what `resolve` wants to find again. A group may put its joints into other tables of the `Placement`.
 
 *resolve.* A pure function from what acts on its links to what it finds: nothing is written to, and nothing is kept.
 ``loads`` holds by link the wrench on it, inertia, weight and all that groups further out ask of it, a force and its
@@ -58,14 +59,12 @@ guide, apart since it may nearly cancel with inertia. Write down the equilibrium
 that it has on the group: the mechanism sees to the reaction on the link that carries the joint.
 
 *Change points.* Most groups have none to pass. One that does says in `on_crank(throws)` how, by a text `passage` that
-belongs to its structure, and gives `turns` and `change_points`; `kink(throws)` says what becomes of a chosen side
-there.
+belongs to its structure, and gives `turns` and `change_points`; `kink(throws)` says what becomes of a side there.
 
 *Friction.* Where links rub, `resolve` is asked several times: what it finds must be linear in the loads.
 
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
-units in tables, axes of figures, quantities of sweeps, columns of data sets. `ks.check(group)` tests derivatives,
-forces and power; tests/machine/test_group.py has a whole example.
+tables, figures and sweeps. `ks.check(group)` tests them; tests/machine/test_group.py has a whole example.
 
 *Hand calculations.* `Solution.explain` tells what the kernels compute, under the names of local variables. The module
 may say in ``TERMS`` how an engineer writes a variable, and what it is: ``{"across": ("d", "from pin to guide")}``, of
@@ -172,7 +171,8 @@ class Placement:
 
     `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
     to find again; `throws` by joint the pins of the crank, each a `Throw`; `departures` by other joints the sum of
-    position and second derivative, where it is known by itself; `swings` by joint what swings it, a `Swing`.
+    position and second derivative, where it is known by itself; `swings` by joint what swings it, a `Swing`; `orbits`
+    by joint on the crank ray a length that no crank angle changes, and how much farther from O it is.
     """
 
     angle: Any
@@ -184,6 +184,7 @@ class Placement:
     throws: dict = field(default_factory=dict)
     departures: dict = field(default_factory=dict)
     swings: dict = field(default_factory=dict)
+    orbits: dict = field(default_factory=dict)
 
 
 class Group:

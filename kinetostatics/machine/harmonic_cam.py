@@ -1,6 +1,8 @@
 """A cam as a Fourier series: each harmonic a number of its own, so that designs may vary it."""
 
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -68,18 +70,24 @@ class Harmonic(checks.Checked, Cam):
         return np.min(self.polar(GRID, ray_at(GRID))[0])
 
     def polar(self, angle, ray):
-        """Sums over the harmonics, whose sines and cosines follow from each other."""
+        mean, farther, slope, second = self.about_mean(angle, ray)
+        return mean + farther, slope, second
+
+    def about_mean(self, angle, ray):
+        """The mean radius, what r has besides, r' and r'': sums over the harmonics, from the highest down.
+
+        Their sines and cosines follow from each other; they mostly grow smaller, so that little is lost by rounding.
+        """
         psi = ray if present(self.guide_angle) is None else unturned(ray, ray_at(self.guide_angle))
         mean, *even = self.cosine
-        radius, slope, second, wave = None, None, None, psi
+        terms, wave = [], psi
         for order in range(1, 1 + max(len(even), len(self.sine))):
             a, b = (present(part[order - 1]) if order <= len(part) else None for part in (even, self.sine))
             if a is not None or b is not None:
                 cosine, sine = wave
                 term = plus(product(a, cosine), product(b, sine))
-                radius = plus(radius, term)
-                slope = plus(slope, float(order) * minus(product(b, cosine), product(a, sine)))
-                second = plus(second, float(-order * order) * term)
+                slope = float(order) * minus(product(b, cosine), product(a, sine))
+                terms.append((term, slope, float(-order * order) * term))
             wave = turned(wave, psi)
-        radius, slope, second = (0.0 * psi[0] if part is None else part for part in (radius, slope, second))
-        return mean + radius, slope, second
+        found = (reduce(add, reversed(parts)) for parts in zip(*terms, strict=True))
+        return mean, *(found if terms else [0.0 * psi[0]] * 3)

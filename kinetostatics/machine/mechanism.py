@@ -11,7 +11,7 @@ from ..numbers.batched import Batched
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
-from . import hints
+from . import hints, knuckle
 from .chain import Chain
 from .crank import Crank
 from .friction import Turning, kind_for
@@ -60,7 +60,7 @@ class Mechanism(Batched):
     def __post_init__(self):
         self.RULES.admit(self)
         throws = self.throws
-        vars(self)["groups"] = tuple([group.on_crank(throws) for group in self.groups])
+        vars(self)["groups"] = knuckle.told([group.on_crank(throws) for group in self.groups], throws)
         names = tuple([(part.__class__, *part.names) for part in self.parts]) if self.trusted else None
         if names is None or names not in _NAMED_WELL:
             checks.require(self.name, *_name_problems(self.parts))

@@ -19,6 +19,7 @@ from ..numbers.planar import added, cross, dot, number, quotient, stretched, sub
 from . import change_points, on_crank, passing
 from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
+from .knuckle import straightened
 from .links import Joint, Link, LinkMotion, Swing, Wrench, between, tip
 
 SMALLEST = 2.0**-53
@@ -97,11 +98,14 @@ def place(joint, coupler_length, rocker_length, pivot, assembly):
     return RockerMotion(coupler, rocker, pin, sine, cosine, divided, heron / unit)
 
 
-def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly, is_close):
+def turned_by_crank(placement, on, coupler_length, rocker_length, pivot, assembly, is_close, knuckle):
     """The same for a pin of the crank, which may come close to the pivot (kernel)."""
-    coupler, rocker, *rest = on_crank.place(placement, on, coupler_length, rocker_length, pivot, assembly, is_close)
-    pin, fixed = tip(pivot, rocker_length, *rocker), Joint(pivot, None, None)
-    return RockerMotion(LinkMotion(placement.joints[on], *coupler), LinkMotion(fixed, *rocker), pin, *rest)
+    joint, given = placement.joints[on], (coupler_length, rocker_length, pivot)
+    coupler, (p, *rates), *rest = on_crank.place(placement, on, *given, assembly, is_close)
+    if knuckle:
+        p = straightened(p, coupler[0], joint, *given, knuckle)
+    pin, fixed = tip(pivot, rocker_length, p, *rates), Joint(pivot, None, None)
+    return RockerMotion(LinkMotion(joint, *coupler), LinkMotion(fixed, p, *rates), pin, *rest)
 
 
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
@@ -174,6 +178,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     label: str = ""
     passage: str = field(default="", init=False, repr=False)
     is_close: bool = field(default=False, init=False, repr=False)
+    knuckle: str = field(default="", init=False, repr=False)
 
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "rocker_pivot"}
@@ -257,7 +262,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         if self.passage:
             motion = passing.place(placement, self.on, *given, self.passage, self.side)
         elif self.on in placement.throws:
-            motion = turned_by_crank(placement, self.on, *given, self.side, self.is_close)
+            motion = turned_by_crank(placement, self.on, *given, self.side, self.is_close, self.knuckle)
         else:
             motion = place(placement.joints[self.on], *given, self.side)
         self._set(placement, motion)

@@ -43,7 +43,6 @@ TERMS = {
     "second": ("p''", "second derivative by phi of that"),
     "across": ("d", "from the inner joint across to the guide"),
     "along": ("w", "reach of the coupler along the guide"),
-    "short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
     "drawn_in": ("z", "what the coupler's turning takes from the second derivative of that reach"),
     "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
@@ -146,7 +145,7 @@ def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
 
 
 @dataclass(frozen=True, eq=False)
-class SliderGroup(checks.Checked, change_points.Passer, Group):
+class SliderGroup(checks.Checked, change_points.Passer, elongation.Reaching, Group):
     """Coupler from joint `on` to a slider at joint `pin` on `guide`.
 
     Parameters
@@ -302,25 +301,6 @@ class SliderGroup(checks.Checked, change_points.Passer, Group):
 
     def closure(self, placement):
         return placement.details[self._slider].closure
-
-    def elongation(self, placement, free_position):
-        """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""
-        if self.passage:
-            return placement.travels[self._slider].position - free_position
-        return elongation.elongation(placement, *self._from(free_position, placement))
-
-    def departure(self, placement, position):
-        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large."""
-        drawn_in = placement.details[self._slider].drawn_in
-        if self.passage or drawn_in is None:
-            return None
-        return elongation.departure(placement, drawn_in, *self._from(position, placement))
-
-    def _from(self, position, placement):
-        """What reaches from a position on, as `elongation` takes it."""
-        motion, length, side = placement.details[self._slider], self.coupler_length, self.side
-        short = side * elongation.shortfall(length, motion.sine, side * motion.cosine)
-        return self.on, self.guide.line.direction, side * length - position, short
 
     def requirement(self, placement):
         distance = abs(placement.details[self._slider].sine * self.coupler_length)

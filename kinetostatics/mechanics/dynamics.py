@@ -65,8 +65,15 @@ class Dynamics(Motion):
 
     def departure(self, item):
         """Second derivative of a slider's coordinate plus the elongation of a spring on it, m; None if not known."""
+        return self._of_group("departure", item)
+
+    def outward(self, item):
+        """Magnitude of that elongation as a length that no crank angle changes and some more, m; None if not known."""
+        return self._of_group("outward", item)
+
+    def _of_group(self, what, item):
         group = next(group for group in self.mechanism.groups if item.on in group.links)
-        return group.departure(self.placement, item.free_position) if hasattr(group, "departure") else None
+        return getattr(group, what)(self.placement, item.free_position) if hasattr(group, what) else None
 
     @cached_property
     def rubbing(self):

@@ -6,12 +6,17 @@ spring give
     - w s'' - c e = - h (s'' + e) - (w - h) s'' - (c - h) e,    w = m omega^2
 
 for any h, and with several springs each takes its share of w so. A group that knows the departure s'' + e by itself
-leaves nothing on the right that cancels where c is near w, if h is near both. With h = 2 w c^2 / (w^2 + c^2)
+leaves nothing on the right that cancels where c is near w, if h is near both. With their harmonic mean, or with
+h = 2 w c / (w + |c|) for a spring that pushes away, too,
 
-    w - h = w (w - c) (w + c) / (w^2 + c^2),    c - h = c (w - c)^2 / (w^2 + c^2)
+    w - h = w (w - c + |c| - c) / (w + |c|),    c - h = c (|c| - w) / (w + |c|)
 
-lose no digit that w - c has, and no term is much larger than inertia and spring are, be elongations as long as they
-may, or s'' near a limit position.
+lose no digit that w - c has, and no term is more than three times as large as inertia and spring are, be elongations as
+long as they may, or s'' near a limit position.
+
+The force of a spring that stiffens, c = k + q e^2, rounds several times where it is largest, and takes three roundings
+for each of e. Where e, or its opposite, is known as a length l of the design and a part p that is small there, it is
+that of a spring whose rate does not change and little more, (k + q l^2) e + q p (2 l + p) e.
 """
 
 from functools import reduce
@@ -53,9 +58,11 @@ def _along(dynamics, slider):
         share = share / len(springs)
     force = minus(None, product(product(mass, alpha), travel.first))
     for item, departure in zip(springs, departures, strict=True):
-        both, inertia, rate = _parted(share, item.spring_rate(dynamics))
-        left = inertia * travel.second + rate * dynamics.elongation(item.free_position, slider)
-        force = minus(force, both * departure + left)
+        rate, besides = _rates(item, dynamics)
+        both, inertia, rate = _parted(share, rate)
+        elongation = dynamics.elongation(item.free_position, slider)
+        force = minus(force, both * departure + (inertia * travel.second + rate * elongation))
+        force = minus(force, product(besides, elongation))
     others = (pushed(item, dynamics) for item in items if not _is_spring(item))
     return reduce(plus, others, force)
 
@@ -63,15 +70,19 @@ def _along(dynamics, slider):
 def _parted(inertia, rate):
     """What inertia and the rate of a spring have in common, and what each has besides: h, w - h and c - h."""
     size = inertia + abs(rate) + UNSEEN
-    w, c, apart = inertia / size, rate / size, (inertia - rate) / size
-    over = 1.0 / (w * w + c * c)
-    return 2.0 * c * c * over * inertia, apart * (w + c) * over * inertia, apart * apart * over * rate
+    w, c = inertia / size, rate / size
+    return 2.0 * c * inertia, w * ((inertia - rate) + (abs(rate) - rate)), c * (abs(rate) - inertia)
 
 
-def _is_spring(item):
+def _rates(item, dynamics):
+    """Rate of a spring that no crank angle changes, if it tells of one, and what it has besides."""
+    return item.parted_rate(dynamics) if _is_spring(item, "parted_rate") else (item.spring_rate(dynamics), None)
+
+
+def _is_spring(item, rate="spring_rate"):
     """Whether a load's rate tells all its push: not where a kind derived from a spring pushes in another way."""
     telling = (vars(kind) for kind in type(item).__mro__ if {"push", "spring_rate"} & vars(kind).keys())
-    return "spring_rate" in next(telling, ())
+    return rate in next(telling, ())
 
 
 def _without_inertia(dynamics, slider):

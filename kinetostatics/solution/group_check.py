@@ -192,8 +192,15 @@ def _of_shape(stage):
         departure = group.departure(placement, free) if hasattr(group, "departure") else None
         if departure is not None:
             errors[f"departure of {name}"] = _error(departure, travel.second + travel.position - free, stage.size)
+        outward = group.outward(placement, free) if hasattr(group, "outward") else None
+        if outward is not None:
+            errors[f"outward part of {name}"] = _error(abs(sum(outward)), abs(elongation), stage.size)
     for name in group.joints:
         joint = placement.joints[name]
+        if name in placement.orbits:
+            errors[f"orbit of {name}"] = _error(
+                stretched(sum(placement.orbits[name]), placement.ray), joint.position, stage.size
+            )
         if name in placement.departures:
             departure = added(vector(joint.second), joint.position)
             errors[f"departure of {name}"] = _error(placement.departures[name], departure, stage.size)

@@ -57,7 +57,7 @@ def test_a_four_bar_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
     placement = placed(a, None if seed % 2 else (a, aside))
     name = "A" if seed % 2 else "C"
     for side, is_close in product(SIDES, (False, True)):
-        found = rocker_group.turned_by_crank(placement, name, b, h, pivot, side, is_close)
+        found = rocker_group.turned_by_crank(placement, name, b, h, pivot, side, is_close, "")
         wanted = rocker_group.place(placement.joints[name], b, h, pivot, side)
         for part in ("coupler", "rocker"):
             same(link(getattr(found, part)), link(getattr(wanted, part)), wanted.closure)
@@ -158,8 +158,8 @@ def test_a_four_bar_on_the_crank_takes_few_more_operations_and_fewer_divisions(m
     whole, slow = counted(structure)
 
     def general(placement, on, *given):
-        *given, is_close = given
-        assert not is_close
+        *given, is_close, knuckle = given
+        assert (is_close, knuckle) == (False, "")
         return rocker_group.place(placement.joints[on], *given)
 
     monkeypatch.setattr(rocker_group, "turned_by_crank", general)

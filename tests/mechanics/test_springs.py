@@ -10,6 +10,7 @@ from kinetostatics.mechanics import springs
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.leaves import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
+from support.enclosed import differences
 from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 60, endpoint=False) + 0.013
@@ -166,6 +167,32 @@ def test_what_a_balancing_spring_leaves_is_near_the_exact(name, flint):
     errors = [float(flint.arb(float(one)) - other) for one, other in zip(found, exact, strict=True)]
     spring = MASS * SPEED * SPEED * 0.3
     assert np.max(np.abs(errors)) < 1.7e-16 * spring
+
+
+@every("guide", [LEVEL, INCLINED])
+def test_what_a_stiffening_spring_leaves_is_near_the_exact(guide, flint):
+    """Within 4e-16 of the spring's force; by a rate that changes with the crank angle it were 7e-16."""
+    cam = ks.cams.Harmonic((0.27, -0.012, 0.024), (0.0002,))
+    s = ks.Scene(saw(cam, 2.012, guide), SPEED, 0.0, [ks.Spring(1e4, 2.0, cubic=1.2e7)]).solve(360)
+    errors = differences(NUMPY.values(s.dynamics, ("B",))["B"], components(on_arb(flint.arb, s), "B"))
+    assert np.max(np.hypot(*errors)) < 4e-16 * np.max(np.abs(s.dynamics.pushes["slider"]))
+
+
+class Softened(ks.Spring):
+    """A spring of a user's with a rate of its own, which is not parted."""
+
+    def spring_rate(self, motion):
+        """Half as large."""
+        return 0.5 * super().spring_rate(motion)
+
+
+def test_a_stiffening_spring_of_the_user_s_keeps_its_rate():
+    machine = saw(*CAMS["harmonic"])
+    own, plain = (
+        ks.Scene(machine, SPEED, 0.0, [spring]).solve(TURN)
+        for spring in (Softened(2e5, 2.0, cubic=1.2e7), ks.Spring(1e5, 2.0, cubic=6e6))
+    )
+    np.testing.assert_allclose(own.reaction("B"), plain.reaction("B"), rtol=0.0, atol=1e-13 * own.largest_force_term)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")

@@ -162,6 +162,7 @@ DERIVATIVES = {
     "other joint": lambda p: p.links.update(coupler=p.links["coupler"]._replace(joint=Joint((9.0, 0.0), None, None))),
     "other swing": lambda p: p.swings.update(B=p.swings["B"]._replace(radius=0.31)),
     "wrong departure": lambda p: p.departures.update(B=p.joints["B"].second),
+    "wrong orbit": lambda p: p.orbits.update(B=(0.3, 0.01)),
 }
 SEEN = {
     "wrong first": "first derivative of joint B",
@@ -174,6 +175,7 @@ SEEN = {
     "other joint": "reference joint of coupler",
     "other swing": "swing of B",
     "wrong departure": "departure of B",
+    "wrong orbit": "orbit of B",
     "wrong force": "work of the forces along x",
 }
 
@@ -201,6 +203,18 @@ class Departing(ks.SliderGroup):
 def test_check_says_that_a_slider_departs_in_another_way_than_told():
     assert ks.check(Departing(0.5)).problems[0].startswith("departure of slider")
     assert "departure of slider" in ks.check(ks.SliderGroup(0.5)).errors
+
+
+class Outward(ks.SliderGroup):
+    """A slider group that parts its elongation wrongly."""
+
+    def outward(self, placement, position):
+        """Too much by a tenth of the coupler."""
+        return 0.1 * self.coupler_length, self.elongation(placement, position)
+
+
+def test_check_says_that_an_elongation_is_not_the_sum_of_its_parts():
+    assert ks.check(Outward(0.5)).problems[0].startswith("outward part of slider")
 
 
 TABLE = 0.3 + 0.05 * np.cos(TURN)

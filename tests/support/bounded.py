@@ -21,7 +21,7 @@ from .shipped import shipped
 BITS = 200
 FAMILIES = (
     *("chain", "plain", "four-bar", "cam", "place", "scaled", "rubbing", "shipped", "inclined"),
-    *("steep", "lever", "passing"),
+    *("steep", "lever", "passing", "stiff"),
 )
 AT_PLACES = {"place": PLACES, "inclined": INCLINED}
 """Families of few structures, whose numbers are exact."""
@@ -92,6 +92,8 @@ def _made(family, rng, count):
         return _solved(found.mechanism, found.crank_speed, 0.0, found.loads, found.friction, angles)
     if family == "steep":
         return _steep(rng, count)
+    if family == "stiff":
+        return _stiff(rng, count)
     if family == "shipped":
         variants = shipped(str(rng.choice(CASES))).variants
         scene = variants[str(rng.choice(list(variants)))].scene
@@ -137,6 +139,26 @@ def _steep(rng, count):
     kinks = np.concatenate([*table.kinks(made.dynamics), base.crank_angle])
     beside = rng.choice(kinks, count) + rng.choice((-1.0, 0.0, 1.0), count) * 10.0 ** rng.uniform(-17, -1, count)
     return _solved(base.mechanism, base.crank_speed, base.crank_acceleration, given, {}, beside)
+
+
+def _stiff(rng, count):
+    """A slider moved by a harmonic cam, with springs whose force along the guide grows or shrinks with the cube."""
+    mean, orders = rng.uniform(0.1, 0.5), 1.0 + np.arange(rng.integers(1, 6))
+    even, odd = (mean * rng.uniform(-0.3, 0.3, orders.size) / orders**2 for _ in range(2))
+    cam = ks.cams.Harmonic((mean, *even), tuple(odd * rng.integers(2)), rng.uniform(-3, 3) * rng.integers(2))
+    length, offset = mean * rng.uniform(1.8, 9.0), mean * rng.uniform(-0.3, 0.3) * rng.integers(2)
+    bodies = {name: _body(rng) for name in ("crank", "block", "coupler", "slider")}
+    machine = ks.cam_crank_slider(
+        cam, length, guide_angle=rng.uniform(-3, 3) * rng.integers(2), guide_offset=offset, **bodies
+    )
+    speed = rng.uniform(1, 50)
+    rate = machine.links["slider"].mass * speed * speed * rng.uniform(0.5, 2.0)
+    springs = [
+        ks.Spring(rate * rng.integers(2), length + mean * rng.uniform(-1, 1), cubic=rate * rng.uniform(-1, 2) / mean**2)
+        for _ in range(rng.integers(1, 3))
+    ]
+    turn = rng.uniform(-4, 4, count) * 10.0 ** -rng.uniform(0, 9, count)
+    return _solved(machine, speed, rng.uniform(-9, 9) * rng.integers(2), [*springs, ks.Gravity()], {}, turn)
 
 
 def _body(rng, size=1.0, mass=1.0):

@@ -6,7 +6,7 @@ A load is a frozen dataclass derived from `Load`. It acts in one of two ways:
     push(motion)        force on the slider `on` along its guide, kept apart as it may nearly cancel with inertia
 
 a spring along a guide says besides by ``spring_rate(motion)`` what it takes, over its elongation from `free_position`,
-which is then all of its push;
+which is then all of its push, and may by ``parted_rate(motion)`` say how much of that no crank angle changes;
 
 from what a `Motion` knows: places and rates, by arithmetic alone. ``VALUE`` names the field that may hold an array over
 the crank angles, a `Table` or a function of the motion instead of a number, ``UNIT`` its unit; whoever asks puts what

@@ -119,6 +119,16 @@ class Spring(OnSlider):
         elongation = motion.elongation(self.free_position, self.on)
         return self.stiffness + self.cubic * elongation * elongation
 
+    def parted_rate(self, motion):
+        """The same as a rate that no crank angle changes, if there is one, and what it has besides; None: nothing."""
+        if present(self.cubic) is None:
+            return self.stiffness, None
+        found = motion.outward(self)
+        if found is None:
+            return self.spring_rate(motion), None
+        length, more = found
+        return self.stiffness + self.cubic * length * length, self.cubic * (more * (2.0 * length + more))
+
     def potential(self, motion):
         """Energy stored, J."""
         elongation = motion.elongation(self.free_position, self.on)
