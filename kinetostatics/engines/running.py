@@ -48,8 +48,10 @@ LIMIT = 2.0**1022
 """What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
-RESERVE, LEFT = 3.0, 2.0
+RESERVE, LEFT = 7.0, 6.0
 """Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
+STEP = 8.0
+"""Roundings beside errors of pivots are counted in as many, so that few sums of both are computed."""
 
 
 class Absolute(NamedTuple):
@@ -221,6 +223,7 @@ class RunningBounds(Counted):
         roundings = found.roundings + more
         if not found.pivots:
             return ROUNDED * roundings
+        roundings = STEP * math.ceil(roundings / STEP)
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
             slope = steepest(found.pivots.values())
