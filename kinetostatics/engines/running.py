@@ -142,6 +142,7 @@ class RunningBounds(Counted):
         )
         is_charged = reserve < 0.0 or node.operation == "total"
         moved = moved_apart(parts)
+        size = self.size if all(map(self.turns, parts)) else self.at_most
         terms = [(1.0, self._lost)]
         if moved is not None:
             terms.append((ROUNDED, moved))
@@ -152,7 +153,7 @@ class RunningBounds(Counted):
             if found is None:
                 terms += self.terms(part)
             else:
-                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), self.size(part)))
+                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), size(part)))
                 terms.append((ROUNDED, found.dust))
         if node.operation == "total":  # sums without loss, and what those of their losses lose
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
@@ -168,7 +169,8 @@ class RunningBounds(Counted):
             own = 0.0 if any(map(is_scaling, node.arguments)) else 1.0
             return self._scaled(left, found, own, self.size(right))
         if left is right:
-            terms = [(self.larger(left) + self.size(left), self.bound(left, 0.5)), (1.0, self._lost)]
+            bound = self.bound(left, 0.5)
+            terms = [(self.fused(2.0, self.size(left), bound), bound), (1.0, self._lost)]
             return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
         held = self._absolute[left].reserve + self._absolute[right].reserve
         one, other = self.bound(left, 0.0 if held >= 1.0 else 1.0), self.bound(right)
