@@ -12,9 +12,9 @@ pivot
 absolute value
     Any other. Its bound is computed, once.
 turning value
-    A relative one: sines and cosines of the crank angle times numbers of the design. Added to anything else it counts
-    with its largest magnitude at any angle, which costs nothing. A sum of such alone vanishes as a linkage folds, and
-    has to be known there: in it each counts with its own.
+    A relative one: sines and cosines of the crank angle times numbers of the design. Added to such a number it counts
+    with its largest magnitude at any angle, which costs nothing. Sums without one may vanish as a linkage folds, and
+    have to be known there: in them it counts with its own.
 bound
     Of an absolute value: at least its error and its reserve.
 reserve
@@ -146,7 +146,7 @@ class RunningBounds(Counted):
         )
         is_charged = reserve < 0.0 or node.operation == "total"
         moved = moved_apart(parts)
-        size = self.size if all(map(self.turns, parts)) else self.at_most
+        size = self.size if all(map(varies, parts)) else self.at_most
         terms = [(1.0, self._lost)]
         if moved is not None:
             terms.append((ROUNDED, moved))
