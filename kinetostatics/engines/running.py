@@ -52,7 +52,7 @@ LIMIT = 2.0**1022
 """What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
-RESERVE, LEFT = 7.0, 6.0
+RESERVE = 6.0
 """Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
 STEP = 4.0
 """So many roundings at a time are charged, alone and beside errors of pivots: few sums of these are to be computed."""
@@ -200,7 +200,7 @@ class RunningBounds(Counted):
         elif held >= own:
             reserve = held - own
         else:
-            charge = stepped(own + LEFT - held)
+            charge = stepped(own + RESERVE - held)
             bound, reserve = self.fused(charge * ROUNDED, self.size(part), bound), held + charge - own
         terms = [(size, bound), (1.0, self._lost)]
         if lost is not None and varies(self.cap(part)) and reserve + own >= 1.0 and not (varies(size) or varies(lost)):
