@@ -53,6 +53,7 @@ class Counted:
         self._squares: set[Any] = set()
         self._reciprocals: dict[Node, Any] = {}
         self._caps: dict[Node, Any] = {}
+        self._turns: dict[Node, bool] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
 
@@ -133,11 +134,11 @@ class Counted:
         if not self._dust:
             return 0.0
         left, right = node.arguments
-        dust = self._dust
+        dust = None if _is_over_root(node) and other.pivots else self._dust
         if one.dust is not None:
-            dust = plus(one.dust * (self.cap(right) if sign > 0.0 else self._cap_over(right)), dust)
+            dust = self.fused(one.dust, self.cap(right) if sign > 0.0 else self._cap_over(right), dust)
         if other.dust is not None:
-            dust = plus(other.dust * self.cap(left), dust)
+            dust = self.fused(other.dust, self.cap(left), dust)
         return dust
 
     def as_divisor(self, part):
@@ -201,6 +202,22 @@ class Counted:
                 found = self._cap(part.operation, part.arguments)
             self._caps[part] = self.size(part) if found is None or varies(found) else found
         return self._caps[part]
+
+    def at_most(self, part):
+        """Magnitude of a part; of what turns its largest one at any crank angle."""
+        cap = self.cap(part) if self.turns(part) else None
+        return self.size(part) if cap is None or varies(cap) else cap
+
+    def turns(self, part):
+        """Whether a part is sines and cosines of the crank angle times numbers of the design."""
+        if not varies(part):
+            return False
+        if part not in self._turns:
+            kind, moving = part.operation, [factor for factor in part.arguments if varies(factor)]
+            is_product = kind == "*" or (kind == "-" and len(part.arguments) == 1)
+            is_turn = kind in ("sin", "cos") and moving[0].operation == "angle"
+            self._turns[part] = is_turn or (is_product and all(map(self.turns, moving)))
+        return self._turns[part]
 
     def _cap(self, kind, parts):
         if kind in ("sin", "cos"):
@@ -290,6 +307,15 @@ class Counted:
                 or (kind == "divisor" and any(map(self.is_positive, parts)))
             )
         return self._positive[part]
+
+
+def _is_over_root(node):
+    """Whether a node is one over a root, which is not too small for a double unless the square is infinite."""
+    above, below = node.arguments
+    while isinstance(below, Node) and below.operation == "divisor":
+        below = below.arguments[0]
+    is_root = isinstance(below, Node) and below.operation in ("sqrt", "root")
+    return node.operation == "/" and is_root and not isinstance(above, Node) and abs(above) >= 1.0
 
 
 def is_exact(error):

@@ -11,6 +11,10 @@ pivot
     is there if possible, and shared by all products with it.
 absolute value
     Any other. Its bound is computed, once.
+turning value
+    A relative one: sines and cosines of the crank angle times numbers of the design. Added to such a number it counts
+    with its largest magnitude at any angle, which costs nothing. Sums without one may vanish as a linkage folds, and
+    have to be known there: in them it counts with its own.
 bound
     Of an absolute value: at least its error and its reserve.
 reserve
@@ -48,8 +52,10 @@ LIMIT = 2.0**1022
 """What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
-RESERVE, LEFT = 3.0, 2.0
+RESERVE = 6.0
 """Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
+STEP = 4.0
+"""So many roundings at a time are charged, alone and beside errors of pivots: few sums of these are to be computed."""
 
 
 class Absolute(NamedTuple):
@@ -140,6 +146,7 @@ class RunningBounds(Counted):
         )
         is_charged = reserve < 0.0 or node.operation == "total"
         moved = moved_apart(parts)
+        size = self.size if all(map(varies, parts)) else self.at_most
         terms = [(1.0, self._lost)]
         if moved is not None:
             terms.append((ROUNDED, moved))
@@ -150,7 +157,7 @@ class RunningBounds(Counted):
             if found is None:
                 terms += self.terms(part)
             else:
-                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), self.size(part)))
+                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), size(part)))
                 terms.append((ROUNDED, found.dust))
         if node.operation == "total":  # sums without loss, and what those of their losses lose
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
@@ -171,7 +178,8 @@ class RunningBounds(Counted):
             own = 0.0 if any(map(is_scaling, node.arguments)) else 1.0
             return self._scaled(left, found, own, self.size(right))
         if left is right:
-            terms = [(self.larger(left) + self.size(left), self.bound(left, 0.5)), (1.0, self._lost)]
+            bound = self.bound(left, 0.5)
+            terms = [(self.fused(2.0, self.size(left), bound), bound), (1.0, self._lost)]
             return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
         held = self._absolute[left].reserve + self._absolute[right].reserve
         one, other = self.bound(left, 0.0 if held >= 1.0 else 1.0), self.bound(right)
@@ -197,7 +205,7 @@ class RunningBounds(Counted):
         elif held >= own:
             reserve = held - own
         else:
-            charge = 4.0 * math.ceil((own + LEFT - held) / 4.0)
+            charge = stepped(own + RESERVE - held)
             bound, reserve = self.fused(charge * ROUNDED, self.size(part), bound), held + charge - own
         terms = [(size, bound), (1.0, self._lost)]
         if lost is not None and varies(self.cap(part)) and reserve + own >= 1.0 and not (varies(size) or varies(lost)):
@@ -223,9 +231,9 @@ class RunningBounds(Counted):
 
     def coefficient(self, found, more=0.0):
         """What a relative error is of the magnitude of its value."""
-        roundings = found.roundings + more
         if not found.pivots:
-            return ROUNDED * roundings
+            return ROUNDED * (found.roundings + more)
+        roundings = stepped(found.roundings + more)
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
             slope = steepest(found.pivots.values())
@@ -263,6 +271,11 @@ class RunningBounds(Counted):
         if total is not None:
             value = value - (SAFE * UNIT) * total
         return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
+
+
+def stepped(roundings):
+    """As many roundings or few more, in steps."""
+    return STEP * math.ceil(roundings / STEP)
 
 
 def steepest(powers):
