@@ -16,6 +16,7 @@ from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import components, quantity
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
+from ..results.bends import bent
 from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.turn import repeating_problem
@@ -50,6 +51,8 @@ class Job:
         Cores to use for a chunk.
     wide : bool
         Whether a compiled loop takes all designs of a chunk, and no table for each of them.
+    bent : bool
+        Whether loads bend an output, so that its turn is parted there.
     """
 
     make: Callable[[dict], Any]
@@ -60,6 +63,7 @@ class Job:
     engine: str
     threads: int
     wide: bool = False
+    bent: bool = False
 
     @property
     def ratios(self):
@@ -81,7 +85,7 @@ class Job:
 def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
-    step = max(1, together.VALUES // job.angles if job.engine == "numpy" else len(frame))
+    step = max(1, together.VALUES // job.angles if job.engine == "numpy" or job.bent else len(frame))
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
         numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])
@@ -117,7 +121,8 @@ def tried(job, designs, engines):
             continue
         try:
             solutions = [together.solution_of(scene, job.angles) for scene in scenes]
-            for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
+            pairs = list(zip(solutions, job.sides, strict=True))
+            for solution, (_, outputs) in pairs:
                 for name in together.quantities(outputs):
                     components(solution, name)
             problems = [repeating_problem(solution) for solution in solutions]
@@ -129,7 +134,8 @@ def tried(job, designs, engines):
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine = _engine(job, solutions, engines)
         wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
-        return replace(job, engine=engine, outputs=outputs, wide=wide)
+        parted = any(bent(solution, item.quantity) for solution, (_, wanted) in pairs for item in wanted)
+        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted)
     return None
 
 

@@ -10,8 +10,8 @@ from .period import TURN
 
 BEYOND = 1e-9
 """Share of a table over travel by which a slider may go beyond it: rounding."""
-SAMPLES = 720
-"""Crank angles a turn between which the kinks of a table over travel are found."""
+STRAIGHT = 1e-7
+"""Share of the largest value by which a row may be off the line between its neighbours and bend nothing."""
 
 
 def order_problem(x, over):
@@ -125,17 +125,17 @@ def _degrees(angle):
     return f"{math.degrees(angle):.9g} deg"
 
 
-def passed(function, levels, turns):
-    """Crank angles in so many turns at which a function of it passes some levels."""
-    from scipy.optimize import elementwise
+def bent(x, strokes):
+    """Which rows stand off the line between their neighbours by more than `STRAIGHT` of the largest value."""
+    off = np.zeros(x.size, dtype=bool)
+    share = np.diff(x)[:-1] / (x[2:] - x[:-2])
+    largest = max(np.max(np.abs(y)) for y in strokes)
+    for y in strokes:
+        off[1:-1] |= np.abs(y[1:-1] - (y[:-2] + share * (y[2:] - y[:-2]))) > STRAIGHT * largest
+    return off
 
-    grid = np.linspace(0.0, TURN * turns, SAMPLES * turns + 1)
-    above = np.broadcast_to(function(grid), grid.shape) - levels[:, None]
-    _, exact = np.nonzero(above[:, :-1] == 0)
-    with np.errstate(invalid="ignore"):
-        level, before = np.nonzero(above[:, :-1] * above[:, 1:] < 0)
-    if not before.size:
-        return grid[exact]
-    bracket, given = (grid[before], grid[before + 1]), (levels[level],)
-    found = elementwise.find_root(lambda angle, level: function(angle) - level, bracket, args=given).x
-    return np.mod(np.concatenate([grid[exact], found]), TURN * turns)
+
+def bent_around(angle, value, period):
+    """The same of rows that repeat after a period."""
+    around = np.concatenate([angle[-1:] - period, angle, angle[:1] + period])
+    return bent(around, [np.concatenate([value[-1:], value, value[:1]])])[1:-1]

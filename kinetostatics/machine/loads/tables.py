@@ -11,6 +11,7 @@ from ...numbers import checks
 from ...numbers.elementary import namespace
 from ...numbers.leaves import with_fields
 from . import rows
+from .crossings import crossings
 from .period import TURN, WholeTurns
 
 OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
@@ -310,14 +311,23 @@ class Table:
         """
         if self.over == "angle":
             return np.mod(self.x, self.period), np.empty(0)
-        name, turns = self._slider(motion), motion.mechanism.turns
-
-        def travel(angle):
-            return motion.mechanism.place(angle).travels[name]
-
-        ends = rows.passed(lambda angle: travel(angle).first, np.zeros(1), turns)
-        passed = rows.passed(lambda angle: travel(angle).position, self.x, turns)
+        ends, passed = (part[~np.isnan(part)] for part in self._crossings(motion, self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
+
+    def bends(self, motion):
+        """Crank angles (1 or designs, K) in its period at which it bends so that one sees it, or may jump.
+
+        NaN where a design has fewer than another.
+        """
+        if self.over == "angle":
+            return np.mod(self.x[rows.bent_around(self.x, self.y, self.period)], self.period)[None]
+        strokes = [self.y] if self.back is None else [self.y, self.back]
+        ends, passed = self._crossings(motion, self.x[rows.bent(self.x, strokes)])
+        return passed if self.back is None else np.column_stack([ends, passed])
+
+    def _crossings(self, motion, levels):
+        name, mechanism = self._slider(motion), motion.mechanism
+        return crossings(lambda angle: mechanism.place(angle).travels[name], levels, mechanism.turns)
 
     @property
     def _content(self):
