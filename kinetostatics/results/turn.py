@@ -17,7 +17,8 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 
 SAMPLES = 1440
-"""Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""
+"""Samples a turn in which extrema are bracketed, besides those at kinks of tables and between them; two extrema closer
+than a quarter degree may pass unseen."""
 FINER = 5
 """How many times as many there are where a load is a function, which may have narrow pulses."""
 NEAR = 0.01
@@ -85,8 +86,10 @@ class Turn:
         count = SAMPLES * turns * (1 if all(map(is_given, solution.loads)) else FINER)
         grid = np.linspace(0.0, solution.period, count, endpoint=False)
         kinks, jumps = _kinks(solution)
-        if jumps.size:
-            grid = np.unique(np.concatenate([grid, *(np.mod(jumps + side, solution.period) for side in BESIDE)]))
+        if kinks.size:
+            beside = np.ravel(jumps[:, None] + BESIDE)
+            more = np.concatenate([kinks, kinks[:-1] + 0.5 * np.diff(kinks), beside])
+            grid = np.unique(np.concatenate([grid, np.mod(more, solution.period)]))
         first = solution.at(grid)
         require_repeating(solution)
         checks.require("extremes", *refusals(first), *contact.refusals(first))

@@ -85,7 +85,8 @@ class Job:
 def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
-    step = max(1, together.VALUES // job.angles if job.engine == "numpy" or job.bent else len(frame))
+    step = max(1, together.VALUES // job.angles if job.engine == "numpy" else len(frame))
+    step = min(step, together.PARTED) if job.bent else step
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
         numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from ..engines import loops, programs
-from ..errors import ParameterError
+from ..errors import NotGivenError, ParameterError
 from ..machine.friction import PASSES
 from ..machine.loads import TURN, refusals
 from ..mechanics import contact
@@ -25,6 +25,8 @@ from ..solution.scene import unchecked
 
 VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
+PARTED = 128
+"""Designs whose turns are parted at a time: so many that the calls count little, and memory is no concern."""
 BLOCK = 40_000
 """Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""
 SHARES = 8
@@ -162,8 +164,10 @@ def _by_pieces(scene, job, solution, outputs, count):
 
 def _sizes(solution, names, engine):
     """Values of quantities, of vectors their magnitudes."""
-    if engine == "compiled":
-        program, leaves = programs.of(solution.dynamics, tuple(names), sizes=True)
-        return program.run(solution.dynamics, leaves, compiled=True)
-    with np.errstate(all="ignore"):
-        return [sizes(solution, name)[0] for name in names]
+    state, compiled = solution.dynamics, engine == "compiled"
+    try:
+        program, leaves = programs.of(state, tuple(names), sizes=True, lasting=not compiled)
+    except NotGivenError:
+        with np.errstate(all="ignore"):
+            return [sizes(solution, name)[0] for name in names]
+    return program.run(state, leaves, compiled)

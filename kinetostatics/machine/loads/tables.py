@@ -320,9 +320,9 @@ class Table:
         NaN where a design has fewer than another.
         """
         if self.over == "angle":
-            return np.mod(self.x[rows.bent_around(self.x, self.y, self.period)], self.period)[None]
+            return np.mod(self.x[rows.bending_around(self.x, self.y, self.period)], self.period)[None]
         strokes = [self.y] if self.back is None else [self.y, self.back]
-        ends, passed = self._crossings(motion, self.x[rows.bent(self.x, strokes)])
+        ends, passed = self._crossings(motion, self.x[rows.bending(self.x, strokes)])
         return passed if self.back is None else np.column_stack([ends, passed])
 
     def _crossings(self, motion, levels):
