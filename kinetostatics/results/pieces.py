@@ -22,6 +22,8 @@ SERIES = np.linalg.inv(np.polynomial.polynomial.polyvander(2.0 * NODES - 1.0, NO
 """Coefficients of the polynomial over these places from values at the nodes."""
 LAST = 0.5 ** (NODES.size - 2)
 """Largest part of the last term that no polynomial of fewer terms can take."""
+SHARP = 1e-9
+"""Share of the largest magnitude on a piece that the last term has where the magnitude is not smooth."""
 APPROACHES = 6
 """Steps of Newton's method to a peak or zero that is known to a quarter of half a piece."""
 
@@ -79,7 +81,7 @@ class Pieces(NamedTuple):
         elif output.reduction == "swing":
             found, error, size = self._swing(values)
         else:
-            found, error, size = self._mean(output, values)
+            found, error, size = self._mean(output, values, vector)
         return found, is_rough(output, found, error, lambda rough: size[rough])
 
     def _peaks(self, reduction, values, vector):
@@ -104,7 +106,7 @@ class Pieces(NamedTuple):
             error = error / np.maximum(np.maximum(height, np.sqrt(error)), np.finfo(float).tiny)
         return height, np.where(np.isnan(height), np.nan, np.mod(angle, self.period)), error
 
-    def _mean(self, output, values):
+    def _mean(self, output, values, vector):
         kind, order = output.reduction, output.order
         error, size = self._sum(LAST * np.abs(_series(values)[-1:])), np.abs(values).max(axis=(0, 2))
         if order is not None:
@@ -113,14 +115,13 @@ class Pieces(NamedTuple):
             return np.hypot(*parts) * (1.0 if order == 0 else 2.0), 2.0 * error, size
         if kind == "rms":
             return np.sqrt(self._sum(values * values)), error, size
-        if kind == "mean":
-            return self._sum(values), error, size
-        return self._sum(_sizes(values)), error, size
+        if vector:
+            return self._sum(_magnitudes(values)), error, size
+        return self._sum(values if kind == "mean" else _sizes(values)), error, size
 
     def _sum(self, values):
         """Mean over the period of values at the nodes, or of one value for each piece; the same with empty pieces."""
-        weights = WEIGHTS if len(values) == NODES.size else (1.0,)
-        parts = sum(weight * row for weight, row in zip(weights, values, strict=True))
+        parts = _means(values) if len(values) == NODES.size else values[0]
         return np.cumsum(self.width * parts, axis=1)[:, -1] / self.period
 
     def _swing(self, values):
@@ -192,10 +193,33 @@ def _highest(series):
     return found[0], pieces, found[1], found[2]
 
 
+def _means(values):
+    return sum(weight * row for weight, row in zip(WEIGHTS, values, strict=True))
+
+
+def _magnitudes(values):
+    """Mean magnitude of a vector on each piece (1, designs, pieces), also where it comes near zero and turns about.
+
+    There the square, which is smooth, is integrated on both sides of where it is least, at places that gather there.
+    """
+    found, series = _means(values), _series(values)
+    design, piece = np.nonzero(LAST * np.abs(series[-1]) > SHARP * np.abs(values).max(axis=0))
+    own = _series(values[:, design, piece] ** 2)
+    slope = _slope(own)
+    first = PLACES[np.stack([_at(own, place) for place in PLACES]).argmin(axis=0)]
+    least = _approached(slope, _slope(slope), first, np.maximum(first - STEP, -1.0), np.minimum(first + STEP, 1.0))
+    total = np.zeros(design.size)
+    for end in (-1.0, 1.0):
+        for node, weight in zip(NODES, WEIGHTS, strict=True):
+            square = _at(own, least + (end - least) * node**3)
+            total += 3.0 * node**2 * weight * np.abs(end - least) * np.sqrt(np.maximum(square, 0.0))
+    found[design, piece] = 0.5 * total
+    return found[None]
+
+
 def _sizes(values):
     """Mean magnitude of each piece (1, designs, pieces), also where the sign changes on it."""
-    means = sum(weight * row for weight, row in zip(WEIGHTS, values, strict=True))
-    found, series = np.abs(means), _series(values)
+    found, series = np.abs(_means(values)), _series(values)
     samples = np.stack([_at(series, place) for place in PLACES])
     design, piece = np.nonzero(np.signbit(samples).any(axis=0) & ~np.signbit(samples).all(axis=0))
     own = series[:, design, piece]

@@ -33,6 +33,8 @@ APPROACH = 0.1 * 2.0 ** (-np.arange(120) / 3)
 """Distances from a limit position, rad, by which it is approached; every third is half as far."""
 GROWING = 1.15
 """How much more a quantity must change each time the distance is halved to grow without bound."""
+BETWEEN = (2.0**-20, 0.5, 1.0 - 2.0**-20)
+"""Shares of the way from one kink to the next at which samples stand: they tell how a curve leaves and nears each."""
 BESIDE = (-(2.0**-44), 2.0**-44)
 """Distances from a jump, rad, at which samples stand on both sides of it."""
 ASIDE = 1e-3
@@ -87,8 +89,8 @@ class Turn:
         grid = np.linspace(0.0, solution.period, count, endpoint=False)
         kinks, jumps = _kinks(solution)
         if kinks.size:
-            beside = np.ravel(jumps[:, None] + BESIDE)
-            more = np.concatenate([kinks, kinks[:-1] + 0.5 * np.diff(kinks), beside])
+            between = kinks[:, None] + np.diff(kinks, append=kinks[0] + solution.period)[:, None] * BETWEEN
+            more = np.concatenate([kinks, between.ravel(), np.ravel(jumps[:, None] + BESIDE)])
             grid = np.unique(np.concatenate([grid, np.mod(more, solution.period)]))
         first = solution.at(grid)
         require_repeating(solution)
