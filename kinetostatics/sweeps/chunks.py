@@ -253,19 +253,37 @@ def _settled(make, job, frame, outputs, found, earlier):
     if earlier is not None:
         with np.errstate(invalid="ignore"):
             rough &= abs(numbers - earlier) > SETTLED * abs(numbers)
-    again = np.flatnonzero((rough.any(axis=0) | narrow) & (reasons == ""))
-    if again.size and (earlier is None or 2 * job.angles <= MOST):
+    rough &= (reasons == "") & ~narrow
+    if rough.any():
+        rough &= ~_noise(make, job, frame, outputs, rough)
+    again = rough | (narrow & (reasons == ""))
+    if again.any() and (earlier is None or 2 * job.angles <= MOST):
         finer = replace(job, angles=2 * job.angles)
-        numbers[:, again], reasons[again] = _reduced(make, finer, frame.iloc[again], outputs, numbers[:, again])
+        for wanted in np.unique(again[:, again.any(axis=0)], axis=1).T:  # no output hangs on what else is asked for
+            rows = np.flatnonzero((again == wanted[:, None]).all(axis=0))
+            part, some = np.ix_(wanted, rows), [item for item, own in zip(outputs, wanted, strict=True) if own]
+            numbers[part], reasons[rows] = _reduced(make, finer, frame.iloc[rows], some, numbers[part])
     else:
-        for row in again:
-            wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]
+        for row in np.flatnonzero(again.any(axis=0)):
+            wrong = [str(item) for item, wrong in zip(outputs, again[:, row], strict=True) if wrong]
             reasons[row] = f"{', '.join(wrong)} is not resolved by {job.angles} crank angles" + (
                 f": it passes so near a limit position at {np.degrees(nearest[row]):.6g} deg"
                 if narrow[row]
                 else "; if a load jumps, let it rise over a degree"
             )
     return numbers, reasons
+
+
+def _noise(make, job, frame, outputs, asked):
+    """Which outputs (outputs, designs) of those asked for are of what changes by rounding of its terms only."""
+    found = np.zeros(asked.shape, dtype=bool)
+    rows, designs = np.flatnonzero(asked.any(axis=1)), np.flatnonzero(asked.any(axis=0))
+    wanted = [outputs[row] for row in rows]
+    for start in range(0, designs.size, together.PARTED):
+        some = designs[start : start + together.PARTED]
+        scene = _scene(make, job.values(frame.iloc[some])[-1])
+        found[np.ix_(rows, some)] = together.noise(scene, job, wanted)
+    return found
 
 
 def _near_limits(make, job, frame, nearest, outputs):

@@ -13,13 +13,14 @@ from ..errors import NotGivenError, ParameterError
 from ..machine.friction import PASSES
 from ..machine.loads import TURN, refusals
 from ..mechanics import contact
-from ..mechanics.quantities import quantity, sizes
+from ..mechanics.quantities import quantity, scale, sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
 from ..numbers.leaves import with_fields
 from ..results.bends import bends, bent
 from ..results.passes import Passes
 from ..results.pieces import Pieces
+from ..results.rounding import FLOOR
 from ..results.turn import NEAR
 from ..solution.scene import unchecked
 
@@ -137,12 +138,32 @@ def _by_numpy(solution, outputs, count, found, threads):
     return fill, step
 
 
+def noise(scene, job, outputs):
+    """Whether outputs are of what changes over the turn by rounding of its terms only: (outputs, designs or 1)."""
+    solution = solution_of(scene, job.angles)
+    if any(bent(solution, item.quantity) for item in outputs):
+        count = math.prod(solution.shape[:-1])
+        solution = solution_of(scene, _pieces(solution, job, outputs, count).angle)
+    with np.errstate(all="ignore"):
+        found = [_is_noise(solution, item.quantity) for item in outputs]
+    return np.array(found)
+
+
+def _is_noise(solution, name):
+    values = sizes(solution, name)[0]
+    size = np.maximum(scale(solution, name), np.abs(values).max(axis=-1))
+    return np.ravel(np.ptp(values, axis=-1) <= FLOOR * size)
+
+
+def _pieces(solution, job, outputs, count):
+    """The turn of designs, parted where loads bend."""
+    found, order = bends(solution), max(item.order or 0 for item in outputs)
+    return Pieces.of(np.broadcast_to(found, (count, found.shape[1])), solution.period, job.angles, order)
+
+
 def _by_pieces(scene, job, solution, outputs, count):
     """Numbers (outputs, designs), and whether so many crank angles do not tell them, where loads bend."""
-    order = max(item.order or 0 for item in outputs)
-    bent_at = bends(solution)
-    bent_at = np.broadcast_to(bent_at, (count, bent_at.shape[1]))
-    pieces = Pieces.of(bent_at, solution.period, job.angles, order)
+    pieces = _pieces(solution, job, outputs, count)
     angle, names = pieces.angle, quantities(outputs)
     values = {name: np.empty(angle.shape) for name in names}
     step = max(1, VALUES // count)
