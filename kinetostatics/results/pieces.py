@@ -13,8 +13,6 @@ from ..machine.loads import TURN
 from .means import NODES, WEIGHTS
 from .reductions import OVER_THE_ANGLE, PEAK, PEAKS, is_rough
 
-FEWEST = 24
-"""Pieces of a turn, at least."""
 STEP = 0.25
 PLACES = np.arange(-1.0, 1.0 + STEP / 2, STEP)
 """Places on a piece, from -1 to 1, between which peaks are sought."""
@@ -56,7 +54,7 @@ class Pieces(NamedTuple):
         order : int
             Highest order of a harmonic of the crank angle that is asked for.
         """
-        count = max(round(period / TURN) * max(FEWEST, 2 * order), -(-angles // NODES.size))
+        count = max(round(period / TURN) * 2 * order, -(-angles // NODES.size))
         even = np.broadcast_to(np.linspace(0.0, period, count + 1), (len(bends), count + 1))
         edges = np.sort(np.column_stack([even, np.where(np.isnan(bends), 0.0, bends)]), axis=1)
         return cls(edges[:, :-1], np.diff(edges), period)

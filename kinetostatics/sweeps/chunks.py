@@ -12,6 +12,7 @@ import pandas as pd
 
 from ..engines import programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
+from ..machine.loads import TURN
 from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import components, quantity
 from ..numbers import checks
@@ -29,6 +30,8 @@ NEGLIGIBLE = 1e-12
 """Share of the reference's number below which a design's counts as zero, as in `comparison`."""
 FEWEST = 12
 """Crank angles below which a sweep is refused."""
+PARTED = 192
+"""Crank angles a turn, at least, where loads bend: so many tell most outputs, however few are asked for."""
 MOST = 5760
 """Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
 SETTLED = 1e-3
@@ -136,7 +139,8 @@ def tried(job, designs, engines):
         engine = _engine(job, solutions, engines)
         wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
         parted = any(bent(solution, item.quantity) for solution, (_, wanted) in pairs for item in wanted)
-        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted)
+        fewest = PARTED * round(scenes[0].period / TURN) if parted else 0
+        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=max(job.angles, fewest))
     return None
 
 

@@ -10,6 +10,7 @@ tables      values by crank angle or travel, rows their rows, crossings where th
 period      turns after which loads repeat
 """
 
+from .crossings import in_rows
 from .gravity import Gravity
 from .load import Load, is_given, may_refuse, refusals, value_of
 from .period import MOST_TURNS, TURN, WholeTurns, period_of
@@ -49,6 +50,7 @@ __all__ = [
     "TorsionDamper",
     "TorsionSpring",
     "WholeTurns",
+    "in_rows",
     "is_given",
     "may_refuse",
     "period_of",

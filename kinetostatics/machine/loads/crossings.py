@@ -34,7 +34,7 @@ def crossings(travel, levels, turns):
         closes = ~np.isnan(rate)
         turning = (np.signbit(rate[:, :-1]) != np.signbit(rate[:, 1:])) & closes[:, :-1] & closes[:, 1:]
         design, place = np.nonzero(turning)
-        low, high = _in_rows(design, len(rate), grid[0, place], grid[0, place + 1])
+        low, high = in_rows(design, len(rate), grid[0, place], grid[0, place + 1])
 
         def rates(angle):
             at = travel(angle)
@@ -63,10 +63,10 @@ def _passing(travel, levels, knots):
     first = np.repeat(np.minimum(before, after)[design, place] + number - np.cumsum(number), number)
     level = levels[first + np.arange(number.sum())]
     design, place = np.repeat(design, number), np.repeat(place, number)
-    return places, *_in_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
+    return places, *in_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
 
 
-def _in_rows(design, count, *values):
+def in_rows(design, count, *values):
     """Values of designs, which stand one after the other, as arrays (designs, most of one), NaN where one has fewer."""
     number = np.bincount(design, minlength=count)
     rows = np.full((len(values), count, number.max(initial=0)), np.nan)
