@@ -19,7 +19,7 @@ PLACES = np.arange(-1.0, 1.0 + STEP / 2, STEP)
 SERIES = np.linalg.inv(np.polynomial.polynomial.polyvander(2.0 * NODES - 1.0, NODES.size - 1))
 """Coefficients of the polynomial over these places from values at the nodes."""
 LAST = 0.5 ** (NODES.size - 2)
-"""Largest part of the last term that no polynomial of fewer terms can take."""
+"""Largest part of the last term that no polynomial of fewer terms can take; of one before the last twice as much."""
 SHARP = 1e-9
 """Share of the largest magnitude on a piece that the last term has where the magnitude is not smooth."""
 APPROACHES = 6
@@ -106,7 +106,7 @@ class Pieces(NamedTuple):
 
     def _mean(self, output, values, vector):
         kind, order = output.reduction, output.order
-        error, size = self._sum(LAST * np.abs(_series(values)[-1:])), np.abs(values).max(axis=(0, 2))
+        error, size = self._sum(_rest(_series(values))[None]), np.abs(values).max(axis=(0, 2))
         if order is not None:
             angle = order * (self.start + self.width * NODES[:, None, None])
             parts = (self._sum(values * wave(angle)) for wave in (np.cos, np.sin))
@@ -130,13 +130,24 @@ class Pieces(NamedTuple):
         gained = np.cumsum(_at(inner, 1.0) - _at(inner, -1.0), axis=1)
         inner[0] += np.column_stack([np.zeros(len(gained)), gained[:, :-1]]) - _at(inner, -1.0)
         found = _highest(inner)[0] + _highest(-inner)[0]
-        error = 2.0 * self.period * self._sum(LAST * np.abs(series[-1:]))
+        error = 2.0 * self.period * self._sum(_rest(series)[None])
         return found, error, found
 
 
 def _series(values):
     """Coefficients of the polynomial of each piece over places from -1 to 1, from values at the nodes (nodes, ...)."""
     return np.stack([sum(weight * row for weight, row in zip(weights, values, strict=True)) for weights in SERIES])
+
+
+def _rest(series):
+    """About how much polynomials may be off: their last term, and the one that would follow, as even ones decrease.
+
+    What lies alike on both sides of the middle has no odd terms.
+    """
+    last, before = LAST * np.abs(series[-1]), 2.0 * LAST * np.abs(series[-2])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        falls = np.fmin(before / (8.0 * LAST * np.abs(series[-4])), 1.0)
+    return last + before * falls
 
 
 def _integral(series):
@@ -185,7 +196,7 @@ def _highest(series):
     known, of = np.unique(np.where(height == highest[design], design, len(top)), return_index=True)
     known, of = known[known < len(top)], of[known < len(top)]
     found = np.full((3, len(top)), np.nan)
-    found[:, known] = height[of], place[of], LAST * np.abs(own[-1, of])
+    found[:, known] = height[of], place[of], _rest(own[:, of])
     pieces = np.zeros(len(top), dtype=int)
     pieces[known] = piece[of]
     return found[0], pieces, found[1], found[2]
@@ -201,7 +212,7 @@ def _magnitudes(values):
     There the square, which is smooth, is integrated on both sides of where it is least, at places that gather there.
     """
     found, series = _means(values), _series(values)
-    design, piece = np.nonzero(LAST * np.abs(series[-1]) > SHARP * np.abs(values).max(axis=0))
+    design, piece = np.nonzero(_rest(series) > SHARP * np.abs(values).max(axis=0))
     own = _series(values[:, design, piece] ** 2)
     slope = _slope(own)
     first = PLACES[np.stack([_at(own, place) for place in PLACES]).argmin(axis=0)]

@@ -14,20 +14,25 @@ MOST = 60
 """Steps after which a bracket cannot be halved any more."""
 
 
-def crossings(travel, levels, turns):
-    """Crank angles within so many turns at which sliders stand still, (designs, E), and pass levels, (designs, K).
+def crossings(motion, slider, levels):
+    """Crank angles at which a slider stands still, (designs, E), and passes levels, (designs, K), until it all repeats.
 
     NaN stands where a design has fewer than another, or does not close. Between two stops a slider passes each level
     once, so those are found first, and none is missed however near to a stop.
 
     Parameters
     ----------
-    travel : function
-        From crank angles (1 or designs, N) to a coordinate with its derivatives, as in ``placement.travels``.
+    motion : Motion
+        Whatever its crank angles.
+    slider : str
     levels : array (R,)
-        Rising.
-    turns : int
+        Coordinates along its guide, rising.
     """
+    turns = motion.mechanism.turns
+
+    def travel(angle):
+        return motion.mechanism.place(angle).travels[slider]
+
     with np.errstate(invalid="ignore", divide="ignore"):
         grid = (ASIDE + np.linspace(0.0, TURN * turns, SAMPLES * turns + 1))[None]
         rate = np.broadcast_arrays(*np.atleast_2d(travel(grid).first, grid))[0]

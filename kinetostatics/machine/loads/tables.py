@@ -218,9 +218,13 @@ class Table:
         return self.rows.back
 
     @property
+    def _strokes(self):
+        return [self.y] if self.back is None else [self.y, self.back]
+
+    @property
     def largest(self):
         """Value of largest magnitude, with its sign."""
-        values = self.y if self.back is None else np.concatenate([self.y, self.back])
+        values = np.concatenate(self._strokes)
         return float(values[np.argmax(np.abs(values))])
 
     def of(self, slider):
@@ -305,29 +309,18 @@ class Table:
         return self.period if self.over == "angle" else TURN * mechanism.turns
 
     def kinks(self, motion):
-        """Crank angles (K,) in its period on a mechanism at which it has kinks, and (J,) at which it may jump.
-
-        Those over travel lie where the slider passes a row, and at the ends of its strokes.
-        """
+        """Crank angles (K,) of its kinks in its period, ends of strokes among them, and (J,) at which it may jump."""
         if self.over == "angle":
             return np.mod(self.x, self.period), np.empty(0)
-        ends, passed = (part[~np.isnan(part)] for part in self._crossings(motion, self.x))
+        ends, passed = (part[~np.isnan(part)] for part in crossings(motion, self._slider(motion), self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
     def bends(self, motion):
-        """Crank angles (1 or designs, K) in its period at which it bends so that one sees it, or may jump.
-
-        NaN where a design has fewer than another.
-        """
+        """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer."""
         if self.over == "angle":
             return np.mod(self.x[rows.bending_around(self.x, self.y, self.period)], self.period)[None]
-        strokes = [self.y] if self.back is None else [self.y, self.back]
-        ends, passed = self._crossings(motion, self.x[rows.bending(self.x, strokes)])
+        ends, passed = crossings(motion, self._slider(motion), self.x[rows.bending(self.x, self._strokes)])
         return passed if self.back is None else np.column_stack([ends, passed])
-
-    def _crossings(self, motion, levels):
-        name, mechanism = self._slider(motion), motion.mechanism
-        return crossings(lambda angle: mechanism.place(angle).travels[name], levels, mechanism.turns)
 
     @property
     def _content(self):
