@@ -84,15 +84,14 @@ class Pieces(NamedTuple):
 
     def _peaks(self, reduction, values, vector):
         series = _series(values * values if vector else values)
-        sides = {"largest": (1.0,), "smallest": (-1.0,)}.get(reduction.removesuffix("_at"), (1.0, -1.0))
-        ends = [self._end(series, sign, vector) for sign in sides]
-        heights, places, errors = zip(*ends, strict=True)
-        error = np.maximum.reduce(errors)
+        signs = {"largest": (1.0,), "smallest": (-1.0,)}.get(reduction.removesuffix("_at"), (1.0, -1.0))
+        heights, places, errors = zip(*(self._end(series, sign, vector) for sign in signs), strict=True)
+        error, size = np.maximum.reduce(errors), np.ptp(values, axis=(0, 2))
         if reduction in OVER_THE_ANGLE:
-            return places[0], np.where(error > PEAK * np.abs(heights[0]), np.inf, 0.0), np.ones_like(error)
-        found = {"range": np.subtract, "largest_absolute": lambda high, low: np.maximum(high, -low)}
-        size = np.ptp(values, axis=(0, 2))
-        return (found[reduction](*heights) if reduction in found else heights[0]), error, size
+            return places[0], np.where(error > PEAK * np.abs(heights[0]), np.inf, 0.0), size
+        if reduction == "range":
+            return heights[0] - heights[1], error, size
+        return np.maximum(heights[0], -heights[-1]) if reduction == "largest_absolute" else heights[0], error, size
 
     def _end(self, series, sign, vector):
         """Largest or smallest value of each design, where it is, and about how much it may be wrong."""
