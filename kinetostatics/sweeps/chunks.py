@@ -89,7 +89,7 @@ def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
     step = max(1, together.VALUES // job.angles if job.engine == "numpy" else len(frame))
-    step = min(step, together.PARTED) if job.bent else step
+    step = min(step, together.DESIGNS) if job.bent else step
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
         numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])
@@ -260,16 +260,13 @@ def _settled(make, job, frame, outputs, found, earlier):
     rough &= (reasons == "") & ~narrow
     if rough.any():
         rough &= ~_noise(make, job, frame, outputs, rough)
-    again = rough | (narrow & (reasons == ""))
-    if again.any() and (earlier is None or 2 * job.angles <= MOST):
+    again = np.flatnonzero(rough.any(axis=0) | (narrow & (reasons == "")))
+    if again.size and (earlier is None or 2 * job.angles <= MOST):
         finer = replace(job, angles=2 * job.angles)
-        for wanted in np.unique(again[:, again.any(axis=0)], axis=1).T:  # no output hangs on what else is asked for
-            rows = np.flatnonzero((again == wanted[:, None]).all(axis=0))
-            part, some = np.ix_(wanted, rows), [item for item, own in zip(outputs, wanted, strict=True) if own]
-            numbers[part], reasons[rows] = _reduced(make, finer, frame.iloc[rows], some, numbers[part])
+        numbers[:, again], reasons[again] = _reduced(make, finer, frame.iloc[again], outputs, numbers[:, again])
     else:
-        for row in np.flatnonzero(again.any(axis=0)):
-            wrong = [str(item) for item, wrong in zip(outputs, again[:, row], strict=True) if wrong]
+        for row in again:
+            wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]
             reasons[row] = f"{', '.join(wrong)} is not resolved by {job.angles} crank angles" + (
                 f": it passes so near a limit position at {np.degrees(nearest[row]):.6g} deg"
                 if narrow[row]
@@ -283,8 +280,8 @@ def _noise(make, job, frame, outputs, asked):
     found = np.zeros(asked.shape, dtype=bool)
     rows, designs = np.flatnonzero(asked.any(axis=1)), np.flatnonzero(asked.any(axis=0))
     wanted = [outputs[row] for row in rows]
-    for start in range(0, designs.size, together.PARTED):
-        some = designs[start : start + together.PARTED]
+    for start in range(0, designs.size, together.DESIGNS):
+        some = designs[start : start + together.DESIGNS]
         scene = _scene(make, job.values(frame.iloc[some])[-1])
         found[np.ix_(rows, some)] = together.noise(scene, job, wanted)
     return found

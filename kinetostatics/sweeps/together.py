@@ -26,7 +26,7 @@ from ..solution.scene import unchecked
 
 VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
-PARTED = 128
+DESIGNS = 128
 """Designs whose turns are parted at a time: so many that the calls count little, and memory is no concern."""
 BLOCK = 40_000
 """Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""

@@ -107,18 +107,3 @@ def test_no_design_fails_by_rounding_of_what_is_zero(reduction):
     if reduction != "largest_at":
         assert (found.iloc[:, 3].abs() < 1e-13 * size).all()
     np.testing.assert_array_equal(found["largest A [N]"], size)
-
-
-def test_numbers_of_an_output_do_not_hang_on_what_else_is_asked_for():
-    def pulse(motion):
-        return 100.0 * np.exp(-((10.0 * (np.mod(motion.crank_angle, 2 * np.pi) - 2.0)) ** 2))
-
-    def pulsed(crank):
-        pump = ks.crank_slider(crank, 0.2, guide_offset=0.01, slider=ks.Link(1.0))
-        return ks.Scene(pump, 30.0, 0.0, (ks.Torque(pulse, on="coupler"),))
-
-    designs, smooth = pd.DataFrame({"crank": [0.03, 0.05]}), "rms slider_acceleration"
-    alone = sweep(pulsed, designs, [smooth], angles=12)
-    both = sweep(pulsed, designs, [smooth, "largest balancing_torque"], angles=12)
-    assert (both[FAILED] == "").all()
-    np.testing.assert_array_equal(both.iloc[:, 1], alone.iloc[:, 1])
