@@ -97,3 +97,14 @@ def test_a_slider_that_leaves_its_table_is_still_told():
     found = sweep(steep_pump, pd.DataFrame({"crank": [0.05, 0.12, 0.04]}), ["largest O", "rms O"])
     assert found[FAILED][[0, 2]].tolist() == ["", ""]
     assert found[FAILED][1].startswith("table over travel: the slider goes from 0.07")
+
+
+@every("engine", ["numpy", "compiled"])
+def test_it_does_not_matter_which_designs_are_parted_together(engine, numba):
+    scene = spikes.spiky(1)
+    length = scene.parameters["crank_length"]
+    designs = pd.DataFrame({"crank_length": np.linspace(0.9 * length, length, 9)})
+    outputs = ["harmonic_2 O", "mean O", "rms O", "smallest_at O", "largest balancing_torque", "swing balancing_torque"]
+    alone, some, together = (sweep(scene, designs, outputs, chunk=chunk, engine=engine) for chunk in (1, 4, 9))
+    assert_equal(alone, together)
+    assert_equal(some, together)

@@ -87,15 +87,16 @@ def _roots(function, low, high, level):
     if not low.size:
         return low
     rising = function(high)[0] > level
-    angle = 0.5 * (low + high)
+    angle, moving = 0.5 * (low + high), np.ones(low.shape, dtype=bool)
     for _ in range(MOST):
         value, slope = function(angle)
         beyond = (value > level) == rising
         low, high = np.where(beyond, low, angle), np.where(beyond, angle, high)
         step = angle - (value - level) / slope
         following = np.where((low <= step) & (step <= high), step, 0.5 * (low + high))
-        last = not np.any(np.abs(following - angle) > CLOSE)
-        angle = following
-        if last:
+        far = np.abs(following - angle) > CLOSE
+        angle = np.where(moving, following, angle)  # no root hangs on how many steps others take
+        moving &= far
+        if not moving.any():
             break
     return angle
