@@ -45,9 +45,10 @@ def table_of_rows(rows, shape):
     if not rows:
         return NO_ROWS
     one_row = all(math.prod(np.shape(row)[:-1]) == 1 for row in rows)
-    full = (1, shape[-1]) if one_row else (math.prod(shape[:-1]), shape[-1])
-    spread = [np.broadcast_to(row, shape[-1:] if one_row else shape).reshape(full) for row in rows]
-    return np.array(spread, dtype=float)
+    if one_row:
+        return np.array([np.broadcast_to(np.ravel(row), (1, shape[-1])) for row in rows], dtype=float)
+    full = math.prod(shape[:-1]), shape[-1]
+    return np.array([np.broadcast_to(row, shape).reshape(full) for row in rows], dtype=float)
 
 
 def memory(*shape):

@@ -225,13 +225,25 @@ class Output:
         """Numbers (designs,) from values (designs, N) evenly over some turns, and whether so many do not tell them."""
         found, error = FOUND[self.reduction](values) if self.order is None else _harmonic(self.order * turns)(values)
         mean = self.reduction not in PEAKS
-        with np.errstate(invalid="ignore"):
-            rough = error > (MEAN if mean else PEAK) * np.abs(found)
-        if rough.any():
-            some = values[rough]
-            size = np.abs(some).max(axis=-1) if mean else np.ptp(some, axis=-1)
-            rough[rough] = error[rough] > (MEAN / 10 if mean else PEAK / 100) * size
+
+        def size(rough):
+            return np.abs(values[rough]).max(axis=-1) if mean else np.ptp(values[rough], axis=-1)
+
+        rough = is_rough(self, found, error, size)
         return found * turns if self.reduction in OVER_THE_ANGLE else found, rough
+
+
+def is_rough(output, found, error, size):
+    """Whether an output may be wrong by more than `PEAK` or `MEAN` allows, of each design.
+
+    ``size(rough)`` gives by how much values of those designs differ, or of a mean how large they are.
+    """
+    share, least = (PEAK, PEAK / 100) if output.reduction in PEAKS else (MEAN, MEAN / 10)
+    with np.errstate(invalid="ignore"):
+        rough = error > share * np.abs(found)
+    if rough.any():
+        rough[rough] = error[rough] > least * size(rough)
+    return rough
 
 
 def parsed(text) -> Output:

@@ -17,7 +17,8 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 
 SAMPLES = 1440
-"""Samples a turn in which extrema are bracketed; two extrema closer than a quarter degree may pass unseen."""
+"""Samples a turn in which extrema are bracketed, besides those at kinks of tables and between them; two extrema closer
+than a quarter degree may pass unseen."""
 FINER = 5
 """How many times as many there are where a load is a function, which may have narrow pulses."""
 NEAR = 0.01
@@ -32,6 +33,8 @@ APPROACH = 0.1 * 2.0 ** (-np.arange(120) / 3)
 """Distances from a limit position, rad, by which it is approached; every third is half as far."""
 GROWING = 1.15
 """How much more a quantity must change each time the distance is halved to grow without bound."""
+BETWEEN = (2.0**-20, 0.5, 1.0 - 2.0**-20)
+"""Shares of the way from one kink to the next at which samples stand: they tell how a curve leaves and nears each."""
 BESIDE = (-(2.0**-44), 2.0**-44)
 """Distances from a jump, rad, at which samples stand on both sides of it."""
 ASIDE = 1e-3
@@ -85,8 +88,10 @@ class Turn:
         count = SAMPLES * turns * (1 if all(map(is_given, solution.loads)) else FINER)
         grid = np.linspace(0.0, solution.period, count, endpoint=False)
         kinks, jumps = _kinks(solution)
-        if jumps.size:
-            grid = np.unique(np.concatenate([grid, *(np.mod(jumps + side, solution.period) for side in BESIDE)]))
+        if kinks.size:
+            between = kinks[:, None] + np.diff(kinks, append=kinks[0] + solution.period)[:, None] * BETWEEN
+            more = np.concatenate([kinks, between.ravel(), np.ravel(jumps[:, None] + BESIDE)])
+            grid = np.unique(np.concatenate([grid, np.mod(more, solution.period)]))
         first = solution.at(grid)
         require_repeating(solution)
         checks.require("extremes", *refusals(first), *contact.refusals(first))

@@ -12,10 +12,12 @@ import pandas as pd
 
 from ..engines import programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
+from ..machine.loads import TURN
 from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import components, quantity
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
+from ..results.bends import bent
 from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.turn import repeating_problem
@@ -28,6 +30,8 @@ NEGLIGIBLE = 1e-12
 """Share of the reference's number below which a design's counts as zero, as in `comparison`."""
 FEWEST = 12
 """Crank angles below which a sweep is refused."""
+PARTED = 192
+"""Crank angles a turn, at least, where loads bend: so many tell most outputs, however few are asked for."""
 MOST = 5760
 """Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
 SETTLED = 1e-3
@@ -50,6 +54,8 @@ class Job:
         Cores to use for a chunk.
     wide : bool
         Whether a compiled loop takes all designs of a chunk, and no table for each of them.
+    bent : bool
+        Whether loads bend an output, so that its turn is parted there.
     """
 
     make: Callable[[dict], Any]
@@ -60,6 +66,7 @@ class Job:
     engine: str
     threads: int
     wide: bool = False
+    bent: bool = False
 
     @property
     def ratios(self):
@@ -82,6 +89,7 @@ def run_chunk(job, frame) -> pd.DataFrame:
     """Outputs of some designs, with the reason for those that have none."""
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
     step = max(1, together.VALUES // job.angles if job.engine == "numpy" else len(frame))
+    step = min(step, together.DESIGNS) if job.bent else step
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
         numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])
@@ -117,7 +125,8 @@ def tried(job, designs, engines):
             continue
         try:
             solutions = [together.solution_of(scene, job.angles) for scene in scenes]
-            for solution, (_, outputs) in zip(solutions, job.sides, strict=True):
+            pairs = list(zip(solutions, job.sides, strict=True))
+            for solution, (_, outputs) in pairs:
                 for name in together.quantities(outputs):
                     components(solution, name)
             problems = [repeating_problem(solution) for solution in solutions]
@@ -129,7 +138,9 @@ def tried(job, designs, engines):
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine = _engine(job, solutions, engines)
         wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
-        return replace(job, engine=engine, outputs=outputs, wide=wide)
+        parted = any(bent(solution, item.quantity) for solution, (_, wanted) in pairs for item in wanted)
+        fewest = PARTED * round(scenes[0].period / TURN) if parted else 0
+        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=max(job.angles, fewest))
     return None
 
 
@@ -246,7 +257,10 @@ def _settled(make, job, frame, outputs, found, earlier):
     if earlier is not None:
         with np.errstate(invalid="ignore"):
             rough &= abs(numbers - earlier) > SETTLED * abs(numbers)
-    again = np.flatnonzero((rough.any(axis=0) | narrow) & (reasons == ""))
+    rough &= (reasons == "") & ~narrow
+    if rough.any():
+        rough &= ~_noise(make, job, frame, outputs, rough)
+    again = np.flatnonzero(rough.any(axis=0) | (narrow & (reasons == "")))
     if again.size and (earlier is None or 2 * job.angles <= MOST):
         finer = replace(job, angles=2 * job.angles)
         numbers[:, again], reasons[again] = _reduced(make, finer, frame.iloc[again], outputs, numbers[:, again])
@@ -259,6 +273,18 @@ def _settled(make, job, frame, outputs, found, earlier):
                 else "; if a load jumps, let it rise over a degree"
             )
     return numbers, reasons
+
+
+def _noise(make, job, frame, outputs, asked):
+    """Which outputs (outputs, designs) of those asked for are of what changes by rounding of its terms only."""
+    found = np.zeros(asked.shape, dtype=bool)
+    rows, designs = np.flatnonzero(asked.any(axis=1)), np.flatnonzero(asked.any(axis=0))
+    wanted = [outputs[row] for row in rows]
+    for start in range(0, designs.size, together.DESIGNS):
+        some = designs[start : start + together.DESIGNS]
+        scene = _scene(make, job.values(frame.iloc[some])[-1])
+        found[np.ix_(rows, some)] = together.noise(scene, job, wanted)
+    return found
 
 
 def _near_limits(make, job, frame, nearest, outputs):

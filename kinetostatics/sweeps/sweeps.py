@@ -70,7 +70,9 @@ def sweep(
         parameters that it has too, but stays as it is for a function.
     angles : int
         Crank angles over the period of the loads, at least 12; extremes are refined between them. Where they do not
-        resolve an output of a design, they are doubled for it, up to 5760.
+        resolve an output of a design, they are doubled for it, up to 5760. Where tables or friction bend forces, the
+        turn of each design is parted there, so that neither peaks nor means miss what lies between two angles; there
+        are 192 angles a turn then, at least.
     engine : "compiled" or "numpy"
         Unless told, compiled for a million crank angles, all designs together, and more, if numba is installed and
         takes the mechanism.

@@ -39,6 +39,13 @@ def test_parameters_stand_in_a_row_for_each_design():
     )
 
 
+def test_a_row_of_a_table_for_one_design_may_have_an_axis_of_designs():
+    rows = [np.arange(3.0)[None], 7.0, np.arange(3.0)]
+    expected = [[[0.0, 1.0, 2.0]], [[7.0] * 3], [[0.0, 1.0, 2.0]]]
+    for shape in ((3,), (1, 3), (1, 1, 3), (5, 3)):
+        np.testing.assert_array_equal(loops.table_of_rows(rows, shape), expected)
+
+
 def test_memory_begins_where_vectors_are_loaded_at_once():
     held = [loops.memory(count, 3, 8) for count in (1, 2, 5)]
     assert [part.shape for part in held] == [(1, 3, 8), (2, 3, 8), (5, 3, 8)]

@@ -6,6 +6,7 @@ import pandas as pd
 import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
+from support.every import every
 from support.factories import DESIGNS, OUTPUTS
 from support.sweeping import SAW, assert_equal, sweep
 
@@ -81,3 +82,28 @@ def test_the_hundredth_design_impossible_among_many():
     assert found[FAILED].ne("").sum() == 100
     assert found.loc[::100, FAILED].str.startswith("Link: mass").all()
     assert found.loc[1::100, FAILED].str.startswith("crank-slider cannot be assembled").all()
+
+
+def balanced(crank, mass, offset):
+    """A crank whose counterweight balances the coupler's mass at its pin, but for rounding."""
+    own, coupler = ks.Link(2.0, -0.5 * crank * mass, 0.01), ks.Link(mass, 0.0, 0.0)
+    return ks.Scene(
+        ks.crank_slider(crank, 0.2, guide_offset=offset, crank=own, coupler=coupler), 30.0, 0.0, ks.Gravity()
+    )
+
+
+def of_nothing(count=40):
+    rng = np.random.default_rng(0)
+    ranges = {"crank": (0.02, 0.08), "mass": (0.5, 3.0), "offset": (-0.05, 0.05)}
+    return pd.DataFrame({name: rng.uniform(*ends, count) for name, ends in ranges.items()})
+
+
+@every("reduction", ["range", "mean", "rms", "swing", "harmonic_2", "largest_at"])
+def test_no_design_fails_by_rounding_of_what_is_zero(reduction):
+    designs = of_nothing()
+    size = sweep(balanced, designs, ["largest A"])["largest A [N]"]
+    found = sweep(balanced, designs, [f"{reduction} balancing_torque", "largest A"])
+    assert (found[FAILED] == "").all()
+    if reduction != "largest_at":
+        assert (found.iloc[:, 3].abs() < 1e-13 * size).all()
+    np.testing.assert_array_equal(found["largest A [N]"], size)

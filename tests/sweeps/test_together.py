@@ -4,8 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
-from support import factories
+from support import factories, spikes
+from support.every import every
 from support.factories import DESIGNS, OUTPUTS
 from support.sweeping import SAW, assert_equal, rising, sweep
 
@@ -29,3 +31,80 @@ def test_it_does_not_matter_which_designs_come_together(interpreted, engine):
     found = [sweep(SAW, rising(60), outputs, chunk=chunk, **options) for chunk in (1, 7, 10_000)]
     assert_equal(found[0], found[2])
     assert_equal(found[1], found[2])
+
+
+OF_SPIKES = ["largest", "smallest", "range", "mean_absolute", "rms"]
+
+
+@every("seed, angles", [(seed, (12, 13, 360)[seed % 3]) for seed in range(6)])
+def test_no_spike_of_a_table_is_missed_however_few_the_crank_angles(seed, angles):
+    scene, names = spikes.spiky(seed), ("balancing_torque", "O")
+    length = scene.parameters["crank_length"]
+    designs = pd.DataFrame({"crank_length": [0.97 * length, length]})
+    outputs = [f"{kind} {name}" for name in names for kind in OF_SPIKES]
+    found = sweep(scene, designs, outputs, angles=angles)
+    assert found[FAILED].tolist() == ["", ""]
+    for row, length in enumerate(designs["crank_length"]):
+        own = scene.varied({"crank_length": length})
+        for name in names:
+            (low, high), means = spikes.ends(own, name), spikes.means(own, name)
+            largest, smallest, extent, *others = (
+                found.loc[row, next(column for column in found if column.startswith(f"{kind} {name} "))]
+                for kind in OF_SPIKES
+            )
+            size = max(abs(low), abs(high))
+            assert largest == pytest.approx(high, abs=1e-7 * size)
+            assert low - 2e-3 * size < smallest <= low + 1e-7 * size  # few angles stand where a reaction is least
+            assert extent == pytest.approx(largest - smallest, abs=1e-12 * size)
+            assert others == pytest.approx(means, rel=1e-5)
+
+
+@every("angles", [13, 360, 361])
+def test_a_pump_whose_force_rises_within_a_tenth_of_a_millimetre_has_its_largest_torque(angles):
+    found = sweep(steep_pump, pd.DataFrame({"crank": [0.04, 0.05]}), ["largest balancing_torque"], angles=angles)
+    scene = steep_pump(0.05)
+    truth = ks.extremes(scene.solve(36), "balancing_torque").range[1]
+    assert spikes.ends(scene, "balancing_torque")[1] == pytest.approx(truth, rel=1e-12)
+    assert found.iloc[1, 1] == pytest.approx(truth, rel=1e-9)
+
+
+def steep_pump(crank):
+    rows = [0.1, 0.1999, 0.2, 0.2001, 0.3], [0.0, 0.0, -4e3, 0.0, 0.0]
+    force = ks.ProcessForce(ks.Table(*rows, over="travel"))
+    return ks.Scene(ks.crank_slider(crank, 0.19, slider=ks.Link(1.0)), 30.0, loads=[force])
+
+
+@every("angles", [13, 360])
+def test_jumps_of_friction_are_seen_from_both_sides(angles):
+    friction = {"guide": ks.GuideFriction(0.15), "B": ks.PinFriction(0.1, 0.02)}
+    saw = ks.crank_slider(0.05, 0.19, guide_offset=0.01, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(2.0))
+    scene = ks.Scene(saw, 20.0, loads=[ks.Gravity()], friction=friction)
+    names = ("balancing_torque", "B", "guide_force")
+    outputs = [f"{kind} {name}" for name in names for kind in ("largest", "smallest")]
+    found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.05]}), outputs, angles=angles).iloc[1, 1:-1]
+    at = scene.solve(36)
+    truth = [end for name in names for end in reversed(ks.extremes(at, name).range)]
+    np.testing.assert_allclose(found.to_numpy(dtype=float), truth, rtol=1e-6)
+
+
+def test_motions_are_swept_as_without_the_loads_that_bend_forces():
+    designs, outputs = pd.DataFrame({"crank": [0.04, 0.05]}), ["largest slider_velocity", "rms slider_acceleration"]
+    bare = lambda crank: ks.Scene(steep_pump(crank).mechanism, 30.0)  # noqa: E731
+    assert_equal(sweep(steep_pump, designs, outputs), sweep(bare, designs, outputs))
+
+
+def test_a_slider_that_leaves_its_table_is_still_told():
+    found = sweep(steep_pump, pd.DataFrame({"crank": [0.05, 0.12, 0.04]}), ["largest O", "rms O"])
+    assert found[FAILED][[0, 2]].tolist() == ["", ""]
+    assert found[FAILED][1].startswith("table over travel: the slider goes from 0.07")
+
+
+@every("engine", ["numpy", "compiled"])
+def test_it_does_not_matter_which_designs_are_parted_together(engine, numba):
+    scene = spikes.spiky(1)
+    length = scene.parameters["crank_length"]
+    designs = pd.DataFrame({"crank_length": np.linspace(0.9 * length, length, 9)})
+    outputs = ["harmonic_2 O", "mean O", "rms O", "smallest_at O", "largest balancing_torque", "swing balancing_torque"]
+    alone, some, together = (sweep(scene, designs, outputs, chunk=chunk, engine=engine) for chunk in (1, 4, 9))
+    assert_equal(alone, together)
+    assert_equal(some, together)

@@ -6,10 +6,11 @@ slider      spring and process force along a guide
 places      points of links, by which loads say where they act
 points      forces, springs and dampers at points
 torsion     couples on links
-tables      values by crank angle or travel, rows their rows
+tables      values by crank angle or travel, rows their rows, crossings where these are passed
 period      turns after which loads repeat
 """
 
+from .crossings import in_rows
 from .gravity import Gravity
 from .load import Load, is_given, may_refuse, refusals, value_of
 from .period import MOST_TURNS, TURN, WholeTurns, period_of
@@ -49,6 +50,7 @@ __all__ = [
     "TorsionDamper",
     "TorsionSpring",
     "WholeTurns",
+    "in_rows",
     "is_given",
     "may_refuse",
     "period_of",

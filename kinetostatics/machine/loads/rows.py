@@ -10,8 +10,8 @@ from .period import TURN
 
 BEYOND = 1e-9
 """Share of a table over travel by which a slider may go beyond it: rounding."""
-SAMPLES = 720
-"""Crank angles a turn between which the kinks of a table over travel are found."""
+STRAIGHT = 1e-5
+"""Share of the largest value by which rows may be off a line and bend nothing that one would see."""
 
 
 def order_problem(x, over):
@@ -125,17 +125,31 @@ def _degrees(angle):
     return f"{math.degrees(angle):.9g} deg"
 
 
-def passed(function, levels, turns):
-    """Crank angles in so many turns at which a function of it passes some levels."""
-    from scipy.optimize import elementwise
+def bending(x, strokes):
+    """Which inner rows are left when lines through those that are left come within `STRAIGHT` of all others.
 
-    grid = np.linspace(0.0, TURN * turns, SAMPLES * turns + 1)
-    above = np.broadcast_to(function(grid), grid.shape) - levels[:, None]
-    _, exact = np.nonzero(above[:, :-1] == 0)
-    with np.errstate(invalid="ignore"):
-        level, before = np.nonzero(above[:, :-1] * above[:, 1:] < 0)
-    if not before.size:
-        return grid[exact]
-    bracket, given = (grid[before], grid[before + 1]), (levels[level],)
-    found = elementwise.find_root(lambda angle, level: function(angle) - level, bracket, args=given).x
-    return np.mod(np.concatenate([grid[exact], found]), TURN * turns)
+    From one row that stays to the next it is as far as the slopes of lines that come so near allow.
+    """
+    room = STRAIGHT * max(np.max(np.abs(y)) for y in strokes)
+    points = list(zip(x.tolist(), *(y.tolist() for y in strokes), strict=True))
+    kept, start, low, high = [], points[0], [-math.inf] * len(strokes), [math.inf] * len(strokes)
+    for row in range(1, len(points)):
+        step = points[row][0] - start[0]
+        rise = [value - before for before, value in zip(start[1:], points[row][1:], strict=True)]
+        if not all(one <= part / step <= other for one, part, other in zip(low, rise, high, strict=True)):
+            kept.append(row - 1)
+            start = points[row - 1]
+            step = points[row][0] - start[0]
+            rise = [value - before for before, value in zip(start[1:], points[row][1:], strict=True)]
+            low, high = [-math.inf] * len(strokes), [math.inf] * len(strokes)
+        low = [max(one, (part - room) / step) for one, part in zip(low, rise, strict=True)]
+        high = [min(one, (part + room) / step) for one, part in zip(high, rise, strict=True)]
+    return np.array(kept, dtype=int)
+
+
+def bending_around(angle, value, period):
+    """The same of all rows, which repeat after a period; the one where the reckoning begins stays."""
+    first = int(np.argmax(np.abs(value)))
+    around = np.roll(angle, -first) + period * (np.arange(angle.size) >= angle.size - first)
+    found = bending(np.append(around, around[0] + period), [np.append(np.roll(value, -first), value[first])])
+    return (np.append(0, found) + first) % angle.size

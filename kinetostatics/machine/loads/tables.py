@@ -11,6 +11,7 @@ from ...numbers import checks
 from ...numbers.elementary import namespace
 from ...numbers.leaves import with_fields
 from . import rows
+from .crossings import crossings
 from .period import TURN, WholeTurns
 
 OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
@@ -217,9 +218,13 @@ class Table:
         return self.rows.back
 
     @property
+    def _strokes(self):
+        return [self.y] if self.back is None else [self.y, self.back]
+
+    @property
     def largest(self):
         """Value of largest magnitude, with its sign."""
-        values = self.y if self.back is None else np.concatenate([self.y, self.back])
+        values = np.concatenate(self._strokes)
         return float(values[np.argmax(np.abs(values))])
 
     def of(self, slider):
@@ -304,20 +309,18 @@ class Table:
         return self.period if self.over == "angle" else TURN * mechanism.turns
 
     def kinks(self, motion):
-        """Crank angles (K,) in its period on a mechanism at which it has kinks, and (J,) at which it may jump.
-
-        Those over travel lie where the slider passes a row, and at the ends of its strokes.
-        """
+        """Crank angles (K,) of its kinks in its period, ends of strokes among them, and (J,) at which it may jump."""
         if self.over == "angle":
             return np.mod(self.x, self.period), np.empty(0)
-        name, turns = self._slider(motion), motion.mechanism.turns
-
-        def travel(angle):
-            return motion.mechanism.place(angle).travels[name]
-
-        ends = rows.passed(lambda angle: travel(angle).first, np.zeros(1), turns)
-        passed = rows.passed(lambda angle: travel(angle).position, self.x, turns)
+        ends, passed = (part[~np.isnan(part)] for part in crossings(motion, self._slider(motion), self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
+
+    def bends(self, motion):
+        """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer."""
+        if self.over == "angle":
+            return np.mod(self.x[rows.bending_around(self.x, self.y, self.period)], self.period)[None]
+        ends, passed = crossings(motion, self._slider(motion), self.x[rows.bending(self.x, self._strokes)])
+        return passed if self.back is None else np.column_stack([ends, passed])
 
     @property
     def _content(self):

@@ -1,0 +1,58 @@
+"""Where loads and friction of designs bend or jump: crank angles over the period, for each design its own."""
+
+import numpy as np
+
+from ..machine.loads import TURN, Table, in_rows, value_of
+from ..mechanics.quantities import quantity
+from .turn import ASIDE
+
+SMOOTH = ("slider", "motion", "rate")
+"""Kinds of quantities that no load moves."""
+SAMPLES = 720
+"""Crank angles a turn between which what turns friction about changes its sign once at most."""
+
+
+def bent(solution, name):
+    """Whether tables among the loads, or friction, may bend a quantity of a solution."""
+    bends = solution.friction.acting or any(isinstance(value_of(item), Table) for item in solution.loads)
+    return bool(bends) and quantity(solution, name).kind not in SMOOTH
+
+
+def bends(solution):
+    """Crank angles (1 or designs, K) at which tables or friction bend or may jump; NaN where a design has fewer."""
+    found = [_of_friction(solution)] if solution.friction.acting else []
+    for table in map(value_of, solution.loads):
+        if isinstance(table, Table):
+            again = np.arange(0.0, solution.period, table.period_on(solution.mechanism))
+            own = table.bends(solution)
+            found.append((own[..., None] + again).reshape(len(own), -1))
+    most = max(map(len, found))
+    return np.column_stack([np.broadcast_to(part, (most, part.shape[1])) for part in found])
+
+
+def _of_friction(solution):
+    """Where rates that turn friction about, and forces that bend it, change their signs."""
+    from scipy.optimize import elementwise
+
+    def signs(angle):
+        with np.errstate(all="ignore"):
+            found = solution.at(angle).dynamics.friction_signs
+        return [np.broadcast_arrays(np.atleast_2d(row), angle)[0] for row in found]
+
+    grid = (ASIDE + np.linspace(0.0, solution.period, SAMPLES * round(solution.period / TURN) + 1))[None]
+    values = np.stack(np.broadcast_arrays(*signs(grid)), axis=1)  # (designs, functions, N)
+    changed = (np.signbit(values[..., :-1]) != np.signbit(values[..., 1:])) & ~np.isnan(np.diff(values))
+    design, row, place = np.nonzero(changed)
+    low, high, row = in_rows(design, len(values), grid[0, place], grid[0, place + 1], row)
+    if not low.size:
+        return low
+    asked = np.arange(low.size).reshape(low.shape)
+    known = np.nan_to_num(row).astype(int)
+
+    def own(angle, asked):
+        everywhere = low.copy()
+        everywhere.flat[asked] = angle
+        return np.take_along_axis(np.stack(signs(everywhere)), known[None], axis=0)[0].flat[asked]
+
+    found = elementwise.find_root(own, (low, high), args=(asked,)).x
+    return np.mod(np.where(np.isnan(found), high, found), solution.period)

@@ -1,0 +1,50 @@
+"""Where sliders stand still and pass places: all of it, for each of many designs."""
+
+import numpy as np
+
+import kinetostatics as ks
+from kinetostatics.machine.loads.crossings import crossings
+
+
+def motion(crank=0.05, offset=0.01):
+    return ks.solve(ks.crank_slider(crank, 0.19, guide_offset=offset), np.zeros(1), crank_speed=1.0, on_gap="nan")
+
+
+def travel(solved, angle):
+    return solved.mechanism.place(angle).travels["slider"]
+
+
+def test_each_level_is_passed_twice_a_turn_and_the_slider_stops_twice():
+    solved, levels = motion(), np.linspace(0.15, 0.22, 7)
+    stops, passed = crossings(solved, "slider", levels)
+    assert stops.shape == (1, 2)
+    assert passed.shape == (1, 14)
+    assert np.abs(travel(solved, stops).first).max() < 1e-15
+    np.testing.assert_allclose(np.sort(travel(solved, passed).position[0]), np.repeat(levels, 2), rtol=0, atol=1e-15)
+
+
+def test_a_level_just_before_a_stop_is_passed_to_and_fro():
+    solved = motion()
+    stops, _ = crossings(solved, "slider", np.array([0.2]))
+    farthest = travel(solved, stops).position.max()
+    for depth in (1e-5, 1e-9, 1e-13):
+        _, passed = crossings(solved, "slider", np.array([farthest - depth]))
+        assert passed.shape == (1, 2)
+        np.testing.assert_allclose(travel(solved, passed).position, farthest - depth, rtol=0, atol=1e-16)
+
+
+def test_designs_pass_as_many_levels_as_their_strokes_reach():
+    crank = np.array([[0.01], [0.03], [0.05]])
+    levels = np.linspace(0.14, 0.24, 11)
+    stops, passed = crossings(motion(crank), "slider", levels)
+    assert stops.shape == (3, 2)
+    for row, length in enumerate(crank[:, 0]):
+        alone = np.sort(crossings(motion(length), "slider", levels)[1][0])
+        np.testing.assert_allclose(np.sort(passed[row])[: alone.size], alone, rtol=0, atol=1e-14)
+        assert np.isnan(np.sort(passed[row])[alone.size :]).all()
+
+
+def test_what_does_not_close_passes_nothing_there():
+    stops, passed = crossings(motion(0.25, 0.0), "slider", np.array([0.3]))
+    assert np.isfinite(passed).sum() == 2
+    assert np.isfinite(stops).sum() <= 2

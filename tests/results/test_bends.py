@@ -1,0 +1,66 @@
+"""Where loads and friction of designs bend: all places, for each design its own."""
+
+import numpy as np
+
+import kinetostatics as ks
+from kinetostatics.results.bends import bends, bent
+
+ROWS = [0.1, 0.18, 0.19, 0.2, 0.3], [0.0, 0.0, 1e3, 2e3, 2e3]
+
+
+def solved(loads=(), friction=None, crank=0.05, offset=0.01):
+    pump = ks.crank_slider(crank, 0.19, guide_offset=offset, slider=ks.Link(1.0))
+    return ks.solve(pump, np.zeros(1), crank_speed=30.0, loads=loads, friction=friction)
+
+
+def table(back=None):
+    return ks.ProcessForce(ks.Table(*ROWS, over="travel", back=back))
+
+
+def test_a_table_bends_where_its_rows_are_off_a_line():
+    at = bends(solved([table()]))[0]
+    place = solved().mechanism.place(at).travels["slider"].position
+    np.testing.assert_allclose(np.sort(place), [0.18, 0.18, 0.2, 0.2], rtol=0, atol=1e-15)
+
+
+def test_strokes_that_differ_jump_at_the_ends():
+    load = table([0.0] * 5)
+    _, jumps = load.force.kinks(solved())
+    at = bends(solved([load]))[0]
+    assert all(np.abs(at - jump).min() < 1e-12 for jump in jumps)
+    assert at.size == 6
+
+
+def test_rows_of_a_smooth_curve_are_few_as_they_are_near_lines_between_others():
+    x = np.linspace(0.1, 0.3, 20_001)
+    fine = ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel"))
+    assert bends(solved([fine])).shape[1] < 500
+
+
+def test_a_table_over_the_angle_bends_in_every_turn_of_the_period():
+    x = np.arange(0.0, 6.1, 0.5)
+    twice = ks.Torque(ks.Table(x, np.interp(x, [0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0])), on="crank")
+    four = ks.ProcessForce(ks.Table(np.linspace(0, 4 * np.pi, 9), np.zeros(9), period=4 * np.pi), period=4 * np.pi)
+    at = np.unique(bends(solved([twice, four])))
+    assert {0.0, 1.0, 2.0, 2 * np.pi, 1.0 + 2 * np.pi, 2.0 + 2 * np.pi} <= set(at)
+
+
+def test_friction_bends_where_a_turn_knows_it():
+    s = solved((), {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.02), "B": ks.PinFriction(0.1, 0.02)})
+    np.testing.assert_allclose(np.unique(bends(s)), s.sampled.kinks, rtol=0, atol=1e-12)
+
+
+def test_friction_of_designs_bends_for_each_where_it_does_alone():
+    friction, crank = {"guide": ks.GuideFriction(0.1), "B": ks.PinFriction(0.1, 0.02)}, np.array([[0.03], [0.05]])
+    both = np.sort(bends(solved((), friction, crank)), axis=1)
+    for row, length in zip(both, crank[:, 0], strict=True):
+        alone = np.sort(bends(solved((), friction, float(length)))[0])
+        np.testing.assert_allclose(row[: alone.size], alone, rtol=0, atol=1e-12)
+
+
+def test_loads_bend_forces_and_no_motion():
+    s = solved([table()])
+    assert bent(s, "O")
+    assert bent(s, "balancing_torque")
+    assert not bent(s, "slider_velocity")
+    assert not bent(solved([ks.Gravity()]), "O")
