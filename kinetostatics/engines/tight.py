@@ -11,94 +11,120 @@ of the adjoints too, some thousand `UNIT` of what F would be if nothing cancelle
 cancels, and C where much does. Where nothing cancels it is the forward bound itself.
 """
 
-from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-from ..numbers.elementary import UNIT
-from .bounds import DUST, EXACT, SAFE, Bounds, size
+from .bounds import DUST
+from .counted import EXACT
+from .running import RESERVE, RunningBounds
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 STRETCH = 2.0**16
+WEIGHT = 2.0 / STRETCH
 SEED = 2.0**900
 """Adjoint of the output, so large that no adjoint that counts is too small for a double."""
 
 
 def tight_bound(graph, inputs, output, dust=DUST):
-    """A bound on the error of one output, as `Bounds.of` gives it; NaN or infinite where that is to be asked."""
+    """A bound on the error of one output, as `RunningBounds.of` gives it; NaN or infinite where that is to be asked."""
     if not isinstance(output, Node):
         return 0.0
-    coarse = Bounds(graph, inputs, STRETCH, None if dust is None else STRETCH * dust)
-    coarse.of([output])
-    local = _Local(graph, inputs, coarse, output)
-    most, slopes, cancelling = coarse.total(output), _adjoints(graph, output, local.cut), None
-    if most is None:
-        return 0.0
+    stretched = RunningBounds(graph, inputs, None if dust is None else STRETCH * dust, STRETCH)
+    (most,) = stretched.of([output])
+    local = _Local(graph, inputs, stretched, output)
+    (own,) = local.of([output])
+    slopes, cancelling = _adjoints(graph, output, local.cut), None
     for node, (_, slope) in slopes.items():
         if node in local.cut:
-            cancelling = local.fused(abs(slope), local.cut[node], cancelling)
-    unit, share = SAFE * UNIT, 1.0 - 1.0 / STRETCH
-    mean = local.fused(unit / STRETCH, most, None if dust is None else unit * 4.0 * len(slopes) * 2.0**-50 / SEED)
-    for weight, part in ((unit * share, local.total(output)), (unit * share / SEED, cancelling)):
+            cancelling = local.fused(abs(slope), local.bound(node), cancelling)
+    mean = local.fused(WEIGHT, most, None if dust is None else 4.0 * len(slopes) * 2.0**-50 / SEED)
+    for weight, part in ((1.0 - WEIGHT, own), ((1.0 - WEIGHT) / SEED, cancelling)):
         mean = mean if part is None else local.fused(weight, part, mean)
     return mean
 
 
-class _Local(Bounds):
+class _Local(RunningBounds):
     """Errors of first order that come from operations after the last cuts; what is before them counts as exact.
 
-    Nothing is too small for a double here: the coarse bound has that.
+    Nothing is too small for a double here, and no divisor or root near zero: the stretched bounds have that.
 
     Attributes
     ----------
-    cut : dict of Node to node
-        Bounds on the errors, so counted, of values where they may cancel.
+    cut : set of Node
+        Values where errors may cancel.
     """
 
-    def __init__(self, graph, inputs, coarse, output):
-        told = {node: error for node, error in (inputs or {}).items() if node.operation not in INPUTS}
-        super().__init__(graph, told, dust=None)
-        self.coarse, self.cut = coarse, {}
-        behind: set[Node] = set()
-        nodes = needed([output])
-        self.tell_uses(nodes)
-        uses = Counter(
-            part for node in nodes if node.varies == BY_ANGLE for part in node.arguments if isinstance(part, Node)
+    def __init__(self, graph, inputs, stretched, output):
+        super().__init__(graph, inputs, dust=None)
+        self._stretched, self._output, self.cut = stretched, output, set()
+        self._users: dict[Node, list[Node]] = {}
+        for node in needed([output]):
+            for part in node.arguments if node.varies == BY_ANGLE else ():
+                if isinstance(part, Node):
+                    self._users.setdefault(part, []).append(node)
+
+    def count(self, nodes):
+        """What a design fixes first: for itself nothing is cut, as adjoints go no further than to it."""
+        fixed = [node for node in nodes if node.varies < BY_ANGLE]
+        super().count(fixed)
+        for node in fixed:
+            found = self._relative[node]
+            self._relative[node] = self._cut(node, None if found and found.pivots else found)
+        super().count([node for node in nodes if node.varies == BY_ANGLE])
+
+    def _counted(self, node):
+        found = EXACT if node.operation == "sign" else super()._counted(node)
+        return found if node.varies < BY_ANGLE else self._cut(node, found)
+
+    def _cut(self, node, found):
+        """Error of a value, or none if it is absolute and used more than once, or as a divisor or square."""
+        users = self._users.get(node, ())
+        is_cut = len(users) > 1 or any(
+            user.operation in ("sqrt", "root", "divisor") or (user.operation == "/" and user.arguments[1] is node)
+            for user in users
         )
-        for node in nodes:
-            by_angle = node.varies == BY_ANGLE  # adjoints go no further than to what a design fixes
-            after = by_angle and not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
-            is_own = after or (coarse.is_dust(node) and node.operation not in INPUTS)
-            self._errors[node] = error = self._found(node) if is_own else coarse.error(node)
-            if after:
-                behind.add(node)
-            elif not is_own:
-                self._totals[node] = coarse.total(node)
-            if uses[node] > 1 and node is not output and isinstance(error.rest, Node):
-                self.cut[node] = self.total(node)
-                self._errors[node], self._totals[node] = EXACT, None
-                behind.add(node)
+        if found is not None or not is_cut:
+            return found
+        self.cut.add(node)
+        return EXACT
 
-    def _found(self, node):
-        found = super()._found(node)
-        if node.operation in ("sqrt", "root") and self.is_dust(node.arguments[0]):  # of dust, which is not counted else
-            return found._replace(rest=self.coarse.error(node).rest)
-        return found
+    def as_divisor(self, part):
+        return self.relative(part) or super().as_divisor(part)
 
-    def own(self, node):
-        return EXACT if node.operation in ("divisor", "sign") else super().own(node)
+    as_square = as_divisor
 
-    def largest(self, part):
-        return size(part)
+    def _counted_divisor(self, node):
+        return self.as_divisor(node.arguments[0])
 
-    def over(self, part):
-        return self.coarse.over(part)
+    def is_absolute(self, node):
+        return super().is_absolute(node) or node in self.cut
 
-    def is_dust(self, part):
-        return self.coarse.is_dust(part)
+    def told(self, node):
+        return self._inputs[node](self._stretched if node.operation in INPUTS else self)
 
-    def steepest(self, root, square):
-        return self.coarse.steepest(root, square)
+    def larger(self, part):
+        return self.size(part)
+
+    def is_charged(self, node):
+        return super().is_charged(node) or node is self._output
+
+    def charge(self, node, missing):
+        return missing + self.free(node)
+
+    def free(self, node):
+        """As many as are taken from it by the one value that it is used for, and what that is used for."""
+        users = self._users.get(node, ())
+        if len(users) != 1 or not self.is_absolute(users[0]) or users[0] in self._inputs:
+            return 0.0
+        (user,) = users
+        more = 0.0 if user in self.cut else self.free(user)
+        if user.operation in ("*", "/"):
+            (other,) = (part for part in user.arguments if part is not node)
+            found = self.relative(other)
+            more = 0.5 * (more + 1.0) if found is None else more + found.roundings + 1.0
+        elif user.operation in "+-" and len(user.arguments) == 2 and not self.is_charged(user):
+            more += 1.0
+        return min(more, RESERVE)
 
 
 def _adjoints(graph, output, cut):
@@ -106,7 +132,8 @@ def _adjoints(graph, output, cut):
     wanted = set()
     nodes = needed([output])
     for node in nodes:
-        if node in cut or any(part in wanted for part in node.arguments if isinstance(part, Node)):
+        after = node.varies == BY_ANGLE and any(part in wanted for part in node.arguments if isinstance(part, Node))
+        if after or node in cut:
             wanted.add(node)
     parts: dict[Node, list[tuple[float, Any]]] = {output: [(1.0, SEED)]}
     found = {}
@@ -161,7 +188,7 @@ def _of_root(graph, node, slope, square, unit=None):
 
 
 _RULES: dict[str, Callable[..., Any]] = {
-    **dict.fromkeys((*INPUTS, "sign"), _none),
+    **dict.fromkeys((*INPUTS, "sign", "rest"), _none),
     **dict.fromkeys(("+", "total"), _of_sum),
     "-": _of_difference,
     "*": _of_product,
