@@ -136,6 +136,8 @@ class Counted:
             dust = plus(one.dust * (self.cap(right) if sign > 0.0 else self._cap_over(right)), dust)
         if not is_nothing(other.dust):
             dust = plus(other.dust * self.cap(left), dust)
+        if not (is_nothing(one.dust) or is_nothing(other.dust)):
+            dust = plus(UNIT * one.dust * other.dust, dust)
         return 0.0 if dust is None else dust
 
     def as_divisor(self, part):

@@ -69,13 +69,12 @@ class RunningBounds(Counted):
         ``input(bounds) -> Error`` of inputs that are not exact, as for `bounds.Bounds`.
     dust : float or None
         What a product or quotient may lose if it is too small for a double; None if none is.
-    stretch : float
-        How many times larger than proven terms of second order are taken, see `tight`.
     """
 
-    def __init__(self, graph, inputs=None, dust=DUST, stretch=1.0):
+    known = KNOWN
+
+    def __init__(self, graph, inputs=None, dust=DUST):
         super().__init__(graph, inputs, dust)
-        self._stretch, self._known = stretch, KNOWN / stretch
         self._by_design = Bounds(graph, inputs, dust=dust)
         self._absolute: dict[Node, Absolute] = {}
         self._bounds: dict[Node, Any] = {}
@@ -99,15 +98,23 @@ class RunningBounds(Counted):
         return tuple(0.0 if bound is None else bound for bound in map(self._with_reserve, outputs))
 
     def is_absolute(self, node):
-        """Whether the bound of a value is computed, once."""
+        """Whether a value has a bound of its own."""
         return self._relative[node] is None
+
+    def free(self, node):
+        """Reserve of an absolute value where it is free."""
+        return RESERVE
+
+    def told(self, node):
+        """Error of an input that is not exact."""
+        return self._inputs[node](self)
 
     def pivot(self, node):
         """Bound on the relative error of a pivot, over a quarter of `KNOWN`."""
         if node not in self._pivots:
             guards = self._guards.get(node, {})
             bound = None if node in guards else self._with_reserve(node)
-            found = (0.0 if bound is None else 4.0 / self._known * bound) * self.over(node)
+            found = (0.0 if bound is None else 4.0 / self.known * bound) * self.over(node)
             for guard in guards:
                 found = self.fused(GUARDED, guard - guard.arguments[0], found)
             self._pivots[node] = (LIMIT * found) * (1.0 / LIMIT)
@@ -128,35 +135,12 @@ class RunningBounds(Counted):
             return Absolute([(1.0, 0.0 / cleared), (1.0, self._lost)], 0.0)
         if kind in ("sin", "cos", "atan"):
             terms = [((ULP[kind] + free) * ROUNDED, self.size(node)), (1.0, self._lost)]
-            return Absolute([*terms, *self._of_function(self.whole(parts[0]))], free)
-        if kind == "abs" and self._stretch > 1.0:
-            cleared = self.above(self.size(parts[0]), self.total(parts[0]))
-            return Absolute([(1.0, 0.0 / cleared), (1.0, self.bound(parts[0]))], self._absolute[parts[0]].reserve)
+            return Absolute([*terms, *self.of_function(self.whole(parts[0]))], free)
         if kind == "rest":  # truly nothing
             return Absolute([(ROUNDED / UNIT, self.size(node))], 0.0)
         if kind == "*":
             return self._of_product(node)
         return self._of_quotient(node) if kind == "/" else self._of_sum(node)
-
-    def told(self, node):
-        """Error of an input that is not exact."""
-        return self._inputs[node](self)
-
-    def free(self, node):
-        """Roundings in reserve of an absolute value where they are free."""
-        return RESERVE
-
-    def is_charged(self, node):
-        """Whether a sum takes its rounding from nothing."""
-        return node.operation == "total"
-
-    def charge(self, node, missing):
-        """Roundings to charge a factor with that has less in reserve than its product takes."""
-        return 4.0 * math.ceil((missing + LEFT) / 4.0)
-
-    def _of_function(self, whole):
-        """Of one that changes no faster than its argument, and its slope no faster either."""
-        return [(1.0, whole)] if whole is None or self._stretch == 1.0 else [(1.0, whole), (0.5 * self._stretch * whole, whole)]
 
     def _of_sum(self, node):
         """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes, or of its own."""
@@ -187,6 +171,14 @@ class RunningBounds(Counted):
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
             terms += [(lost, self.size(part)) for part in parts]
         return Absolute(terms, free if is_charged else reserve)
+
+    def is_charged(self, node):
+        """Whether a sum's own rounding is charged to itself."""
+        return node.operation == "total"
+
+    def of_function(self, whole):
+        """Terms of a function that changes no faster than its argument, which has a whole bound."""
+        return [(1.0, whole)]
 
     def _of_product(self, node):
         left, right = node.arguments
@@ -232,6 +224,10 @@ class RunningBounds(Counted):
             terms.append((ROUNDED * lost, self.cap(part)))
         return Absolute(terms, reserve)
 
+    def charge(self, node, missing):
+        """Roundings that the factor of a product is charged with, whose reserve is less than it takes."""
+        return 4.0 * math.ceil((missing + LEFT) / 4.0)
+
     def terms(self, part):
         """Terms of the bound of an absolute part; one where it is used again."""
         return self._absolute[part].terms if self._uses[part] < 2 else [(1.0, self.bound(part))]
@@ -257,7 +253,7 @@ class RunningBounds(Counted):
             slope = steepest(found.pivots.values())
             powers = [(pivot, slope * abs(power)) for pivot, power in found.pivots.items()]
             held = sum(power * self._reserve(pivot) for pivot, power in powers)
-            terms = [(self._known / 4.0 * power, self.pivot(pivot)) for pivot, power in powers]
+            terms = [(self.known / 4.0 * power, self.pivot(pivot)) for pivot, power in powers]
             self._coefficients[key] = self.summed([*terms, (1.0, ROUNDED * roundings - UNIT * held)])
         return self._coefficients[key]
 
@@ -281,8 +277,8 @@ class RunningBounds(Counted):
         return self.summed([(self.coefficient(found), self.size(part)), (ROUNDED, found.dust)])
 
     def larger(self, part):
-        """Bound on the magnitude of the exact value of an absolute part, stretched."""
-        return self.fused(self._stretch, self.bound(part), self.size(part))
+        """Bound on the magnitude of the exact value of an absolute part."""
+        return self.size(part) + self.bound(part)
 
     def above(self, value, total, floor=None):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
