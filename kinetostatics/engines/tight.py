@@ -20,10 +20,12 @@ from typing import Any
 from .bounds import DUST
 from .counted import EXACT
 from .functions import moved_apart
-from .running import KNOWN, RESERVE, Absolute, RunningBounds
+from .running import KNOWN, Absolute, RunningBounds
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 STRETCH = 2.0**16
+MOST = 3.0
+"""Roundings in reserve, from which on a sum has its own: more would be of parts larger than their sum."""
 SEED = 2.0**900
 """Adjoint of the output, so large that no adjoint that counts is too small for a double."""
 
@@ -138,7 +140,7 @@ class _Local(_OfBoth):
         return missing + self.free(node)
 
     def free(self, node):
-        """As many as its only user takes from it, and that one's, but no more than elsewhere."""
+        """As many as its only user takes from it, and that one's in turn."""
         users = self._users.get(node, ())
         if node in self.cut or len(users) != 1 or not self.is_absolute(users[0]) or users[0] in self._inputs:
             return 0.0
@@ -149,7 +151,7 @@ class _Local(_OfBoth):
             wanted = 0.5 * (wanted + 1.0) if found is None else wanted + found.roundings + 1.0
         elif user.operation in "+-" and len(user.arguments) == 2 and not self.is_charged(user):
             wanted += 1.0
-        return min(wanted, RESERVE)
+        return min(wanted, MOST)
 
 
 def _divides(node, user):
