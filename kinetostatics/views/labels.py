@@ -16,6 +16,8 @@ LED = 14.0
 """Distance from which on a line leads from the label to its point."""
 ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE = 20.0, 4.0, 1.5, 10.0
 """What it costs a label to lie there; a farther place costs up to 1."""
+ROUNDS = 3
+"""How often each label is placed: first beside those before it, then beside all others."""
 
 
 class Labels(Artist):
@@ -35,40 +37,42 @@ class Labels(Artist):
         marks = [box for line in lines if isinstance(line.get_marker(), Path) for box in _boxes(line, scale)]
         shown = [text for text in self.texts if np.isfinite(text.xy).all()]
         points = ax.transData.transform([text.xy for text in shown]) if shown else ()
-        taken: list[Bbox] = []
-        leaders: list[Path] = []
+        frees = []  # the places of each label, and what each costs beside all that is not a label
         for text, point in zip(shown, points, strict=True):
             size = text.get_window_extent(renderer)
             places = list(_places(point, size.width, size.height, scale))
-            costs = [
-                step + self._cost(box, taken, points, marks, paths) + _crossed(box, leader, taken, leaders)
-                for step, (_, box, leader) in zip(STEPS, places, strict=True)
-            ]
-            offset, box, leader = places[int(np.argmin(costs))]
+            frees.append((places, STEPS + [self._cost(box, points, marks, paths) for _, box, _ in places]))
+        chosen: list[tuple] = []
+        for place in list(range(len(shown))) * ROUNDS:
+            others = chosen[:place] + chosen[place + 1 :]
+            places, costs = frees[place]
+            costs = costs + [_met(box, leader, others) for _, box, leader in places]
+            chosen[place : place + 1] = [places[int(np.argmin(costs))]]
+        for text, (offset, _, leader) in zip(shown, chosen, strict=True):
             text.set_position(offset / scale)
             if leader is not None:
                 Line2D(*leader.vertices.T, color="0.5", lw=0.5, transform=IdentityTransform()).draw(renderer)
-                leaders.append(leader)
-            taken.append(box)
 
-    def _cost(self, box, taken, points, marks, paths):
+    def _cost(self, box, points, marks, paths):
         frame: Any = self.axes
         outside = not (frame.bbox.contains(box.x0, box.y0) and frame.bbox.contains(box.x1, box.y1))
         return (
-            ON_LABEL * sum(bool(Bbox.intersection(box, other)) for other in taken)
-            + ON_POINT * sum(box.contains(*point) for point in points)
+            ON_POINT * sum(box.contains(*point) for point in points)
             + ON_POINT * sum(bool(Bbox.intersection(box, mark)) for mark in marks)
             + ON_CURVE * sum(path.intersects_bbox(box, filled=filled) for path, filled in paths)
             + OUTSIDE * outside
         )
 
 
-def _crossed(box, leader, taken, leaders):
-    """What it costs a label that it, or the line that leads to it, crosses other lines that lead, or other labels."""
-    met = [line.intersects_bbox(box, filled=False) for line in leaders]
-    if leader is not None:
-        met += [leader.intersects_bbox(other, filled=False) for other in taken]
-        met += [leader.intersects_path(line, filled=False) for line in leaders]
+def _met(box, leader, others):
+    """What it costs a label that it, or the line that leads to it, meets other labels and lines that lead to them."""
+    met = [Bbox.intersection(box, other) is not None for _, other, _ in others]
+    for _, other, line in others:
+        if line is not None:
+            met.append(line.intersects_bbox(box, filled=False))
+        if leader is not None:
+            met.append(leader.intersects_bbox(other, filled=False))
+            met.append(line is not None and leader.intersects_path(line, filled=False))
     return ON_LABEL * sum(map(bool, met))
 
 
