@@ -17,6 +17,8 @@ from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
+GRADUAL = 4.0
+"""Roundings that one over a number is off at most where it is too small for a double, being 2^-1024 at least."""
 NO_POWER = 2.0**-60
 """Stands for the power 0 of a pivot with a guard, so that a bound is infinite where that acts."""
 
@@ -53,6 +55,7 @@ class Counted:
         self._squares: set[Any] = set()
         self._reciprocals: dict[Node, Any] = {}
         self._caps: dict[Node, Any] = {}
+        self._turns: dict[Node, bool] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
 
@@ -123,21 +126,24 @@ class Counted:
             for pivot in one.pivots | other.pivots
         }
         own = 0.0 if is_exactly(left) or is_exactly(right) else 1.0
+        dust = self._dust_of_product(node, one, other, sign)
+        if sign < 0.0 and pivots and not isinstance(left, Node) and abs(left) >= 1.0:  # infinite is no pivot
+            own, dust = GRADUAL if self._dust else 1.0, None
         return Relative(
             one.roundings + other.roundings + own,
             {pivot: power or NO_POWER for pivot, power in pivots.items() if power or pivot in self._guards},
-            self._dust_of_product(node, one, other, sign),
+            dust,
         )
 
     def _dust_of_product(self, node, one, other, sign):
         left, right = node.arguments
         dust = self._dust or None
         if not is_nothing(one.dust):
-            dust = plus(one.dust * (self.cap(right) if sign > 0.0 else self._cap_over(right)), dust)
+            dust = self.fused(one.dust, self.cap(right) if sign > 0.0 else self._cap_over(right), dust)
         if not is_nothing(other.dust):
-            dust = plus(other.dust * self.cap(left), dust)
+            dust = self.fused(other.dust, self.cap(left), dust)
         if not (is_nothing(one.dust) or is_nothing(other.dust)):
-            dust = plus(UNIT * one.dust * other.dust, dust)
+            dust = self.fused(UNIT * one.dust, other.dust, dust)
         return 0.0 if dust is None else dust
 
     def as_divisor(self, part):
@@ -204,6 +210,22 @@ class Counted:
                 found = self._cap(part.operation, part.arguments)
             self._caps[part] = self.size(part) if found is None or varies(found) else found
         return self._caps[part]
+
+    def at_most(self, part):
+        """Magnitude of a part; of what turns its largest one at any crank angle."""
+        cap = self.cap(part) if self.turns(part) else None
+        return self.size(part) if cap is None or varies(cap) else cap
+
+    def turns(self, part):
+        """Whether a part is sines and cosines of the crank angle times numbers of the design."""
+        if not varies(part):
+            return False
+        if part not in self._turns:
+            kind, moving = part.operation, [factor for factor in part.arguments if varies(factor)]
+            is_product = kind == "*" or (kind == "-" and len(part.arguments) == 1)
+            is_turn = kind in ("sin", "cos") and moving[0].operation == "angle"
+            self._turns[part] = is_turn or (is_product and all(map(self.turns, moving)))
+        return self._turns[part]
 
     def _cap(self, kind, parts):
         if kind in ("sin", "cos"):

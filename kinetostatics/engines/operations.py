@@ -42,6 +42,14 @@ def _lost_by_squares(length, x, y):
     return lost(*off_square(length, x, y))
 
 
+def _scalar_total(*terms):
+    return np.float64(_plain_total(*terms))
+
+
+def _scalar_lost(*terms):
+    return np.float64(lost(*map(float, terms)))
+
+
 def _total_of(*terms_and_out):
     *terms, out = terms_and_out
     np.copyto(out, total(*terms))
@@ -80,7 +88,7 @@ BY_DESIGN = {
     "cos": np.cos,
     "atan": np.arctan,
     "sqrt": np.sqrt,
-    "abs": np.abs,
+    "abs": abs,
     "copysign": np.copysign,
     "root": _root,
     "divisor": np.maximum,
@@ -92,6 +100,15 @@ BY_DESIGN = {
     "nan": math.nan,
     "inf": math.inf,
 }
+SCALARS = BY_DESIGN | {
+    "root": lambda square, unit: np.float64(_plain_root(square, unit)),
+    "divisor": lambda root, unit: np.float64(_plain_divisor(root, unit)),
+    "total": _scalar_total,
+    "lost": _scalar_lost,
+    "lost_by_squares": lambda length, x, y: _scalar_lost(*off_square(length, x, y)),
+    "rest": lambda length, x, y: _scalar_total(*off_square(length, x, y)) / (2.0 * length),
+}
+"""On plain numbers of NumPy, which tell what is too small for a double: no sum is."""
 ARRAYS = {
     "add": np.add,
     "subtract": np.subtract,

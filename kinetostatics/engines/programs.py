@@ -16,7 +16,7 @@ from ..numbers.leaves import FLOATS, Leaves
 from . import loops, writing
 from .compiled import available, loaded
 from .derivatives import gradients
-from .operations import ARRAYS, BY_DESIGN, PLAIN, made
+from .operations import ARRAYS, BY_DESIGN, PLAIN, SCALARS, made
 from .recent import kept_for_same_angles
 from .record import record
 from .running import RunningBounds
@@ -247,7 +247,7 @@ def _bounds(recording, values, tight, **dust):
 class _Watched(Program):
     """Program that NumPy alone runs, plain numbers too, and that raises FloatingPointError where one is too small."""
 
-    scopes, underflow = (BY_DESIGN, BY_DESIGN), "raise"
+    scopes, underflow = (SCALARS, BY_DESIGN), "raise"
 
     def by_numpy(self, angle, numbers, rows, shape):
         numbers = [np.float64(number) if isinstance(number, float) else number for number in numbers]

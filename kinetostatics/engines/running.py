@@ -48,8 +48,10 @@ LIMIT = 2.0**1022
 """What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
-RESERVE, LEFT = 3.0, 2.0
+RESERVE, LEFT = 7.0, 6.0
 """Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
+STEP = 8.0
+"""Roundings beside errors of pivots are counted in as many, so that few sums of both are computed."""
 
 
 class Absolute(NamedTuple):
@@ -155,6 +157,7 @@ class RunningBounds(Counted):
         )
         is_charged = reserve < 0.0 or self.is_charged(node)
         moved = moved_apart(parts)
+        size = self.size if all(map(self.turns, parts)) else self.at_most
         terms = [(1.0, self._lost)]
         if moved is not None:
             terms.append((ROUNDED, moved))
@@ -165,7 +168,7 @@ class RunningBounds(Counted):
             if found is None:
                 terms += self.terms(part)
             else:
-                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), self.size(part)))
+                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), size(part)))
                 terms.append((ROUNDED, found.dust))
         if node.operation == "total":  # sums without loss, and what those of their losses lose
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
@@ -189,7 +192,7 @@ class RunningBounds(Counted):
             own = 0.0 if any(map(is_scaling, node.arguments)) else 1.0
             return self._scaled(node, left, found, own, self.size(right))
         if left is right:
-            terms = [(self.larger(left) + self.size(left), self.bound(left, 0.5)), (1.0, self._lost)]
+            terms = [(self.larger(left, 2.0), self.bound(left, 0.5)), (1.0, self._lost)]
             return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
         held = self._absolute[left].reserve + self._absolute[right].reserve
         one, other = self.bound(left, 0.0 if held >= 1.0 else 1.0), self.bound(right)
@@ -248,6 +251,7 @@ class RunningBounds(Counted):
         roundings = found.roundings + more
         if not found.pivots:
             return ROUNDED * roundings
+        roundings = STEP * math.ceil(roundings / STEP)
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
             slope = steepest(found.pivots.values())
@@ -276,9 +280,9 @@ class RunningBounds(Counted):
             return self.bound(part)
         return self.summed([(self.coefficient(found), self.size(part)), (ROUNDED, found.dust)])
 
-    def larger(self, part):
-        """Bound on the magnitude of the exact value of an absolute part."""
-        return self.size(part) + self.bound(part)
+    def larger(self, part, times=1.0):
+        """Bound on the magnitude of the exact value of an absolute part; so many times that of the computed one."""
+        return self.fused(times, self.size(part), self.bound(part))
 
     def above(self, value, total, floor=None):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""

@@ -59,8 +59,8 @@ class _Stretched(_OfBoth):
 
     known = KNOWN / STRETCH
 
-    def larger(self, part):
-        return self.fused(STRETCH, self.bound(part), self.size(part))
+    def larger(self, part, times=1.0):
+        return self.fused(STRETCH, self.bound(part), times * self.size(part))
 
     def of_function(self, whole):
         """Its slope changes no faster than its argument either."""
@@ -130,7 +130,10 @@ class _Local(_OfBoth):
     def told(self, node):
         return self._inputs[node](self._stretched if node.operation in INPUTS else self)
 
-    def larger(self, part):
+    def larger(self, part, times=1.0):
+        return times * self.size(part)
+
+    def at_most(self, part):
         return self.size(part)
 
     def is_charged(self, node):
