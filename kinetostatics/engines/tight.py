@@ -90,6 +90,7 @@ class _Local(_OfBoth):
         super().__init__(graph, inputs, dust=None)
         self._stretched, self._output, self.cut = stretched, output, set()
         self._users: dict[Node, list[Node]] = {}
+        self._free: dict[Node, float] = {}
         for node in needed([output]):
             for part in node.arguments if node.varies == BY_ANGLE else ():
                 if isinstance(part, Node):
@@ -103,6 +104,8 @@ class _Local(_OfBoth):
             found = self._relative[node]
             self._relative[node] = self._unless_cut(node, None if found and found.pivots else found)
         super().count([node for node in nodes if node.varies == BY_ANGLE])
+        for node in reversed(nodes):
+            self._free[node] = self._wanted(node)
 
     def _counted(self, node):
         found = EXACT if node.operation == "sign" else super()._counted(node)
@@ -143,12 +146,15 @@ class _Local(_OfBoth):
         return missing + self.free(node)
 
     def free(self, node):
-        """As many as its only user takes from it, and that one's in turn."""
+        return self._free[node]
+
+    def _wanted(self, node):
+        """Roundings that the only user of a node takes from its reserve, and that one's in turn."""
         users = self._users.get(node, ())
         if node in self.cut or len(users) != 1 or not self.is_absolute(users[0]) or users[0] in self._inputs:
             return 0.0
         (user,) = users
-        wanted = self.free(user)
+        wanted = self._free[user]
         if user.operation in ("*", "/"):
             (found,) = (self.relative(part) for part in user.arguments if part is not node)
             wanted = 0.5 * (wanted + 1.0) if found is None else wanted + found.roundings + 1.0
