@@ -17,8 +17,6 @@ from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
-GRADUAL = 4.0
-"""Roundings that one over a number is off at most where it is too small for a double, being 2^-1024 at least."""
 NO_POWER = 2.0**-60
 """Stands for the power 0 of a pivot with a guard, so that a bound is infinite where that acts."""
 
@@ -126,25 +124,23 @@ class Counted:
             for pivot in one.pivots | other.pivots
         }
         own = 0.0 if is_exactly(left) or is_exactly(right) else 1.0
-        dust = self._dust_of_product(node, one, other, sign)
-        if sign < 0.0 and pivots and not isinstance(left, Node) and abs(left) >= 1.0:  # infinite is no pivot
-            own, dust = GRADUAL if self._dust else 1.0, None
         return Relative(
             one.roundings + other.roundings + own,
             {pivot: power or NO_POWER for pivot, power in pivots.items() if power or pivot in self._guards},
-            dust,
+            self._dust_of_product(node, one, other, sign),
         )
 
     def _dust_of_product(self, node, one, other, sign):
         left, right = node.arguments
-        dust = self._dust or None
+        least = None if _is_over_root(node) and other.pivots else self._dust
+        dust = least or None
         if not is_nothing(one.dust):
             dust = self.fused(one.dust, self.cap(right) if sign > 0.0 else self._cap_over(right), dust)
         if not is_nothing(other.dust):
             dust = self.fused(other.dust, self.cap(left), dust)
         if not (is_nothing(one.dust) or is_nothing(other.dust)):
             dust = self.fused(UNIT * one.dust, other.dust, dust)
-        return 0.0 if dust is None else dust
+        return least if dust is None else dust
 
     def as_divisor(self, part):
         """Error of a part that something is divided by: its own if it cannot be lost as too small, or of a pivot."""
@@ -315,6 +311,15 @@ class Counted:
                 or (kind == "divisor" and any(map(self.is_positive, parts)))
             )
         return self._positive[part]
+
+
+def _is_over_root(node):
+    """Whether a node is one over a root, which is not too small for a double unless the square is infinite."""
+    above, below = node.arguments
+    while isinstance(below, Node) and below.operation == "divisor":
+        below = below.arguments[0]
+    is_root = isinstance(below, Node) and below.operation in ("sqrt", "root")
+    return node.operation == "/" and is_root and not isinstance(above, Node) and abs(above) >= 1.0
 
 
 def is_exact(error):

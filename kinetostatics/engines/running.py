@@ -11,6 +11,10 @@ pivot
     is there if possible, and shared by all products with it.
 absolute value
     Any other. Its bound is computed, once.
+turning value
+    A relative one: sines and cosines of the crank angle times numbers of the design. Added to such a number it counts
+    with its largest magnitude at any angle, which costs nothing. Sums without one may vanish as a linkage folds, and
+    have to be known there: in them it counts with its own.
 bound
     Of an absolute value: at least its error and its reserve.
 reserve
@@ -50,8 +54,8 @@ GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
 RESERVE, LEFT = 7.0, 6.0
 """Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
-STEP = 8.0
-"""Roundings beside errors of pivots are counted in as many, so that few sums of both are computed."""
+STEP = 4.0
+"""So many roundings at a time are charged, alone and beside errors of pivots: few sums of these are to be computed."""
 
 
 class Absolute(NamedTuple):
@@ -157,7 +161,7 @@ class RunningBounds(Counted):
         )
         is_charged = reserve < 0.0 or self.is_charged(node)
         moved = moved_apart(parts)
-        size = self.size if all(map(self.turns, parts)) else self.at_most
+        size = self.size if all(map(varies, parts)) else self.at_most
         terms = [(1.0, self._lost)]
         if moved is not None:
             terms.append((ROUNDED, moved))
@@ -229,7 +233,7 @@ class RunningBounds(Counted):
 
     def charge(self, node, missing):
         """Roundings that the factor of a product is charged with, whose reserve is less than it takes."""
-        return 4.0 * math.ceil((missing + LEFT) / 4.0)
+        return stepped(missing + LEFT)
 
     def terms(self, part):
         """Terms of the bound of an absolute part; one where it is used again."""
@@ -248,10 +252,9 @@ class RunningBounds(Counted):
 
     def coefficient(self, found, more=0.0):
         """What a relative error is of the magnitude of its value."""
-        roundings = found.roundings + more
         if not found.pivots:
-            return ROUNDED * roundings
-        roundings = STEP * math.ceil(roundings / STEP)
+            return ROUNDED * (found.roundings + more)
+        roundings = stepped(found.roundings + more)
         key = roundings, *sorted((pivot.index, power) for pivot, power in found.pivots.items())
         if key not in self._coefficients:
             slope = steepest(found.pivots.values())
@@ -289,6 +292,11 @@ class RunningBounds(Counted):
         if total is not None:
             value = value - (SAFE * UNIT) * total
         return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
+
+
+def stepped(roundings):
+    """As many roundings or few more, in steps."""
+    return STEP * math.ceil(roundings / STEP)
 
 
 def steepest(powers):

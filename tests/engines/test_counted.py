@@ -49,6 +49,30 @@ def test_magnitudes_that_a_design_fixes_do_not_hang_on_the_crank_angle():
     assert found.cap(graph.row(0)).varies == height.varies
 
 
+def test_only_one_over_the_root_of_a_sum_is_never_too_small():
+    graph = Graph()
+    one, unit = map(graph.parameter, range(2))
+    total, dust = one * one - one * unit, 2.0**-960
+    for over in (1.0 / total.sqrt(), -2.0 / total.sqrt(), 1.0 / total.sqrt().kept_off_zero(unit)):
+        assert counted(over, dust)[1].dust is None
+    for over in (1.0 / total, 0.5 / total.sqrt(), one / total.sqrt(), 1.0 / abs(one).sqrt()):
+        assert counted(over, dust)[1].dust is not None
+
+
+def test_what_turns_is_at_most_what_a_design_fixes():
+    graph = Graph()
+    radius, height = graph.parameter(0), graph.row(0)
+    sine, cosine = graph.angle().sin(), graph.angle().cos()
+    found, _ = counted(radius * sine * cosine + height * sine)
+    assert found.at_most(-(radius * sine)) is abs(radius)
+    assert found.at_most(radius * sine * cosine) is abs(radius)
+    for other in (height * sine, radius + sine, (radius * sine).sqrt(), sine.sin()):
+        assert not found.turns(other)
+        assert found.at_most(other) is found.size(other)
+    assert not found.turns(radius)
+    assert found.at_most(radius) is abs(radius)
+
+
 def test_what_cannot_be_negative_is_its_own_magnitude():
     graph = Graph()
     one, other = map(graph.parameter, range(2))

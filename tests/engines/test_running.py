@@ -175,5 +175,23 @@ def test_values_with_bounds_take_at_most_3_2_times_the_operations(case, variant)
     assert programs.operations(program.bounded().outputs) <= 3.2 * programs.operations(program.outputs)
 
 
+@every("phi", [0.0, 0.3, 1.5, 3.0])
+def test_beside_a_number_of_the_design_what_turns_counts_by_its_largest_magnitude(phi):
+    graph = Graph()
+    place, radius = map(graph.parameter, range(2))
+    difference = place - radius * graph.angle().cos()
+    (at,), (across,) = (bounds_of(graph, [difference], [0.3, 0.1], angle) for angle in (phi, np.pi / 2))
+    assert at == across < 5.0 * UNIT
+
+
+@every("other", [lambda turning, two: two * turning, lambda turning, two: two * (turning * turning).sqrt()])
+def test_a_sum_of_what_vanishes_with_what_turns_is_known_where_it_does(other):
+    graph = Graph()
+    one, two = map(graph.parameter, range(2))
+    turning = graph.angle().sin()
+    (bound,) = bounds_of(graph, [one * turning - other(turning, two)], [0.3, 0.1], angle=1e-9)
+    assert bound < 8.0 * UNIT * 1e-9
+
+
 def test_an_output_that_is_a_plain_number_is_exact():
     assert RunningBounds(Graph()).of([0.0]) == (0.0,)
