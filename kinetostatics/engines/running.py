@@ -75,6 +75,11 @@ class RunningBounds(Counted):
         ``input(bounds) -> Error`` of inputs that are not exact, as for `bounds.Bounds`.
     dust : float or None
         What a product or quotient may lose if it is too small for a double; None if none is.
+
+    Attributes
+    ----------
+    known : float
+        Below which relative errors of pivots stay, or there is no bound.
     """
 
     known = KNOWN
@@ -116,7 +121,7 @@ class RunningBounds(Counted):
         return self._inputs[node](self)
 
     def pivot(self, node):
-        """Bound on the relative error of a pivot, over a quarter of `KNOWN`."""
+        """Bound on the relative error of a pivot, over a quarter of `known`."""
         if node not in self._pivots:
             guards = self._guards.get(node, {})
             bound = None if node in guards else self._with_reserve(node)
