@@ -52,7 +52,7 @@ LIMIT = 2.0**1022
 """What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
-RESERVE, LEFT = 7.0, 6.0
+RESERVE = 6.0
 """Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
 STEP = 4.0
 """So many roundings at a time are charged, alone and beside errors of pivots: few sums of these are to be computed."""
@@ -238,7 +238,7 @@ class RunningBounds(Counted):
 
     def charge(self, node, missing):
         """Roundings that the factor of a product is charged with, whose reserve is less than it takes."""
-        return stepped(missing + LEFT)
+        return stepped(missing + RESERVE)
 
     def terms(self, part):
         """Terms of the bound of an absolute part; one where it is used again."""

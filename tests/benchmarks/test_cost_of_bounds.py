@@ -21,8 +21,8 @@ CASES = [
     ("pumpjack", "weights"),
 ]
 MOST = {"numpy": 4.0, "compiled": 2.5}
-"""What is asked of forward bounds. Reached: compiled 1.1 to 2.4, but all reactions of cams and the chain unit 1.9 to
-2.7; by NumPy 2.5 to 3.9, but the chain unit 3.6 to 4.15; the more the busier the machine.
+"""What is asked of forward bounds. Reached: by NumPy 2.4 to 3.5; compiled 1.1 to 2.4, but all reactions of the chain
+unit 2.3 to 2.5, the more the busier the machine.
 """
 TIGHT = 5.0
 """What is asked of tight bounds. Reached: 1.3 to 4.1 at 360 angles, 2.2 to 4.9 at 3600, on a busy machine."""
