@@ -6,9 +6,10 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.engines import programs
+from kinetostatics.engines.bounds import DUST
 from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, steepest
 from kinetostatics.engines.trace import Graph
-from kinetostatics.numbers.elementary import UNIT, rest, sign, total
+from kinetostatics.numbers.elementary import UNIT, UNSEEN, apart, rest, sign, total
 from support.every import every
 from support.shipped import shipped
 
@@ -143,6 +144,16 @@ def test_a_quotient_by_one_and_a_magnitude_is_bounded_by_the_slope_at_its_value(
     cosine = graph.angle().cos() * one - other
     (bound, alone) = bounds_of(graph, [one / (1.0 + abs(cosine)), cosine], [100.0, 50.0])
     assert bound < 1.2 * (100.0 / 51.0**2 * (alone + 51.0 * UNIT) + 100.0 / 51.0 * UNIT)
+
+
+def test_a_product_with_what_is_moved_off_zero_is_off_by_all_of_it():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    product = apart(one, UNSEEN) * other
+    for dust in (DUST, None):
+        (bound,) = RunningBounds(graph, dust=dust).of([product])
+        values = programs.Program(None, (product, bound))._plain(0.0, 0.0, 1.0, [0.0, 3.0], ())
+        assert values[1] >= values[0] > 0.0
 
 
 def test_a_bound_does_not_hang_on_what_else_is_asked_for():
