@@ -45,7 +45,7 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, va
     assert np.max(bound) < most * np.max(error)
     tight = s.error_bound("balancing_torque", tight=True)
     assert np.all(error <= tight)
-    assert np.all(tight <= 1.01 * bound)  # its remainder may be more, by terms of second order stretched
+    assert np.all(tight <= bound * 1.01)  # its remainder is of stretched bounds, which are a little larger
     assert np.median(tight / bound) < 1.0
 
 
