@@ -1,15 +1,17 @@
 """How sure the largest values of a machine are: what tolerances of its numbers make, and what rounding does."""
 
 import warnings
+from functools import lru_cache
 
 import numpy as np
 
-from ..errors import ConditionWarning
+from ..errors import ConditionWarning, ParameterError
 from ..mechanics.quantities import of_scene
 from ..numbers.shown import at_most, number
 from ..results.extremes import extrema
-from ..results.rounding import Known
-from .second_order import told
+from ..results.rounding import AT_JUMP, Known
+from .scene import Scene
+from .second_order import Doubt, told
 
 COLUMNS = ("quantity", "unit", "largest", "at [deg]", "tolerance", "rounding", "most from", "share [%]")
 KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")
@@ -21,8 +23,9 @@ AGAIN = "balancing_torque_by_power"
 def largest_with_uncertainty(solution, inputs):
     """Largest value of each quantity over the period, and its uncertainty there, a pandas DataFrame.
 
-    To first order an extremum moves with the inputs as the value at its crank angle does. Quantities that do not vary
-    over the period are left out.
+    To first order an extremum changes with the inputs as the value at its crank angle does. Not so one that a row of a
+    table or a jump makes, which stands where the curve is steep and moves with them: there the largest values with each
+    input smaller and larger by its uncertainty are compared. Quantities that do not vary over the period are left out.
 
     Parameters
     ----------
@@ -52,9 +55,9 @@ def largest_with_uncertainty(solution, inputs):
 
     quantities = {name: item for name, item in of_scene(solution).items() if item.kind in KINDS and name != AGAIN}
     known = Known(solution, {name: found for name in quantities if len(found := extrema(solution, name))})
-    rows, doubts = [], []
+    moved, rows, doubts = _Moved(solution, inputs), [], []
     for name in known.found:
-        row, doubt = _row(known, name, quantities[name], inputs)
+        row, doubt = _row(known, name, quantities[name], moved)
         rows.append(row)
         doubts += [] if doubt is None else [doubt]
     if doubts:
@@ -62,14 +65,48 @@ def largest_with_uncertainty(solution, inputs):
     return pd.DataFrame(rows, columns=COLUMNS).set_index("quantity")
 
 
-def _row(known, name, quantity, inputs):
+def _row(known, name, quantity, moved):
     """A row of the table, and the doubt that it says too little, or None."""
     value, angle, rounding = known.end(name, lambda values: np.argmax(np.abs(values)))
-    sure, doubt = known.solution.at(angle).with_doubt(f"|{name}|" if quantity.vector else name, inputs)
-    tolerance = float(sure.tolerance)
-    most = max(sure.inputs, key=sure.inputs.__getitem__) if tolerance > 0.0 else ""
-    share = 100.0 * float(sure.inputs[most] / tolerance) ** 2 if most else np.nan
+    if np.any(np.abs(angle - known.solution.sampled.kinks) < AT_JUMP):
+        parts, doubt = moved.parts(name)
+    else:
+        sure, doubt = known.solution.at(angle).with_doubt(f"|{name}|" if quantity.vector else name, moved.inputs)
+        parts = {path: float(part) for path, part in sure.inputs.items()}
+    tolerance = float(np.sqrt(sum(part**2 for part in parts.values())))
+    most = max(parts, key=parts.__getitem__) if tolerance > 0.0 else ""
+    share = 100.0 * (parts[most] / tolerance) ** 2 if most else np.nan
     return (quantity.label, quantity.unit, value, np.degrees(angle), tolerance, rounding, most, share), doubt
+
+
+class _Moved:
+    """The machine with each input smaller and larger by its uncertainty."""
+
+    def __init__(self, solution, inputs):
+        self.inputs, self._solution = inputs, solution
+        self._sides = lru_cache(None)(self._made)
+
+    def _made(self, path):
+        own = self._solution
+        scene = Scene(own.mechanism, own.crank_speed, own.crank_acceleration, own.loads, own.friction)
+        given, by = scene.parameters[path], self.inputs[path]
+        return [scene.varied({path: given + way * by}).unsolved(own.crank_angle) for way in (-1.0, 1.0)]
+
+    def parts(self, name):
+        """Half of what the largest magnitude differs by, by path, and the doubt that it says too little, or None."""
+        found, doubt = {}, None
+        for path in self.inputs:
+            try:
+                low, high = (_largest(side, name) for side in self._sides(path))
+                found[path] = 0.5 * abs(high - low)
+            except ParameterError as why:  # a slider beyond its table, for one
+                doubt = Doubt(name, "and may be more", f"with {path} moved, {why}")
+        return found, doubt
+
+
+def _largest(solution, name):
+    found = extrema(solution, name)
+    return float(np.max(np.abs(found.value))) if len(found) else abs(float(found.constant))
 
 
 def with_uncertainty(value, uncertainty):

@@ -20,6 +20,15 @@ def test_the_uncertainty_of_an_extremum_is_that_of_its_formula():
     assert 0.0 < row["rounding"] < 1e-14
 
 
+def test_a_peak_that_a_row_of_a_table_makes_moves_with_the_inputs():
+    """The torque on a yoke without mass is F sqrt(r^2 - x^2) where the row stands, however steep the force beside it."""
+    work = ks.Table([-0.2, 0.0599, 0.06, 0.0601, 0.2], [0.0, 0.0, 1000.0, 0.0, 0.0], over="travel")
+    s = ks.solve(ks.scotch_yoke(0.1), 0.0, crank_speed=10.0, loads=ks.ProcessForce(work))
+    row = largest_with_uncertainty(s, {"crank_length": 1e-5}).loc["balancing torque"]
+    assert abs(row["largest"]) == pytest.approx(80.0, rel=1e-9)
+    assert row["tolerance"] == pytest.approx(1000.0 * 0.1 / 0.08 * 1e-5, rel=1e-3)
+
+
 def test_without_uncertain_numbers_rounding_is_all():
     table = largest_with_uncertainty(YOKE, {})
     assert (table["tolerance"] == 0.0).all()
