@@ -60,10 +60,10 @@ def departure(placement, drawn_in, joint, direction, reach, short):
 
 
 def outward(placement, joint, direction, reach, short):
-    """That coordinate as seen from the side of the joint, in two parts, the first of which no crank angle changes.
+    """That coordinate, m, or its opposite where the joint is on the other side of O, as a length and what is more.
 
-    It is the length by which the joint goes round O, if it does. Near a dead centre the second is small beside it, and
-    has no rounding of the whole.
+    The length is that by which the joint goes round O, which no crank angle changes; None where no group tells it. Near
+    a dead centre what is more is small beside it, and has no rounding of the whole.
     """
     if joint not in placement.orbits:
         return None
@@ -74,7 +74,10 @@ def outward(placement, joint, direction, reach, short):
 
 
 class Reaching:
-    """What a group has whose slider a coupler reaches."""
+    """What a group has whose slider a coupler reaches: with `on`, `coupler_length`, `guide`, `side` and `passage`.
+
+    The slider's name is in `_slider`, and of its details in a placement `sine`, `cosine` and `drawn_in` are asked for.
+    """
 
     def elongation(self: Any, placement, free_position):
         """Coordinate of the pin along the guide less a free position, m, without the rounding of the coordinate."""

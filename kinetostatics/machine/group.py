@@ -59,7 +59,8 @@ guide, apart since it may nearly cancel with inertia. Write down the equilibrium
 that it has on the group: the mechanism sees to the reaction on the link that carries the joint.
 
 *Change points.* Most groups have none to pass. One that does says in `on_crank(throws)` how, by a text `passage` that
-belongs to its structure, and gives `turns` and `change_points`; `kink(throws)` says what becomes of a side there.
+belongs to its structure, and gives `turns` and `change_points`; `kink(throws)` says what becomes of a side there. What
+its structure owes to lengths of groups beside it, `beside(groups, throws)` says.
 
 *Friction.* Where links rub, `resolve` is asked several times: what it finds must be linear in the loads.
 

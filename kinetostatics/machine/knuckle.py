@@ -8,6 +8,7 @@ component, it is what lengths leave of each other,
     b q - g + A = (+-b - g) + A - b e^2 / (+-1 + q)
 
 by the sign of q. Where the coupler may lean much, or is much longer than the rocker, that is no nearer, and not used.
+Designs together must all allow it, so what one has may change in its last bits with those beside it.
 """
 
 import numpy as np

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..machine.loads import TURN, Table, in_rows, value_of
 from ..mechanics.quantities import quantity
-from .turn import ASIDE
+from .turn import ASIDE, beginnings
 
 SMOOTH = ("slider", "motion", "rate")
 """Kinds of quantities that no load moves."""
@@ -23,7 +23,7 @@ def bends(solution):
     found = [_of_friction(solution)] if solution.friction.acting else []
     for table in map(value_of, solution.loads):
         if isinstance(table, Table):
-            again = np.arange(0.0, solution.period, table.period_on(solution.mechanism))
+            again = beginnings(table, solution)
             own = table.bends(solution)
             found.append((own[..., None] + again).reshape(len(own), -1))
     most = max(map(len, found))

@@ -234,9 +234,14 @@ def _kinks(solution):
     found: list[Any] = [(rubbing, rubbing)]
     for table in map(value_of, solution.loads):
         if isinstance(table, Table):
-            again = np.arange(0.0, solution.period - SAME, table.period_on(solution.mechanism))[:, None]
+            again = beginnings(table, solution)[:, None]
             found.append(tuple(np.ravel(angles + again) for angles in table.kinks(solution)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
+
+
+def beginnings(table, solution):
+    """Crank angles at which a table begins anew over the period of a solution."""
+    return np.arange(0.0, solution.period - SAME, table.period_on(solution.mechanism))
 
 
 def _friction_changes(solution):

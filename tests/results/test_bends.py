@@ -45,6 +45,15 @@ def test_a_table_over_the_angle_bends_in_every_turn_of_the_period():
     assert {0.0, 1.0, 2.0, 2 * np.pi, 1.0 + 2 * np.pi, 2.0 + 2 * np.pi} <= set(at)
 
 
+def test_no_bend_is_beyond_a_period_that_is_thirteen_turns_but_for_rounding():
+    once = ks.Torque(ks.Table([0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0]), on="crank")
+    long = ks.ProcessForce(ks.Table(np.linspace(0, 26 * np.pi, 9), np.zeros(9), period=26 * np.pi), period=26 * np.pi)
+    s = solved([once, long])
+    at = bends(s)
+    assert np.nanmax(at) < s.period
+    assert np.sum(np.isclose(at % (2 * np.pi), 1.0)) == 13
+
+
 def test_friction_bends_where_a_turn_knows_it():
     s = solved((), {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.02), "B": ks.PinFriction(0.1, 0.02)})
     np.testing.assert_allclose(np.unique(bends(s)), s.sampled.kinks, rtol=0, atol=1e-12)
