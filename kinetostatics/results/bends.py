@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..machine.loads import TURN, Table, in_rows, value_of
+from ..machine.loads import TURN, Table, in_rows, is_bent, value_of
 from ..mechanics.quantities import quantity
 from .turn import ASIDE
 
@@ -14,20 +14,23 @@ SAMPLES = 720
 
 def bent(solution, name):
     """Whether tables among the loads, or friction, may bend a quantity of a solution."""
-    bends = solution.friction.acting or any(isinstance(value_of(item), Table) for item in solution.loads)
-    return bool(bends) and quantity(solution, name).kind not in SMOOTH
+    return bool(solution.friction.acting or _tables(solution)) and quantity(solution, name).kind not in SMOOTH
 
 
 def bends(solution):
     """Crank angles (1 or designs, K) at which tables or friction bend or may jump; NaN where a design has fewer."""
     found = [_of_friction(solution)] if solution.friction.acting else []
-    for table in map(value_of, solution.loads):
-        if isinstance(table, Table):
-            again = np.arange(0.0, solution.period, table.period_on(solution.mechanism))
-            own = table.bends(solution)
-            found.append((own[..., None] + again).reshape(len(own), -1))
+    for table in _tables(solution):
+        again = np.arange(0.0, solution.period, table.period_on(solution.mechanism))
+        own = table.bends(solution)
+        found.append((own[..., None] + again).reshape(len(own), -1))
     most = max(map(len, found))
     return np.column_stack([np.broadcast_to(part, (most, part.shape[1])) for part in found])
+
+
+def _tables(solution):
+    """Tables among the loads that bend."""
+    return [table for table in map(value_of, solution.loads) if isinstance(table, Table) and is_bent(table)]
 
 
 def _of_friction(solution):

@@ -6,10 +6,11 @@ slider      spring and process force along a guide
 places      points of links, by which loads say where they act
 points      forces, springs and dampers at points
 torsion     couples on links
-tables      values by crank angle or travel, rows their rows, crossings where these are passed
+tables      values by crank angle or travel, rows their rows, bending which of them bend, crossings where these are passed
 period      turns after which loads repeat
 """
 
+from .bending import is_bent
 from .crossings import in_rows
 from .gravity import Gravity
 from .load import Load, is_given, may_refuse, refusals, value_of
@@ -51,6 +52,7 @@ __all__ = [
     "TorsionSpring",
     "WholeTurns",
     "in_rows",
+    "is_bent",
     "is_given",
     "may_refuse",
     "period_of",
