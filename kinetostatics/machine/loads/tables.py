@@ -11,7 +11,7 @@ from ...numbers import checks
 from ...numbers.elementary import namespace
 from ...numbers.leaves import with_fields
 from . import rows
-from .bending import bending
+from .bending import STRAIGHT, bending
 from .crossings import crossings
 from .period import TURN, WholeTurns
 
@@ -317,11 +317,11 @@ class Table:
         ends, passed = (part[~np.isnan(part)] for part in crossings(motion, self._slider(motion), self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
-    def bends(self, motion):
+    def bends(self, motion, straight=STRAIGHT):
         """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer."""
         if self.over == "angle":
-            return np.mod(self.x[bending(self)], self.period)[None]
-        ends, passed = crossings(motion, self._slider(motion), self.x[bending(self)])
+            return np.mod(self.x[bending(self, straight)], self.period)[None]
+        ends, passed = crossings(motion, self._slider(motion), self.x[bending(self, straight)])
         return passed if self.back is None else np.column_stack([ends, passed])
 
     @property
