@@ -6,7 +6,7 @@ slider      spring and process force along a guide
 places      points of links, by which loads say where they act
 points      forces, springs and dampers at points
 torsion     couples on links
-tables      values by crank angle or travel: rows their rows, bending which of them bend, crossings where they are passed
+tables      values by crank angle or travel: rows their rows, bending those that bend, crossings where they are passed
 period      turns after which loads repeat
 """
 
