@@ -47,14 +47,12 @@ class Bounds:
     graph : Graph
     inputs : mapping of Node to function
         ``input(bounds) -> Error`` of inputs that are not exact.
-    stretch : float
-        How many times larger than proven terms of second order are taken, see `tight`.
     dust : float or None
         What a product or quotient may lose if it is too small for a double; None if none is.
     """
 
-    def __init__(self, graph, inputs=None, stretch=1.0, dust=DUST):
-        self._graph, self._inputs, self.second, self._dust = graph, inputs or {}, stretch * UNIT, dust
+    def __init__(self, graph, inputs=None, dust=DUST):
+        self._graph, self._inputs, self._dust = graph, inputs or {}, dust
         self._uses: dict[Node, list[str]] = {}
         self._parts: dict[Node, tuple[Any, ...]] = {}
         self._errors: dict[Node, Error] = {}
@@ -101,8 +99,7 @@ class Bounds:
         if kind == "divisor":  # none is proven where the guard may act
             root, unit = arguments
             return Error(0.0, 0.0 / self.above(root, self.total(root), unit))
-        turns = kind == "sign" or (kind == "abs" and self.second > UNIT)
-        if turns and self.total(arguments[0]) is not None:  # nor where it may be the other
+        if kind == "sign" and self.total(arguments[0]) is not None:  # nor where it may be the other
             return Error(0.0, 0.0 / self.clear(arguments[0]))
         return Error(ULP.get(kind, 0.0), None)
 
@@ -140,7 +137,7 @@ class Bounds:
     def largest(self, part):
         """Bound on the magnitude of the exact value, but for relative errors."""
         rest = self.error(part).rest
-        return size(part) if rest is None else self.fused(self.second, rest, size(part))
+        return size(part) if rest is None else self.fused(UNIT, rest, size(part))
 
     def clear(self, part):
         """What is left of a value's magnitude when its error is taken off; 0 where nothing is."""
@@ -152,7 +149,7 @@ class Bounds:
     def above(self, value, total, floor=None):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""
         if total is not None:
-            value = value - (SAFE * self.second) * total
+            value = value - (SAFE * UNIT) * total
         return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
 
     def over(self, part):
@@ -278,7 +275,7 @@ def _of_product(bounds, more, node, left, right):
         left, right = right, left
     (first, own), (second, other) = bounds.error(left), bounds.error(right)
     if not isinstance(own, Node):
-        across = more if None in (own, other) else plus(bounds.second * own * other, more)
+        across = more if None in (own, other) else plus(UNIT * own * other, more)
         return Error(first + second, plus(plus(bounds.dust(own, right), bounds.dust(other, left)), across))
     if isinstance(other, Node) or (other is not None and bounds.cap(left) is None):
         across = bounds.fused(bounds.largest(left), other, more)
@@ -305,11 +302,8 @@ def _of_root(bounds, more, node, square, unit=None):
 
 
 def _of_function(bounds, more, node, argument):
-    """Of one that changes no faster than its argument, and its slope no faster either."""
-    total = bounds.total(argument)
-    if total is None or bounds.second == UNIT:
-        return Error(0.0, total)
-    return Error(0.0, bounds.fused(0.5 * bounds.second * total, total, total))
+    """Of one that changes no faster than its argument."""
+    return Error(0.0, bounds.total(argument))
 
 
 def _as_of_argument(bounds, more, node, argument, unit=None):

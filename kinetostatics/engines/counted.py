@@ -53,7 +53,6 @@ class Counted:
         self._squares: set[Any] = set()
         self._reciprocals: dict[Node, Any] = {}
         self._caps: dict[Node, Any] = {}
-        self._turns: dict[Node, bool] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
 
@@ -131,15 +130,16 @@ class Counted:
         )
 
     def _dust_of_product(self, node, one, other, sign):
-        if not self._dust:
-            return 0.0
         left, right = node.arguments
-        dust = None if _is_over_root(node) and other.pivots else self._dust
-        if one.dust is not None:
+        least = None if _is_over_root(node) and other.pivots else self._dust
+        dust = least or None
+        if not is_nothing(one.dust):
             dust = self.fused(one.dust, self.cap(right) if sign > 0.0 else self._cap_over(right), dust)
-        if other.dust is not None:
+        if not is_nothing(other.dust):
             dust = self.fused(other.dust, self.cap(left), dust)
-        return dust
+        if not (is_nothing(one.dust) or is_nothing(other.dust)):
+            dust = self.fused(UNIT * one.dust, other.dust, dust)
+        return least if dust is None else dust
 
     def as_divisor(self, part):
         """Error of a part that something is divided by: its own if it cannot be lost as too small, or of a pivot."""
@@ -147,16 +147,19 @@ class Counted:
         return found if found is not None and found.dust is None else Relative(0.0, {part: 1.0}, None)
 
     def _counted_root(self, node):
-        square = node.arguments[0]
-        found = self.relative(square)
-        if found is None or not self.is_positive(square) or varies(found.dust):
-            found = Relative(0.0, {square: 1.0}, None)
+        found = self.as_square(node.arguments[0])
         dust = found.dust
         if dust is not None:
             dust = math.sqrt(dust / UNIT) if isinstance(dust, float) else (dust / UNIT).sqrt()
         return Relative(
             1.0 + 0.5 * found.roundings, {pivot: 0.5 * power for pivot, power in found.pivots.items()}, dust
         )
+
+    def as_square(self, part):
+        """Error of a part whose root is taken: its own if it cannot be negative, or of a pivot."""
+        found = self.relative(part)
+        is_pivot = found is None or not self.is_positive(part) or varies(found.dust)
+        return Relative(0.0, {part: 1.0}, None) if is_pivot else found
 
     def _counted_divisor(self, node):
         """As what is guarded; where the guard acts that is no pivot."""
@@ -202,22 +205,6 @@ class Counted:
                 found = self._cap(part.operation, part.arguments)
             self._caps[part] = self.size(part) if found is None or varies(found) else found
         return self._caps[part]
-
-    def at_most(self, part):
-        """Magnitude of a part; of what turns its largest one at any crank angle."""
-        cap = self.cap(part) if self.turns(part) else None
-        return self.size(part) if cap is None or varies(cap) else cap
-
-    def turns(self, part):
-        """Whether a part is sines and cosines of the crank angle times numbers of the design."""
-        if not varies(part):
-            return False
-        if part not in self._turns:
-            kind, moving = part.operation, [factor for factor in part.arguments if varies(factor)]
-            is_product = kind == "*" or (kind == "-" and len(part.arguments) == 1)
-            is_turn = kind in ("sin", "cos") and moving[0].operation == "angle"
-            self._turns[part] = is_turn or (is_product and all(map(self.turns, moving)))
-        return self._turns[part]
 
     def _cap(self, kind, parts):
         if kind in ("sin", "cos"):
@@ -320,6 +307,10 @@ def _is_over_root(node):
 
 def is_exact(error):
     return error is not None and not error.roundings and not error.pivots and error.dust is None
+
+
+def is_nothing(dust):
+    return dust is None or is_number(dust, 0.0)
 
 
 def is_number(part, number):

@@ -11,10 +11,6 @@ pivot
     is there if possible, and shared by all products with it.
 absolute value
     Any other. Its bound is computed, once.
-turning value
-    A relative one: sines and cosines of the crank angle times numbers of the design. Added to such a number it counts
-    with its largest magnitude at any angle, which costs nothing. Sums without one may vanish as a linkage folds, and
-    have to be known there: in them it counts with its own.
 bound
     Of an absolute value: at least its error and its reserve.
 reserve
@@ -75,7 +71,14 @@ class RunningBounds(Counted):
         ``input(bounds) -> Error`` of inputs that are not exact, as for `bounds.Bounds`.
     dust : float or None
         What a product or quotient may lose if it is too small for a double; None if none is.
+
+    Attributes
+    ----------
+    known : float
+        Below which relative errors of pivots stay, or there is no bound.
     """
+
+    known = KNOWN
 
     def __init__(self, graph, inputs=None, dust=DUST):
         super().__init__(graph, inputs, dust)
@@ -97,37 +100,49 @@ class RunningBounds(Counted):
             if node.operation == "*" and all(self.relative(part) is None for part in node.arguments):
                 self._crossed.update(set(node.arguments))
         for node in everything:
-            if self._relative[node] is None and node not in self._absolute:
+            if self.is_absolute(node) and node not in self._absolute:
                 self._absolute[node] = self._found(node)
         return tuple(0.0 if bound is None else bound for bound in map(self._with_reserve, outputs))
 
+    def is_absolute(self, node):
+        """Whether a value has a bound of its own."""
+        return self._relative[node] is None
+
+    def free(self, node):
+        """Reserve of an absolute value where it is free."""
+        return RESERVE
+
+    def told(self, node):
+        """Error of an input that is not exact."""
+        return self._inputs[node](self)
+
     def pivot(self, node):
-        """Bound on the relative error of a pivot, over a quarter of `KNOWN`."""
+        """Bound on the relative error of a pivot, over a quarter of `known`."""
         if node not in self._pivots:
             guards = self._guards.get(node, {})
             bound = None if node in guards else self._with_reserve(node)
-            found = (0.0 if bound is None else 4.0 / KNOWN * bound) * self.over(node)
+            found = (0.0 if bound is None else 4.0 / self.known * bound) * self.over(node)
             for guard in guards:
                 found = self.fused(GUARDED, guard - guard.arguments[0], found)
             self._pivots[node] = (LIMIT * found) * (1.0 / LIMIT)
         return self._pivots[node]
 
     def _found(self, node):
-        kind, parts = node.operation, node.arguments
+        kind, parts, free = node.operation, node.arguments, self.free(node)
         if node.varies == BY_DESIGN:
             self._by_design.of([node])
             error = self._by_design.total(node)
-            return Absolute([(RESERVE * ROUNDED, self.size(node)), (ROUNDED, error), (1.0, self._lost)], RESERVE)
+            return Absolute([(free * ROUNDED, self.size(node)), (ROUNDED, error), (1.0, self._lost)], free)
         if node in self._inputs:
-            relative, rest = self._inputs[node](self)
-            terms = [((relative + RESERVE) * ROUNDED, self.size(node)), (ROUNDED, rest), (1.0, self._lost)]
-            return Absolute(terms, RESERVE)
+            relative, rest = self.told(node)
+            terms = [((relative + free) * ROUNDED, self.size(node)), (ROUNDED, rest), (1.0, self._lost)]
+            return Absolute(terms, free)
         if kind == "sign":
             cleared = self.above(self.size(parts[0]), self.total(parts[0]))
             return Absolute([(1.0, 0.0 / cleared), (1.0, self._lost)], 0.0)
         if kind in ("sin", "cos", "atan"):
-            terms = [((ULP[kind] + RESERVE) * ROUNDED, self.size(node)), (1.0, self.whole(parts[0])), (1.0, self._lost)]
-            return Absolute(terms, RESERVE)
+            terms = [((ULP[kind] + free) * ROUNDED, self.size(node)), (1.0, self._lost)]
+            return Absolute([*terms, *self.of_function(self.whole(parts[0]))], free)
         if kind == "rest":  # truly nothing
             return Absolute([(ROUNDED / UNIT, self.size(node))], 0.0)
         if kind == "*":
@@ -136,33 +151,41 @@ class RunningBounds(Counted):
 
     def _of_sum(self, node):
         """A sum's error is at most those of its parts and a rounding of the sum of their magnitudes, or of its own."""
+        free = self.free(node)
         if (near := beside_one(self._graph, node, self._of_sign)) is not None:
-            terms = [((1.0 + RESERVE) * ROUNDED, self.size(node)), (ROUNDED, near), (1.0, self._lost)]
-            return Absolute(terms, RESERVE)
+            terms = [((1.0 + free) * ROUNDED, self.size(node)), (ROUNDED, near), (1.0, self._lost)]
+            return Absolute(terms, free)
         parts = [part for part in node.arguments if not is_zero(part)]
         own = 1.0 if len(parts) > 1 else 0.0
         reserve = min(
-            (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=RESERVE
+            (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=free
         )
-        is_charged = reserve < 0.0 or node.operation == "total"
+        is_charged = reserve < 0.0 or self.is_charged(node)
         moved = moved_apart(parts)
-        size = self.size if all(map(varies, parts)) else self.at_most
         terms = [(1.0, self._lost)]
         if moved is not None:
             terms.append((ROUNDED, moved))
         if is_charged:
-            terms.append(((own + RESERVE) * ROUNDED, self.size(node)))
+            terms.append(((own + free) * ROUNDED, self.size(node)))
         for part in parts:
             found = self.relative(part)
             if found is None:
                 terms += self.terms(part)
             else:
-                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), size(part)))
+                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), self.size(part)))
                 terms.append((ROUNDED, found.dust))
         if node.operation == "total":  # sums without loss, and what those of their losses lose
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
             terms += [(lost, self.size(part)) for part in parts]
-        return Absolute(terms, RESERVE if is_charged else reserve)
+        return Absolute(terms, free if is_charged else reserve)
+
+    def is_charged(self, node):
+        """Whether a sum's own rounding is charged to itself."""
+        return node.operation == "total"
+
+    def of_function(self, whole):
+        """Terms of a function that changes no faster than its argument, which has a whole bound."""
+        return [(1.0, whole)]
 
     def _of_sign(self, sign):
         """Bound on the error of a sign that a design has."""
@@ -176,10 +199,9 @@ class RunningBounds(Counted):
         found = self.relative(right)
         if found is not None:
             own = 0.0 if any(map(is_scaling, node.arguments)) else 1.0
-            return self._scaled(left, found, own, self.size(right))
+            return self._scaled(node, left, found, own, self.size(right))
         if left is right:
-            bound = self.bound(left, 0.5)
-            terms = [(self.fused(2.0, self.size(left), bound), bound), (1.0, self._lost)]
+            terms = [(self.larger(left, 2.0), self.bound(left, 0.5)), (1.0, self._lost)]
             return Absolute(terms, 2.0 * max(self._absolute[left].reserve, 0.5) - 1.0)
         held = self._absolute[left].reserve + self._absolute[right].reserve
         one, other = self.bound(left, 0.0 if held >= 1.0 else 1.0), self.bound(right)
@@ -192,20 +214,20 @@ class RunningBounds(Counted):
 
     def _of_quotient(self, node):
         above, below = node.arguments
-        return self._scaled(above, self.as_divisor(below), 1.0, self.over(below))
+        return self._scaled(node, above, self.as_divisor(below), 1.0, self.over(below))
 
-    def _scaled(self, part, found, own, size):
+    def _scaled(self, node, part, found, own, size):
         """An absolute part times, or over, what is relative."""
         own += found.roundings
         held, bound, lost = self._absolute[part].reserve, self.bound(part), found.dust
         if found.pivots:
-            reserve = max(held - own, RESERVE)
+            reserve = max(held - own, self.free(node))
             charge = self.coefficient(found._replace(roundings=0.0), reserve + own - held)
             bound = self.fused(charge, self.larger(part), bound)
         elif held >= own:
             reserve = held - own
         else:
-            charge = stepped(own + RESERVE - held)
+            charge = self.charge(node, own - held)
             bound, reserve = self.fused(charge * ROUNDED, self.size(part), bound), held + charge - own
         terms = [(size, bound), (1.0, self._lost)]
         if lost is not None and varies(self.cap(part)) and reserve + own >= 1.0 and not (varies(size) or varies(lost)):
@@ -213,6 +235,10 @@ class RunningBounds(Counted):
         elif lost is not None:
             terms.append((ROUNDED * lost, self.cap(part)))
         return Absolute(terms, reserve)
+
+    def charge(self, node, missing):
+        """Roundings that the factor of a product is charged with, whose reserve is less than it takes."""
+        return stepped(missing + RESERVE)
 
     def terms(self, part):
         """Terms of the bound of an absolute part; one where it is used again."""
@@ -239,7 +265,7 @@ class RunningBounds(Counted):
             slope = steepest(found.pivots.values())
             powers = [(pivot, slope * abs(power)) for pivot, power in found.pivots.items()]
             held = sum(power * self._reserve(pivot) for pivot, power in powers)
-            terms = [(KNOWN / 4.0 * power, self.pivot(pivot)) for pivot, power in powers]
+            terms = [(self.known / 4.0 * power, self.pivot(pivot)) for pivot, power in powers]
             self._coefficients[key] = self.summed([*terms, (1.0, ROUNDED * roundings - UNIT * held)])
         return self._coefficients[key]
 
@@ -254,7 +280,7 @@ class RunningBounds(Counted):
     def whole(self, part):
         """The whole bound of a part of an operation, without reserve; None where it is exact."""
         bound, reserve = self._with_reserve(part), self._reserve(part)
-        return self.fused(-UNIT * reserve, self.size(part), bound) if reserve else bound
+        return self.fused(-UNIT * reserve, self.size(part), bound) if reserve and bound is not None else bound
 
     def _with_reserve(self, part):
         found = self.relative(part)
@@ -262,9 +288,9 @@ class RunningBounds(Counted):
             return self.bound(part)
         return self.summed([(self.coefficient(found), self.size(part)), (ROUNDED, found.dust)])
 
-    def larger(self, part):
-        """Bound on the magnitude of the exact value of an absolute part."""
-        return self.size(part) + self.bound(part)
+    def larger(self, part, times=1.0):
+        """Bound on the magnitude of the exact value of an absolute part; so many times that of the computed one."""
+        return self.fused(times, self.size(part), self.bound(part))
 
     def above(self, value, total, floor=None):
         """By how much a value is above a floor when its error is taken off; 0 where it may not be."""

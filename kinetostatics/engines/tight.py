@@ -1,112 +1,177 @@
 """Tight bounds on rounding errors, by what the error of each operation makes of one output: a sweep in reverse.
 
-By coefficients c of the computed values the error of a node is, exactly, the sum of c e over its arguments, what the
-operation itself adds, and q, of second order (-e e' of a product). The error of an output is thus the sum of
-a (own + q) over all nodes, with adjoints a by the same coefficients (Linnainmaa 1976, *BIT* 16, 146; Langlois 2001,
-*BIT* 41, 606). Where values are used once their own errors add up as forward; only what is used more than once and made
-of sums, where errors may cancel, is cut off and has an adjoint. That is a bound F but for q, and for what is too small
-for a double. A forward bound C with both taken ``STRETCH`` times as large exceeds F by ``STRETCH`` times their sum over
-all nodes, by |a|, and by what cancels. So the mean (1 - 1 / STRETCH) F + C / STRETCH is a bound. It holds the rounding
-of the adjoints too, some thousand `UNIT` of what F would be if nothing cancelled: `bounds.SAFE` does where little
-cancels, and C where much does. Where nothing cancels it is the forward bound itself.
+By coefficients c of the computed values the error of a value is, exactly, the sum of c e over what it is computed from,
+what the operation itself adds, and q, of second order (-e e' of a product). The error of an output is thus the sum of
+a (own + q) over all values, with adjoints a by the same coefficients (Linnainmaa 1976, *BIT* 16, 146; Langlois 2001,
+*BIT* 41, 606). Where values are used once their own errors add up as forward, by the rules of `running`; only absolute
+values that are used more than once, where errors may cancel, are cut off and have an adjoint, and divisors and squares,
+whose errors many products share. That is a bound F but for q, and for what is too small for a double.
+
+Running bounds C with both taken ``STRETCH`` times as large are at least the sum of |a| (own + STRETCH q), each way by
+itself: F leaves out no more than C / STRETCH. A relative value is one operation here, of its pivots: its q is what
+(1 + e)^p is more than 1 + p e, and STRETCH times that while e < KNOWN / STRETCH is no more than the `steepest` slope
+holds while e < KNOWN. Twice C / STRETCH has room for second order of what is only counted, and for the rounding of the
+adjoints, some thousand `UNIT` of what F would be if nothing cancelled. As C is a bound too, the lesser one is taken.
 """
 
-from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-from ..numbers.elementary import UNIT
-from .bounds import DUST, EXACT, SAFE, Bounds, size
+from .bounds import DUST
+from .counted import EXACT
+from .functions import moved_apart
+from .running import KNOWN, Absolute, RunningBounds
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 STRETCH = 2.0**16
+MOST = 3.0
+"""Roundings in reserve, from which on a sum has its own: more would be of parts larger than their sum."""
 SEED = 2.0**900
 """Adjoint of the output, so large that no adjoint that counts is too small for a double."""
 
 
 def tight_bound(graph, inputs, output, dust=DUST):
-    """A bound on the error of one output, as `Bounds.of` gives it; NaN or infinite where that is to be asked."""
-    if not isinstance(output, Node):
-        return 0.0
-    coarse = Bounds(graph, inputs, STRETCH, None if dust is None else STRETCH * dust)
-    coarse.of([output])
-    local = _Local(graph, inputs, coarse, output)
-    most, slopes, cancelling = coarse.total(output), _adjoints(graph, output, local.cut), None
-    if most is None:
-        return 0.0
+    """A bound on the error of one output, as `RunningBounds.of` gives it; NaN or infinite where that is to be asked."""
+    stretched = _Stretched(graph, inputs, None if dust is None else STRETCH * dust)
+    (most,) = stretched.of([output])
+    if not isinstance(most, Node):
+        return most
+    local = _Local(graph, inputs, stretched, output)
+    (own,) = local.of([output])
+    slopes, cancelling = _adjoints(output, local), None
     for node, (_, slope) in slopes.items():
         if node in local.cut:
-            cancelling = local.fused(abs(slope), local.cut[node], cancelling)
-    unit, share = SAFE * UNIT, 1.0 - 1.0 / STRETCH
-    mean = local.fused(unit / STRETCH, most, None if dust is None else unit * 4.0 * len(slopes) * 2.0**-50 / SEED)
-    for weight, part in ((unit * share, local.total(output)), (unit * share / SEED, cancelling)):
-        mean = mean if part is None else local.fused(weight, part, mean)
-    return mean
+            cancelling = local.fused(abs(slope), local.bound(node), cancelling)
+    small = 0.0 if dust is None else 4.0 * len(slopes) * 2.0**-50 / SEED
+    terms = [(2.0 / STRETCH, most), (1.0 / SEED, cancelling), (1.0, own), (1.0, small)]
+    return -graph.node("divisor", -local.summed(terms), -most)
 
 
-class _Local(Bounds):
-    """Errors of first order that come from operations after the last cuts; what is before them counts as exact.
+class _OfBoth(RunningBounds):
+    """Running bounds with all that is of second order in sight: what is moved off zero is no dust."""
 
-    Nothing is too small for a double here: the coarse bound has that.
+    def _counted_sum(self, node, parts):
+        return super()._counted_sum(node, parts) if moved_apart(parts) is None else None
+
+
+class _Stretched(_OfBoth):
+    """Bounds with terms of second order so many times as large, and none where those are not small."""
+
+    known = KNOWN / STRETCH
+
+    def larger(self, part, times=1.0):
+        return self.fused(STRETCH, self.bound(part), times * self.size(part))
+
+    def of_function(self, whole):
+        """Its slope changes no faster than its argument either."""
+        return super().of_function(whole) + ([] if whole is None else [(0.5 * STRETCH * whole, whole)])
+
+    def _found(self, node):
+        """None is proven where an absolute value may have the other sign than its magnitude was taken with."""
+        if node.operation != "abs" or node.varies < BY_ANGLE:
+            return super()._found(node)
+        (part,) = node.arguments
+        cleared = self.above(self.size(part), self.total(part))
+        return Absolute([(1.0, 0.0 / cleared), (1.0, self.bound(part))], self._absolute[part].reserve)
+
+
+class _Local(_OfBoth):
+    """Bounds of first order on what operations after the last cuts add; what is before them counts as exact.
+
+    Nothing is too small for a double here, no divisor or square near zero, no sign in doubt: the stretched bounds have
+    all that. They know inputs that are not exact, too. Each value has as many roundings in reserve as it needs.
 
     Attributes
     ----------
-    cut : dict of Node to node
-        Bounds on the errors, so counted, of values where they may cancel.
+    cut : set of Node
     """
 
-    def __init__(self, graph, inputs, coarse, output):
-        told = {node: error for node, error in (inputs or {}).items() if node.operation not in INPUTS}
-        super().__init__(graph, told, dust=None)
-        self.coarse, self.cut = coarse, {}
-        behind: set[Node] = set()
-        nodes = needed([output])
-        self.tell_uses(nodes)
-        uses = Counter(
-            part for node in nodes if node.varies == BY_ANGLE for part in node.arguments if isinstance(part, Node)
-        )
-        for node in nodes:
-            by_angle = node.varies == BY_ANGLE  # adjoints go no further than to what a design fixes
-            after = by_angle and not behind.isdisjoint(part for part in node.arguments if isinstance(part, Node))
-            is_own = after or (coarse.is_dust(node) and node.operation not in INPUTS)
-            self._errors[node] = error = self._found(node) if is_own else coarse.error(node)
-            if after:
-                behind.add(node)
-            elif not is_own:
-                self._totals[node] = coarse.total(node)
-            if uses[node] > 1 and node is not output and isinstance(error.rest, Node):
-                self.cut[node] = self.total(node)
-                self._errors[node], self._totals[node] = EXACT, None
-                behind.add(node)
+    def __init__(self, graph, inputs, stretched, output):
+        super().__init__(graph, inputs, dust=None)
+        self._stretched, self._output, self.cut = stretched, output, set()
+        self._users: dict[Node, list[Node]] = {}
+        self._free: dict[Node, float] = {}
+        for node in needed([output]):
+            for part in node.arguments if node.varies == BY_ANGLE else ():
+                if isinstance(part, Node):
+                    self._users.setdefault(part, []).append(node)
 
-    def _found(self, node):
-        found = super()._found(node)
-        if node.operation in ("sqrt", "root") and self.is_dust(node.arguments[0]):  # of dust, which is not counted else
-            return found._replace(rest=self.coarse.error(node).rest)
-        return found
+    def count(self, nodes):
+        """What a design fixes first: it is cut where angles come in only, as adjoints go no further."""
+        fixed = [node for node in nodes if node.varies < BY_ANGLE]
+        super().count(fixed)
+        for node in fixed:
+            found = self._relative[node]
+            self._relative[node] = self._unless_cut(node, None if found and found.pivots else found)
+        super().count([node for node in nodes if node.varies == BY_ANGLE])
+        for node in reversed(nodes):
+            self._free[node] = self._wanted(node)
 
-    def own(self, node):
-        return EXACT if node.operation in ("divisor", "sign") else super().own(node)
+    def _counted(self, node):
+        found = EXACT if node.operation == "sign" else super()._counted(node)
+        return found if node.varies < BY_ANGLE else self._unless_cut(node, found)
 
-    def largest(self, part):
-        return size(part)
+    def _unless_cut(self, node, found):
+        """Error of a value; none if it is cut."""
+        users = self._users.get(node, ())
+        if found is not None or (len(users) < 2 and not any(_divides(node, user) for user in users)):
+            return found
+        self.cut.add(node)
+        return EXACT
 
-    def over(self, part):
-        return self.coarse.over(part)
+    def as_divisor(self, part):
+        return self.relative(part) or super().as_divisor(part)
 
-    def is_dust(self, part):
-        return self.coarse.is_dust(part)
+    as_square = as_divisor
 
-    def steepest(self, root, square):
-        return self.coarse.steepest(root, square)
+    def _counted_divisor(self, node):
+        return self.as_divisor(node.arguments[0])
+
+    def is_absolute(self, node):
+        return super().is_absolute(node) or node in self.cut
+
+    def told(self, node):
+        return self._inputs[node](self._stretched if node.operation in INPUTS else self)
+
+    def larger(self, part, times=1.0):
+        return times * self.size(part)
+
+    def is_charged(self, node):
+        return super().is_charged(node) or node is self._output
+
+    def charge(self, node, missing):
+        return missing + self.free(node)
+
+    def free(self, node):
+        return self._free[node]
+
+    def _wanted(self, node):
+        """Roundings that the only user of a node takes from its reserve, and that one's in turn."""
+        users = self._users.get(node, ())
+        if node in self.cut or len(users) != 1 or not self.is_absolute(users[0]) or users[0] in self._inputs:
+            return 0.0
+        (user,) = users
+        wanted = self._free[user]
+        if user.operation in ("*", "/"):
+            (found,) = (self.relative(part) for part in user.arguments if part is not node)
+            wanted = 0.5 * (wanted + 1.0) if found is None else wanted + found.roundings + 1.0
+        elif user.operation in "+-" and len(user.arguments) == 2 and not self.is_charged(user):
+            wanted += 1.0
+        return min(wanted, MOST)
 
 
-def _adjoints(graph, output, cut):
+def _divides(node, user):
+    """Whether a node is what its user divides by, or takes the root of."""
+    return user.operation in ("sqrt", "root", "divisor") or (user.operation == "/" and user.arguments[1] is node)
+
+
+def _adjoints(output, local):
     """By node that leads from cuts to an output: a sign and a number, `SEED` times the adjoint but for the sign."""
     wanted = set()
     nodes = needed([output])
     for node in nodes:
-        if node in cut or any(part in wanted for part in node.arguments if isinstance(part, Node)):
+        after = node.varies == BY_ANGLE and any(part in wanted for part in node.arguments if isinstance(part, Node))
+        if after or node in local.cut:
             wanted.add(node)
     parts: dict[Node, list[tuple[float, Any]]] = {output: [(1.0, SEED)]}
     found = {}
@@ -115,7 +180,7 @@ def _adjoints(graph, output, cut):
             sign, slope = found[node] = _sum(parts[node])
             if node.varies < BY_ANGLE:
                 continue
-            for argument, turn, part in _RULES[node.operation](graph, node, slope, *node.arguments):
+            for argument, turn, part in _RULES[node.operation](local.over, node, slope, *node.arguments):
                 if argument in wanted:
                     parts.setdefault(argument, []).append((sign * turn, part()))
     return found
@@ -128,40 +193,40 @@ def _sum(parts):
     return sign, total
 
 
-def _none(graph, node, slope, *arguments):
+def _none(over, node, slope, *arguments):
     return ()
 
 
-def _of_product(graph, node, slope, left, right):
+def _of_product(over, node, slope, left, right):
     return (left, 1.0, lambda: slope * right), (right, 1.0, lambda: slope * left)
 
 
-def _of_quotient(graph, node, slope, above, below):
+def _of_quotient(over, node, slope, above, below):
     def share():
         return slope * (1.0 / below)
 
     return (above, 1.0, share), (below, -1.0, lambda: share() * node)
 
 
-def _of_sum(graph, node, slope, *parts):
+def _of_sum(over, node, slope, *parts):
     return [(part, 1.0, lambda: slope) for part in parts]
 
 
-def _of_difference(graph, node, slope, *parts):
+def _of_difference(over, node, slope, *parts):
     signs = (1.0, -1.0) if len(parts) == 2 else (-1.0,)
     return [(part, sign, lambda: slope) for part, sign in zip(parts, signs, strict=True)]
 
 
-def _same(graph, node, slope, argument, unit=None):
+def _same(over, node, slope, argument, unit=None):
     return ((argument, 1.0, lambda: slope),)
 
 
-def _of_root(graph, node, slope, square, unit=None):
-    return ((square, 1.0, lambda: slope * (0.5 / node)),)
+def _of_root(over, node, slope, square, unit=None):
+    return ((square, 1.0, lambda: slope * (0.5 * over(node))),)
 
 
 _RULES: dict[str, Callable[..., Any]] = {
-    **dict.fromkeys((*INPUTS, "sign"), _none),
+    **dict.fromkeys((*INPUTS, "sign", "rest"), _none),
     **dict.fromkeys(("+", "total"), _of_sum),
     "-": _of_difference,
     "*": _of_product,
@@ -170,8 +235,8 @@ _RULES: dict[str, Callable[..., Any]] = {
     "root": _of_root,
     "held": _same,
     "divisor": _same,
-    "sin": lambda graph, node, slope, angle: ((angle, 1.0, lambda: slope * graph.node("cos", angle)),),
-    "cos": lambda graph, node, slope, angle: ((angle, -1.0, lambda: slope * graph.node("sin", angle)),),
-    "atan": lambda graph, node, slope, part: ((part, 1.0, lambda: slope * (1.0 / (1.0 + part * part))),),
-    "abs": lambda graph, node, slope, value: ((value, 1.0, lambda: slope * graph.node("sign", value)),),
+    "sin": lambda over, node, slope, angle: ((angle, 1.0, lambda: slope * angle.cos()),),
+    "cos": lambda over, node, slope, angle: ((angle, -1.0, lambda: slope * angle.sin()),),
+    "atan": lambda over, node, slope, part: ((part, 1.0, lambda: slope * (1.0 / (1.0 + part * part))),),
+    "abs": lambda over, node, slope, value: ((value, 1.0, lambda: slope * value.sign()),),
 }

@@ -7,8 +7,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines import bounds, programs
+from kinetostatics.engines.bounds import Error
 from kinetostatics.engines.engines import NUMPY
-from kinetostatics.engines.tight import STRETCH, tight_bound
+from kinetostatics.engines.tight import STRETCH, _Stretched, tight_bound
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.places import PLACES
@@ -52,6 +53,24 @@ def test_what_a_design_fixes_has_the_errors_of_all_that_it_is_computed_from():
     assert tight >= 2.0**-54 * (1.0 + np.sin(1.0) + 3000.0 * np.cos(1.0))
 
 
+def test_what_may_have_the_other_sign_than_its_magnitude_has_no_tight_bound_of_its_own():
+    graph = Graph()
+    one, tiny = map(graph.parameter, range(2))
+    doubtful = (graph.angle() + tiny) - one  # computed 0, truly 2^-54
+    forward, tight = found(graph, doubtful + abs(doubtful) * one, 1.0, 1.0, 2.0**-54)
+    assert forward >= 2.0**-53
+    assert not np.isfinite(tight)
+    assert np.isfinite(found(graph, doubtful + abs(doubtful) * one, 2.0, 1.0, 2.0**-54)).all()
+
+
+def test_functions_have_terms_of_second_order():
+    graph, error = Graph(), 2.0**-23
+    row = graph.row(0)
+    found = _Stretched(graph, {row: lambda bounds: Error(0.0, error / UNIT)}, None).of([row.sin()])
+    (bound,) = programs.Program(None, found)._plain(0.0, 0.0, 1.0, [], [1.0])
+    assert bound >= error + 0.5 * STRETCH * error**2
+
+
 def test_errors_that_count_in_second_order_alone_are_bounded():
     graph = Graph()
     other, tiny = map(graph.parameter, range(2))
@@ -86,7 +105,7 @@ def test_tight_bounds_of_values_of_every_size_are_finite_and_no_larger():
 
 @every("family", FAMILIES)
 def test_a_tight_bound_is_no_larger_than_the_plain_one_but_for_its_remainder(family):
-    """That is a coarse bound over 2^16; where it is hundreds of times the plain one, it is seen."""
+    """That makes the plain one larger by terms of second order, stretched; at a place, it is seen."""
     made = next(found for found in (solution(family, seed, 40) for seed in range(9)) if found is not None)
     names = ("balancing_torque", "O")
     plain, tight = (NUMPY.with_bounds(made.dynamics, names, way)[1] for way in (False, True))
@@ -121,12 +140,12 @@ def test_what_is_exactly_zero_has_no_tight_bound_but_zero_by_numpy():
     "case, variant",
     [("sawframe_2r63", "plain"), ("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("toggle_press", "idle")],
 )
-def test_tight_bounds_take_at_most_seven_times_the_operations_of_values(case, variant):
+def test_tight_bounds_take_at_most_six_times_the_operations_of_values(case, variant):
     s = shipped(case).variants[variant].scene.solve(4)
     program, _ = programs.of(s.dynamics, ("balancing_torque",))
     values, forward, tight = (programs.operations(of.outputs) for of in _ways(program))
     assert forward <= 3.5 * values
-    assert tight <= 7.0 * values
+    assert tight <= 6.0 * values
 
 
 def _ways(program):
