@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..machine.loads import TURN, Table, in_rows, value_of
+from ..machine.loads import STRAIGHT, TURN, Table, in_rows, is_bent, value_of
 from ..mechanics.quantities import quantity
 from .turn import ASIDE, beginnings
 
@@ -12,22 +12,24 @@ SAMPLES = 720
 """Crank angles a turn between which what turns friction about changes its sign once at most."""
 
 
-def bent(solution, name):
-    """Whether tables among the loads, or friction, may bend a quantity of a solution."""
-    bends = solution.friction.acting or any(isinstance(value_of(item), Table) for item in solution.loads)
-    return bool(bends) and quantity(solution, name).kind not in SMOOTH
+def bent(solution, name, straight=STRAIGHT):
+    """Whether friction, or a table among the loads that bends by so much, may bend a quantity of a solution."""
+    return bool(solution.friction.acting or _tables(solution, straight)) and quantity(solution, name).kind not in SMOOTH
 
 
-def bends(solution):
+def bends(solution, straight=STRAIGHT):
     """Crank angles (1 or designs, K) at which tables or friction bend or may jump; NaN where a design has fewer."""
     found = [_of_friction(solution)] if solution.friction.acting else []
-    for table in map(value_of, solution.loads):
-        if isinstance(table, Table):
-            again = beginnings(table, solution)
-            own = table.bends(solution)
-            found.append((own[..., None] + again).reshape(len(own), -1))
+    for table in _tables(solution, straight):
+        own = table.bends(solution, straight)
+        found.append((own[..., None] + beginnings(table, solution)).reshape(len(own), -1))
     most = max(map(len, found))
     return np.column_stack([np.broadcast_to(part, (most, part.shape[1])) for part in found])
+
+
+def _tables(solution, straight):
+    """Tables among the loads that bend by so much."""
+    return [item for item in map(value_of, solution.loads) if isinstance(item, Table) and is_bent(item, straight)]
 
 
 def _of_friction(solution):

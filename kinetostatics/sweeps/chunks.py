@@ -12,7 +12,7 @@ import pandas as pd
 
 from ..engines import programs
 from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
-from ..machine.loads import TURN
+from ..machine.loads import STRAIGHT, TURN
 from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import components, quantity
 from ..numbers import checks
@@ -30,12 +30,16 @@ NEGLIGIBLE = 1e-12
 """Share of the reference's number below which a design's counts as zero, as in `comparison`."""
 FEWEST = 12
 """Crank angles below which a sweep is refused."""
+LEAST = 180
+"""Crank angles a turn that are taken at least: fewer may agree with twice as many, and both be wrong."""
 PARTED = 192
-"""Crank angles a turn, at least, where loads bend: so many tell most outputs, however few are asked for."""
+"""The same where tables or friction act: so many tell most outputs of a turn that is parted."""
 MOST = 5760
 """Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
 SETTLED = 1e-3
 """Relative change of an output, when the crank angles are doubled, that is none."""
+CLOSER = 16
+"""By how much closer tables are followed when the crank angles are doubled."""
 FAILED = "failed"
 """Column with the reason why a design has no numbers; empty for the others."""
 
@@ -55,7 +59,9 @@ class Job:
     wide : bool
         Whether a compiled loop takes all designs of a chunk, and no table for each of them.
     bent : bool
-        Whether loads bend an output, so that its turn is parted there.
+        Whether tables or friction act on an output, so that its turn may be parted.
+    straight : float
+        Share of its largest value by which a table bends where the turn is parted.
     """
 
     make: Callable[[dict], Any]
@@ -67,6 +73,7 @@ class Job:
     threads: int
     wide: bool = False
     bent: bool = False
+    straight: float = STRAIGHT
 
     @property
     def ratios(self):
@@ -138,9 +145,9 @@ def tried(job, designs, engines):
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine = _engine(job, solutions, engines)
         wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
-        parted = any(bent(solution, item.quantity) for solution, (_, wanted) in pairs for item in wanted)
-        fewest = PARTED * round(scenes[0].period / TURN) if parted else 0
-        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=max(job.angles, fewest))
+        parted = any(bent(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
+        angles = max(job.angles, (PARTED if parted else LEAST) * round(scenes[0].period / TURN))
+        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=angles)
     return None
 
 
@@ -262,8 +269,11 @@ def _settled(make, job, frame, outputs, found, earlier):
         rough &= ~_noise(make, job, frame, outputs, rough)
     again = np.flatnonzero(rough.any(axis=0) | (narrow & (reasons == "")))
     if again.size and (earlier is None or 2 * job.angles <= MOST):
-        finer = replace(job, angles=2 * job.angles)
-        numbers[:, again], reasons[again] = _reduced(make, finer, frame.iloc[again], outputs, numbers[:, again])
+        finer = replace(job, angles=2 * job.angles, straight=job.straight / CLOSER)
+        step = together.DESIGNS if job.bent else again.size
+        for start in range(0, again.size, step):
+            some = again[start : start + step]
+            numbers[:, some], reasons[some] = _reduced(make, finer, frame.iloc[some], outputs, numbers[:, some])
     else:
         for row in again:
             wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]

@@ -22,7 +22,7 @@ from ..numbers.headings import parted, si_columns
 from ..results.reductions import Output, parsed
 from ..solution.parameters import unknown
 from ..solution.scene import WORTH_COMPILING, Scene
-from .chunks import FAILED, PROBED, Job, tried
+from .chunks import FAILED, LEAST, PROBED, Job, tried
 from .dataset import Dataset, Parts
 from .identity import identity
 from .workers import ATTEMPTS, Workers, computed
@@ -69,10 +69,11 @@ def sweep(
         ratios refer to (the case's reference). Of a scene or function `reference` is a `Scene`. It takes those
         parameters that it has too, but stays as it is for a function.
     angles : int
-        Crank angles over the period of the loads, at least 12; extremes are refined between them. Where they do not
-        resolve an output of a design, they are doubled for it, up to 5760. Where tables or friction bend forces, the
-        turn of each design is parted there, so that neither peaks nor means miss what lies between two angles; there
-        are 192 angles a turn then, at least.
+        Crank angles over the period of the loads, at least 12, but 180 a turn are taken where these are fewer, 192
+        with tables or friction; extremes are refined between them. Where they do not resolve an output of a design,
+        they are doubled for it, up to 5760. Where tables or friction bend forces, the turn of each design is parted
+        there, so that neither peaks nor means miss what lies between two angles. Rows within 1e-5 of the largest value
+        of a smooth curve bend nothing, unless they keep an output from being resolved.
     engine : "compiled" or "numpy"
         Unless told, compiled for a million crank angles, all designs together, and more, if numba is installed and
         takes the mechanism.
@@ -195,7 +196,7 @@ def _job(source, designs, outputs, variant, reference, angles, engine, executor,
 
     if engine == "compiled":
         compiled.require()
-    large = len(designs) * angles >= WORTH_COMPILING and compiled.available()
+    large = len(designs) * max(angles, LEAST) >= WORTH_COMPILING and compiled.available()
     engines = [engine] if engine else ["compiled", "numpy"] if large else ["numpy"]
     threads = compiled.cores() if executor is None and workers is None else 1
     make, make_reference = _makers(known, *compared)

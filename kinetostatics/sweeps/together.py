@@ -59,7 +59,7 @@ def run(scene, job, count, outputs):
             f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
             "(designs, 1) of the values handed in"
         )
-    parted = np.array([bent(solution, item.quantity) for item in outputs])
+    parted = np.array([bent(solution, item.quantity, job.straight) for item in outputs])
     even = [item for item, apart in zip(outputs, parted, strict=True) if not apart]
     numbers, gaps = np.empty((len(even), made)), np.zeros(made, dtype=int)
     rough, nearest = np.zeros(numbers.shape, dtype=bool), np.full(made, np.nan)
@@ -141,7 +141,7 @@ def _by_numpy(solution, outputs, count, found, threads):
 def noise(scene, job, outputs):
     """Whether outputs are of what changes over the turn by rounding of its terms only: (outputs, designs or 1)."""
     solution = solution_of(scene, job.angles)
-    if any(bent(solution, item.quantity) for item in outputs):
+    if any(bent(solution, item.quantity, job.straight) for item in outputs):
         count = math.prod(solution.shape[:-1])
         solution = solution_of(scene, _pieces(solution, job, outputs, count).angle)
     with np.errstate(all="ignore"):
@@ -157,7 +157,7 @@ def _is_noise(solution, name):
 
 def _pieces(solution, job, outputs, count):
     """The turn of designs, parted where loads bend."""
-    found, order = bends(solution), max(item.order or 0 for item in outputs)
+    found, order = bends(solution, job.straight), max(item.order or 0 for item in outputs)
     return Pieces.of(np.broadcast_to(found, (count, found.shape[1])), solution.period, job.angles, order)
 
 

@@ -31,10 +31,13 @@ def test_strokes_that_differ_jump_at_the_ends():
     assert at.size == 6
 
 
-def test_rows_of_a_smooth_curve_are_few_as_they_are_near_lines_between_others():
-    x = np.linspace(0.1, 0.3, 20_001)
-    fine = ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel"))
-    assert bends(solved([fine])).shape[1] < 500
+def test_rows_of_a_smooth_curve_bend_nothing_until_they_are_looked_at_more_closely():
+    x = np.linspace(0.1, 0.3, 1100)
+    one, other = (ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel", back=back)) for back in (None, -x))
+    assert not bent(solved([one]), "O")
+    assert bent(solved([one]), "O", 1e-9)
+    assert bends(solved([one]), 1e-9).shape[1] > 500
+    assert bends(solved([one, other])).shape[1] == 2  # where strokes that differ may jump
 
 
 def test_a_table_over_the_angle_bends_in_every_turn_of_the_period():

@@ -2,12 +2,15 @@
 
 import numpy as np
 import pandas as pd
+import pytest
 
 import kinetostatics as ks
+from kinetostatics.sweeps import chunks
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support.every import every
 from support.factories import DESIGNS, OUTPUTS
+from support.shipped import shipped
 from support.sweeping import SAW, assert_equal, sweep
 
 
@@ -23,7 +26,7 @@ def test_failing_rows_keep_their_reasons_and_others_their_numbers():
     assert found[FAILED].tolist() == [
         "",
         "slider group: coupler length must be greater than 0, got -1.0",
-        "crank-slider cannot be assembled at 14 of 36 crank angles; change the lengths",
+        "crank-slider cannot be assembled at 66 of 180 crank angles; change the lengths",
         "Link: mass must be at least 0, got -5.0",
         "Link: mass must be finite, got nan",
         "scene: crank_speed must be finite, got nan",
@@ -82,6 +85,26 @@ def test_the_hundredth_design_impossible_among_many():
     assert found[FAILED].ne("").sum() == 100
     assert found.loc[::100, FAILED].str.startswith("Link: mass").all()
     assert found.loc[1::100, FAILED].str.startswith("crank-slider cannot be assembled").all()
+
+
+@every("angles", [12, 13, 36, 48, 100])
+def test_few_crank_angles_a_turn_are_as_many_as_tell_its_numbers(angles):
+    outputs, designs = ["largest balancing_torque", "mean_absolute A"], pd.DataFrame({"crank_speed": [2.0, 2.5]})
+    options = {"variant": "idle"}
+    found = sweep(shipped("shaper"), designs, outputs, angles=angles, **options)
+    assert_equal(found, sweep(shipped("shaper"), designs, outputs, angles=chunks.LEAST, **options))
+
+
+@every("case, variant", [("shaper", "idle"), ("mower_drive_optimal", "cam-robust"), ("sawframe_2r63", "cam-circle")])
+@every("angles", [13, 72, 180])
+def test_no_number_of_a_sweep_of_few_crank_angles_is_wrong(case, variant, angles):
+    """Each output alone: what one needs in crank angles helps the others."""
+    scene = shipped(case).variant(variant).scene
+    designs = pd.DataFrame({"crank_speed": [scene.parameters["crank_speed"]]})
+    for reduction in ("largest", "smallest", "range", "mean_absolute", "rms"):
+        for name in ("balancing_torque", "O" if case != "shaper" else "A"):
+            fine, few = (sweep(scene, designs, [f"{reduction} {name}"], angles=count) for count in (5760, angles))
+            assert few.iloc[0, 1] == pytest.approx(fine.iloc[0, 1], rel=1e-3), (reduction, name)
 
 
 def balanced(crank, mass, offset):

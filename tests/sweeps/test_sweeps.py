@@ -212,11 +212,11 @@ def engines_taken(monkeypatch):
 def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
     taken = engines_taken(monkeypatch)
-    monkeypatch.setattr(sweeps, "WORTH_COMPILING", 41 * 12)
-    for options in ({}, {"engine": "numpy"}, {"angles": 11}):
-        sweep(factories.pump, DESIGNS, OUTPUTS, **{"angles": 12} | options)
+    monkeypatch.setattr(sweeps, "WORTH_COMPILING", 41 * 200)
+    for options in ({}, {"engine": "numpy"}, {"angles": 199}):
+        sweep(factories.pump, DESIGNS, OUTPUTS, **{"angles": 200} | options)
     monkeypatch.setattr(compiled, "available", lambda: False)
-    sweep(factories.pump, DESIGNS, OUTPUTS, angles=12)
+    sweep(factories.pump, DESIGNS, OUTPUTS, angles=200)
     assert taken == [["compiled", "numpy"], ["numpy"], ["numpy"], ["numpy"]]
     with pytest.raises(ks.errors.MissingLibraryError, match="kinetostatics\\[fast\\]"):
         sweep(factories.pump, DESIGNS, OUTPUTS, engine="compiled")
@@ -287,7 +287,7 @@ def test_memory_is_that_of_a_chunk(monkeypatch):
         designs = pd.DataFrame({"crank": np.linspace(0.1, 0.5, count)})
         tracemalloc.start()
         try:
-            sweep(factories.pump, designs, ["rms O"], angles=20, chunk=1000)
+            sweep(factories.pump, designs, ["rms O"], engine="numpy", angles=20, chunk=1000)
             return tracemalloc.get_traced_memory()[1]
         finally:
             tracemalloc.stop()

@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.sweeps import together
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories, spikes
 from support.every import every
@@ -72,6 +73,46 @@ def steep_pump(crank):
     rows = [0.1, 0.1999, 0.2, 0.2001, 0.3], [0.0, 0.0, -4e3, 0.0, 0.0]
     force = ks.ProcessForce(ks.Table(*rows, over="travel"))
     return ks.Scene(ks.crank_slider(crank, 0.19, slider=ks.Link(1.0)), 30.0, loads=[force])
+
+
+def of_smooth_curve(count, around=True):
+    """A pump whose force is given in so many rows of a smooth curve, by crank angle or travel."""
+    if around:
+        x = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
+        table = ks.Table(x, 2e3 * np.exp(1.5 * np.cos(x - 0.7) - 1.5) + 300.0 * np.sin(3.0 * x))
+    else:
+        x = np.linspace(0.12, 0.26, count)
+        table = ks.Table(x, -4e3 * (0.02 / (0.28 - x)) ** 1.3, over="travel")
+    rod = ks.Link(1.0, 0.1, 0.01)
+    pump = ks.crank_slider(0.05, 0.19, guide_offset=0.003, crank=rod, coupler=rod, slider=ks.Link(1.0))
+    return ks.Scene(pump, 30.0, loads=[ks.ProcessForce(table), ks.Gravity()])
+
+
+@every("around", [True, False])
+@every("angles", [12, 360])
+def test_a_smooth_curve_in_fine_rows_is_swept_as_one_without_parting_any_turn(monkeypatch, around, angles):
+    monkeypatch.setattr(together, "_by_pieces", None)
+    scene, names = of_smooth_curve(1100, around), ("balancing_torque", "O")
+    outputs = [f"{kind} {name}" for name in names for kind in ("largest", "mean_absolute", "rms")]
+    found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.05]}), outputs, angles=angles)
+    assert found[FAILED].tolist() == ["", ""]
+    for name in names:
+        largest, *others = (found.loc[1, next(c for c in found if c.startswith(f"{kind} {name} "))] for kind in KINDS)
+        low, high = spikes.ends(scene, name)
+        assert largest == pytest.approx(high, abs=1e-5 * max(high, -low))
+        assert others == pytest.approx(spikes.means(scene, name), rel=2e-5)
+
+
+KINDS = ("largest", "mean_absolute", "rms")
+
+
+def test_rows_of_a_curve_that_keep_an_output_from_being_resolved_are_taken_one_by_one():
+    designs = pd.DataFrame({"slider.mass": [2.021, 1.396], "guide_offset": [-0.003, -0.001]})
+    designs = designs.assign(crank_length=[0.043, 0.038], crank_speed=[38.019, 38.316])
+    found = sweep(of_smooth_curve(700), designs, ["smallest B"])
+    assert found[FAILED].tolist() == ["", ""]
+    own = of_smooth_curve(700).varied(designs.iloc[1].to_dict())
+    assert found.iloc[1, 4] == pytest.approx(ks.extremes(own.solve(36), "B").range[0], rel=1e-3)
 
 
 @every("angles", [13, 360])

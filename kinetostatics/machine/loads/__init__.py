@@ -6,10 +6,11 @@ slider      spring and process force along a guide
 places      points of links, by which loads say where they act
 points      forces, springs and dampers at points
 torsion     couples on links
-tables      values by crank angle or travel, rows their rows, crossings where these are passed
+tables      values by crank angle or travel: rows their rows, bending those that bend, crossings where they are passed
 period      turns after which loads repeat
 """
 
+from .bending import STRAIGHT, is_bent
 from .crossings import in_rows
 from .gravity import Gravity
 from .load import Load, is_given, may_refuse, refusals, value_of
@@ -36,6 +37,7 @@ KINDS = (
 __all__ = [
     "KINDS",
     "MOST_TURNS",
+    "STRAIGHT",
     "TURN",
     "Force",
     "Gravity",
@@ -51,6 +53,7 @@ __all__ = [
     "TorsionSpring",
     "WholeTurns",
     "in_rows",
+    "is_bent",
     "is_given",
     "may_refuse",
     "period_of",

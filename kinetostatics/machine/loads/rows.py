@@ -10,8 +10,6 @@ from .period import TURN
 
 BEYOND = 1e-9
 """Share of a table over travel by which a slider may go beyond it: rounding."""
-STRAIGHT = 1e-5
-"""Share of the largest value by which rows may be off a line and bend nothing that one would see."""
 
 
 def order_problem(x, over):
@@ -123,33 +121,3 @@ def _missing(angle, value, period, step):
 
 def _degrees(angle):
     return f"{math.degrees(angle):.9g} deg"
-
-
-def bending(x, strokes):
-    """Which inner rows are left when lines through those that are left come within `STRAIGHT` of all others.
-
-    From one row that stays to the next it is as far as the slopes of lines that come so near allow.
-    """
-    room = STRAIGHT * max(np.max(np.abs(y)) for y in strokes)
-    points = list(zip(x.tolist(), *(y.tolist() for y in strokes), strict=True))
-    kept, start, low, high = [], points[0], [-math.inf] * len(strokes), [math.inf] * len(strokes)
-    for row in range(1, len(points)):
-        step = points[row][0] - start[0]
-        rise = [value - before for before, value in zip(start[1:], points[row][1:], strict=True)]
-        if not all(one <= part / step <= other for one, part, other in zip(low, rise, high, strict=True)):
-            kept.append(row - 1)
-            start = points[row - 1]
-            step = points[row][0] - start[0]
-            rise = [value - before for before, value in zip(start[1:], points[row][1:], strict=True)]
-            low, high = [-math.inf] * len(strokes), [math.inf] * len(strokes)
-        low = [max(one, (part - room) / step) for one, part in zip(low, rise, strict=True)]
-        high = [min(one, (part + room) / step) for one, part in zip(high, rise, strict=True)]
-    return np.array(kept, dtype=int)
-
-
-def bending_around(angle, value, period):
-    """The same of all rows, which repeat after a period; the one where the reckoning begins stays."""
-    first = int(np.argmax(np.abs(value)))
-    around = np.roll(angle, -first) + period * (np.arange(angle.size) >= angle.size - first)
-    found = bending(np.append(around, around[0] + period), [np.append(np.roll(value, -first), value[first])])
-    return (np.append(0, found) + first) % angle.size

@@ -11,6 +11,7 @@ from ...numbers import checks
 from ...numbers.elementary import namespace
 from ...numbers.leaves import with_fields
 from . import rows
+from .bending import STRAIGHT, bending
 from .crossings import crossings
 from .period import TURN, WholeTurns
 
@@ -218,13 +219,14 @@ class Table:
         return self.rows.back
 
     @property
-    def _strokes(self):
+    def strokes(self):
+        """Values of both strokes, or of one where they are the same."""
         return [self.y] if self.back is None else [self.y, self.back]
 
     @property
     def largest(self):
         """Value of largest magnitude, with its sign."""
-        values = np.concatenate(self._strokes)
+        values = np.concatenate(self.strokes)
         return float(values[np.argmax(np.abs(values))])
 
     def of(self, slider):
@@ -315,11 +317,11 @@ class Table:
         ends, passed = (part[~np.isnan(part)] for part in crossings(motion, self._slider(motion), self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
-    def bends(self, motion):
+    def bends(self, motion, straight=STRAIGHT):
         """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer."""
         if self.over == "angle":
-            return np.mod(self.x[rows.bending_around(self.x, self.y, self.period)], self.period)[None]
-        ends, passed = crossings(motion, self._slider(motion), self.x[rows.bending(self.x, self._strokes)])
+            return np.mod(self.x[bending(self, straight)], self.period)[None]
+        ends, passed = crossings(motion, self._slider(motion), self.x[bending(self, straight)])
         return passed if self.back is None else np.column_stack([ends, passed])
 
     @property
