@@ -213,7 +213,11 @@ def extrema(solution, quantity):
         if inner.any():
             minimised = _minimised(evaluate, brackets[:, inner], sign[inner])
             angle[inner] = _polished(evaluate, minimised, sign[inner], floor[inner])
-            angle[inner] = _from_zero(evaluate, angle[inner], sign[inner], floor[inner], turn.period)
+
+            def beside(start, end):
+                return sign[inner] * (evaluate(start) - evaluate(end)) > floor[inner]
+
+            angle[inner] = turn.from_zero(angle[inner], beside)
             value[inner] = evaluate(angle[inner])
         angle = np.where(inner, angle, np.mod(angle, turn.period))
         order = np.argsort(angle, kind="stable")
@@ -322,16 +326,6 @@ def _minimised(evaluate, brackets, sign):
     )
     better = sign * evaluate(found.x) <= sign * evaluate(brackets[1])  # False where no bracket held, as at a jump
     return np.where(better, found.x, brackets[1])
-
-
-def _from_zero(evaluate, angle, sign, floor, period):
-    """Angles from 0 on, 0 where that is their angle but for rounding, unless the quantity jumps there."""
-    found, whole = np.maximum(np.mod(angle + SAME, period) - SAME, 0.0), np.mod(angle, period)
-    last = found < whole - SAME
-    if last.any():
-        beside = sign * (evaluate(np.zeros_like(angle)) - evaluate(whole)) > floor
-        found = np.where(last & beside, whole, found)
-    return found
 
 
 def _polished(evaluate, angle, sign, floor, half_width=0.01, degree=8):

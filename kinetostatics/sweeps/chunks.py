@@ -21,7 +21,7 @@ from ..results.bends import bent
 from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.turn import repeating_problem
-from ..solution.scene import Scene
+from ..solution.scene import Scene, odd
 from . import together
 
 PROBED = 64
@@ -56,6 +56,8 @@ class Job:
         Whether a compiled loop takes all designs of a chunk, and no table for each of them.
     bent : bool
         Whether loads bend an output, so that its turn is parted there.
+    hints : tuple of str
+        What looks like a slip in the design that was tried.
     """
 
     make: Callable[[dict], Any]
@@ -67,6 +69,7 @@ class Job:
     threads: int
     wide: bool = False
     bent: bool = False
+    hints: tuple[str, ...] = ()
 
     @property
     def ratios(self):
@@ -135,12 +138,14 @@ def tried(job, designs, engines):
         except Exception:
             continue
         checks.require("sweep", *problems)
+        hints = tuple(f"{scenes[0].mechanism.name}: {text}" for text in odd(solutions[0]))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine = _engine(job, solutions, engines)
         wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
         parted = any(bent(solution, item.quantity) for solution, (_, wanted) in pairs for item in wanted)
         fewest = PARTED * round(scenes[0].period / TURN) if parted else 0
-        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=max(job.angles, fewest))
+        angles = max(job.angles, fewest)
+        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=angles, hints=hints)
     return None
 
 

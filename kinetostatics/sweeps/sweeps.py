@@ -6,6 +6,7 @@ stream to a Parquet dataset (`dataset`), from which a sweep that was stopped goe
 
 import inspect
 import pickle
+import warnings
 from collections.abc import Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import closing
@@ -16,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 from ..engines import compiled
-from ..errors import ParameterError
+from ..errors import HintWarning, ParameterError
 from ..numbers import checks
 from ..numbers.headings import parted, si_columns
 from ..results.reductions import Output, parsed
@@ -109,6 +110,11 @@ def sweep(
     NotGivenError
         ``engine="compiled"`` does not take the mechanism.
 
+    Warns
+    -----
+    HintWarning
+        Numbers of the first design that can be made look like slips; told before the sweep begins.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -127,6 +133,8 @@ def sweep(
     )
     with Workers(executor, workers) as hands:
         job = _tried(job, designs, engines, hands)
+        for text in job.hints:
+            warnings.warn(text, HintWarning, stacklevel=2)
         here = executor is None and workers is None and folder is None
         chunk = chunk or (WIDE if here and job.wide else CHUNK)
         parts = Parts(designs, chunk)
