@@ -213,9 +213,13 @@ def extrema(solution, quantity):
         if inner.any():
             minimised = _minimised(evaluate, brackets[:, inner], sign[inner])
             angle[inner] = _polished(evaluate, minimised, sign[inner], floor[inner])
-        angle = np.where(inner, np.maximum(np.mod(angle + SAME, turn.period) - SAME, 0.0), np.mod(angle, turn.period))
-        if inner.any():
+
+            def beside(start, end):
+                return sign[inner] * (evaluate(start) - evaluate(end)) > floor[inner]
+
+            angle[inner] = turn.from_zero(angle[inner], beside)
             value[inner] = evaluate(angle[inner])
+        angle = np.where(inner, angle, np.mod(angle, turn.period))
         order = np.argsort(angle, kind="stable")
         angle, value, maximum, inner = angle[order], value[order], maximum[order], inner[order]
         kept = _kept(angle, value, maximum, inner, CONTINUED * size)

@@ -170,6 +170,12 @@ class Turn:
         """Values of a function of a solution at any crank angles."""
         return function(self.at.at(np.mod(angle, self.period)))
 
+    def from_zero(self, angle, jumps):
+        """Angles from 0 on, 0 where they are that but for rounding, unless what is looked at `jumps` from there."""
+        found, whole = np.maximum(np.mod(angle + SAME, self.period) - SAME, 0.0), np.mod(angle, self.period)
+        last = found < whole - SAME
+        return np.where(last & jumps(found, whole), whole, found) if last.any() else found
+
     @cached_property
     def _approached(self):
         """Solutions beside limit positions, by the crank angle of these and the side."""

@@ -234,13 +234,21 @@ def _begun(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
+    for text in (*odd(solution), *hints.of_angles(solution.crank_angle)):
+        warnings.warn(HintWarning(scene.mechanism.name, text), stacklevel=3)
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded
     return solution
 
 
+def odd(solution):
+    """Sentences on what looks like a slip in the scene of a solution, looked for only where there may be one."""
+    _, may_be = solution.first_look or (None, True)
+    return slips.of_scene(solution) if may_be else ()
+
+
 def unchecked(scene, crank_angle, engine=None):
-    """What `solve` returns, before a look at where the mechanism closes and where digits are lost."""
+    """What `solve` returns, before a look at slips, at where the mechanism closes and at where digits are lost."""
     angle, mechanism = crank_angles(crank_angle), scene.mechanism
     solution = made(
         Solution,
@@ -262,9 +270,6 @@ def unchecked(scene, crank_angle, engine=None):
     _, leaves = solution.apart
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
-    _, odd = solution.first_look or (None, True)
-    for text in (*(slips.of_scene(solution) if odd else ()), *hints.of_angles(angle)):
-        warnings.warn(HintWarning(mechanism.name, text), stacklevel=4)
     vars(solution)["engine"] = _engine(engine, angle, solution)
     return solution
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ..engines import programs
-from ..errors import MissingLibraryError, NotGivenError, ParameterError, QuantityError
+from ..errors import HintWarning, MissingLibraryError, NotGivenError, ParameterError, QuantityError
 from ..machine.loads import STRAIGHT, TURN
 from ..mechanics.assembly import NO_DIGIT
 from ..mechanics.quantities import components, quantity
@@ -21,7 +21,7 @@ from ..results.bends import bent
 from ..results.peaks import lowest
 from ..results.reductions import Output
 from ..results.turn import repeating_problem
-from ..solution.scene import Scene
+from ..solution.scene import Scene, odd
 from . import together
 
 PROBED = 64
@@ -62,6 +62,8 @@ class Job:
         Whether tables or friction act on an output, so that its turn may be parted.
     straight : float
         Share of its largest value by which a table bends where the turn is parted.
+    hints : tuple of HintWarning
+        What looks like a slip in the design that was tried.
     """
 
     make: Callable[[dict], Any]
@@ -74,6 +76,7 @@ class Job:
     wide: bool = False
     bent: bool = False
     straight: float = STRAIGHT
+    hints: tuple[HintWarning, ...] = ()
 
     @property
     def ratios(self):
@@ -142,12 +145,13 @@ def tried(job, designs, engines):
         except Exception:
             continue
         checks.require("sweep", *problems)
+        hints = tuple(HintWarning(scenes[0].mechanism.name, text) for text in odd(solutions[0]))
         outputs = tuple(item.of(scenes[0]) for item in job.outputs)
         engine = _engine(job, solutions, engines)
         wide = engine == "compiled" and not any(program.recording.rows for program in _programs(job, solutions))
         parted = any(bent(solution, item.quantity, 0.0) for solution, (_, wanted) in pairs for item in wanted)
         angles = max(job.angles, (PARTED if parted else LEAST) * round(scenes[0].period / TURN))
-        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=angles)
+        return replace(job, engine=engine, outputs=outputs, wide=wide, bent=parted, angles=angles, hints=hints)
     return None
 
 

@@ -6,6 +6,7 @@ stream to a Parquet dataset (`dataset`), from which a sweep that was stopped goe
 
 import inspect
 import pickle
+import warnings
 from collections.abc import Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import closing
@@ -110,6 +111,11 @@ def sweep(
     NotGivenError
         ``engine="compiled"`` does not take the mechanism.
 
+    Warns
+    -----
+    HintWarning
+        Numbers of the first design that can be made look like slips; told before the sweep begins.
+
     Examples
     --------
     >>> import kinetostatics as ks
@@ -128,6 +134,8 @@ def sweep(
     )
     with Workers(executor, workers) as hands:
         job = _tried(job, designs, engines, hands)
+        for hint in job.hints:
+            warnings.warn(hint, stacklevel=2)
         here = executor is None and workers is None and folder is None
         chunk = chunk or (WIDE if here and job.wide else CHUNK)
         parts = Parts(designs, chunk)

@@ -262,3 +262,17 @@ def test_extremes_tell_where_the_mechanism_does_not_close():
     never = ks.solve(ks.crank_slider(0.3, 0.1, guide_offset=0.9, slider=ks.Link(2)), 0.1, crank_speed=6.0, on_gap="nan")
     with pytest.warns(ks.ConditionWarning, match="O has no value: it does not close for crank angles 0 .. 360 deg"):
         ks.extremes(never, "O")
+
+
+@pytest.mark.parametrize("speed", [0.5, 1.5])
+def test_an_extreme_just_before_a_jump_at_crank_angle_0_is_not_looked_up_on_its_other_side(speed):
+    """The slider turns back there, and its friction with it: the torque is least as the turn ends."""
+    pump = ks.crank_slider(0.05, 0.2, guide_angle=np.pi, slider=ks.Link(2.0))
+    friction = {"guide": ks.GuideFriction(0.2), "B": ks.PinFriction(0.3, 0.02), "A": ks.PinFriction(0.2, 0.03)}
+    s = ks.Scene(pump, speed, loads=[ks.Gravity()], friction=friction).solve(36)
+    before, after = s.at(np.array([-1e-9, 1e-9])).balancing_torque
+    found = ks.extremes(s, "balancing_torque")
+    assert before < after - 1e-4
+    assert before < s.balancing_torque.min() - 1e-4
+    assert found.range[0] == pytest.approx(before, rel=1e-7)
+    assert found.angle[np.argmin(found.value)] == pytest.approx(2 * np.pi, abs=1e-9)

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tracemalloc
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -341,3 +342,17 @@ def test_machine_code_just_made_and_taken_from_disk_gives_the_same_bits(tmp_path
 def test_columns_of_quantities_are_refused_with_their_unit():
     (problem,) = _type_problems(SimpleNamespace(dtypes={"slider.mass": SimpleNamespace(units="kilogram")}))
     assert "with the unit kilogram in its heading" in problem
+
+
+def test_what_looks_like_a_slip_is_told_once_where_the_sweep_is_called_and_loses_no_design():
+    scene = ks.Scene(ks.crank_slider(50.0, 200.0, slider=ks.Link(1.0)), 1.0)
+    designs = pd.DataFrame({"coupler_length": np.linspace(150.0, 200.0, 1000)})
+    with pytest.warns(ks.HintWarning) as told:
+        found = ks.sweep(scene, designs, ["largest O"], engine="numpy", progress=False)
+    assert [warning.filename for warning in told] == [__file__]
+    assert "the coupler is 150 m long; are lengths in mm?" in str(told[0].message)
+    assert not found[FAILED].any()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(ks.HintWarning):
+            ks.sweep(scene, designs, ["largest O"], progress=False)
