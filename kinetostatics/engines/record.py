@@ -48,6 +48,8 @@ class Table(NamedTuple):
         What each row is: its name, how many times it is differentiated by the crank angle, its unit.
     of : str or int
         The cam, or which of the loads, that it is read for.
+    bounded : function or None
+        As `compute`, of all rows where the last ones, `ERRORS`, are only for bounds; `compute` then leaves these out.
     """
 
     rows: range
@@ -55,6 +57,15 @@ class Table(NamedTuple):
     moved_by: str = ""
     names: tuple = ()
     of: str | int = ""
+    bounded: Callable[[Any, Any], Any] | None = None
+
+    def filled(self, motion, leaves, wanted):
+        """The rows, those that are not among the wanted ones with zero."""
+        if wanted.isdisjoint(self.rows):
+            return [0.0] * len(self.rows)
+        if self.bounded is None or not wanted.isdisjoint(self.rows[-len(ERRORS) :]):
+            return (self.bounded or self.compute)(motion, leaves)
+        return [*self.compute(motion, leaves), *[0.0] * len(ERRORS)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,9 +197,9 @@ class Recorder:
         self._arrays += 1
         return self._tabled((("value", 0, ""),), lambda motion, leaves: [leaves.tables[place]])[0]
 
-    def _tabled(self, names, compute, moved_by="", of=""):
+    def _tabled(self, names, compute, moved_by="", of="", bounded=None):
         first, self._rows = self._rows, self._rows + len(names)
-        self.tables.append(Table(range(first, self._rows), compute, moved_by, names, of))
+        self.tables.append(Table(range(first, self._rows), compute, moved_by, names, of, bounded))
         found = [self.graph.row(row) for row in range(first, self._rows)]
         if moved_by:
             self.inputs.update((node, _unproven(moved_by)) for node in found)
@@ -253,10 +264,13 @@ class Recorder:
             pieces = self._tabled(names, lambda motion, leaves: item(motion).pieces(motion), of=place)
             return lambda motion: table.read(motion, pieces)
         steep = SteepTable(self.inputs)
-        pieces = self._tabled(
-            (*names, ("known", 0, "")), lambda motion, leaves: steep.pieces(item(motion), motion, leaves), of=place
+        *pieces, change, jump, near, distance, lost = self._tabled(
+            (*names, ("known", 0, ""), *ERRORS),
+            lambda motion, leaves: steep.pieces(item(motion), motion, leaves),
+            of=place,
+            bounded=lambda motion, leaves: steep.pieces_and_errors(item(motion), motion, leaves),
         )
-        within = self._tabled(ERRORS, lambda motion, leaves: steep.errors(item(motion), motion, leaves))
+        within = change, jump, near, distance, lost
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
