@@ -52,8 +52,8 @@ class Arithmetic(NamedTuple):
 SINGLE_ULP = {"sin": 8.0, "cos": 8.0, "atan": 8.0, "sqrt": 1.0, "root": 1.0}
 SINGLE = Arithmetic(np.float32, 2.0**-24, 1.0 + 2.0**-5, 2.0**-101, 2.0**126, SINGLE_ULP)
 DOUBLE = Arithmetic(np.float64, UNIT, SAFE, 2.0**-960, 2.0**1022, dict.fromkeys(ULP, 4.0) | {"sqrt": 1.0, "root": 1.0})
-LONGER = Arithmetic(np.longdouble, 2.0**-64, 1.0 + 2.0**-10, 2.0**-930, 2.0**1022, {"sin": 4.0, "cos": 4.0})
-"""Of numbers of more digits, `longdouble` or `Twofold`, the coarser of both."""
+LONGER = Arithmetic(np.longdouble, 2.0**-64, 1.0 + 2.0**-10, 2.0**-930, 2.0**1022, {"sin": 0.0, "cos": 0.0})
+"""Of numbers of more digits, `longdouble` or `Twofold`, the coarser of both; sines have a bound of their own."""
 OF = {"double": DOUBLE, "single": SINGLE}
 """By what a user calls it."""
 SECOND_ORDER = 8.0
@@ -217,13 +217,15 @@ RULES: dict[str, Callable[..., Error]] = {
 
 OFF = 2.0**-40
 """In `largest` and `clear` of numbers of more digits: far more than the `UNIT` by which doubles beside them are off."""
+TURN = 4.0
+"""By how much sines and cosines of more digits are off, in their unit; a test holds both kinds to it."""
 
 
 class BoundsOfLonger(BoundsElsewhere):
     """Bounds for nodes of a graph of which numbers of more digits are found by the same operations, all but inputs.
 
     Of a `Twofold` the second part is at most ``UNIT (k |v| + E)``, or with a `total` not much more, and an operation
-    loses some `UNIT` of that; a product drops that of both second parts, which `OFF` covers; a sine is off by 2^-75.
+    loses some `UNIT` of that; a product drops that of both second parts, which `OFF` covers.
 
     Parameters
     ----------
@@ -265,7 +267,7 @@ class BoundsOfLonger(BoundsElsewhere):
         return Error(0.0, self.total(length) + self.total(x) + self.total(y) + UNIT * size(length))
 
     def of_turn(self, node, angle):
-        return Error(0.0, self.total(angle) + 1.0)
+        return Error(0.0, self.total(angle) + TURN)
 
 
 RULES_OF_LONGER = RULES | {

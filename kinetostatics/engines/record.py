@@ -23,10 +23,9 @@ from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.elementary import UNIT, held
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
-from ..numbers.planar import plus
 from .bounds import Error
 from .gaping import Gaps
-from .steep import SteepTable
+from .steep import SteepTable, not_known, of_pieces
 from .trace import Graph, LeanGraph, Node, needed, operations
 
 WITHOUT_GAPS = ("closure", *CHECKS)
@@ -264,13 +263,13 @@ class Recorder:
             pieces = self._tabled(names, lambda motion, leaves: item(motion).pieces(motion), of=place)
             return lambda motion: table.read(motion, pieces)
         steep = SteepTable(self.inputs)
-        *pieces, change, jump, near, distance, lost = self._tabled(
+        rows = self._tabled(
             (*names, ("known", 0, ""), *ERRORS),
             lambda motion, leaves: steep.pieces(item(motion), motion, leaves),
             of=place,
             bounded=lambda motion, leaves: steep.pieces_and_errors(item(motion), motion, leaves),
         )
-        within = change, jump, near, distance, lost
+        pieces, within = rows[:4], rows[4:]
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
@@ -278,8 +277,8 @@ class Recorder:
             start, value, slope, known = pieces
             beyond = table.beyond(start, motion)
             left = beyond - known * held(beyond)
-            self.inputs |= _of_pieces([part[0] for part in pieces], [part[0] for part in within], travel, rate)
-            self.inputs[left[0]] = _not_known(beyond[0], known[0])
+            self.inputs |= of_pieces([part[0] for part in pieces], [part[0] for part in within], travel, rate)
+            self.inputs[left[0]] = not_known(beyond[0], known[0])
             return value + slope * left
 
         return read
@@ -329,30 +328,5 @@ def _unproven(what):
             f"no bound can be given: {what} does more than arithmetic with sin, cos and sqrt of `elementary`, so its "
             "own rounding is not known"
         )
-
-    return error
-
-
-def _of_pieces(pieces, within, travel, rate):
-    """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
-    _, value, slope, _ = pieces
-    change, jump, near, distance, lost = within
-
-    def of_value(bounds):
-        bounds.of((travel, rate))
-        jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
-        off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
-        jumps = plus(jumps, 0.0 / bounds.above(near, off))
-        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps) + lost)
-
-    return {value: of_value, slope: lambda bounds: Error(3.0, None)}
-
-
-def _not_known(beyond, known):
-    """Error of how far a travel is beyond the start of a piece, where the value there is not known beforehand."""
-
-    def error(bounds):
-        total = bounds.total(beyond)
-        return Error(0.0, None if total is None else (1.0 - known) * total)
 
     return error

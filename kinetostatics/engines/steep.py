@@ -15,9 +15,10 @@ import numpy as np
 from ..machine.loads import table_errors
 from ..numbers.elementary import UNIT, squared, summed
 from ..numbers.lazy import cached_property
-from ..numbers.planar import number
+from ..numbers.planar import number, plus
 from ..numbers.twofold import FARTHEST, Twofold, sine_and_cosine
 from .arithmetic import BoundsOfLonger
+from .bounds import Error
 from .operations import ARRAYS, BY_DESIGN, PLAIN, made
 from .recent import kept_for_same_angles
 from .trace import needed, parted
@@ -181,6 +182,31 @@ def _there(varying, known, angle, numbers):
         few = [item[part] if isinstance(item, np.ndarray) else item for item in numbers]
         (found[part],) = varying(own, np.sin(own), np.cos(own), few, ())
     return found
+
+
+def of_pieces(pieces, within, travel, rate):
+    """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
+    _, value, slope, _ = pieces
+    change, jump, near, distance, lost = within
+
+    def of_value(bounds):
+        bounds.of((travel, rate))
+        jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
+        off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
+        jumps = plus(jumps, 0.0 / bounds.above(near, off))
+        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps) + lost)
+
+    return {value: of_value, slope: lambda bounds: Error(3.0, None)}
+
+
+def not_known(beyond, known):
+    """Error of how far a travel is beyond the start of a piece, where the value there is not known beforehand."""
+
+    def error(bounds):
+        total = bounds.total(beyond)
+        return Error(0.0, None if total is None else (1.0 - known) * total)
+
+    return error
 
 
 @kept_for_same_angles
