@@ -217,7 +217,7 @@ RULES: dict[str, Callable[..., Error]] = {
 
 OFF = 2.0**-40
 """In `largest` and `clear` of numbers of more digits: far more than the `UNIT` by which doubles beside them are off."""
-TURN = 4.0
+TURN = 2.0
 """By how much sines and cosines of more digits are off, in their unit; a test holds both kinds to it."""
 
 

@@ -96,7 +96,7 @@ def _taken(other):
 
 
 def sine_and_cosine(angle):
-    """Of an angle in two parts, off by less than 2^-62 more up to `FARTHEST`; beyond it nothing is known."""
+    """Of an angle in two parts, off by less than 2^-63 more up to `FARTHEST`; beyond it nothing is known."""
     is_near = abs(angle.value) < FARTHEST
     turns = np.where(is_near, np.rint(angle.value * (1.0 / _STEP[0])), 0.0)
     first = angle.value - turns * _STEP[0]  # both exactly

@@ -66,7 +66,7 @@ def test_sines_and_cosines_are_near_those_of_enclosures(flint):
     number = np.frompyfunc(flint.arb, 1, 1)
     for rest in (None, value * rng.uniform(-1, 1, value.size) * UNIT):
         exact = number(value) + number(0.0 if rest is None else rest)
-        most = number(2.0**-62 + (0.0 if rest is None else 2.0**-22 * np.abs(rest)))
+        most = number(2.0**-63 + (0.0 if rest is None else 2.0**-22 * np.abs(rest)))
         for found, truth in zip(sine_and_cosine(Twofold(value, rest)), (np.sin(exact), np.cos(exact)), strict=True):
             assert np.all(np.abs(number(found.value) + number(found.rest) - truth) < most)
 
