@@ -256,6 +256,14 @@ class HintWarning(UserWarning):
     crank-slider: crank angles from 0 to 270 by 90 look like degrees; they are taken as radians
     """
 
+    def __str__(self):
+        return ": ".join(map(str, self.args))
+
+    @property
+    def hint(self):
+        """What it says, without the file, mechanism or function that is told before it."""
+        return self.args[-1]
+
 
 class ConditionWarning(UserWarning):
     """The result is right for the numbers given, but small changes of them change it much.

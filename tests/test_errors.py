@@ -32,3 +32,11 @@ def test_every_error_of_the_module_is_tried_here():
     family = {kind for kind in kinds if issubclass(kind, errors.KinetostaticsError)} - {errors.KinetostaticsError}
     assert family == set(map(type, MADE))
     assert all(issubclass(kind, Warning) for kind in kinds - family - {errors.KinetostaticsError})
+
+
+def test_a_hint_says_where_it_is_before_what_it_says_and_travels_with_both():
+    for hint in (errors.HintWarning("saw.toml", "variants.plain", "is it in mm?"), errors.HintWarning("is it in mm?")):
+        again = pickle.loads(pickle.dumps(hint))
+        assert again.hint == hint.hint == "is it in mm?"
+        assert str(again) == str(hint)
+    assert str(errors.HintWarning("saw.toml", "variants.plain", "is it?")) == "saw.toml: variants.plain: is it?"

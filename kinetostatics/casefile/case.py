@@ -209,13 +209,13 @@ def load_case(path) -> Case:
     if problems:
         raise CaseError(path, dict.fromkeys(problems))
     for doubt in far_off(head.tolerances, variants):
-        warnings.warn(f"{path}: {doubt}", HintWarning, stacklevel=2)
+        warnings.warn(HintWarning(path, doubt), stacklevel=2)
     found: dict[str, list[str]] = {}
     for name, item in variants.items():
         for hint in slips.of_scene(item.scene.unsolved(np.zeros(1))):
             found.setdefault(hint, []).append(f"variants.{name}")
     for hint, places in found.items():
-        warnings.warn(f"{path}: {', '.join(places)}: {hint}", HintWarning, stacklevel=2)
+        warnings.warn(HintWarning(path, ", ".join(places), hint), stacklevel=2)
     kept, wanted = _variants(path, variants), Named("design", path, designs)
     return Case(head.title, head.source, path, head.reference, kept, head.published, head.tolerances, wanted)
 

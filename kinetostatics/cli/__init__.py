@@ -74,17 +74,16 @@ def _warning_in_plain_words():
     A hint is told once: where the case is read, and not of its mechanism again when that is solved.
     """
     before = warnings.formatwarning
-    told: list[str] = []
+    told: set[str] = set()
 
     def words(message, category, *place):
         if not issubclass(category, UserWarning):
             return before(message, category, *place)
-        text = str(message)
-        _, _, hint = text.partition(": ")
-        if issubclass(category, HintWarning) and any(other.endswith(f": {hint}") for other in told):
-            return ""
-        told.append(text)
-        return f"kinetostatics: warning: {text}\n"
+        if isinstance(message, HintWarning):
+            if message.hint in told:
+                return ""
+            told.add(message.hint)
+        return f"kinetostatics: warning: {message}\n"
 
     warnings.formatwarning = words
     try:

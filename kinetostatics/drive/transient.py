@@ -150,7 +150,7 @@ def _begun(owner, scene, motor, flywheel, from_angle, from_speed, engine):
     inertia, wrong_inertia = checks.single("flywheel", flywheel, "kg*m**2", low=0.0)
     checks.require(owner, wrong_angle, wrong_speed, wrong_inertia)
     for hint in hints.of_angles(np.array([angle])):
-        warnings.warn(f"{owner}: {hint}", HintWarning, stacklevel=3)
+        warnings.warn(HintWarning(owner, hint), stacklevel=3)
     driven = driven_by(owner, scene, motor, inertia, engine)
     here = driven.inertia(np.linspace(0.0, driven.period, 32, endpoint=False) + angle)
     if not here[0] > 1e-12 * here.max():

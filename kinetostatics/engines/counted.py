@@ -53,7 +53,6 @@ class Counted:
         self._squares: set[Any] = set()
         self._reciprocals: dict[Node, Any] = {}
         self._caps: dict[Node, Any] = {}
-        self._turns: dict[Node, bool] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
 
@@ -206,22 +205,6 @@ class Counted:
                 found = self._cap(part.operation, part.arguments)
             self._caps[part] = self.size(part) if found is None or varies(found) else found
         return self._caps[part]
-
-    def at_most(self, part):
-        """Magnitude of a part; of what turns its largest one at any crank angle."""
-        cap = self.cap(part) if self.turns(part) else None
-        return self.size(part) if cap is None or varies(cap) else cap
-
-    def turns(self, part):
-        """Whether a part is sines and cosines of the crank angle times numbers of the design."""
-        if not varies(part):
-            return False
-        if part not in self._turns:
-            kind, moving = part.operation, [factor for factor in part.arguments if varies(factor)]
-            is_product = kind == "*" or (kind == "-" and len(part.arguments) == 1)
-            is_turn = kind in ("sin", "cos") and moving[0].operation == "angle"
-            self._turns[part] = is_turn or (is_product and all(map(self.turns, moving)))
-        return self._turns[part]
 
     def _cap(self, kind, parts):
         if kind in ("sin", "cos"):

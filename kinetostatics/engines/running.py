@@ -11,10 +11,6 @@ pivot
     is there if possible, and shared by all products with it.
 absolute value
     Any other. Its bound is computed, once.
-turning value
-    A relative one: sines and cosines of the crank angle times numbers of the design. Added to such a number it counts
-    with its largest magnitude at any angle, which costs nothing. Sums without one may vanish as a linkage folds, and
-    have to be known there: in them it counts with its own.
 bound
     Of an absolute value: at least its error and its reserve.
 reserve
@@ -166,7 +162,6 @@ class RunningBounds(Counted):
         )
         is_charged = reserve < 0.0 or self.is_charged(node)
         moved = moved_apart(parts)
-        size = self.size if all(map(varies, parts)) else self.at_most
         terms = [(1.0, self._lost)]
         if moved is not None:
             terms.append((ROUNDED, moved))
@@ -177,7 +172,7 @@ class RunningBounds(Counted):
             if found is None:
                 terms += self.terms(part)
             else:
-                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), size(part)))
+                terms.append((self.coefficient(found, 0.0 if is_charged else own + reserve), self.size(part)))
                 terms.append((ROUNDED, found.dust))
         if node.operation == "total":  # sums without loss, and what those of their losses lose
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED

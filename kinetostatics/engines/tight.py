@@ -136,9 +136,6 @@ class _Local(_OfBoth):
     def larger(self, part, times=1.0):
         return times * self.size(part)
 
-    def at_most(self, part):
-        return self.size(part)
-
     def is_charged(self, node):
         return super().is_charged(node) or node is self._output
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import atan, sqrt
+from ..numbers.inherited import say_together
 from ..numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
 from .crank import ray
 from .declared import Led, Slot
@@ -206,7 +207,7 @@ class CamRoller(checks.Checked, Group):
         return atan(slope / radius)
 
     def place(self, placement):
-        if "about_mean" in vars(type(self.cam)):  # what is derived from it may have another radius
+        if say_together(type(self.cam), "about_mean", "polar"):
             mean, farther, *derivatives = self.cam.about_mean(placement.angle, placement.ray)
             polar = mean + farther, *derivatives
             placement.orbits["A"] = mean, farther

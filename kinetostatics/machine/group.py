@@ -74,13 +74,12 @@ Nothing else in the library knows what a group looks like, nor the names of its 
 equations of `joints`, `bars`, `guides`, `slots`, `led` and `pairs` alone.
 """
 
-import math
 from dataclasses import dataclass, field, replace
-from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..numbers.inherited import say_together
 from ..numbers.planar import length, length_and_rest
 from .links import Wrench
 
@@ -207,8 +206,7 @@ class Group:
     @property
     def follows(self):
         """Whether `follow` belongs to the class that places it, and so knows its joints."""
-        placing = next(kind for kind in type(self).__mro__ if "place" in vars(kind))
-        return "follow" in vars(placing)
+        return say_together(type(self), "follow", "place")
 
     @property
     def names(self):
@@ -292,6 +290,10 @@ class Group:
         """The group as it is on the pins of a crank: what its structure owes to lengths that are not its own."""
         return self
 
+    def beside(self, groups, throws):
+        """The group as it is beside others of a chain, on the pins of a crank: what its structure owes to theirs."""
+        return self
+
     LAW = ("r", "m")
     """What a curve in its field `cam` gives: its letter, and unit."""
     passage, is_close = "", False
@@ -341,10 +343,3 @@ def separation(placement, first, second):
     start, end = (placement.joints[name].position for name in (first, second))
     apart = np.hypot(end[0] - start[0], end[1] - start[1])
     return f"the distance from {first} to {second}, {apart.min():.6g} to {apart.max():.6g} m here, must"
-
-
-def smaller(*lengths):
-    """Smallest of lengths, numbers or arrays of designs; infinite of none."""
-    if all(type(length) is float for length in lengths):
-        return min(lengths, default=math.inf)
-    return reduce(np.minimum, lengths, math.inf)

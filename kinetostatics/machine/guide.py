@@ -164,6 +164,11 @@ class Guide(checks.Checked):
             return present(self.angle) is None
         return present(self.exact[0] - 1.0) is None and present(self.exact[1]) is None
 
+    @property
+    def is_along_an_axis(self):
+        """Whether its structure tells that it points along an axis, this way or the other."""
+        return self.is_level or type(self.exact) is Axis
+
     @cached_property
     def direction(self):
         """Unit vector along the guide."""

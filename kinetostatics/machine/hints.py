@@ -10,9 +10,9 @@ from .links import present
 THIN = 1000.0
 """How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
 THICK = 1000.0
-"""How many times mass times length squared it may be; kg mm2 make a million of it."""
+"""How many times mass times length squared it may be, 12 times as many of a uniform rod's; kg mm2 make it a million."""
 LONGEST = 100.0
-"""Length of a link, m, that none has."""
+"""Length, m, that no link has."""
 SLENDER = 2000.0
 """How many times the longest link may be as long as the shortest: millimetres beside metres make more."""
 SOUND = 340.0
@@ -63,7 +63,7 @@ def _fast(length, crank_speed, longest):
     if radius * speed > SOUND:
         yield (
             f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than sound; is crank_speed, "
-            f"{speed:.6g} rad/s, in rpm?"
+            f"{speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
         )
 
 
@@ -138,13 +138,14 @@ def _inertia(bar, link, crank):
         return None
     inertia, unit = link.inertia, link.mass * bar.length * bar.length
     if _any((inertia > 0) & (THIN * 12.0 * inertia < unit)):
-        beside, advice = "less than a thousandth", "is it in kg m2? 0 makes it a point mass"
+        odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
     elif _is_moved(bar, crank) and _any((inertia > THICK * unit) & (unit > 0)):
-        beside, advice = "more than ten thousand times", "is it in kg mm2?"
+        odd = np.max(inertia)
+        beside, advice = "more than ten thousand times", f"is it in kg mm2? That makes {1e-6 * odd:.4g} kg m2"
     else:
         return None
-    of_rod = f"of a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
-    return f"the inertia of the {bar.link}, {np.min(inertia):.4g} kg m2, is {beside} of that {of_rod}; {advice}"
+    rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
+    return f"the inertia of the {bar.link}, {odd:.4g} kg m2, is {beside} that of {rod}; {advice}"
 
 
 def of_angles(angle):

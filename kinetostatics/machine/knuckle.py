@@ -14,7 +14,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import sign
-from ..numbers.leaves import FLOATS, Axis, with_fields
+from ..numbers.leaves import FLOATS
 from ..numbers.planar import cross
 
 BESIDE = 2.0**-5
@@ -28,17 +28,13 @@ TERMS = {
 """What hand calculations call lines of the kernels, and what they are."""
 
 
-def told(groups, throws):
-    """Groups of a chain, of which some may be knuckles by the guides of others."""
-    return tuple([_told(group, groups, throws) if hasattr(group, "knuckle") else group for group in groups])
-
-
-def _told(group, groups, throws):
-    throw, knuckle = throws.get(group.on), ""
-    for other in groups if throw is not None else ():
-        for guide in other.guides.values() if group.pin in other.hangs_on else ():
-            knuckle = knuckle or _axis_reached(group, guide, throw)
-    return group if knuckle == group.knuckle else with_fields(group, knuckle=knuckle)
+def axis_of(rocker, groups, throws):
+    """Axis, "x" or "y", across the line of what hangs on the pin of a rocker, if that is a knuckle; "" else."""
+    throw = throws.get(rocker.on)
+    if throw is None:
+        return ""
+    guides = (guide for other in groups if rocker.pin in other.hangs_on for guide in other.guides.values())
+    return next(filter(None, (_axis_reached(rocker, guide, throw) for guide in guides)), "")
 
 
 def _axis_reached(group, guide, throw):
@@ -46,7 +42,7 @@ def _axis_reached(group, guide, throw):
     b, h = group.coupler_length, group.rocker_length
     given = b, h, *group.pivot, guide.guide_offset, *throw.at
     are_known = FLOATS.issuperset(map(type, given)) or all(map(checks.known, given))
-    if not are_known or not (guide.is_level or type(guide.exact) is Axis):
+    if not (are_known and guide.is_along_an_axis):
         return ""
     axis = 1 if guide.direction[0] else 0
     off, away = cross(guide.direction, group.pivot) - guide.guide_offset, abs(group.pivot[axis])
@@ -55,7 +51,7 @@ def _axis_reached(group, guide, throw):
 
 
 def straightened(direction, coupler, joint, coupler_length, rocker_length, pivot, knuckle):
-    """Direction of the rocker, its component along the axis of a knuckle by way of the coupler (kernel)."""
+    """Direction of the rocker, its component along the axis `knuckle` by way of the coupler (kernel)."""
     axis = AXES.index(knuckle)
     along, lean = coupler[axis], coupler[1 - axis]
     way = sign(along)

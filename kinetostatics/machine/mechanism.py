@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, fields, replace
+from functools import reduce
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,11 +12,11 @@ from ..numbers.batched import Batched
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
-from . import hints, knuckle
+from . import hints
 from .chain import Chain
 from .crank import Crank
 from .friction import Turning, kind_for
-from .group import FRAME, RATES, RESERVED, TRAVELS, Resolved, smaller
+from .group import FRAME, RATES, RESERVED, TRAVELS, Resolved
 from .links import Wrench, arm, present
 
 NAME = checks.Name()
@@ -60,7 +61,8 @@ class Mechanism(Batched):
     def __post_init__(self):
         self.RULES.admit(self)
         throws = self.throws
-        vars(self)["groups"] = knuckle.told([group.on_crank(throws) for group in self.groups], throws)
+        groups = [group.on_crank(throws) for group in self.groups]
+        vars(self)["groups"] = tuple([group.beside(groups, throws) for group in groups])
         names = tuple([(part.__class__, *part.names) for part in self.parts]) if self.trusted else None
         if names is None or names not in _NAMED_WELL:
             checks.require(self.name, *_name_problems(self.parts))
@@ -213,7 +215,7 @@ class Mechanism(Batched):
     @cached_property
     def proportion(self):
         """Sum of all lengths over the shortest link or cam radius, the largest of a batch."""
-        found = self.extent / smaller(*(reach for part in self.parts for reach in part.reaches))
+        found = self.extent / _smallest(*(reach for part in self.parts for reach in part.reaches))
         return found if type(found) is float else float(np.max(np.asarray(found, dtype=float)))
 
     @cached_property
@@ -337,3 +339,10 @@ def _name_problems(parts):
         add(forces, "quantity", kind, [f"{link}{ending}" for link in part.links for ending in endings])
         add(forces, "quantity", kind, [*part.motions, *part.contacts])
     return problems
+
+
+def _smallest(*lengths):
+    """Smallest of lengths, numbers or arrays of designs; infinite of none."""
+    if all(type(length) is float for length in lengths):
+        return min(lengths, default=math.inf)
+    return reduce(np.minimum, lengths, math.inf)

@@ -15,11 +15,12 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.elementary import apart, divisor, root, sqrt
+from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
 from . import change_points, on_crank, passing
 from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
-from .knuckle import straightened
+from .knuckle import axis_of, straightened
 from .links import Joint, Link, LinkMotion, Swing, Wrench, between, tip
 
 SMALLEST = 2.0**-53
@@ -203,6 +204,11 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
     def comes_close(self, throw):
         """Whether the pin comes close to the pivot."""
         return on_crank.is_near(throw, 0.0, self.pivot)
+
+    def beside(self, groups, throws):
+        """The group as it is beside others: whether it is a knuckle with one, and along which axis."""
+        knuckle = axis_of(self, groups, throws)
+        return self if knuckle == self.knuckle else with_fields(self, knuckle=knuckle)
 
     @property
     def start(self):

@@ -22,6 +22,7 @@ that of a spring whose rate does not change and little more, (k + q l^2) e + q p
 from functools import reduce
 
 from ..machine.links import Wrench
+from ..numbers.inherited import say_together
 from ..numbers.planar import added, minus, plus, product, stretched
 from .pushes import pushed
 
@@ -81,8 +82,7 @@ def _rates(item, dynamics):
 
 def _is_spring(item, rate="spring_rate"):
     """Whether a load's rate tells all its push: not where a kind derived from a spring pushes in another way."""
-    telling = (vars(kind) for kind in type(item).__mro__ if {"push", "spring_rate"} & vars(kind).keys())
-    return rate in next(telling, ())
+    return say_together(type(item), rate, "push", "spring_rate")
 
 
 def _without_inertia(dynamics, slider):

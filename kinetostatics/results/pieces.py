@@ -24,6 +24,8 @@ SHARP = 1e-9
 """Share of the largest magnitude on a piece that the last term has where the magnitude is not smooth."""
 APPROACHES = 6
 """Steps of Newton's method to a peak or zero that is known to a quarter of half a piece."""
+NARROW = 1e-12
+"""Piece, rad, that is none: its ends are one place, found twice, and what jumps there may do so between them."""
 
 
 class Pieces(NamedTuple):
@@ -32,7 +34,7 @@ class Pieces(NamedTuple):
     Attributes
     ----------
     start, width : array (designs, P)
-        Where each piece begins, and how wide it is, rad; some are empty.
+        Where each piece begins, and how wide it is, rad; empty ones stand inside of the widest.
     period : float
     """
 
@@ -57,7 +59,10 @@ class Pieces(NamedTuple):
         count = max(round(period / TURN) * 2 * order, -(-angles // NODES.size))
         even = np.broadcast_to(np.linspace(0.0, period, count + 1), (len(bends), count + 1))
         edges = np.sort(np.column_stack([even, np.where(np.isnan(bends), 0.0, bends)]), axis=1)
-        return cls(edges[:, :-1], np.diff(edges), period)
+        start, width = edges[:, :-1], np.diff(edges)
+        widest = width.argmax(axis=1)[:, None]
+        inside = np.take_along_axis(start + 0.5 * width, widest, axis=1)
+        return cls(np.where(width < NARROW, inside, start), np.where(width < NARROW, 0.0, width), period)
 
     def some(self, designs):
         """Those of some designs."""

@@ -264,7 +264,7 @@ def unchecked(scene, crank_angle, engine=None):
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
     _, odd = solution.first_look or (None, True)
     for text in (*(slips.of_scene(solution) if odd else ()), *hints.of_angles(angle)):
-        warnings.warn(f"{mechanism.name}: {text}", HintWarning, stacklevel=4)
+        warnings.warn(HintWarning(mechanism.name, text), stacklevel=4)
     vars(solution)["engine"] = _engine(engine, angle, solution)
     return solution
 

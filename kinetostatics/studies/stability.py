@@ -6,12 +6,13 @@ the problem, which the library reports itself, at crank angles counted from the 
 """
 
 import math
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from ..errors import MissingLibraryError, NotGivenError
+from ..errors import HintWarning, MissingLibraryError, NotGivenError
 from ..mechanics.quantities import components
 from ..mechanics.quantities import quantity as declared
 from ..numbers import checks
@@ -83,8 +84,10 @@ def study(places=None, methods=None, progress=None):
     for place in PLACES if places is None else places:
         if progress:
             progress(place.name)
-        for number in place.numbers:
-            rows += _at(place, number, chosen)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", HintWarning)  # places are odd on purpose
+            for number in place.numbers:
+                rows += _at(place, number, chosen)
     return pd.DataFrame(rows)
 
 

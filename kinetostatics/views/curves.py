@@ -225,14 +225,14 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     curves = {name: np.where(np.hypot(*curve) <= sight, curve, np.nan) for name, curve in curves.items()}
     most = 2.0 * ordinary(sizes)
     extents = {name: factor * min(_extent(curve), most) for name, curve in curves.items()}
-    notes: dict[str, None] = {}
+    whys: set[str] = set()
     for name, solution, style in styled(named):
         (line,) = ax.plot(*closed(factor * curves[name]), linestyle=style, label=name)
         rows = [row for row in _marked(solution, marks) if np.isfinite(curves[name][0, row])]
         ax.plot(*factor * curves[name][:, rows], "o", ms=3, color=line.get_color())
         ends = list(gaps.ends(solution, whole[name], curves[name]))
         gaps.marked(ax, ends, factor * curves[name], line.get_color())
-        notes |= dict.fromkeys(end.why for end in ends)
+        whys |= {end.why for end in ends if end.why}
         rows += [end.row for end in ends if end.row not in rows]
         near = max(0.03 * extents[name], 0.02 * max(extents.values()))
         period = np.degrees(solution.period)
@@ -243,9 +243,11 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     ax.axvline(0, color=INK, lw=0.5)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.1)
-    beyond = f"▸ beyond the frame: {gaps.size([factor * size for size in sizes], shown)}"
+    notes = [f"× {why}" for why in sorted(whys)]
+    if any(np.any(size > sight) for size in sizes):
+        notes.insert(0, f"▸ beyond the frame: {gaps.size([factor * size for size in sizes], shown)}")
     if notes:
-        gaps.noted(ax, [f"× {why}" if why else beyond for why in sorted(notes)])
+        gaps.noted(ax, notes)
     ax.set_xlabel(f"{declared.label}, x [{shown}]")
     ax.set_ylabel(f"{declared.label}, y [{shown}]")
     if len(named) > 1 or isinstance(solutions, Mapping):

@@ -41,7 +41,7 @@ def test_no_value_in_single_precision_of_random_machines_is_off_by_more_than_its
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning", "ignore::kinetostatics.HintWarning")
 @every("place", INCLINED, ids=lambda place: place.name)
 def test_a_value_near_an_inclined_place_that_single_precision_does_not_have_has_no_finite_bound(flint, place):
     for number in place.numbers[4::9]:

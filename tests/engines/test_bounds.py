@@ -45,7 +45,8 @@ def test_bounds_are_not_much_more_than_the_worst_error_of_a_turn(flint, case, va
     assert np.max(bound) < most * np.max(error)
     tight = s.error_bound("balancing_torque", tight=True)
     assert np.all(error <= tight)
-    assert np.all(tight <= bound * (1.0 + 1e-12))
+    assert np.all(tight <= bound * 1.01)  # its remainder is of stretched bounds, which are a little larger
+    assert np.median(tight / bound) < 1.0
 
 
 def bounds_of(graph, outputs, values, tight=False):
@@ -146,9 +147,11 @@ def test_what_a_factor_of_two_loses_of_the_smallest_numbers_is_bounded(tight):
 def test_a_product_of_two_numbers_lost_as_too_small_is_bounded(tight):
     graph = Graph()
     one, other, huge = map(graph.parameter, range(3))
-    lost = [(part * part * (huge * huge)).forgiving_root(huge) for part in (one, other)]  # 0, and truly 1e-140
-    found = bounds_of(graph, [lost[0] * lost[1], lost[0] + lost[1]], [1e-170, 1e-170, 1e30], tight)
-    assert np.all(found >= [1e-280, 2e-140])
+    for scaled in (lambda square: square * (huge * huge), lambda square: square * huge * huge):
+        lost = [scaled(part * part).forgiving_root(huge) for part in (one, other)]  # 0, and truly 1e-140
+        found = bounds_of(graph, [lost[0] * lost[1], lost[0] + lost[1]], [1e-170, 1e-170, 1e30], tight)
+        assert not np.any(found < [1e-280, 2e-140])  # a tight one may be none
+        assert np.isfinite(found[1])
 
 
 def test_a_tight_bound_takes_the_error_of_what_derivatives_hold():

@@ -59,20 +59,6 @@ def test_only_one_over_the_root_of_a_sum_is_never_too_small():
         assert counted(over, dust)[1].dust is not None
 
 
-def test_what_turns_is_at_most_what_a_design_fixes():
-    graph = Graph()
-    radius, height = graph.parameter(0), graph.row(0)
-    sine, cosine = graph.angle().sin(), graph.angle().cos()
-    found, _ = counted(radius * sine * cosine + height * sine)
-    assert found.at_most(-(radius * sine)) is abs(radius)
-    assert found.at_most(radius * sine * cosine) is abs(radius)
-    for other in (height * sine, radius + sine, (radius * sine).sqrt(), sine.sin()):
-        assert not found.turns(other)
-        assert found.at_most(other) is found.size(other)
-    assert not found.turns(radius)
-    assert found.at_most(radius) is abs(radius)
-
-
 def test_what_cannot_be_negative_is_its_own_magnitude():
     graph = Graph()
     one, other = map(graph.parameter, range(2))

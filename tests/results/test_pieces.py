@@ -98,3 +98,19 @@ def test_a_design_with_what_is_no_number_spoils_no_other():
         numbers, _ = pieces.estimated(parsed(text), values)
         assert np.isnan(numbers[0])
         assert np.isfinite(numbers[1])
+
+
+def test_a_jump_between_a_bend_and_an_even_edge_that_rounding_sets_apart_is_no_peak():
+    place = np.linspace(0.0, TURN, 25)[3]
+    step = lambda angle: np.where(angle > place, 3.0, 1.0)  # noqa: E731
+    for beside in (np.nextafter(place, 9.0), place + 1e-14):
+        bends = np.array([[beside, 4.0], [beside, np.nan]])
+        for text, expected in {"largest O": 3.0, "smallest O": 1.0, "range O": 2.0}.items():
+            assert found(text, step, bends) == pytest.approx(expected, rel=1e-14), text
+            assert found(text, step, bends, vector=True) == pytest.approx(expected, rel=1e-14), text
+
+
+def test_no_value_is_taken_at_a_bend_nor_where_a_design_has_fewer():
+    pieces = Pieces.of(np.array([[1.0, 1.0, 4.0], [2.0, np.nan, np.nan]]), TURN, 192)
+    assert not np.isin(pieces.angle, [0.0, 1.0, 2.0, 4.0, *np.linspace(0.0, TURN, 25)]).any()
+    np.testing.assert_allclose(pieces.width.sum(axis=1), TURN, rtol=1e-15)

@@ -68,12 +68,18 @@ CIRCLE = ks.cams.Circle(0.2, (-0.05, 0.0))
         (loaded(ks.PointSpring(1e3, 0.0, between=("B", (1500.0, 20.0)))), "point_spring.between.2.x is 1500 m"),
         (loaded(ks.TorsionSpring(1e3, 45.0, on="coupler")), "torsion_spring.free_angle is 45 rad"),
         (lambda: hints(crank_speed=3200.0), "the pin of the crank goes at 960 m/s, faster than sound; is crank_speed,"),
+        (lambda: hints(crank_speed=-3200.0), "3200 rad/s, in rpm? That makes 335.103 rad/s"),
         (lambda: hints(crank_speed=np.linspace(1.0, 3200.0, 24)), "the pin of the crank goes at 960 m/s"),
         (made(saw, crank_length=300.0, coupler_length=2000.0), "the coupler is 2000 m long; are lengths in mm?"),
         (made(saw, crank_length=0.005, coupler_length=20.0), "4000 times the crank (0.005 m); is one of them in mm?"),
         (
             made(saw, coupler=ks.Link(150.0, 1.0, 20.5e6)),
-            "the inertia of the coupler, 2.05e+07 kg m2, is more than ten",
+            "2.05e+07 kg m2, is more than ten thousand times that of a uniform rod of 150 kg and 2 m; is it in kg mm2? "
+            "That makes 20.5 kg m2",
+        ),
+        (
+            made(saw, coupler=ks.Link(150.0, 1.0, np.array([[20.5], [20.5e6]]))),
+            "the inertia of the coupler, 2.05e+07 kg m2, is more than ten thousand times",
         ),
         (made(saw, coupler=ks.Link(150.0, 1.0, 20.5e-6)), "the inertia of the coupler, 2.05e-05 kg m2, is less than"),
         (made(saw, coupler=ks.Link(150.0, (0.0, 1e3), 20.5)), "coupler.centre.across is 1000 m"),

@@ -87,6 +87,22 @@ def test_jumps_of_friction_are_seen_from_both_sides(angles):
     np.testing.assert_allclose(found.to_numpy(dtype=float), truth, rtol=1e-6)
 
 
+@every(
+    "angle, back, rubs", [(15, True, False), (120, True, True), (30, False, True), (-90, True, True), (45, True, False)]
+)
+def test_jumps_at_dead_centres_are_no_peaks_by_rounding(angle, back, rubs):
+    """Guides stand at whole parts of the turn, so stops meet its even parts; strokes and friction jump at the same."""
+    pump = ks.crank_slider(0.05, 0.2, guide_angle=np.radians(angle), coupler=ks.Link(1.0, 0.1), slider=ks.Link(2.0))
+    table = ks.Table([0.1, 0.3], [300.0, -200.0], over="travel", back=[-100.0, 500.0] if back else None)
+    friction = {"guide": ks.GuideFriction(0.2), "O": ks.PinFriction(0.1, 0.01)} if rubs else {}
+    scene = ks.Scene(pump, 30.0, loads=[ks.ProcessForce(table)], friction=friction)
+    outputs = [f"{end} {name}" for name in ("O", "B", "balancing_torque") for end in ("smallest", "largest")]
+    found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.043, 0.05]}), outputs)
+    at = scene.solve(36)
+    truth = [end for name in ("O", "B", "balancing_torque") for end in ks.extremes(at, name).range]
+    np.testing.assert_allclose(found.iloc[2, 1:-1].to_numpy(dtype=float), truth, rtol=1e-6)
+
+
 def test_motions_are_swept_as_without_the_loads_that_bend_forces():
     designs, outputs = pd.DataFrame({"crank": [0.04, 0.05]}), ["largest slider_velocity", "rms slider_acceleration"]
     bare = lambda crank: ks.Scene(steep_pump(crank).mechanism, 30.0)  # noqa: E731

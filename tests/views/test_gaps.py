@@ -1,5 +1,7 @@
 """Gaps of solutions in figures: shaded and named, and no axis set by what grows without bound beside them."""
 
+import warnings
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -125,6 +127,14 @@ def test_a_hodograph_ends_at_heads_of_arrows_where_it_goes_on_and_at_crosses_whe
     assert {f"{np.degrees(TURN[end.row]):.4g}°" for end in found if not end.why} & {
         text.get_text() for text in axes.texts
     }
+
+
+def test_a_hodograph_of_what_closes_nowhere_says_nothing_of_sizes(axes):
+    never = ks.solve(ks.crank_slider(0.3, 0.05, slider=ks.Link(1.0)), [1.0, 1.5, 2.0], crank_speed=1.0, on_gap="nan")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ks.plots.hodograph(never, ax=axes)
+    assert words(axes) == []
 
 
 def test_the_head_of_an_arrow_points_along_the_curve():

@@ -38,7 +38,7 @@ def test_a_label_leaves_the_curve_beneath_it(axes):
 
 @pytest.mark.slow
 def test_lines_that_lead_to_labels_cross_neither_each_other_nor_labels(monkeypatch):
-    """Points in heaps, from which labels must be led away; ten find room, more need not."""
+    """Points in heaps, from which labels must be led away."""
     count = 0
     drawn = SimpleNamespace(draw=lambda renderer: None)
     for seed in range(12):
@@ -47,7 +47,7 @@ def test_lines_that_lead_to_labels_cross_neither_each_other_nor_labels(monkeypat
             labels, "Line2D", lambda x, y, to=lines, **style: to.append(Path(np.array([x, y]).T)) or drawn
         )
         figure, ax = plt.subplots()
-        spots = 0.5 + 0.006 * np.random.default_rng(seed).normal(size=(10, 2))
+        spots = 0.5 + 0.006 * np.random.default_rng(seed).normal(size=(12, 2))
         found = boxes(ax, [label(ax, f"{20 * place}°", spot) for place, spot in enumerate(spots)])
         plt.close(figure)
         assert not any(one.intersects_path(other, False) for place, one in enumerate(lines) for other in lines[:place])

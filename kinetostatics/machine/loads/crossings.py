@@ -86,7 +86,7 @@ def _roots(function, low, high, level):
     """
     if not low.size:
         return low
-    rising = function(high)[0] > level
+    rising = function(high)[0] > function(low)[0]  # an end may be at the level
     angle, moving = 0.5 * (low + high), np.ones(low.shape, dtype=bool)
     for _ in range(MOST):
         value, slope = function(angle)

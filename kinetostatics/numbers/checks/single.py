@@ -39,5 +39,5 @@ def singles(owner, *problems, **given):
         if "usual" in rule
     )
     if text := "; ".join(filter(None, odd)):
-        warnings.warn(f"{owner}: {text}", HintWarning, stacklevel=3)
+        warnings.warn(HintWarning(owner, text), stacklevel=3)
     return values

@@ -1,9 +1,13 @@
 """Where sliders stand still and pass places: all of it, for each of many designs."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.machine.loads.crossings import crossings
+from kinetostatics.machine.loads.crossings import ASIDE, SAMPLES, crossings
+from kinetostatics.machine.loads.period import TURN
+from support.every import every
 
 
 def motion(crank=0.05, offset=0.01):
@@ -42,6 +46,18 @@ def test_designs_pass_as_many_levels_as_their_strokes_reach():
         alone = np.sort(crossings(motion(length), "slider", levels)[1][0])
         np.testing.assert_allclose(np.sort(passed[row])[: alone.size], alone, rtol=0, atol=1e-14)
         assert np.isnan(np.sort(passed[row])[alone.size :]).all()
+
+
+@every("way", [1, -1])
+def test_a_stop_exactly_at_an_angle_looked_at_is_found_there(way):
+    stop = (ASIDE + np.linspace(0.0, TURN, SAMPLES + 1))[100]
+
+    def place(angle):
+        cosine, sine = (way * part(angle - stop) for part in (np.cos, np.sin))
+        return SimpleNamespace(travels={"slider": SimpleNamespace(position=cosine, first=-sine, second=-cosine)})
+
+    stops, _ = crossings(SimpleNamespace(mechanism=SimpleNamespace(turns=1, place=place)), "slider", np.zeros(1))
+    np.testing.assert_allclose(np.sort(stops[0]), np.sort(np.mod([stop, stop + np.pi], TURN)), rtol=0, atol=1e-12)
 
 
 def test_what_does_not_close_passes_nothing_there():
