@@ -3,6 +3,9 @@
 A value may come in single precision, or from a compiler that fuses products and sums and takes what is too small for
 zero. Bounds are then computed beside the same values in double, which differ from the exact ones by less: whatever
 order of roundings the other takes, each result is within its unit of the exact one of what went into it.
+
+Of numbers of more digits the same holds: in double a value v has an error of at most 2^-53 (k |v| + E), and what that
+makes of a rounding is of second order.
 """
 
 from collections.abc import Callable, Mapping
@@ -15,7 +18,7 @@ import numpy as np
 from ..errors import NotGivenError
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import SAFE, Bounds, Error, is_zero, size
+from .bounds import EXACT, SAFE, Bounds, Error, is_zero, size
 from .functions import ULP, beside_one, moved_apart
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
@@ -49,6 +52,8 @@ class Arithmetic(NamedTuple):
 SINGLE_ULP = {"sin": 8.0, "cos": 8.0, "atan": 8.0, "sqrt": 1.0, "root": 1.0}
 SINGLE = Arithmetic(np.float32, 2.0**-24, 1.0 + 2.0**-5, 2.0**-101, 2.0**126, SINGLE_ULP)
 DOUBLE = Arithmetic(np.float64, UNIT, SAFE, 2.0**-960, 2.0**1022, dict.fromkeys(ULP, 4.0) | {"sqrt": 1.0, "root": 1.0})
+LONGER = Arithmetic(np.longdouble, 2.0**-64, 1.0 + 2.0**-10, 2.0**-930, 2.0**1022, {"sin": 0.0, "cos": 0.0})
+"""Of numbers of more digits, `longdouble` or `Twofold`, the coarser of both; sines have a bound of their own."""
 OF = {"double": DOUBLE, "single": SINGLE}
 """By what a user calls it."""
 SECOND_ORDER = 8.0
@@ -75,9 +80,14 @@ class BoundsElsewhere:
     arithmetic : Arithmetic
     """
 
+    @property
+    def rules(self):
+        return RULES
+
     def __init__(self, graph, inputs, arithmetic):
         self._graph, self._arithmetic, self._in_double = graph, arithmetic, Bounds(graph, inputs)
         self._inputs = inputs
+        self._off = arithmetic.safe * arithmetic.unit
         self._fused = self._in_double.fused
         self._errors: dict[Node, Error] = {}
         self._reaches: dict[Node, Any] = {}
@@ -109,7 +119,7 @@ class BoundsElsewhere:
             relative, rest = self._inputs[node](self)
             return Error(relative, plus(rest, self._arithmetic.least))
         kind, parts = node.operation, node.arguments
-        relative, carried = RULES[kind](self, node, *parts)
+        relative, carried = self.rules[kind](self, node, *parts)
         own = 0.0 if kind in EXACTLY or (len(parts) < 2 and kind == "-") else self._arithmetic.ulp.get(kind, 1.0)
         is_sum = kind in ("+", "-") and all(isinstance(part, Node) for part in parts)
         return Error(relative + own, carried if is_sum or kind in EXACTLY else carried + self._arithmetic.least)
@@ -145,11 +155,11 @@ class BoundsElsewhere:
 
     def largest(self, part):
         """Bound on the magnitude of the computed value and of the exact one, but for relative errors."""
-        return self._fused(self._arithmetic.safe * self._arithmetic.unit, self.error(part).rest, size(part))
+        return self._fused(self._off, self.error(part).rest, size(part))
 
     def clear(self, value, part, floor=0.0):
         """What is left of a value above a floor when the error of a part is taken off; 0 where nothing is."""
-        return self._positive(value - (self._arithmetic.safe * self._arithmetic.unit) * self.total(part) - floor)
+        return self._positive(value - self._off * self.total(part) - floor)
 
     def _positive(self, value):
         return self._graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
@@ -203,3 +213,68 @@ RULES: dict[str, Callable[..., Error]] = {
     "sign": lambda bounds, node, value: Error(0.0, 0.0 / bounds.clear(size(value), value)),
 }
 """What a result has of the errors of its arguments."""
+
+
+OFF = 2.0**-40
+"""In `largest` and `clear` of numbers of more digits: far more than the `UNIT` by which doubles beside them are off."""
+TURN = 2.0
+"""By how much sines and cosines of more digits are off, in their unit; a test holds both kinds to it."""
+
+
+class BoundsOfLonger(BoundsElsewhere):
+    """Bounds for nodes of a graph of which numbers of more digits are found by the same operations, all but inputs.
+
+    Of a `Twofold` the second part is at most ``UNIT (k |v| + E)``, or with a `total` not much more, and an operation
+    loses some `UNIT` of that; a product drops that of both second parts, which `OFF` covers.
+
+    Parameters
+    ----------
+    graph : Graph
+    inputs : mapping of Node to function
+        As for `Bounds`.
+    """
+
+    def __init__(self, graph, inputs):
+        super().__init__(graph, inputs, LONGER)
+        self._off = OFF
+
+    @property
+    def rules(self):
+        return RULES_OF_LONGER
+
+    def of(self, outputs):
+        for node in needed(outputs):
+            if node not in self._errors:
+                self._errors[node] = self._given(node) if node.operation in INPUTS else self._found(node)
+        return tuple((LONGER.safe * LONGER.unit) * self.total(part) for part in outputs)
+
+    def _given(self, node):
+        relative, rest = self._inputs[node](self) if node in self._inputs else EXACT
+        finer = UNIT / LONGER.unit
+        return Error(finer * relative, plus(None if rest is None else finer * rest, LONGER.least))
+
+    def of_sum(self, node, *parts):
+        if len(parts) < 2:
+            return self.error(*parts)
+        return Error(0.0, plus(reduce(add, map(self.total, parts)), moved_apart(parts, LONGER.unit)))
+
+    def of_total(self, node, *parts):
+        """Numbers in two parts are just added, and what second parts lose may cancel less than the total does."""
+        return Error(0.0, reduce(add, (self._fused(2.0**-4, self.largest(part), self.total(part)) for part in parts)))
+
+    def of_rest(self, node, length, x, y):
+        """Truly nothing, and found as what the length is off from the vector's."""
+        return Error(0.0, self.total(length) + self.total(x) + self.total(y) + UNIT * size(length))
+
+    def of_turn(self, node, angle):
+        return Error(0.0, self.total(angle) + TURN)
+
+
+RULES_OF_LONGER = RULES | {
+    "+": BoundsOfLonger.of_sum,
+    "-": BoundsOfLonger.of_sum,
+    "total": BoundsOfLonger.of_total,
+    "rest": BoundsOfLonger.of_rest,
+    "sin": BoundsOfLonger.of_turn,
+    "cos": BoundsOfLonger.of_turn,
+}

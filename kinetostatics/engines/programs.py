@@ -113,8 +113,7 @@ class Program:
         """Rows of the tables at the crank angles of a `Dynamics`, whose leaves are at hand; those needed."""
         rows: list[Any] = []
         for table in self.recording.tables:
-            idle = self._rows_needed.isdisjoint(table.rows)
-            rows += [0.0] * len(table.rows) if idle else table.compute(state, leaves)
+            rows += table.filled(state, leaves, self._rows_needed)
         return rows
 
     @cached_property

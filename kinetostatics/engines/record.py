@@ -23,10 +23,9 @@ from ..mechanics.quantities import sizes as sizes_of
 from ..numbers.elementary import UNIT, held
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
-from ..numbers.planar import plus
 from .bounds import Error
 from .gaping import Gaps
-from .steep import SteepTable
+from .steep import SteepTable, not_known, of_pieces
 from .trace import Graph, LeanGraph, Node, needed, operations
 
 WITHOUT_GAPS = ("closure", *CHECKS)
@@ -48,6 +47,8 @@ class Table(NamedTuple):
         What each row is: its name, how many times it is differentiated by the crank angle, its unit.
     of : str or int
         The cam, or which of the loads, that it is read for.
+    bounded : function or None
+        As `compute`, of all rows where the last ones, `ERRORS`, are only for bounds; `compute` then leaves these out.
     """
 
     rows: range
@@ -55,6 +56,15 @@ class Table(NamedTuple):
     moved_by: str = ""
     names: tuple = ()
     of: str | int = ""
+    bounded: Callable[[Any, Any], Any] | None = None
+
+    def filled(self, motion, leaves, wanted):
+        """The rows, those that are not among the wanted ones with zero."""
+        if wanted.isdisjoint(self.rows):
+            return [0.0] * len(self.rows)
+        if self.bounded is None or not wanted.isdisjoint(self.rows[-len(ERRORS) :]):
+            return (self.bounded or self.compute)(motion, leaves)
+        return [*self.compute(motion, leaves), *[0.0] * len(ERRORS)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,9 +196,9 @@ class Recorder:
         self._arrays += 1
         return self._tabled((("value", 0, ""),), lambda motion, leaves: [leaves.tables[place]])[0]
 
-    def _tabled(self, names, compute, moved_by="", of=""):
+    def _tabled(self, names, compute, moved_by="", of="", bounded=None):
         first, self._rows = self._rows, self._rows + len(names)
-        self.tables.append(Table(range(first, self._rows), compute, moved_by, names, of))
+        self.tables.append(Table(range(first, self._rows), compute, moved_by, names, of, bounded))
         found = [self.graph.row(row) for row in range(first, self._rows)]
         if moved_by:
             self.inputs.update((node, _unproven(moved_by)) for node in found)
@@ -253,10 +263,13 @@ class Recorder:
             pieces = self._tabled(names, lambda motion, leaves: item(motion).pieces(motion), of=place)
             return lambda motion: table.read(motion, pieces)
         steep = SteepTable(self.inputs)
-        pieces = self._tabled(
-            (*names, ("known", 0, "")), lambda motion, leaves: steep.pieces(item(motion), motion, leaves), of=place
+        rows = self._tabled(
+            (*names, ("known", 0, ""), *ERRORS),
+            lambda motion, leaves: steep.pieces(item(motion), motion, leaves),
+            of=place,
+            bounded=lambda motion, leaves: steep.pieces_and_errors(item(motion), motion, leaves),
         )
-        within = self._tabled(ERRORS, lambda motion, leaves: steep.errors(item(motion), motion, leaves))
+        pieces, within = rows[:4], rows[4:]
 
         def read(motion):
             travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
@@ -264,8 +277,8 @@ class Recorder:
             start, value, slope, known = pieces
             beyond = table.beyond(start, motion)
             left = beyond - known * held(beyond)
-            self.inputs |= _of_pieces([part[0] for part in pieces], [part[0] for part in within], travel, rate)
-            self.inputs[left[0]] = _not_known(beyond[0], known[0])
+            self.inputs |= of_pieces([part[0] for part in pieces], [part[0] for part in within], travel, rate)
+            self.inputs[left[0]] = not_known(beyond[0], known[0])
             return value + slope * left
 
         return read
@@ -315,30 +328,5 @@ def _unproven(what):
             f"no bound can be given: {what} does more than arithmetic with sin, cos and sqrt of `elementary`, so its "
             "own rounding is not known"
         )
-
-    return error
-
-
-def _of_pieces(pieces, within, travel, rate):
-    """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
-    _, value, slope, _ = pieces
-    change, jump, near, distance, lost = within
-
-    def of_value(bounds):
-        bounds.of((travel, rate))
-        jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
-        off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
-        jumps = plus(jumps, 0.0 / bounds.above(near, off))
-        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps) + lost)
-
-    return {value: of_value, slope: lambda bounds: Error(3.0, None)}
-
-
-def _not_known(beyond, known):
-    """Error of how far a travel is beyond the start of a piece, where the value there is not known beforehand."""
-
-    def error(bounds):
-        total = bounds.total(beyond)
-        return Error(0.0, None if total is None else (1.0 - known) * total)
 
     return error

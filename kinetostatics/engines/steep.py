@@ -3,7 +3,7 @@
 One rounding of the travel makes as many of the largest value as the table is steep there. At such crank angles, mostly
 few, what was recorded of the travel is run on numbers of more digits, and the value found with it. What the program
 adds to that is zero, with the derivatives that it has. Numbers of more digits are NumPy's `longdouble` where that has
-64 digits, else a double and what rounding took off it; bounds are always by these, which bound themselves.
+64 digits, else a double and what rounding took off it; the bound on their errors is one of both.
 """
 
 from functools import reduce
@@ -15,8 +15,10 @@ import numpy as np
 from ..machine.loads import table_errors
 from ..numbers.elementary import UNIT, squared, summed
 from ..numbers.lazy import cached_property
-from ..numbers.planar import number
+from ..numbers.planar import number, plus
 from ..numbers.twofold import FARTHEST, Twofold, sine_and_cosine
+from .arithmetic import BoundsOfLonger
+from .bounds import Error
 from .operations import ARRAYS, BY_DESIGN, PLAIN, made
 from .recent import kept_for_same_angles
 from .trace import needed, parted
@@ -50,41 +52,39 @@ class SteepTable:
     def __init__(self, inputs):
         self._inputs = inputs
         self._outputs: tuple[Any, ...] = ()
-        self._rounded: set[int] = set()
 
     def follow(self, travel, rate):
         """Be read by what was recorded of a slider's travel and rate, unless that cannot be run beforehand."""
-        nodes = needed((travel, rate))
-        if not any(node.operation in UNKNOWN for node in nodes):
-            rounded = (node for node in nodes if node.operation == "parameter" and node in self._inputs)
-            self._outputs, self._rounded = (travel, rate), {node.arguments[0] for node in rounded}
+        if not any(node.operation in UNKNOWN for node in needed((travel, rate))):
+            self._outputs = travel, rate
 
     def pieces(self, table, motion, leaves):
         """Start, value and slope of the piece at each crank angle; 1 where the value is that at the travel, else 0."""
+        return self._found(table, motion, leaves)[0]
+
+    def pieces_and_errors(self, table, motion, leaves):
+        """The same, what bounds need to know of kinks (see `table_errors`), and of errors of such values, in `UNIT`."""
+        pieces, slider, rise = self._found(table, motion, leaves)
+        kinks = table_errors.kinks_within(table, motion, slider)
+        if rise is None:
+            return *pieces, *kinks, 0.0
+        _, value, slope, known = pieces
+        there, found = known > 0.0, np.zeros(known.shape)
+        rounded = 8.0 * np.abs(rise) + np.abs(value[there]) + table_errors.TINY / UNIT
+        off = self._off(there, motion, leaves)
+        found[there] = MORE * (np.abs(_at(there, slope)) * (off / UNIT) + rounded)
+        return *pieces, *kinks, found
+
+    def _found(self, table, motion, leaves):
+        """The pieces, where the slider is, and by how much values that are known rise from the start; None if none."""
         slider = self._slider(motion, leaves)
         start, value, slope = table.pieces(motion, slider=slider)
-        known, _, rise = self._known(table, motion, leaves, slider, start, slope)
+        known, rise = self._known(table, motion, leaves, slider, start, slope)
         if known is None:
-            return start, value, slope, 0.0
+            return (start, value, slope, 0.0), slider, None
         value = np.array(np.broadcast_to(value, known.shape))
         value[known] += rise
-        return start, value, slope, known.astype(float)
-
-    def errors(self, table, motion, leaves):
-        """What bounds need to know of kinks, see `table_errors`, and bounds on the errors of such values, in `UNIT`."""
-        slider = self._slider(motion, leaves)
-        kinks = table_errors.kinks_within(table, motion, slider)
-        start, value, slope = table.pieces(motion, slider=slider)
-        known, travel, rise = self._known(table, motion, leaves, slider, start, slope)
-        if known is None:
-            return *kinks, 0.0
-        with np.errstate(all="ignore"):
-            exact = self._in_two_parts(known, motion, leaves, bounded=True)
-        off = apart(travel, exact)
-        found = np.zeros(known.shape)
-        rounded = 8.0 * np.abs(rise) + np.abs(_at(known, value) + rise) + table_errors.TINY / UNIT
-        found[known] = MORE * (np.abs(_at(known, slope)) * (off / UNIT) + rounded)
-        return *kinks, found
+        return (start, value, slope, known.astype(float)), slider, rise
 
     def _slider(self, motion, leaves):
         """Where the slider is, and its rate, in double precision; None where the kernels are to be asked."""
@@ -92,14 +92,11 @@ class SteepTable:
             return None
         angle, shape = motion.crank_angle, motion.shape or (1,)
         given, found = (angle, *_turn(angle)), np.empty((2, *shape))
-        (plain, by_design), varying, count = self._double
+        fixed, varying, count = self._double
         step = max(1, BLOCK // shape[-1]) if len(shape) == 2 else shape[0]
         buffers = np.empty((count, min(step, shape[0]), *shape[1:]))
         with np.errstate(all="ignore"):
-            try:
-                numbers = (plain if leaves.are_plain else by_design)(0.0, 0.0, 1.0, leaves.numbers, ())
-            except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
-                numbers = by_design(0.0, 0.0, 1.0, list(map(np.float64, leaves.numbers)), ())
+            numbers = _of_design(fixed, leaves)
             for start in range(0, shape[0], step):
                 part = slice(start, start + step)
                 own = found[:, part]
@@ -108,52 +105,50 @@ class SteepTable:
         return found
 
     def _known(self, table, motion, leaves, slider, start, slope):
-        """Where a table is steep, the travel there in two parts, and by how much the value rises from the start."""
+        """Where a table is steep, and by how much the value rises from the start there, by a travel in two parts."""
         if slider is None:
-            return None, None, None
+            return None, None
         known = table.is_steep(slider[0], slope) & (np.abs(motion.crank_angle) < FAR)
         if not known.any():
-            return None, None, None
+            return None, None
         with np.errstate(all="ignore"):
             value, rest = self._in_long(known, motion, leaves) if LONG else self._in_two(known, motion, leaves)
             place = _at(known, slider[0])
             rise = _at(known, slope) * ((value - _at(known, start)) + rest)
             right = np.abs((value - place) + rest) < SMALL * np.abs(place)
         known[known] = right
-        return known, (value[right], rest[right]), rise[right]
+        return known, rise[right]
 
     def _in_long(self, known, motion, leaves):
-        angle = _at(known, motion.crank_angle).astype(np.longdouble)
         fixed, varying = self._long
-        numbers = [_of(known, part) for part in fixed(0.0, 0.0, 1.0, list(map(np.longdouble, leaves.numbers)), ())]
-        value, rest = np.empty((2, angle.size))
-        for start in range(0, angle.size, FEW):
-            part = slice(start, start + FEW)
-            own = angle[part]
-            few = [item[part] if isinstance(item, np.ndarray) else item for item in numbers]
-            (travel,) = varying(own, np.sin(own), np.cos(own), few, ())
-            value[part] = travel
-            rest[part] = travel - value[part]
-        return value, rest
+        numbers = fixed(0.0, 0.0, 1.0, list(map(np.longdouble, leaves.numbers)), ())
+        travel = _there(varying, known, _at(known, motion.crank_angle).astype(np.longdouble), numbers)
+        value = travel.astype(float)
+        return value, (travel - value).astype(float)
 
     def _in_two(self, known, motion, leaves):
-        found = self._in_two_parts(known, motion, leaves, bounded=False)
+        angle = Twofold(_at(known, motion.crank_angle))
+        numbers = [Twofold(_of(known, leaf)) for leaf in leaves.numbers]
+        found = self._twofold(angle, *sine_and_cosine(angle), numbers, ())[0]
         return found.value, number(found.rest)
 
-    def _in_two_parts(self, known, motion, leaves, bounded):
-        none = 0.0 if bounded else None
-        angle = Twofold(_at(known, motion.crank_angle), None, none)
-        numbers = [Twofold(_of(known, leaf), None, none) for leaf in leaves.numbers]
-        if bounded:
-            for place in self._rounded:
-                numbers[place].error = UNIT * abs(numbers[place].value)
-        return self._twofold(angle, *sine_and_cosine(angle), numbers, ())[0]
+    def _off(self, known, motion, leaves):
+        """Bound on how far such a travel is from the exact one, m."""
+        fixed, varying = self._longer
+        with np.errstate(all="ignore"):
+            return _there(varying, known, _at(known, motion.crank_angle), _of_design(fixed, leaves))
 
     @cached_property
     def _double(self):
         fixed, outputs = parted(self._outputs)
         source, count = buffered_line(outputs)
-        return [made(line(fixed), scope) for scope in (PLAIN, BY_DESIGN)], made(source, ARRAYS | BY_DESIGN), count
+        return _by_design(fixed), made(source, ARRAYS | BY_DESIGN), count
+
+    @cached_property
+    def _longer(self):
+        travel = self._outputs[0]
+        fixed, outputs = parted(BoundsOfLonger(travel.graph, self._inputs).of([travel]))
+        return _by_design(fixed), made(line(outputs), BY_DESIGN)
 
     @cached_property
     def _long(self):
@@ -165,13 +160,53 @@ class SteepTable:
         return made(line(self._outputs[:1]), _TWOFOLD)
 
 
-def apart(travel, exact):
-    """Bound on how far a travel in two parts is from the exact one, which is known by a `Twofold`.
+def _by_design(fixed):
+    """Lines of what a design fixes, for plain numbers and others."""
+    return [made(line(fixed), scope) for scope in (PLAIN, BY_DESIGN)]
 
-    Their first parts are so near that the difference is exact. That of the others is rounded, and may cancel with it.
-    """
-    rest = travel[1] - number(exact.rest)
-    return abs((travel[0] - exact.value) + rest) + UNIT * abs(rest) + exact.error
+
+def _of_design(fixed, leaves):
+    plain, by_design = fixed
+    try:
+        return (plain if leaves.are_plain else by_design)(0.0, 0.0, 1.0, leaves.numbers, ())
+    except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
+        return by_design(0.0, 0.0, 1.0, list(map(np.float64, leaves.numbers)), ())
+
+
+def _there(varying, known, angle, numbers):
+    """What a line gives for angles where that is known, few at a time, and numbers of a design or those there."""
+    numbers, found = [_of(known, part) for part in numbers], np.empty_like(angle)
+    for start in range(0, angle.size, FEW):
+        part = slice(start, start + FEW)
+        own = angle[part]
+        few = [item[part] if isinstance(item, np.ndarray) else item for item in numbers]
+        (found[part],) = varying(own, np.sin(own), np.cos(own), few, ())
+    return found
+
+
+def of_pieces(pieces, within, travel, rate):
+    """Errors of the pieces of a table over travel: the exact travel may lie in another, or on the other stroke."""
+    _, value, slope, _ = pieces
+    change, jump, near, distance, lost = within
+
+    def of_value(bounds):
+        bounds.of((travel, rate))
+        jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
+        off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
+        jumps = plus(jumps, 0.0 / bounds.above(near, off))
+        return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps) + lost)
+
+    return {value: of_value, slope: lambda bounds: Error(3.0, None)}
+
+
+def not_known(beyond, known):
+    """Error of how far a travel is beyond the start of a piece, where the value there is not known beforehand."""
+
+    def error(bounds):
+        total = bounds.total(beyond)
+        return Error(0.0, None if total is None else (1.0 - known) * total)
+
+    return error
 
 
 @kept_for_same_angles

@@ -19,6 +19,8 @@ CASES = [
     ("chain_unit", "rho-0.5"),
     ("mower_drive", "unbalanced"),
     ("pumpjack", "weights"),
+    ("shaper", "cutting"),
+    ("toggle_press", "coining"),
 ]
 MOST = {"numpy": 4.0, "compiled": 2.5}
 """What is asked of forward bounds. Reached: by NumPy 2.4 to 3.5; compiled 1.1 to 2.4, but all reactions of the chain

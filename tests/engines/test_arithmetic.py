@@ -7,8 +7,16 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import programs
-from kinetostatics.engines.arithmetic import DOUBLE, SINGLE, BoundsElsewhere, is_handed_over
+from kinetostatics.engines import programs, steep
+from kinetostatics.engines.arithmetic import (
+    DOUBLE,
+    LONGER,
+    SINGLE,
+    TURN,
+    BoundsElsewhere,
+    BoundsOfLonger,
+    is_handed_over,
+)
 from kinetostatics.engines.backends import Backend
 from kinetostatics.engines.trace import Graph
 from kinetostatics.errors import NotGivenError
@@ -232,3 +240,46 @@ def test_however_near_to_a_change_point_bounds_elsewhere_hold_or_are_infinite(fl
         angles = [1e-30, 1e-45, 1e-100, 1e-121, -1e-150, 1e-300]
         s = ks.solve(rhombus, angles, crank_speed=3.0, loads=[ks.Gravity()], on_gap="nan")
         assert errors(s, exact_values(s), [backend])[backend].wrong == []
+
+
+@pytest.mark.skipif(not steep.LONG, reason="long numbers have no more digits than a double here")
+def test_sines_of_long_numbers_are_off_by_less_than_is_taken_for_them(flint):
+    angle = np.concatenate(
+        [np.linspace(-7.0, 7.0, 4001), np.random.default_rng(1).uniform(-steep.FAR, steep.FAR, 4000)]
+    )
+    for compute, method in ((np.sin, "sin"), (np.cos, "cos")):
+        found = compute(angle.astype(np.longdouble))
+        first = found.astype(float)
+        second = (found - first).astype(float)
+        for one, rest, given in zip(first.tolist(), second.tolist(), angle.tolist(), strict=True):
+            assert abs(flint.arb(one) + flint.arb(rest) - getattr(flint.arb(given), method)()) < TURN * LONGER.unit
+
+
+SUMS = {
+    "what cancels": lambda graph, turn, a, b: (turn * a + b) - b,
+    "a quotient": lambda graph, turn, a, b: (a + turn) / (b - turn * a),
+    "a root": lambda graph, turn, a, b: (b * b - (turn * a) * (turn * a)).sqrt() - b,
+    "a total": lambda graph, turn, a, b: graph.node("total", turn * a, b, -b, -turn),
+    "a quotient of what cancels": lambda graph, turn, a, b: a / ((turn + b) - b),
+    "a sine of a sum": lambda graph, turn, a, b: (turn * b + a).sin() * a,
+    "what is moved off zero": lambda graph, turn, a, b: apart(turn - turn * (a / a), b),
+}
+
+
+@every("name", SUMS)
+def test_numbers_of_more_digits_are_within_their_bound_by_either_kind(name, flint):
+    graph, numbers, angle = Graph(), [0.7, 3.3], np.linspace(0.1, 6.2, 300)
+    turn, everywhere = graph.angle().sin(), np.ones(300, dtype=bool)
+    output = SUMS[name](graph, turn, graph.parameter(0), graph.parameter(1))
+    (bound,) = programs.Program(None, BoundsOfLonger(graph, {}).of([output])).by_numpy(angle, numbers, (), angle.shape)
+    reader = steep.SteepTable({})
+    reader.follow(output, turn)
+    state, leaves = SimpleNamespace(crank_angle=angle), SimpleNamespace(numbers=numbers)
+    summing = SimpleNamespace(node=lambda operation, *parts: sum(parts))
+    with flint.ctx.workprec(200):
+        exact = [SUMS[name](summing, flint.arb(one).sin(), *map(flint.arb, numbers)) for one in angle.tolist()]
+        for way in (reader._in_two, reader._in_long)[: 1 + steep.LONG]:
+            pairs = zip(exact, *map(np.ndarray.tolist, way(everywhere, state, leaves)), bound.tolist(), strict=True)
+            off = [(abs(flint.arb(one) + flint.arb(rest) - true), flint.arb(most)) for true, one, rest, most in pairs]
+            assert all(error <= most for error, most in off)
+    assert np.isfinite(bound).mean() > 0.9

@@ -1,7 +1,5 @@
 """Tables over travel where they are steep: as near to exact arithmetic as others, by whichever numbers."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,7 @@ import kinetostatics as ks
 from kinetostatics.engines import programs, steep
 from kinetostatics.engines.engines import COMPILED, NUMPY
 from kinetostatics.machine.loads import tables
-from kinetostatics.numbers.twofold import Twofold
+from kinetostatics.studies.methods.enclosures import on_arb
 from support.enclosed import ordinary_angles, worst
 from support.every import every
 
@@ -154,9 +152,30 @@ def test_programs_read_it_with_the_numbers_they_are_given():
         np.testing.assert_allclose(program(angles, values)["B"], expected, rtol=0.0, atol=1e-11)
 
 
-def test_the_rounding_of_a_difference_of_travels_that_cancels_is_in_its_bound():
-    """Second parts whose difference is off by 2^-107, which first parts take away but for that."""
-    travel = 0.75 + 2.0**-53, -(2.0**-54) - 2.0**-55
-    exact = Twofold(0.75, 2.0**-55 + 2.0**-107, 0.0)
-    difference = sum(map(Fraction, travel)) - Fraction(exact.value) - Fraction(exact.rest)
-    assert 0 < abs(difference) <= Fraction(steep.apart(travel, exact)) < 4 * abs(difference)
+@every("name, way", [(name, way) for name in PUMPS for way in IN_LONG])
+def test_a_travel_of_more_digits_is_within_its_bound_and_that_is_small(name, way, flint, monkeypatch):
+    """Where it is steep or not; a rounded direction of a guide is rounded as doubles are."""
+    scene = pump(name)
+    solved = scene.solve(ordinary_angles(scene, 36, 2))
+    program, leaves = programs.of(solved.dynamics, ("B",))
+    (made,) = (table.compute for table in program.recording.tables)
+    (read,) = (cell.cell_contents for cell in made.__closure__ if isinstance(cell.cell_contents, steep.SteepTable))
+    everywhere = np.ones(solved.shape, dtype=bool)
+    value, rest = (read._in_long if IN_LONG[way] else read._in_two)(everywhere, solved.dynamics, leaves)
+    bound = read._off(everywhere, solved.dynamics, leaves)
+    with flint.ctx.workprec(200):
+        exact = on_arb(flint.arb, solved).travel("slider")
+        off = [
+            abs(flint.arb(float(one)) + flint.arb(float(two)) - true)
+            for one, two, true in zip(value, rest, np.ravel(exact), strict=True)
+        ]
+        assert all(part < flint.arb(float(most)) for part, most in zip(off, bound, strict=True))
+    assert np.max(bound) < (2.0**-50 if name == "through points" else 2.0**-60) * np.max(value)
+
+
+def test_values_alone_find_nothing_that_only_bounds_need(monkeypatch):
+    s = pump().solve(36)
+    monkeypatch.setattr(steep.SteepTable, "pieces_and_errors", None)
+    assert np.isfinite(s.reaction("B")).all()
+    with pytest.raises(TypeError):
+        s.error_bound("B")
