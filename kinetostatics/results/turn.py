@@ -17,8 +17,7 @@ from ..numbers import checks
 from ..numbers.lazy import cached_property
 
 SAMPLES = 1440
-"""Samples a turn in which extrema are bracketed, besides those at kinks of tables and between them; two extrema closer
-than a quarter degree may pass unseen."""
+"""Samples a turn that bracket extrema, beside those at and between kinks: two nearer than these may pass unseen."""
 FINER = 5
 """How many times as many there are where a load is a function, which may have narrow pulses."""
 NEAR = 0.01

@@ -21,7 +21,7 @@ def test_the_uncertainty_of_an_extremum_is_that_of_its_formula():
 
 
 def test_a_peak_that_a_row_of_a_table_makes_moves_with_the_inputs():
-    """The torque on a yoke without mass is F sqrt(r^2 - x^2) where the row stands, however steep the force beside it."""
+    """The torque on a yoke without mass is F sqrt(r^2 - x^2) where the row stands, however steep it is beside."""
     work = ks.Table([-0.2, 0.0599, 0.06, 0.0601, 0.2], [0.0, 0.0, 1000.0, 0.0, 0.0], over="travel")
     s = ks.solve(ks.scotch_yoke(0.1), 0.0, crank_speed=10.0, loads=ks.ProcessForce(work))
     row = largest_with_uncertainty(s, {"crank_length": 1e-5}).loc["balancing torque"]
