@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import SAFE, Error, fused, is_scaling, is_zero
+from .bounds import SAFE, Bounds, Error, fused, is_scaling, is_zero
 from .functions import ULP, moved_apart
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
@@ -47,10 +47,12 @@ class Counted:
     def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
         self._graph, self._inputs, self._dust = graph, inputs or {}, dust or 0.0
         self._lost = ROUNDED * self._dust
+        self._by_design = Bounds(graph, inputs, dust=dust)
         self._relative: dict[Node, Relative | None] = {}
         self._pivots: dict[Node, Any] = {}
         self._guards: dict[Node, dict[Node, None]] = {}
         self._squares: set[Any] = set()
+        self._divisors: set[Any] = set()
         self._reciprocals: dict[Node, Any] = {}
         self._caps: dict[Node, Any] = {}
         self._turns: dict[Node, bool] = {}
@@ -60,6 +62,8 @@ class Counted:
     def count(self, nodes):
         """Find what is relative among nodes in the order of computing."""
         self._squares.update(node.arguments[0] for node in nodes if node.operation in ("sqrt", "root"))
+        self._divisors.update(node.arguments[-1] for node in nodes if node.operation == "/")
+        self._divisors.update(node.arguments[0] for node in nodes if node.operation in ("sqrt", "root", "divisor"))
         for node in nodes:
             self._tell_reciprocal(node)
         for node in nodes:
@@ -185,10 +189,10 @@ class Counted:
         if node.operation != "/" or isinstance(node.arguments[0], Node):
             return
         above, below = node.arguments
-        over = self.size(node) * (1.0 / abs(above)) if above else None
-        if below in self._squares:
+        if below in self._squares or abs(above) < 1.0:  # that may be too small for a double
             return
-        while over is not None and isinstance(below, Node) and below not in self._reciprocals:
+        over = self.size(node) * (1.0 / abs(above))
+        while isinstance(below, Node) and below not in self._reciprocals:
             self._reciprocals[below] = over
             if below.operation in ("sqrt", "root"):
                 over = over * over
@@ -197,15 +201,24 @@ class Counted:
             below = below.arguments[0]
 
     def cap(self, part):
-        """A magnitude not less than a value's: of its design if possible."""
+        """A magnitude not less than a value's: of its design if possible, then not less than the exact one's either."""
         if not isinstance(part, Node):
             return abs(part)
         if part not in self._caps:
             found = None
-            if part.varies == BY_ANGLE and part.operation not in INPUTS:
+            if not varies(part):
+                found = self._cap_by_design(part)
+            elif part.operation not in INPUTS:
                 found = self._cap(part.operation, part.arguments)
             self._caps[part] = self.size(part) if found is None or varies(found) else found
         return self._caps[part]
+
+    def _cap_by_design(self, part):
+        """One that a design fixes is zero where its parts cancel, or are too small, and may truly be another."""
+        found = self.relative(part)
+        if found is not None:
+            return self.fused(ROUNDED, found.dust, self.size(part)) if found.dust is not None else None
+        return plus(self.size(part), *self._by_design.of([part]))
 
     def at_most(self, part):
         """Magnitude of a part; of what turns its largest one at any crank angle."""

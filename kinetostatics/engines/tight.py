@@ -139,6 +139,9 @@ class _Local(_OfBoth):
     def at_most(self, part):
         return self.size(part)
 
+    def overflow(self, node):
+        return []
+
     def is_charged(self, node):
         return super().is_charged(node) or node is self._output
 
