@@ -17,6 +17,8 @@ from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
+DIVIDING = ("/", "sqrt", "root", "divisor")
+"""Operations that have pivots."""
 NO_POWER = 2.0**-60
 """Stands for the power 0 of a pivot with a guard, so that a bound is infinite where that acts."""
 
@@ -62,8 +64,7 @@ class Counted:
     def count(self, nodes):
         """Find what is relative among nodes in the order of computing."""
         self._squares.update(node.arguments[0] for node in nodes if node.operation in ("sqrt", "root"))
-        self._divisors.update(node.arguments[-1] for node in nodes if node.operation == "/")
-        self._divisors.update(node.arguments[0] for node in nodes if node.operation in ("sqrt", "root", "divisor"))
+        self._divisors.update(node.arguments[node.operation == "/"] for node in nodes if node.operation in DIVIDING)
         for node in nodes:
             self._tell_reciprocal(node)
         for node in nodes:
@@ -205,19 +206,14 @@ class Counted:
         if not isinstance(part, Node):
             return abs(part)
         if part not in self._caps:
-            found = None
-            if not varies(part):
-                found = self._cap_by_design(part)
-            elif part.operation not in INPUTS:
-                found = self._cap(part.operation, part.arguments)
+            found = self._cap(part.operation, part.arguments) if varies(part) else self._cap_by_design(part)
             self._caps[part] = self.size(part) if found is None or varies(found) else found
         return self._caps[part]
 
     def _cap_by_design(self, part):
         """One that a design fixes is zero where its parts cancel, or are too small, and may truly be another."""
-        found = self.relative(part)
-        if found is not None:
-            return self.fused(ROUNDED, found.dust, self.size(part)) if found.dust is not None else None
+        if (found := self.relative(part)) is not None:
+            return None if found.dust is None else self.fused(ROUNDED, found.dust, self.size(part))
         return plus(self.size(part), *self._by_design.of([part]))
 
     def at_most(self, part):

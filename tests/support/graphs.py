@@ -14,7 +14,10 @@ PARAMETERS, UNITS = 5, 2
 DESIGNS, ANGLES = 6, 3
 DIGITS = 5000
 """Bits of exact values: sums of the largest and smallest numbers cancel."""
-OPERATIONS = [
+OPERATIONS = (
+    *("+", "-", "*", "/", "+", "-", "*", "/", "square-root", "squares", "root", "guard", "apart"),
+    *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus"),
+)
     "+",
     "-",
     "*",
@@ -92,7 +95,8 @@ def _with_rest(x, y, other):
 def exactly(nodes, inputs):
     """Values of recorded nodes as enclosures; None where there is none, NaN where it is not known whether there is.
 
-    Nothing guards divisors and nothing is moved off zero; lengths have no rest.
+    Nothing guards divisors and nothing is moved off zero; lengths have no rest. What cancels, as a root over itself that
+    may truly be none, has no value here though bounds count it as one.
     """
     from flint import arb
 
