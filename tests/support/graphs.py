@@ -18,29 +18,6 @@ OPERATIONS = (
     *("+", "-", "*", "/", "+", "-", "*", "/", "square-root", "squares", "root", "guard", "apart"),
     *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus"),
 )
-    "+",
-    "-",
-    "*",
-    "/",
-    "+",
-    "-",
-    "*",
-    "/",
-    "square-root",
-    "squares",
-    "root",
-    "guard",
-    "apart",
-    "abs",
-    "sign",
-    "sin",
-    "cos",
-    "atan",
-    "held",
-    "total",
-    "rest",
-    "minus",
-]
 
 
 def recipe(random, count):
@@ -95,8 +72,8 @@ def _with_rest(x, y, other):
 def exactly(nodes, inputs):
     """Values of recorded nodes as enclosures; None where there is none, NaN where it is not known whether there is.
 
-    Nothing guards divisors and nothing is moved off zero; lengths have no rest. What cancels, as a root over itself that
-    may truly be none, has no value here though bounds count it as one.
+    Nothing guards divisors and nothing is moved off zero; lengths have no rest. What cancels, as a root over itself
+    that may truly be none, has no value here though bounds count it as one.
     """
     from flint import arb
 
