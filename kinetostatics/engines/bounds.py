@@ -153,9 +153,12 @@ class Bounds:
         return self._graph.node("divisor", value if floor is None else value - floor, 0.0)
 
     def over(self, part):
-        """Bound on one over the magnitude of the exact value."""
+        """Bound on one over the magnitude of the exact value; none where that is too large for a double."""
+        if not isinstance(part, Node):
+            return 1.0 / abs(part)
         if part not in self._over:
-            self._over[part] = 1.0 / self.clear(part) if isinstance(part, Node) else 1.0 / abs(part)
+            clear = self.clear(part)
+            self._over[part] = self.fused(0.0, clear, 1.0 / clear)
         return self._over[part]
 
     def is_dust(self, part):

@@ -11,12 +11,14 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
-from .bounds import SAFE, Error, fused, is_scaling, is_zero
+from .bounds import SAFE, Bounds, Error, fused, is_scaling, is_zero
 from .functions import ULP, moved_apart
 from .trace import BY_ANGLE, INPUTS, Graph, Node
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
+DIVIDING = ("/", "sqrt", "root", "divisor")
+"""Operations that have pivots."""
 NO_POWER = 2.0**-60
 """Stands for the power 0 of a pivot with a guard, so that a bound is infinite where that acts."""
 
@@ -47,10 +49,12 @@ class Counted:
     def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
         self._graph, self._inputs, self._dust = graph, inputs or {}, dust or 0.0
         self._lost = ROUNDED * self._dust
+        self._by_design = Bounds(graph, inputs, dust=dust)
         self._relative: dict[Node, Relative | None] = {}
         self._pivots: dict[Node, Any] = {}
         self._guards: dict[Node, dict[Node, None]] = {}
         self._squares: set[Any] = set()
+        self._divisors: set[Any] = set()
         self._reciprocals: dict[Node, Any] = {}
         self._caps: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
@@ -59,6 +63,7 @@ class Counted:
     def count(self, nodes):
         """Find what is relative among nodes in the order of computing."""
         self._squares.update(node.arguments[0] for node in nodes if node.operation in ("sqrt", "root"))
+        self._divisors.update(node.arguments[node.operation == "/"] for node in nodes if node.operation in DIVIDING)
         for node in nodes:
             self._tell_reciprocal(node)
         for node in nodes:
@@ -184,10 +189,10 @@ class Counted:
         if node.operation != "/" or isinstance(node.arguments[0], Node):
             return
         above, below = node.arguments
-        over = self.size(node) * (1.0 / abs(above)) if above else None
-        if below in self._squares:
+        if below in self._squares or abs(above) < 1.0:  # that may be too small for a double
             return
-        while over is not None and isinstance(below, Node) and below not in self._reciprocals:
+        over = self.size(node) * (1.0 / abs(above))
+        while isinstance(below, Node) and below not in self._reciprocals:
             self._reciprocals[below] = over
             if below.operation in ("sqrt", "root"):
                 over = over * over
@@ -196,15 +201,19 @@ class Counted:
             below = below.arguments[0]
 
     def cap(self, part):
-        """A magnitude not less than a value's: of its design if possible."""
+        """A magnitude not less than a value's: of its design if possible, then not less than the exact one's either."""
         if not isinstance(part, Node):
             return abs(part)
         if part not in self._caps:
-            found = None
-            if part.varies == BY_ANGLE and part.operation not in INPUTS:
-                found = self._cap(part.operation, part.arguments)
+            found = self._cap(part.operation, part.arguments) if varies(part) else self._cap_by_design(part)
             self._caps[part] = self.size(part) if found is None or varies(found) else found
         return self._caps[part]
+
+    def _cap_by_design(self, part):
+        """One that a design fixes is zero where its parts cancel, or are too small, and may truly be another."""
+        if (found := self.relative(part)) is not None:
+            return None if found.dust is None else self.fused(ROUNDED, found.dust, self.size(part))
+        return plus(self.size(part), *self._by_design.of([part]))
 
     def _cap(self, kind, parts):
         if kind in ("sin", "cos"):

@@ -37,7 +37,7 @@ from collections import Counter
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
-from .bounds import DUST, SAFE, Bounds, is_scaling, is_zero
+from .bounds import DUST, SAFE, is_scaling, is_zero
 from .counted import ROUNDED, Counted, varies
 from .functions import ULP, beside_one, moved_apart
 from .trace import BY_DESIGN, Node, needed
@@ -82,7 +82,6 @@ class RunningBounds(Counted):
 
     def __init__(self, graph, inputs=None, dust=DUST):
         super().__init__(graph, inputs, dust)
-        self._by_design = Bounds(graph, inputs, dust=dust)
         self._absolute: dict[Node, Absolute] = {}
         self._bounds: dict[Node, Any] = {}
         self._coefficients: dict[Any, Any] = {}
@@ -101,8 +100,19 @@ class RunningBounds(Counted):
                 self._crossed.update(set(node.arguments))
         for node in everything:
             if self.is_absolute(node) and node not in self._absolute:
-                self._absolute[node] = self._found(node)
-        return tuple(0.0 if bound is None else bound for bound in map(self._with_reserve, outputs))
+                found = self._found(node)
+                self._absolute[node] = found._replace(terms=[*found.terms, *self.overflow(node)])
+        return tuple(0.0 if bound is None else bound for bound in map(self._of_output, outputs))
+
+    def _of_output(self, part):
+        """Of what no product is, what is lost of the bound itself may be all of it."""
+        bound, found = self._with_reserve(part), self.relative(part)
+        is_product = found is None or found.dust is not None
+        return bound if bound is None or is_product else self.summed([(1.0, bound), (1.0, self._lost)])
+
+    def overflow(self, node):
+        """Term that is no number where a pivot may be too large for a double: one over it is zero, and truly not."""
+        return [(1.0, 0.0 * self.cap(node))] if node in self._divisors else []
 
     def is_absolute(self, node):
         """Whether a value has a bound of its own."""
@@ -233,7 +243,8 @@ class RunningBounds(Counted):
         if lost is not None and varies(self.cap(part)) and reserve + own >= 1.0 and not (varies(size) or varies(lost)):
             terms[0] = size + lost, bound  # which is a rounding of the part at least
         elif lost is not None:
-            terms.append((ROUNDED * lost, self.cap(part)))
+            most = self.cap(part)
+            terms.append((ROUNDED * lost, self.larger(part) if varies(most) else most))
         return Absolute(terms, reserve)
 
     def charge(self, node, missing):

@@ -136,6 +136,9 @@ class _Local(_OfBoth):
     def larger(self, part, times=1.0):
         return times * self.size(part)
 
+    def overflow(self, node):
+        return []
+
     def is_charged(self, node):
         return super().is_charged(node) or node is self._output
 

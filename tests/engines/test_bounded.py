@@ -16,3 +16,7 @@ def test_the_bound_of_a_magnitude_covers_the_errors_of_its_components_and_its_ow
 def test_a_bound_that_is_none_is_infinite_and_that_of_a_gap_is_none():
     bounds = where_known(np.array([1.0, 2.0, np.nan]), np.array([0.1, np.nan, 0.1]))
     np.testing.assert_array_equal(bounds, [0.1, np.inf, np.nan])
+
+
+def test_a_value_too_large_for_a_double_has_no_bound():
+    assert where_known(np.array([1.0, np.inf, np.nan]), np.array([0.5, 0.5, 0.5])).tolist()[:2] == [0.5, np.inf]

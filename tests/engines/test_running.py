@@ -9,9 +9,11 @@ import kinetostatics as ks
 from kinetostatics.engines import programs
 from kinetostatics.engines.bounds import DUST
 from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, steepest
+from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers.elementary import UNIT, UNSEEN, apart, rest, sign, total
 from support.every import every
+from support.graphs import COMPILED, WAYS, Case
 from support.shipped import shipped
 
 
@@ -200,6 +202,61 @@ def test_a_sum_of_what_vanishes_with_what_turns_is_known_where_it_does(other):
     turning = graph.angle().sin()
     (bound,) = bounds_of(graph, [one * turning - other(turning, two)], [0.3, 0.1], angle=1e-9)
     assert bound < 8.0 * UNIT * 1e-9
+
+
+def test_where_the_square_of_a_root_is_too_large_for_a_double_there_is_no_bound():
+    """One over the root is computed 0, and truly 5.8e-155."""
+    graph = Graph()
+    one, tiny, huge = map(graph.parameter, range(3))
+    part = one / tiny / tiny / tiny * graph.angle()
+    share = huge / (part + part * 1.0000001).sqrt()
+    found = share, *RunningBounds(graph).of([share]), tight_bound(graph, {}, share)
+    line = programs.Program(None, found)._by_numbers
+    value, *bounds = line(np.array([1.0]), [1.2e30, 2.0e-93, 1e30], (1,))[:, 0]
+    assert value == 0.0
+    assert not np.isfinite(bounds).any()
+    assert np.isfinite(line(np.array([1.0]), [1.2e30, 3.0e-93, 1e30], (1,))).all()
+
+
+@every("first", [lambda one, angle: one, lambda one, angle: angle])
+def test_what_a_root_lost_counts_times_what_a_sum_lost_that_is_zero(first):
+    graph = Graph()
+    one, tiny, small, huge = map(graph.parameter, range(4))
+    angle = graph.angle()
+    zero = (first(one, angle) + tiny) - one  # computed 0, truly 2^-60
+    root = (small * small * (angle.sin() * angle.sin())).sqrt()  # computed 0, truly 8.4e-171
+    product = zero * root * huge
+    found = *RunningBounds(graph).of([product]), tight_bound(graph, {}, product)
+    values = [1.0, 2.0**-60, 1e-170, 1e30]
+    bounds = programs.Program(None, found)._by_numbers(np.array([1.0]), values, (1,))[:, 0]
+    assert np.all(bounds >= 2.0**-60 * 1e-170 * 1e30 * np.sin(1.0))
+
+
+@every("function", ["sin", "arctan"])
+def test_a_function_of_the_smallest_numbers_is_not_told_to_be_exact(function):
+    graph = Graph()
+    one = graph.parameter(0)
+    (bound,) = bounds_of(graph, [getattr(one, function)()], [5e-324])
+    assert bound > 0.0
+
+
+def test_a_reciprocal_of_a_tiny_number_is_none_to_tell_a_pivot_by():
+    graph = Graph()
+    one, other = map(graph.parameter, range(2))
+    part = graph.angle() * one * one * one
+    below = part - other
+    outputs = 1e-250 / below, 1e-30 / below
+    (_, bound) = bounds_of(graph, outputs, [2.0**90, 2.0**90], angle=1.0)
+    assert bound >= 3.5 * UNIT * 1e-30 / 2.0**270
+
+
+def test_no_random_graph_of_extreme_numbers_is_off_by_more_than_its_bounds(flint):
+    """Every operation, zeros, numbers of every size; many thousands: ``Case(seed).wrong`` of more seeds."""
+    assert [wrong for seed in range(60) for wrong in Case(seed).wrong(WAYS)] == []
+
+
+def test_no_random_graph_is_off_by_more_than_its_bounds_compiled(flint, numba):
+    assert [wrong for seed in range(2) for wrong in Case(seed).wrong(COMPILED)] == []
 
 
 def test_an_output_that_is_a_plain_number_is_exact():
