@@ -24,8 +24,6 @@ from .running import KNOWN, Absolute, RunningBounds
 from .trace import BY_ANGLE, INPUTS, Node, needed
 
 STRETCH = 2.0**16
-MOST = 3.0
-"""Roundings in reserve, from which on a sum has its own: more would be of parts larger than their sum."""
 SEED = 2.0**900
 """Adjoint of the output, so large that no adjoint that counts is too small for a double."""
 
@@ -79,7 +77,7 @@ class _Local(_OfBoth):
     """Bounds of first order on what operations after the last cuts add; what is before them counts as exact.
 
     Nothing is too small for a double here, no divisor or square near zero, no sign in doubt: the stretched bounds have
-    all that. They know inputs that are not exact, too. Each value has as many roundings in reserve as it needs.
+    all that. They know inputs that are not exact, too. No rounding is in reserve: each is charged where it is made.
 
     Attributes
     ----------
@@ -88,9 +86,8 @@ class _Local(_OfBoth):
 
     def __init__(self, graph, inputs, stretched, output):
         super().__init__(graph, inputs, dust=None)
-        self._stretched, self._output, self.cut = stretched, output, set()
+        self._stretched, self.cut = stretched, set()
         self._users: dict[Node, list[Node]] = {}
-        self._free: dict[Node, float] = {}
         for node in needed([output]):
             for part in node.arguments if node.varies == BY_ANGLE else ():
                 if isinstance(part, Node):
@@ -104,8 +101,6 @@ class _Local(_OfBoth):
             found = self._relative[node]
             self._relative[node] = self._unless_cut(node, None if found and found.pivots else found)
         super().count([node for node in nodes if node.varies == BY_ANGLE])
-        for node in reversed(nodes):
-            self._free[node] = self._wanted(node)
 
     def _counted(self, node):
         found = EXACT if node.operation == "sign" else super()._counted(node)
@@ -139,28 +134,11 @@ class _Local(_OfBoth):
     def overflow(self, node):
         return []
 
-    def is_charged(self, node):
-        return super().is_charged(node) or node is self._output
-
     def charge(self, node, missing):
-        return missing + self.free(node)
+        return missing
 
     def free(self, node):
-        return self._free[node]
-
-    def _wanted(self, node):
-        """Roundings that the only user of a node takes from its reserve, and that one's in turn."""
-        users = self._users.get(node, ())
-        if node in self.cut or len(users) != 1 or not self.is_absolute(users[0]) or users[0] in self._inputs:
-            return 0.0
-        (user,) = users
-        wanted = self._free[user]
-        if user.operation in ("*", "/"):
-            (found,) = (self.relative(part) for part in user.arguments if part is not node)
-            wanted = 0.5 * (wanted + 1.0) if found is None else wanted + found.roundings + 1.0
-        elif user.operation in "+-" and len(user.arguments) == 2 and not self.is_charged(user):
-            wanted += 1.0
-        return min(wanted, MOST)
+        return 0.0
 
 
 def _divides(node, user):
