@@ -170,7 +170,7 @@ class RunningBounds(Counted):
         reserve = min(
             (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=free
         )
-        is_charged = reserve < 0.0 or node.operation == "total"
+        is_charged = reserve < 0.0 or self.is_charged(node)
         moved = moved_apart(parts)
         terms = [(1.0, self._lost)]
         if moved is not None:
@@ -188,6 +188,10 @@ class RunningBounds(Counted):
             lost = (2.0 * (len(node.arguments) - 1)) ** 3 * UNIT * UNIT * ROUNDED
             terms += [(lost, self.size(part)) for part in parts]
         return Absolute(terms, free if is_charged else reserve)
+
+    def is_charged(self, node):
+        """Whether a sum's own rounding is charged to itself."""
+        return node.operation == "total"
 
     def of_function(self, whole):
         """Terms of a function that changes no faster than its argument, which has a whole bound."""

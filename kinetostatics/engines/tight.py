@@ -86,7 +86,7 @@ class _Local(_OfBoth):
 
     def __init__(self, graph, inputs, stretched, output):
         super().__init__(graph, inputs, dust=None)
-        self._stretched, self.cut = stretched, set()
+        self._stretched, self._output, self.cut = stretched, output, set()
         self._users: dict[Node, list[Node]] = {}
         for node in needed([output]):
             for part in node.arguments if node.varies == BY_ANGLE else ():
@@ -133,6 +133,9 @@ class _Local(_OfBoth):
 
     def overflow(self, node):
         return []
+
+    def is_charged(self, node):
+        return super().is_charged(node) or node is self._output
 
     def charge(self, node, missing):
         return missing
