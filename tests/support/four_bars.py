@@ -5,6 +5,7 @@ from the cosine rule with 50 digits, rates and accelerations from the Jacobian o
 linear system with three equations for every body.
 """
 
+import warnings
 from dataclasses import dataclass, field
 
 import mpmath as mp
@@ -49,7 +50,9 @@ class FourBar:
             **{name: ks.Link(link.mass, link.centre, link.inertia) for name, link in self.links.items()},
         )
         motion = {"crank_speed": self.speed, "crank_acceleration": self.acceleration} | motion
-        return ks.solve(mechanism, angle, loads=ks.Gravity(*self.gravity), **motion)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ks.HintWarning)  # random inertias may look like slips
+            return ks.solve(mechanism, angle, loads=ks.Gravity(*self.gravity), **motion)
 
 
 def results(s):
