@@ -34,15 +34,15 @@ def fused(nodes) -> dict[Node, Fused]:
     for node in nodes:
         if node.varies < BY_ANGLE:
             continue
-        kind, parts = node.operation, [part for part in node.arguments if _varies(part)]
+        kind, moving = node.operation, [part for part in node.arguments if _varies(part)]
         is_sum, minus = kind in ("+", "-", "held"), -1 if kind == "-" else 1
-        depths[node] = 1 + max((depths[part] for part in parts), default=0)
-        if len(parts) == 1 and (is_sum or kind == "*"):
-            ways[node] = ways[parts[0]]
+        depths[node] = 1 + max((depths[part] for part in moving), default=0)
+        if len(moving) == 1 and (is_sum or kind == "*"):
+            ways[node] = ways[moving[0]]
         else:
-            key = "+" if is_sum else kind, *sorted(ways[part] for part in parts)
+            key = "+" if is_sum else kind, *sorted(ways[part] for part in moving)
             ways[node] = numbers.setdefault(key, len(numbers))
-        held[node] = NONE.union(*(held[part] for part in parts)) if is_sum else NONE
+        held[node] = NONE.union(*(held[part] for part in moving)) if is_sum else NONE
         if kind == "*":
             held[node] = frozenset((ways[node],))
         if is_sum and len(node.arguments) == 2:
@@ -56,6 +56,21 @@ def fused(nodes) -> dict[Node, Fused]:
             if choices:
                 found[node] = max(choices, key=lambda choice: choice[0])[1]
     return found
+
+
+def parts(node, sums):
+    """Nodes that a node is computed from, as it is or as a product and the rest."""
+    found = (sums[node].one, sums[node].other, sums[node].rest) if node in sums else node.arguments
+    return [part for part in found if isinstance(part, Node)]
+
+
+def still_needed(nodes, outputs, sums):
+    """Nodes without products that are in their sums only."""
+    wanted = {part for part in outputs if isinstance(part, Node)}
+    for node in reversed(nodes):
+        if node in wanted:
+            wanted.update(parts(node, sums))
+    return [node for node in nodes if node in wanted]
 
 
 def _product(part):

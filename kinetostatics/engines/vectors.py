@@ -1,8 +1,8 @@
 """Arithmetic at crank angles as machine code of vectors: a line of it is run once, on operands that write it down.
 
-What is computed at one crank angle mostly waits, one result for the other, as roots and quotients take long; the next
-angles are too far off in the program for a processor to begin them. So operations, unless there are many, are of two of
-its vectors each, and no compiler has to guess whether that is worth while.
+What is computed at one crank angle mostly waits, one result for the other, as roots and quotients take long. Processors
+with the largest vectors look so far ahead that they begin the next ones meanwhile; of shorter vectors two go together,
+unless there are many operations. So no compiler has to guess whether that is worth while.
 """
 
 import inspect
@@ -14,11 +14,11 @@ from types import FunctionType
 from ..numbers.elementary import ROUNDING, sum_and_rest, summed
 from ..version import __version__
 
-WIDTHS = {"+avx512f": 8, "+avx": 4}
-"""By feature of a processor, best first: how many numbers its vectors hold."""
-LEAST = 2
-"""How many without these features."""
-MANY = 250
+VECTORS = {"+avx512f": (8, 1), "+avx": (4, 2)}
+"""By feature of a processor, best first: how many numbers its vectors hold, and how many vectors go together."""
+LEAST = (2, 2)
+"""The same without these features."""
+MANY = 400
 """Values at each crank angle of which there are enough to compute while others wait: one vector then goes alone."""
 CALLED = {"sin": "llvm.sin.{}", "cos": "llvm.cos.{}", "atan": "atan"}
 """Functions that are called for each number by itself, and what numba calls them."""
@@ -94,8 +94,8 @@ def lanes_of(line) -> int:
 
     told = vars(config)["CPU_FEATURES"]
     features = binding.get_host_cpu_features().flatten() if told is None else told
-    width = next((width for name, width in WIDTHS.items() if name in features.split(",")), LEAST)
-    return width if line.__code__.co_nlocals > MANY else 2 * width
+    size, together = next((found for name, found in VECTORS.items() if name in features.split(",")), LEAST)
+    return size if line.__code__.co_nlocals > MANY else size * together
 
 
 class _Rows:

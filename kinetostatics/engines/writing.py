@@ -1,7 +1,7 @@
 """Source of programs from recorded arithmetic: a loop for numba, a line of arrays, a line of plain numbers."""
 
 from ..numbers.elementary import ROUNDING, SPLIT
-from .fusing import fused
+from .fusing import fused, parts, still_needed
 from .trace import BY_ANGLE, Node, needed
 from .vectors import edition
 
@@ -148,10 +148,10 @@ def loop(outputs, fuse=True, kind="float64") -> str:
     nodes = needed(outputs)
     sums = fused(nodes) if fuse else {}
     if sums:
-        nodes = _still_needed(nodes, outputs, sums)
+        nodes = still_needed(nodes, outputs, sums)
     by_design = [node for node in nodes if node.varies < BY_ANGLE]
     by_angle = [node for node in nodes if _is_computed_by_angle(node)]
-    used = {part for node in by_angle for part in _parts(node, sums)}
+    used = {part for node in by_angle for part in parts(node, sums)}
     used.update(part for part in outputs if isinstance(part, Node))
     fixed = "".join(f"{_name(node)}, " for node in by_design if node in used)
     operations = {node.operation for node in by_design}
@@ -167,24 +167,9 @@ def loop(outputs, fuse=True, kind="float64") -> str:
     return header + "\n".join(filter(None, lines)) + LOOP_TYPE.replace("float64", kind) + "\n".join(body) + "\n"
 
 
-def _parts(node, sums):
-    """What a node is computed from, as it is or as a product and the rest."""
-    parts = (sums[node].one, sums[node].other, sums[node].rest) if node in sums else node.arguments
-    return [part for part in parts if isinstance(part, Node)]
-
-
-def _still_needed(nodes, outputs, sums):
-    """Nodes without products that are in their sums only."""
-    wanted = {part for part in outputs if isinstance(part, Node)}
-    for node in reversed(nodes):
-        if node in wanted:
-            wanted.update(_parts(node, sums))
-    return [node for node in nodes if node in wanted]
-
-
-def _fused(node, parts):
-    one, other, rest = (_name(part) for part in (parts.one, parts.other, parts.rest))
-    signs = ["-" if sign < 0 else "" for sign in (parts.sign, parts.rest_sign)]
+def _fused(node, found):
+    one, other, rest = (_name(part) for part in (found.one, found.other, found.rest))
+    signs = ["-" if sign < 0 else "" for sign in (found.sign, found.rest_sign)]
     return f"v{node.index} = fma({signs[0]}{one}, {other}, {signs[1]}{rest})"
 
 
@@ -275,10 +260,11 @@ def _is_computed_by_angle(node):
 
 def _is_given(node):
     """Whether a node's value is handed in."""
-    return node.operation in ("angle", "table") or _is_of_angle(node)
+    return node.operation in ("angle", "table") or is_of_angle(node)
 
 
-def _is_of_angle(node):
+def is_of_angle(node):
+    """Whether a node is the sine or cosine of the crank angle."""
     return node.operation in ("sin", "cos") and node.arguments[0].operation == "angle"
 
 
@@ -304,7 +290,7 @@ def _expression(node, inputs):
     kind = node.operation
     if kind in ("angle", "parameter", "table"):
         return inputs[kind].format(*node.arguments)
-    if _is_of_angle(node):
+    if is_of_angle(node):
         return inputs[kind]
     names = [_name(part) for part in node.arguments]
     if kind in ("+", "-", "*", "/"):

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from ..engines import loops, programs
+from ..engines import loops, programs, sharing
 from ..errors import NotGivenError, ParameterError
 from ..machine.friction import PASSES
 from ..machine.loads import TURN, refusals
@@ -96,6 +96,7 @@ def _by_loop(solution, outputs, count, found, threads):
     angle = np.array(solution.crank_angle, ndmin=2)
     tables = loops.table_of_rows(program.rows(state, leaves), solution.shape)
     parameters = loops.table_of_parameters(leaves.numbers, solution.shape[:-1])
+    loop, tables = sharing.shared(program, leaves.numbers, angle, tables, count)
     given = angle, *loops.turn(angle), parameters, tables
     first = np.cumsum([0, *program.recording.widths])
     rows = [first[names.index(item.quantity)] for item in outputs]
@@ -105,7 +106,7 @@ def _by_loop(solution, outputs, count, found, threads):
     step = max(block, -(-count // (SHARES * threads)))
 
     def fill(start):
-        passes(program.loop, given, loops.memory(block, *size), found, start, min(start + step, count))
+        passes(loop, given, loops.memory(block, *size), found, start, min(start + step, count))
 
     return fill, step
 

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from kinetostatics.engines import compiled, loops, programs, vectors, writing
-from kinetostatics.engines.operations import BY_DESIGN
+from kinetostatics.engines.operations import BY_DESIGN, made
 from kinetostatics.engines.record import Recording
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers import elementary
+from support.every import every
 
 SPECIAL = [0.0, -0.0, 1.0, -1.0, 0.3, 5e-324, -5e-324, 1e-300, 1e300, math.inf, -math.inf, math.nan, -4e-15, -5e-15]
 
@@ -86,9 +87,11 @@ def test_angles_and_tables_of_each_design_are_its_own(numba):
     assert np.array_equal(found[1], rows[0] * loops.turn(angles)[1])
 
 
-def test_long_lines_take_one_vector_at_a_time_and_others_two(numba):
-    short, long = (compiled.loaded(writing.loop(chain(count))).line for count in (20, vectors.MANY + 20))
-    assert vectors.lanes_of(short) == 2 * vectors.lanes_of(long)
+@every("features, short, long", [("+sse2,+avx", 8, 4), ("+avx,+avx512f", 8, 8), ("+sse2", 4, 2)])
+def test_two_short_vectors_go_together_but_in_long_lines(numba, monkeypatch, features, short, long):
+    monkeypatch.setattr(numba.config, "CPU_FEATURES", features)
+    lines = (made(writing.line(chain(count)), BY_DESIGN) for count in (20, vectors.MANY + 20))
+    assert list(map(vectors.lanes_of, lines)) == [short, long]
 
 
 def chain(count):

@@ -1,0 +1,96 @@
+"""What the designs of a sweep have in common, computed once: values at crank angles behind which no varied number is.
+
+Where masses, springs or loads vary the motion does not. A program is parted in two: one of what is common, whose
+results are rows of tables to the other. Sums are fused with products as in the whole, so all results are the same to
+the last bit.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from .compiled import loaded
+from .fusing import fused, parts, still_needed
+from .programs import Program
+from .trace import BY_ANGLE, INPUTS, Graph, Node, needed, operations
+from .writing import is_of_angle, loop
+
+VALUES = 10_000_000
+"""Values over designs and angles from which two loops are made in place of one."""
+SHARE = 0.25
+"""Least share of operations that is common."""
+
+
+def shared(program, numbers, angle, tables, count):
+    """A compiled loop for designs alike but for some numbers, and the tables it takes.
+
+    Parameters
+    ----------
+    program : Program
+    numbers : sequence of float or array (designs, 1)
+        Those of its recording.
+    angle : array (1 or designs, N)
+    tables : array (T, 1 or designs, N)
+    count : int
+        How many designs there are.
+    """
+    varied = {place for place, number in enumerate(numbers) if np.ndim(number)}
+    if count * angle.shape[1] < VALUES or len(angle) > 1 or tables.shape[1] > 1:
+        return program.loop, tables
+    common, rest = apart(program.outputs, varied, len(tables))
+    if operations(common) < SHARE * operations(program.outputs):
+        return program.loop, tables
+    fixed = [0.0 if np.ndim(number) else number for number in numbers]
+    rows = Program(program.recording, common).by_loop(angle[0], fixed, list(tables[:, 0]), angle.shape[1:])
+    return loaded(loop(rest, fuse=False)).loop, np.concatenate([tables.reshape(-1, *angle.shape), rows[:, None]])
+
+
+def apart(outputs, varied, first=0):
+    """Nodes that designs have in common, and outputs in a graph that has them as rows of tables.
+
+    Parameters
+    ----------
+    outputs : sequence of Node or float
+    varied : set of int
+        Places of the parameters in which designs differ.
+    first : int
+        Number of the first of these rows.
+    """
+    nodes = needed(outputs)
+    sums = fused(nodes)
+    nodes = still_needed(nodes, outputs, sums)
+    own: set[Node] = set()
+    for node in nodes:
+        if (node.operation == "parameter" and node.arguments[0] in varied) or not own.isdisjoint(parts(node, sums)):
+            own.add(node)
+    asked = {part for node in nodes if node in own for part in parts(node, sums)}.union(outputs)
+    common = [node for node in nodes if node in asked and _is_common(node, own)]
+    rows = {node: first + place for place, node in enumerate(common)}
+    graph = Graph()
+    copies: dict[Node, Any] = {}
+
+    def copied(part):
+        return copies[part] if isinstance(part, Node) else part
+
+    for node in nodes:
+        if node in rows:
+            copies[node] = graph.row(rows[node])
+        elif node.operation in INPUTS:
+            copies[node] = Node(graph, node.operation, node.arguments, node.varies)
+        elif node in sums and node in own:
+            copies[node] = _fused(graph, sums[node], copied)
+        elif node in own or node.varies < BY_ANGLE or is_of_angle(node):
+            copies[node] = graph.node(node.operation, *map(copied, node.arguments))
+    return tuple(common), tuple(map(copied, outputs))
+
+
+def _is_common(node, own):
+    """Whether a node is computed at each crank angle, and that from what is common only."""
+    return node.varies == BY_ANGLE and node not in own and node.operation not in INPUTS and not is_of_angle(node)
+
+
+def _fused(graph, parts: Any, copied):
+    one, rest = copied(parts.one), copied(parts.rest)
+    return graph.node(
+        "fma", one if parts.sign > 0 else -one, copied(parts.other), rest if parts.rest_sign > 0 else -rest
+    )
