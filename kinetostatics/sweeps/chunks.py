@@ -24,8 +24,6 @@ from ..results.turn import repeating_problem
 from ..solution.scene import Scene, odd
 from . import together
 
-PROBED = 64
-"""Designs among which one that can be built is looked for, to try a sweep before it begins."""
 NEGLIGIBLE = 1e-12
 """Share of the reference's number below which a design's counts as zero, as in `comparison`."""
 FEWEST = 12
@@ -89,10 +87,16 @@ class Job:
         own = [(self.make, self.outputs)]
         return [*own, (self.make_reference, [self.outputs[place] for place in self.ratios])] if self.ratios else own
 
-    def values(self, frame):
+    def given(self, frame):
+        """Numbers (designs, columns) of designs, in SI."""
+        rows = [frame[column].to_numpy(dtype=float) * scale for column, _, scale in self.columns]
+        return np.reshape(rows, (len(rows), len(frame))).T
+
+    def values(self, given):
         """What to call the functions with for some designs, in turn: arrays, and plain numbers for a single design."""
-        arrays = {name: frame[column].to_numpy(dtype=float)[:, None] * scale for column, name, scale in self.columns}
-        return [arrays] if len(frame) > 1 else [arrays, {name: float(value[0, 0]) for name, value in arrays.items()}]
+        names = (name for _, name, _ in self.columns)
+        arrays = dict(zip(names, given.T.copy()[..., None], strict=True))  # which the functions may change
+        return [arrays] if len(given) > 1 else [arrays, {name: float(value[0, 0]) for name, value in arrays.items()}]
 
 
 def run_chunk(job, frame) -> pd.DataFrame:
@@ -100,9 +104,10 @@ def run_chunk(job, frame) -> pd.DataFrame:
     numbers, reasons = np.empty((len(job.outputs), len(frame))), np.empty(len(frame), dtype=object)
     step = max(1, together.VALUES // job.angles if job.engine == "numpy" else len(frame))
     step = min(step, together.DESIGNS) if job.bent else step
+    given = job.given(frame)
     for start in range(0, len(frame), step):
         part = slice(start, start + step)
-        numbers[:, part], reasons[part] = _compared(job, frame.iloc[part])
+        numbers[:, part], reasons[part] = _compared(job, given[part])
     return rows(job, frame, numbers, reasons)
 
 
@@ -126,7 +131,7 @@ def tried(job, designs, engines):
     few = None if job.angles >= FEWEST else f"angles must be at least {FEWEST}, got {job.angles}: they miss every peak"
     checks.require("sweep", few)
     for row in range(len(designs)):
-        *_, plain = job.values(designs.iloc[row : row + 1])
+        *_, plain = job.values(job.given(designs.iloc[row : row + 1]))
         try:
             scenes = [_scene(make, plain) for make, _ in job.sides]
         except _NoSceneError:
@@ -192,9 +197,9 @@ def _programs(job, solutions):
 # Designs set apart
 
 
-def _compared(job, frame):
+def _compared(job, given):
     """Numbers (outputs, designs), ratios among them, and reasons (designs,), empty for designs that have numbers."""
-    (own, reasons), *reference = (_reduced(make, job, frame, outputs) for make, outputs in job.sides)
+    (own, reasons), *reference = (_reduced(make, job, given, outputs) for make, outputs in job.sides)
     numbers, reasons = np.array(own), np.array(reasons)
     for above, failing in reference:
         below = numbers[job.ratios]
@@ -209,26 +214,26 @@ def _compared(job, frame):
     return numbers, reasons
 
 
-def _reduced(make, job, frame, outputs, earlier=None, wrong=False):
+def _reduced(make, job, given, outputs, earlier=None, wrong=False):
     """Numbers of a scene (outputs, designs) and reasons (designs,) why it cannot be made or solved.
 
     `earlier` are the numbers from half as many crank angles; `wrong` tells that arrays of a single design are refused.
     """
-    count = len(frame)
+    count = len(given)
     if count == 1:
-        return _alone(make, job, frame, outputs, earlier, wrong)
-    (values,) = job.values(frame)
+        return _alone(make, job, given, outputs, earlier, wrong)
+    (values,) = job.values(given)
     try:
         scene = _scene(make, values)
     except Exception as error:
         wrong = _told(error, count)
         if wrong is None:
-            wrong = _unbuildable(make, job, frame)
+            wrong = _unbuildable(make, job, given)
         apart = np.flatnonzero(wrong if wrong.any() else ~wrong)  # all that can be built by themselves only
         parts = [np.delete(np.arange(count), apart), *apart[:, None]]
     else:
         try:
-            return _settled(make, job, frame, outputs, together.run(scene, job, count, outputs), earlier)
+            return _settled(make, job, given, outputs, together.run(scene, job, count, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -240,16 +245,15 @@ def _reduced(make, job, frame, outputs, earlier=None, wrong=False):
         if part.size:
             known = None if earlier is None else earlier[:, part]
             refused = part.size == 1 and wrong is not None and bool(wrong[part[0]])
-            some = frame.iloc[part[0] : part[0] + 1] if part.size == 1 else frame.iloc[part]  # a slice is soon made
-            numbers[:, part], reasons[part] = _reduced(make, job, some, outputs, known, refused)
+            numbers[:, part], reasons[part] = _reduced(make, job, given[part], outputs, known, refused)
     return numbers, reasons
 
 
-def _alone(make, job, frame, outputs, earlier, wrong):
+def _alone(make, job, given, outputs, earlier, wrong):
     """The same for a single design, as an array of one, so that it does not matter which designs come together."""
-    for values in job.values(frame)[wrong:]:
+    for values in job.values(given)[wrong:]:
         try:
-            return _settled(make, job, frame, outputs, together.run(_scene(make, values), job, 1, outputs), earlier)
+            return _settled(make, job, given, outputs, together.run(_scene(make, values), job, 1, outputs), earlier)
         except (MissingLibraryError, OSError):
             raise
         except Exception as error:
@@ -257,27 +261,27 @@ def _alone(make, job, frame, outputs, earlier, wrong):
     return np.full((len(outputs), 1), np.nan), np.array([reason], dtype=object)
 
 
-def _settled(make, job, frame, outputs, found, earlier):
+def _settled(make, job, given, outputs, found, earlier):
     """Numbers and reasons, those of designs that so many crank angles do not tell from twice as many."""
     numbers, reasons, rough, nearest = found
     numbers, reasons, rough = np.array(numbers), np.array(reasons), np.array(rough)
     near = np.flatnonzero(~np.isnan(nearest) & (reasons == ""))
-    narrow = np.zeros(len(frame), dtype=bool)
+    narrow = np.zeros(len(given), dtype=bool)
     if near.size:
-        reasons[near], narrow[near] = _near_limits(make, job, frame.iloc[near], nearest[near], outputs)
+        reasons[near], narrow[near] = _near_limits(make, job, given[near], nearest[near], outputs)
     if earlier is not None:
         with np.errstate(invalid="ignore"):
             rough &= abs(numbers - earlier) > SETTLED * abs(numbers)
     rough &= (reasons == "") & ~narrow
     if rough.any():
-        rough &= ~_noise(make, job, frame, outputs, rough)
+        rough &= ~_noise(make, job, given, outputs, rough)
     again = np.flatnonzero(rough.any(axis=0) | (narrow & (reasons == "")))
     if again.size and (earlier is None or 2 * job.angles <= MOST):
         finer = replace(job, angles=2 * job.angles, straight=job.straight / CLOSER)
         step = together.DESIGNS if job.bent else again.size
         for start in range(0, again.size, step):
             some = again[start : start + step]
-            numbers[:, some], reasons[some] = _reduced(make, finer, frame.iloc[some], outputs, numbers[:, some])
+            numbers[:, some], reasons[some] = _reduced(make, finer, given[some], outputs, numbers[:, some])
     else:
         for row in again:
             wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]
@@ -289,37 +293,35 @@ def _settled(make, job, frame, outputs, found, earlier):
     return numbers, reasons
 
 
-def _noise(make, job, frame, outputs, asked):
+def _noise(make, job, given, outputs, asked):
     """Which outputs (outputs, designs) of those asked for are of what changes by rounding of its terms only."""
     found = np.zeros(asked.shape, dtype=bool)
     rows, designs = np.flatnonzero(asked.any(axis=1)), np.flatnonzero(asked.any(axis=0))
     wanted = [outputs[row] for row in rows]
     for start in range(0, designs.size, together.DESIGNS):
         some = designs[start : start + together.DESIGNS]
-        scene = _scene(make, job.values(frame.iloc[some])[-1])
+        scene = _scene(make, job.values(given[some])[-1])
         found[np.ix_(rows, some)] = together.noise(scene, job, wanted)
     return found
 
 
-def _near_limits(make, job, frame, nearest, outputs):
+def _near_limits(make, job, given, nearest, outputs):
     """Reasons of designs that do not close, or lose all digits, between crank angles, and whether peaks hide there.
 
     Looked at anew around the crank angle at which each is nearest to a limit position.
     """
-    values = job.values(frame)[-1]
-    scene = _scene(make, values)
+    scene = _scene(make, job.values(given)[-1])
     step = scene.period / job.angles
-    shape = len(frame), 1
-    angle = np.broadcast_to(nearest[:, None], shape) + step * np.linspace(-1.5, 1.5, 25)
+    angle = nearest[:, None] + step * np.linspace(-1.5, 1.5, 25)
     around = np.broadcast_arrays(*together.solution_of(scene, angle).closure)
     margin, place, bend = lowest(np.array(around).min(axis=0), step / 8)
     place = np.round(angle[:, 12] + place, 9) % scene.period
-    reasons = np.full(len(frame), "", dtype=object)
+    reasons = np.full(len(given), "", dtype=object)
     for row in np.flatnonzero(margin < -ROUNDING):
         where = f"between the crank angles, at {np.degrees(place[row]):.6g} deg"
         reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
     if all(quantity(scene, item.quantity).unit == "m" for item in outputs):
-        return reasons, np.zeros(len(frame), dtype=bool)
+        return reasons, np.zeros(len(given), dtype=bool)
     with np.errstate(all="ignore"):
         lost = together.solution_of(scene, np.column_stack([place, angle])).condition.max(axis=-1) >= NO_DIGIT
         narrow = step > np.sqrt(2.0 * np.maximum(margin, 0.0) / bend)
@@ -334,15 +336,15 @@ def _told(error, count):
     return np.ravel(wrong) if np.size(wrong) == count and np.any(wrong) else None
 
 
-def _unbuildable(make, job, frame):
+def _unbuildable(make, job, given):
     """Which designs cannot be made, found by halves."""
-    for values in job.values(frame):
+    for values in job.values(given):
         try:
             make(values)
         except Exception:
             continue
-        return np.zeros(len(frame), dtype=bool)
-    if len(frame) == 1:
+        return np.zeros(len(given), dtype=bool)
+    if len(given) == 1:
         return np.ones(1, dtype=bool)
-    halves = np.array_split(np.arange(len(frame)), 2)
-    return np.concatenate([_unbuildable(make, job, frame.iloc[half]) for half in halves])
+    halves = np.array_split(np.arange(len(given)), 2)
+    return np.concatenate([_unbuildable(make, job, given[half]) for half in halves])

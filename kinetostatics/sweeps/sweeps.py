@@ -23,7 +23,7 @@ from ..numbers.headings import parted, si_columns
 from ..results.reductions import Output, parsed
 from ..solution.parameters import unknown
 from ..solution.scene import WORTH_COMPILING, Scene
-from .chunks import FAILED, LEAST, PROBED, Job, tried
+from .chunks import FAILED, LEAST, Job, tried
 from .dataset import Dataset, Parts
 from .identity import identity
 from .workers import ATTEMPTS, Workers, computed
@@ -32,6 +32,8 @@ __all__ = ["FAILED", "sweep"]
 
 CHUNK, WIDE = 10_000, 50_000
 """Designs computed together, unless told, and where they take little time and memory and nobody waits for them."""
+PROBED = 64
+"""Designs among which one that can be built is looked for, to try a sweep before it begins."""
 
 
 def sweep(

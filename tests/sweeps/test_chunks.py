@@ -130,3 +130,20 @@ def test_no_design_fails_by_rounding_of_what_is_zero(reduction):
     if reduction != "largest_at":
         assert (found.iloc[:, 3].abs() < 1e-13 * size).all()
     np.testing.assert_array_equal(found["largest A [N]"], size)
+
+
+def test_functions_may_change_the_arrays_they_are_called_with():
+    def changing(crank, mass):
+        crank *= 2.0
+        return factories.pump(crank, mass)
+
+    outputs = ["largest O", "harmonic_2 O"]
+    doubled = DESIGNS.assign(**{"crank [mm]": 2.0 * DESIGNS["crank [mm]"]})
+    found, expected = sweep(changing, DESIGNS, outputs), sweep(factories.pump, doubled, outputs)
+    pd.testing.assert_frame_equal(found.iloc[:, 2:], expected.iloc[:, 2:], rtol=1e-12)
+
+
+def test_a_sweep_over_nothing_is_of_one_design_each_time():
+    found = sweep(SAW, pd.DataFrame(index=range(3)), OUTPUTS, variant="plain", angles=180)
+    alone = sweep(SAW, pd.DataFrame({"crank_length": [0.3]}), OUTPUTS, variant="plain", angles=180)
+    assert_equal(found, pd.concat([alone.iloc[:, 1:]] * 3, ignore_index=True))
