@@ -25,8 +25,9 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import put_together, with_fields
 from .bounds import Error
 from .gaping import Gaps
+from .lean import LeanGraph
 from .steep import SteepTable, not_known, of_pieces
-from .trace import Graph, LeanGraph, Node, needed, operations
+from .trace import Graph, Node, needed, operations
 
 WITHOUT_GAPS = ("closure", *CHECKS)
 """Quantities that tell of gaps themselves."""

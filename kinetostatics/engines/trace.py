@@ -128,7 +128,7 @@ class Graph(list):
         factors = [part for part in arguments if isinstance(part, Node) or part != 1.0]
         if operation == "*" and len(factors) == 1:
             return factors[0]
-        if operation == "/" and _is_number(arguments[1], 1.0):
+        if operation == "/" and is_number(arguments[1], 1.0):
             return arguments[0]
         key = (operation, *((part.index,) if isinstance(part, Node) else part for part in arguments))
         if key not in self._known:
@@ -147,142 +147,7 @@ class Graph(list):
         return Node(self, "table", (place,), BY_ANGLE)
 
 
-SMALLEST = 2.0**-1022
-"""What is smaller may have no reciprocal."""
-
-
-class LeanGraph(Graph):
-    """The same with fewer operations at each crank angle, and the same values but for rounding.
-
-    Quotients by a root are products with its reciprocal, which they share; those by a design's number leave that to the
-    design. Neither has an infinite reciprocal, as what is tiny has, so that zero by it stays zero. Products leave signs
-    to sums, to the last bit. A zero that is added stays, for it gives a zero its sign, on which friction hangs. Each is
-    decided where it is recorded, by what is there, so that a number is computed in one way whatever else is wanted.
-    """
-
-    def node(self, operation, *arguments):
-        if operation == "/":
-            return self._quotient(*arguments)
-        if operation == "sqrt" and (secant := _secant(*arguments)):
-            return abs(secant[0]) * self._over(secant[1])
-        if operation == "*":
-            left, right = arguments
-            if _is_none_of_turn(left, right) or _is_none_of_turn(right, left):
-                return 0.0
-            if is_negative(left):
-                return -self.node("*", left.arguments[0], right)
-            if is_negative(right):
-                return -self.node("*", left, right.arguments[0])
-            for one, other in ((left, right), (right, left)):
-                if isinstance(one, Node) and one.operation == "*":
-                    first, second = one.arguments
-                    if _are_inverse(first, other):
-                        return second
-                    if _are_inverse(second, other):
-                        return first
-        return super().node(operation, *arguments)
-
-    def _quotient(self, above, below):
-        if is_negative(above):
-            return -self.node("/", above.arguments[0], below)
-        if _varies(below) == BY_ANGLE:
-            if isinstance(above, Node) and above.operation == "*":
-                left, right = above.arguments
-                if below is left or below is right:
-                    return right if below is left else left
-            if _is_root(below):
-                return self.node("*", above, self._over(below))
-        elif _varies(above) == BY_ANGLE and (isinstance(below, Node) or abs(below) >= SMALLEST):
-            return self.node("*", above, self._over(below))
-        return super().node("/", above, below)
-
-    def _over(self, part):
-        """One over a part; of what a design's number multiplies, that over the rest."""
-        if not isinstance(part, Node):
-            return 1.0 / part
-        arguments = part.arguments
-        if is_negative(part):
-            return -self._over(arguments[0])
-        if part.operation == "/":
-            above, below = arguments
-            return below if _is_number(above, 1.0) else super().node("/", below, above)
-        if (
-            part.operation == "*"
-            and min(map(_varies, arguments)) < part.varies
-            and not any(_is_number(part, 0.0) for part in arguments)
-        ):
-            return self.node("*", *map(self._over, arguments))
-        return super().node("/", 1.0, part)
-
-
-def _is_root(part):
-    """Whether a part is a root, or one times a number of the design."""
-    while part.operation in ("*", "-"):
-        own = [other for other in part.arguments if _varies(other) == BY_ANGLE]
-        if len(own) > 1 or (part.operation == "-" and len(part.arguments) > 1):
-            return False
-        (part,) = own
-    return part.operation in ("divisor", "sqrt", "root")
-
-
-def _varies(part):
-    return part.varies if isinstance(part, Node) else BY_DESIGN
-
-
-def _are_inverse(one, other):
-    return _is_over(one, other) or _is_over(other, one)
-
-
-def _is_over(part, other):
-    """Whether a part is one over a node."""
-    return (
-        isinstance(part, Node)
-        and part.operation == "/"
-        and part.arguments[1] is other
-        and _is_number(part.arguments[0], 1.0)
-    )
-
-
-def _is_none_of_turn(part, other):
-    """Whether a part is zero and the other the sine or cosine of the crank angle, which is finite."""
-    return (
-        _is_number(part, 0.0)
-        and isinstance(other, Node)
-        and other.operation in ("sin", "cos")
-        and other.arguments[0].operation == "angle"
-    )
-
-
-def _secant(square):
-    """Where a square is 1 + x^2 / h^2 with h the root of (a - x) (a + x): a and h, for its root is |a| / h."""
-    one, power = _parts(square, "+")
-    if not _is_number(one, 1.0):
-        one, power = power, one
-    tangent, same = _parts(power, "*")
-    if not _is_number(one, 1.0) or tangent is not same:
-        return None
-    for x, over in _either_way(tangent, "*"):
-        above, root = _parts(over, "/")
-        if _is_number(above, 1.0) and isinstance(root, Node) and root.operation == "sqrt":
-            for less, more in _either_way(root.arguments[0], "*"):
-                a, other = _parts(less, "-")
-                if other is x and any(one is a and two is x for one, two in _either_way(more, "+")):
-                    return a, root
-    return None
-
-
-def _parts(part, operation):
-    """Both arguments of an operation, or nothing twice."""
-    is_one = isinstance(part, Node) and part.operation == operation and len(part.arguments) == 2
-    return part.arguments if is_one else (None, None)
-
-
-def _either_way(part, operation):
-    left, right = _parts(part, operation)
-    return ((left, right), (right, left))
-
-
-def _is_number(part, number):
+def is_number(part, number):
     return not isinstance(part, Node) and part == number
 
 

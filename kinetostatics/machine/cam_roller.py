@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..numbers import checks
-from ..numbers.elementary import atan, sqrt
+from ..numbers.elementary import atan, sign, sqrt
 from ..numbers.inherited import say_together
 from ..numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
 from .crank import ray
@@ -219,7 +219,8 @@ class CamRoller(checks.Checked, Group):
     def closure(self, placement):
         """Squared cosine of the pressure angle, negative where the radius is."""
         radius, slope, _ = placement.details["cam"]
-        return radius * abs(radius) / (radius * radius + slope * slope)
+        lean = slope / radius
+        return sign(radius) / (1.0 + lean * lean)
 
     def requirement(self, placement):
         return f"the pitch curve must go around O, but its radius falls to {placement.details['cam'][0].min():.6g} m"

@@ -19,8 +19,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import kinetostatics as ks
 from kinetostatics.engines import compiled, loops, record, writing
+from kinetostatics.engines.lean import LeanGraph
 from kinetostatics.engines.programs import Program
-from kinetostatics.engines.trace import Graph, LeanGraph
+from kinetostatics.engines.trace import Graph
 from kinetostatics.studies.methods.enclosures import enclosure
 
 STRUCTURES = (

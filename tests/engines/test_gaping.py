@@ -5,8 +5,9 @@ import numpy as np
 import kinetostatics as ks
 from kinetostatics.engines import programs
 from kinetostatics.engines.gaping import Gaps
+from kinetostatics.engines.lean import LeanGraph
 from kinetostatics.engines.record import Recorder
-from kinetostatics.engines.trace import LeanGraph, needed
+from kinetostatics.engines.trace import needed
 from support.every import every
 
 SHORT = ks.SliderGroup(0.04, ks.Guide.at(np.pi / 2), pin="C", label="2")

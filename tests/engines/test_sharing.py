@@ -3,8 +3,9 @@
 import numpy as np
 
 from kinetostatics.engines import programs, sharing, writing
+from kinetostatics.engines.lean import LeanGraph
 from kinetostatics.engines.operations import BY_DESIGN, made
-from kinetostatics.engines.trace import Graph, LeanGraph, needed, operations
+from kinetostatics.engines.trace import Graph, needed, operations
 from support import graphs
 from support.every import every
 from support.shipped import shipped

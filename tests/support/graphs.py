@@ -6,7 +6,8 @@ import numpy as np
 
 from kinetostatics.engines import programs
 from kinetostatics.engines.bounds import Error
-from kinetostatics.engines.trace import INPUTS, Graph, LeanGraph, Node, needed
+from kinetostatics.engines.lean import LeanGraph
+from kinetostatics.engines.trace import INPUTS, Graph, Node, needed
 from kinetostatics.numbers import elementary
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN
 
