@@ -22,6 +22,8 @@ SETTLED = 1e-7
 """Relative change of what is made least that ends a search."""
 KEPT = 1e-9
 """By how much, relative to its size, a limit may be missed."""
+STEPS_BACK, NEAR = 5, 1e-4
+"""Newton's steps back to limits that are missed, and by how much less than that, relative to their sizes."""
 FAR = 1e6
 """What a design that cannot be built counts as, in units of the first one's."""
 
@@ -101,8 +103,44 @@ def _round(problem, goal, limits, start, change=FIRST):
         callback=problem.stepped,
         options={"maxiter": STEPS, "ftol": change},
     )
-    values = np.clip(turned.values(found.x), problem.low, problem.high)
+    values = restored(problem, limits, np.clip(turned.values(found.x), problem.low, problem.high))
     return Reached(values, turned.reached(values), missed(problem, limits, values), found.message)
+
+
+def restored(problem, limits, values):
+    """The design nearest to one that misses limits by little that keeps them, by Newton's method; or that one.
+
+    SLSQP may stop a little beside limits where rounding hides from it which way is down.
+    """
+    off = missed(problem, limits, values)
+    reach = problem.high - problem.low
+    for _ in range(STEPS_BACK):
+        if not KEPT < off < NEAR:
+            break
+        excess, slopes = _held(problem, limits, values)
+        free = np.ones(values.size, dtype=bool)
+        for _ in values:  # those that would leave their bounds stay
+            step = np.where(free, -np.linalg.pinv(slopes * free * reach) @ excess * reach, 0.0)
+            inside = (values + step >= problem.low) & (values + step <= problem.high)
+            if inside.all():
+                break
+            free &= inside
+        moved = np.clip(values + step, problem.low, problem.high)
+        left = missed(problem, limits, moved)
+        if not left < off:
+            break
+        values, off = moved, left
+    return values
+
+
+def _held(problem, limits, values):
+    """By how much limits are missed, or just kept, in units of their sizes (parts,), and derivatives (parts, n)."""
+    excess, slopes = zip(*(side_of(problem, limit, values) for limit in limits), strict=True)
+    sizes = [np.full(part.size, scale(limit)) for part, limit in zip(excess, limits, strict=True)]
+    equal = [np.full(part.size, limit.relation == "=") for part, limit in zip(excess, limits, strict=True)]
+    found = np.concatenate(excess) / np.concatenate(sizes)
+    held = (found > -KEPT) | np.concatenate(equal)
+    return found[held], (np.hstack(slopes) / np.concatenate(sizes)).T[held]
 
 
 def missed(problem, limits, values):

@@ -28,7 +28,7 @@ def residual(slope, level, mass, stiffness):
 @pytest.mark.parametrize("slope", [np.sin, lambda x: np.sin(x) + 0.8 * np.cos(2 * x), lambda x: np.abs(np.sin(x - 1))])
 def test_energy_is_held_and_the_cam_presses(slope, mass):
     missing, force = residual(slope, 8.0, mass, 2.0)
-    assert np.max(np.abs(missing)) < 1e-12
+    assert np.max(np.abs(missing)) < 3.0 * spring_follower.RESOLVED * 8.0
     assert np.min(force) > 0.0
 
 
