@@ -280,7 +280,7 @@ class SliderGroup(checks.Checked, change_points.Passer, elongation.Reaching, Gro
         elif self.is_close:
             motion = passed(placement, self.on, *given, on_crank.slid, self.side)
         else:
-            motion = place(placement.joints[self.on], *given, self.side, placement.swings.get(self.on))
+            motion = place(placement.joints[self.on], *given, self.side, placement.course(self.on).swing)
         self._set(placement, motion)
 
     def follow(self, placement, joints):
