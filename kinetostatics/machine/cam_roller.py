@@ -17,9 +17,9 @@ from ..numbers.inherited import say_together
 from ..numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
 from .crank import ray
 from .declared import Led, Slot
-from .friction import Rolling, Slide, Sliding
 from .group import FRAME, Group, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench
+from .pairs import Rolling, Slide, Sliding
 from .placement import Course, Orbit
 from .roller import Roller, Touch
 

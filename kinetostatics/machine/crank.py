@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.planar import minus, number, subtracted, vector
-from .friction import Turning
 from .group import FRAME, Bar, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion
+from .pairs import Turning
 from .placement import Course, Placement, Throw
 
 ORIGIN = Joint((0.0, 0.0), None, None)

@@ -17,7 +17,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     outputs     the reactions and other forces it finds, each an `Output` with its unit
     motions     quantities of its motion besides those of joints and links, each an `Output`
     contacts    line contacts by the name of their pressure, each a `roller.Touch`
-    pairs       which of its links rub against what, by reaction, each a pair of `friction`
+    pairs       which of its links rub against what, by reaction, each a pair of `pairs`
 
 (those that it has none of are left out: `Group` says so), and computes, by kernels without branches on values,
 
@@ -30,7 +30,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
     departure(placement, position)    second derivative of that coordinate plus the elongation, in the same way, or None
     outward(placement, position)      the elongation, or its opposite, as a length of the design and some more, or None
-    sliding(name, placement)          direction and rate of a sliding pair: a `friction.Slide`
+    sliding(name, placement)          direction and rate of a sliding pair: a `pairs.Slide`
     relative_radius(name, placement, side)  of both curvatures of a contact together, by the sign of its force
 
 The last seven may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need

@@ -18,10 +18,10 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
 from . import change_points, on_crank, passing
-from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
 from .knuckle import axis_of, straightened
 from .links import Joint, Link, LinkMotion, Wrench, between, tip
+from .pairs import Turning
 from .placement import Course, Swing
 
 SMALLEST = 2.0**-53
