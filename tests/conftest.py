@@ -98,3 +98,13 @@ def tell(request):
     for text in timing.circumstances().values():
         line(text)
     return line
+
+
+@pytest.fixture
+def axes():
+    """Axes of a figure that is closed behind the test."""
+    import matplotlib.pyplot as plt
+
+    figure, ax = plt.subplots()
+    yield ax
+    plt.close(figure)

@@ -234,11 +234,7 @@ def _variant(name, own, common, folder, problems):
 
     kind = merged.get("mechanism", "chain" if "groups" in merged else None)
     if not isinstance(kind, str) or kind not in schema.VARIANTS:
-        path = reading.key_path(place(("mechanism",)))
-        problems.append(f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS)))
-        meant = checks.nearest(kind, schema.VARIANTS)
-        if meant is not None:
-            problems += reading.validated(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]
+        problems += _kind_problems(kind, merged, place)
         return None
     table, found = reading.validated(schema.VARIANTS[kind], merged, place)
     problems += found
@@ -272,3 +268,12 @@ def _variant(name, own, common, folder, problems):
     else:
         return variant
     return None
+
+
+def _kind_problems(kind, merged, place):
+    """What is wrong with a variant of no kind there is; if it is clear which is meant, with the rest of it too."""
+    path, meant = reading.key_path(place(("mechanism",))), checks.nearest(kind, schema.VARIANTS)
+    wrong = [f"{path} is missing" if kind is None else checks.choice(path, kind, tuple(schema.VARIANTS))]
+    if meant is None:
+        return wrong
+    return wrong + reading.validated(schema.VARIANTS[meant], {**merged, "mechanism": meant}, place)[1]

@@ -1,5 +1,6 @@
 """What sets the speed of a machine with a cam and springs: lift-off, surge of the springs, torque to start."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -276,7 +277,7 @@ def _speed(solution):
 
 
 def _at(solution, speed, angle):
-    return Scene(solution.mechanism, speed, 0.0, solution.loads, solution.friction).solve(angle)
+    return replace(Scene.of(solution), crank_speed=speed, crank_acceleration=0.0).solve(angle)
 
 
 def _force(solution, name, speed, angle):

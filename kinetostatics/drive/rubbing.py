@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import DriveError
-from ..machine.friction import PASSES, Rolling, Sliding
+from ..machine.friction import PASSES
+from ..machine.pairs import Rolling, Sliding
 from ..mechanics.friction_laws import bends
 from ..mechanics.jamming import converged, require_free
 from ..numbers.leaves import with_fields

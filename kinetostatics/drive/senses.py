@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..machine.friction import Rolling
+from ..machine.pairs import Rolling
 from ..mechanics.friction_laws import rate_of
 from ..results.turn import sign_changes
 

@@ -12,9 +12,10 @@ class LeanGraph(Graph):
     """The same with fewer operations at each crank angle, and the same values but for rounding.
 
     Quotients by a root are products with its reciprocal, which they share; those by a design's number leave that to the
-    design. The size of what lies along the crank, or across it, needs no root. Neither has an infinite reciprocal, as what is tiny has, so that zero by it stays zero. Products leave signs
-    to sums, to the last bit. A zero that is added stays, for it gives a zero its sign, on which friction hangs. Each is
-    decided where it is recorded, by what is there, so that a number is computed in one way whatever else is wanted.
+    design. Neither has an infinite reciprocal, as what is tiny has, so that zero by it stays zero. The size of what
+    lies along the crank, or across it, needs no root. Products leave signs to sums, to the last bit. A zero that is
+    added stays, for it gives a zero its sign, on which friction hangs. Each is decided where it is recorded, by what is
+    there, so that a number is computed in one way whatever else is wanted.
     """
 
     def node(self, operation, *arguments):

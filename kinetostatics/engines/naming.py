@@ -20,7 +20,7 @@ from .trace import INPUTS, Node
 
 KERNELS = ("kinetostatics.machine", "kinetostatics.mechanics.energy", "kinetostatics.mechanics.principal_points")
 """Modules whose local variables are names."""
-GENERIC = ("kinetostatics.machine.group", "kinetostatics.machine.friction")
+GENERIC = tuple(f"kinetostatics.machine.{name}" for name in ("group", "friction", "placement"))
 AXES = ("x", "y")
 
 

@@ -127,7 +127,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     Parameters
     ----------
     structure : tuple
-        Of a mechanism, its crank speed and acceleration, and its loads, as `leaves.taken_apart` gives it.
+        Of a mechanism, its crank speed and acceleration, and its loads, as `structures.taken_apart` gives it.
     quantities : sequence of str or None
         Names as for `quantities.components`; None: closure, and all that the groups find.
     sizes : bool

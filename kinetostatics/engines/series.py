@@ -6,8 +6,9 @@ import numpy as np
 
 from ..errors import NotGivenError
 from ..machine.crank import ray
-from ..machine.group import FRAME, Placement
+from ..machine.group import FRAME
 from ..machine.links import Joint
+from ..machine.placement import Placement
 from ..numbers.planar import turned
 
 SERIES_SAMPLES = 512

@@ -17,9 +17,10 @@ from ..numbers.inherited import say_together
 from ..numbers.planar import cross, dot, minus, polar_curvature, subtracted, vector
 from .crank import ray
 from .declared import Led, Slot
-from .friction import Rolling, Slide, Sliding
 from .group import FRAME, Group, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench
+from .pairs import Rolling, Slide, Sliding
+from .placement import Course, Orbit
 from .roller import Roller, Touch
 
 FINE = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
@@ -207,14 +208,14 @@ class CamRoller(checks.Checked, Group):
         return atan(slope / radius)
 
     def place(self, placement):
+        orbit = None
         if say_together(type(self.cam), "about_mean", "polar"):
             mean, farther, *derivatives = self.cam.about_mean(placement.angle, placement.ray)
-            polar = mean + farther, *derivatives
-            placement.orbits["A"] = mean, farther
+            polar, orbit = (mean + farther, *derivatives), Orbit(mean, farther)
         else:
             polar = self.cam.polar(placement.angle, placement.ray)
         self._set(placement, place(placement.ray, *polar), polar)
-        placement.departures["A"] = departure(placement.ray, *polar[1:])
+        placement.courses["A"] = Course(orbit=orbit, departure=departure(placement.ray, *polar[1:]))
 
     def closure(self, placement):
         """Squared cosine of the pressure angle, negative where the radius is."""

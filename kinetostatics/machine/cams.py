@@ -18,10 +18,11 @@ from ..numbers.planar import length_and_rest, minus
 from .cam import Cam
 from .crank import ray as ray_at
 from .harmonic_cam import Harmonic
-from .law_cam import LawCam, from_law
+from .law_cam import LawCam
 from .on_crank import CLOSE, directed, spread
 from .profile import Profile
 from .sampled_cam import Sampled
+from .smooth_cam import from_law
 
 __all__ = ["Cam", "Circle", "CosineLaw", "Harmonic", "LawCam", "Profile", "Sampled", "from_law"]
 TERMS = {

@@ -6,9 +6,10 @@ from typing import Any, ClassVar
 from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.planar import minus, number, subtracted, vector
-from .friction import Turning
-from .group import FRAME, Bar, Output, Placement, Point, Resolved, Throw
+from .group import FRAME, Bar, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion
+from .pairs import Turning
+from .placement import Course, Placement, Throw
 
 ORIGIN = Joint((0.0, 0.0), None, None)
 
@@ -134,7 +135,8 @@ class Crank(checks.Checked):
         direction = ray(angle)
         placement = Placement(angle, direction, {"O": ORIGIN}, {"crank": LinkMotion(ORIGIN, direction, 1.0, None)})
         if self.length is not None:
-            placement.joints["A"], placement.throws = pin(direction, self.length), self.throws
+            placement.joints["A"] = pin(direction, self.length)
+            placement.courses["A"] = Course(throw=self.throws["A"])
         return placement
 
     def resolve(self, placement, loads, along) -> Resolved:

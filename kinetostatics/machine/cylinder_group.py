@@ -12,9 +12,9 @@ from ..numbers.leaves import with_fields
 from ..numbers.planar import number, stretched
 from . import lever_group, on_crank
 from .declared import Slot
-from .friction import Slide, Sliding, Turning
 from .group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
 from .links import Link, Wrench
+from .pairs import Slide, Sliding, Turning
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,9 +12,9 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.planar import added, cross, dot, subtracted
 from . import rocker_group
-from .friction import Turning
 from .group import Bar, Group, Output, Point, Resolved, joint_reaction, separation
 from .links import Joint, Link, Wrench, between
+from .pairs import Turning
 from .rocker_group import RockerMotion
 
 

@@ -30,7 +30,7 @@ def elongation(placement, joint, direction, reach, short):
 
     The joint itself is so far from a fixed place if a link swings it about that, this way or the other.
     """
-    swing = placement.swings.get(joint)
+    swing = placement.course(joint).swing
     if swing is None:
         return unturned(placement.joints[joint].position, direction)[0] + (reach - short)
     cosine, sine = unturned(swing.direction, direction)
@@ -51,11 +51,12 @@ def departure(placement, drawn_in, joint, direction, reach, short):
     What of both is the joint's cancels if that is a pin of the crank, and is known of a roller on a cam; `drawn_in` is
     what the second derivative of the reach takes.
     """
-    if joint in placement.throws:
+    course = placement.course(joint)
+    if course.throw is not None:
         return reach - short - drawn_in
-    if joint not in placement.departures:
+    if course.departure is None:
         return None
-    departing = unturned(placement.departures[joint], direction)[0]
+    departing = unturned(course.departure, direction)[0]
     return departing - drawn_in + (reach - short)
 
 
@@ -65,9 +66,10 @@ def outward(placement, joint, direction, reach, short):
     The length is that by which the joint goes round O, which no crank angle changes; None where no group tells it. Near
     a dead centre what is more is small beside it, and has no rounding of the whole.
     """
-    if joint not in placement.orbits:
+    orbit = placement.course(joint).orbit
+    if orbit is None:
         return None
-    length, farther = placement.orbits[joint]
+    length, farther = orbit
     cosine, sine = unturned(placement.ray, direction)
     size = abs(cosine)
     return length, farther * size - shortfall(length, sine, size) + sign(cosine) * (reach - short)

@@ -1,18 +1,15 @@
-"""Friction by joint: coefficients and sizes of the surfaces that rub, and which parts of a mechanism do.
-
-A group declares in `pairs`, by the name of the reaction, which of its links turn or slide against what: a `Turning`, a
-`Sliding` or a `Rolling`. A pin is fixed to the link that owns its joint; each rod on it rubs against it alone.
-"""
+"""Friction by joint: coefficients and sizes of the surfaces that rub, kept by the name of their pair (`pairs`)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..numbers import checks
 from ..numbers.batched import Batched
 from .links import present
+from .pairs import Rolling, Sliding, Turning
 
 COEFFICIENT = checks.Number(
     "1", low=0.0, usual=checks.Usual(2.0, "nothing rubs so much; does it stand in place of a size, or in percent?")
@@ -21,49 +18,6 @@ SIZE = checks.Number("m", low=0.0, strict=True)
 PIN = replace(SIZE, usual=checks.Usual(1.0, "is it in mm?", 1e-3, in_links=True))
 PASSES = (3, 6, 12)
 """Times that the directions of all reactions are found anew, each with twice as many digits; more where not enough."""
-
-
-class Turning(NamedTuple):
-    """A pin: `link` turns against another, the one that carries `joint` unless told; the reaction acts on `link`.
-
-    What turns against itself never turns: both are parts of one rigid triangle.
-    """
-
-    link: str
-    joint: str
-    against: str = ""
-
-
-class Sliding(NamedTuple):
-    """A straight pair: `link` slides along another, at `joint`.
-
-    `force` is the name of the force across the pair, `couple` that of the moment it carries. The group answers
-    ``sliding(name, placement)`` with a `Slide`.
-    """
-
-    link: str
-    joint: str
-    against: str
-    force: str
-    couple: str
-
-
-class Rolling(NamedTuple):
-    """A roller on a pin of `link` at `joint`, pressed by `force` against a fixed curve, positive from its outside."""
-
-    link: str
-    joint: str
-    force: str
-
-
-class Slide(NamedTuple):
-    """Direction of a straight pair (None: +x), d s / d phi of the sliding link along it, and the moment of a unit force
-    along it about the reference joint of what it slides on (None: none).
-    """
-
-    direction: Any
-    rate: Any
-    moment: Any = None
 
 
 @dataclass(frozen=True, eq=False)

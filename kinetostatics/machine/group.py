@@ -17,7 +17,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     outputs     the reactions and other forces it finds, each an `Output` with its unit
     motions     quantities of its motion besides those of joints and links, each an `Output`
     contacts    line contacts by the name of their pressure, each a `roller.Touch`
-    pairs       which of its links rub against what, by reaction, each a pair of `friction`
+    pairs       which of its links rub against what, by reaction, each a pair of `pairs`
 
 (those that it has none of are left out: `Group` says so), and computes, by kernels without branches on values,
 
@@ -30,7 +30,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     elongation(placement, position)   coordinate of a slider less a position, where that can be had without cancellation
     departure(placement, position)    second derivative of that coordinate plus the elongation, in the same way, or None
     outward(placement, position)      the elongation, or its opposite, as a length of the design and some more, or None
-    sliding(name, placement)          direction and rate of a sliding pair: a `friction.Slide`
+    sliding(name, placement)          direction and rate of a sliding pair: a `pairs.Slide`
     relative_radius(name, placement, side)  of both curvatures of a contact together, by the sign of its force
 
 The last seven may be missing. A field called ``cam`` holds a curve with ``polar(angle, ray) -> r, r', r''``, which need
@@ -49,7 +49,8 @@ derivatives and on enclosures. ``None`` stands for a zero that costs nothing (`n
 (x, y). Put into ``placement.joints`` each joint of `joints`, into ``placement.links`` a `LinkMotion` for each link: its
 reference joint, its direction (unit vector), d theta / d phi and the slope of that (None: it never turns); into
 ``placement.travels`` for each slider its coordinate along its guide with both derivatives; into ``placement.details``
-what `resolve` wants to find again. A group may put its joints into other tables of the `Placement`.
+what `resolve` wants to find again; into ``placement.courses`` a `Course` for a joint whose motion is known without
+the rounding of its position.
 
 *resolve.* A pure function from what acts on its links to what it finds: nothing is written to, and nothing is kept.
 ``loads`` holds by link the wrench on it, inertia, weight and all that groups further out ask of it, a force and its
@@ -75,14 +76,14 @@ Nothing else in the library knows what a group looks like, nor the names of its 
 equations of `joints`, `bars`, `guides`, `slots`, `led` and `pairs` alone.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..numbers.inherited import say_together
-from ..numbers.planar import length, length_and_rest
 from .links import Wrench
+from .placement import Throw
 
 FRAME = "frame"
 """Link that does not move."""
@@ -143,48 +144,6 @@ class Resolved(NamedTuple):
     reactions: dict[str, Any]
     scalars: dict[str, Any]
     demands: dict[str, Wrench]
-
-
-class Throw(NamedTuple):
-    """A pin of the crank by its place on it, along and across; `ahead`: on the crank ray itself, like A."""
-
-    at: Any
-    ahead: bool = False
-
-    @property
-    def polar(self):
-        """Distance from O, and direction at the crank angle 0 as a unit vector; None: that of the crank ray."""
-        if self.ahead:
-            return self.at[0], None
-        radius = length(self.at)
-        return radius, (self.at[0] / radius, self.at[1] / radius)
-
-    @property
-    def radius_and_rest(self):
-        """Distance from O, and what rounding took off it."""
-        return (self.at[0], None) if self.ahead else length_and_rest(self.at)
-
-
-@dataclass
-class Placement:
-    """The mechanism at its crank angles: motion flows outward from the crank into these tables.
-
-    `travels` holds by slider its coordinate along its guide, with kinematic coefficients; `details` what a group wants
-    to find again; `throws` by joint the pins of the crank, each a `Throw`; `departures` by other joints the sum of
-    position and second derivative, where it is known by itself; `swings` by joint what swings it, a `Swing`; `orbits`
-    by joint on the crank ray a length that no crank angle changes, and how much farther from O it is.
-    """
-
-    angle: Any
-    ray: Any
-    joints: dict = field(default_factory=dict)
-    links: dict = field(default_factory=dict)
-    travels: dict = field(default_factory=dict)
-    details: dict = field(default_factory=dict)
-    throws: dict = field(default_factory=dict)
-    departures: dict = field(default_factory=dict)
-    swings: dict = field(default_factory=dict)
-    orbits: dict = field(default_factory=dict)
 
 
 class Group:

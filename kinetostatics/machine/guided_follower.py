@@ -10,10 +10,10 @@ from typing import Any, ClassVar, NamedTuple
 from ..numbers import checks
 from ..numbers.planar import dot, number, turned, vector
 from . import follower
-from .friction import Slide, Sliding
 from .group import FRAME, Point, Resolved
 from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench
+from .pairs import Slide, Sliding
 
 RULES = {
     **follower.RULES,

@@ -18,9 +18,9 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.planar import cross, dot, left, minus, number, plus, product, stretched, subtracted, unturned, vector
 from . import change_points, on_crank, passing
 from .declared import Slot
-from .friction import Slide, Sliding, Turning
 from .group import FRAME, Group, Output, Point, Resolved, joint_reaction, separation
 from .links import Joint, Link, LinkMotion, Wrench, present
+from .pairs import Slide, Sliding, Turning
 
 SMALLEST = 2.0**-53
 """Part of the distance from pivot to pin that the reach along the slot is not divided by less than."""

@@ -44,14 +44,6 @@ class LinkMotion(NamedTuple):
     ratio_slope: Any
 
 
-class Swing(NamedTuple):
-    """A joint on a link that turns about a fixed place: that, how far it is from there, and in what direction."""
-
-    centre: Any
-    radius: Any
-    direction: Any
-
-
 class Body(NamedTuple):
     """What a link weighs, as kernels take it; zero is None."""
 

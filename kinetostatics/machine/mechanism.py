@@ -1,7 +1,7 @@
 """A mechanism: a crank and the chain of structural groups that hang on it."""
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any, ClassVar
 
@@ -10,17 +10,17 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.batched import Batched
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import with_fields
 from ..numbers.planar import minus, moment, plus, subtracted
 from . import hints
 from .chain import Chain
 from .crank import Crank
-from .friction import Turning, kind_for
-from .group import FRAME, RATES, RESERVED, TRAVELS, Resolved
+from .friction import kind_for
+from .group import FRAME, Resolved
 from .links import Wrench, arm, present
+from .names import name_problems
+from .pairs import Turning
 
 NAME = checks.Name()
-REMEDY = "give the second group another pin, pivot_name or label"
 _NAMED_WELL: set = set()
 """What names come from in chains of the library's own groups that were looked at and found well."""
 
@@ -65,7 +65,7 @@ class Mechanism(Batched):
         vars(self)["groups"] = tuple([group.beside(groups, throws) for group in groups])
         names = tuple([(part.__class__, *part.names) for part in self.parts]) if self.trusted else None
         if names is None or names not in _NAMED_WELL:
-            checks.require(self.name, *_name_problems(self.parts))
+            checks.require(self.name, *name_problems(self.parts))
             if names is not None:
                 _NAMED_WELL.add(names)
 
@@ -284,61 +284,6 @@ def _output_problems(part, resolved):
             f"{kind} resolves {what} {name!r}, which its outputs do not declare" for name in found.keys() - declared
         )
         yield from (f"{kind} declares {what} {name!r}, but does not resolve it" for name in declared - found.keys())
-
-
-def _spelled(part, table):
-    """Names in a table of a part; of the library's own parts also those that coincide, which a table has once."""
-    if not part.trusted:
-        return list(getattr(part, table))
-    texts = {field.name: getattr(part, field.name) for field in fields(part)}
-    marks = {name: f"\0{name}\0" for name, text in texts.items() if type(text) is str}
-    found = []
-    for spelled in getattr(with_fields(part, **marks), table):
-        for name, mark in marks.items():
-            spelled = spelled.replace(mark, texts[name])
-        found.append(spelled)
-    return found
-
-
-def _name_problems(parts):
-    """What is wrong with the names in a chain of parts: unknown ones, and ones that two things would have."""
-    points: dict[str, str] = {}
-    joints: set[str] = set()
-    links = [FRAME]
-    forces = dict.fromkeys(("closure", *RESERVED), "result of every mechanism")
-    problems = []
-
-    def add(table, what, kind, names):
-        for name in names:
-            if name in table:
-                problems.append(f"{kind} adds {what} {name!r} a second time, after the {table[name]}; {REMEDY}")
-            table[name] = f"{what} of {kind}"
-
-    for part in parts:
-        kind = type(part).__name__
-        for name in (name for name in part.hangs_on if name not in joints):
-            if name in links:
-                problems.append(
-                    f"{kind} hangs on {name!r}, which is a link; put a Pin on that link, and name its joint"
-                )
-                continue
-            remedy = "; give the crank a length, or put a CamRoller before it" if name == "A" else ""
-            problems.append(f"{kind} hangs on joint {name!r}, which no part before it places{remedy}")
-        links += part.links
-        for name, point in part.joints.items():
-            if point.link not in links:
-                found = checks.choice(f"{kind}: link that carries joint {name!r}", point.link, links)
-                problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
-        joints.update(part.joints)
-        add(points, "joint", kind, _spelled(part, "joints"))
-        add(points, "link", kind, part.links)
-        outputs = _spelled(part, "outputs")
-        for vector, what in ((True, "reaction"), (False, "quantity")):
-            add(forces, what, kind, [name for name in outputs if part.outputs[name].vector == vector])
-        endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
-        add(forces, "quantity", kind, [f"{link}{ending}" for link in part.links for ending in endings])
-        add(forces, "quantity", kind, [*part.motions, *part.contacts])
-    return problems
 
 
 def _smallest(*lengths):

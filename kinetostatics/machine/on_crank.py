@@ -133,7 +133,7 @@ def spread(ray, direction, reach):
 
 def seen(placement, on, pivot, is_close):
     """The pivot as a pin of the crank sees it, which may come close to it (kernel)."""
-    throw, (ground, rest), (direction, size) = placement.throws[on], length_and_rest(pivot), directed(pivot)
+    throw, (ground, rest), (direction, size) = placement.course(on).throw, length_and_rest(pivot), directed(pivot)
     a, slack = throw.radius_and_rest
     start, reach = (direction, size) if throw.ahead else directed(unturned(pivot, throw.at))
     turn, near_by, far_off = spread(placement.ray, start, reach)
@@ -190,7 +190,7 @@ def slid(placement, on, coupler_length, guide, assembly):
     With y the sine of the crank angle from the guide, an offset e and a coupler l on a crank r the factors of closure
     are l - e + r y and l + e - r y over l, parted by (1 + y) / 2 and (1 - y) / 2.
     """
-    throw = placement.throws[on]
+    throw = placement.course(on).throw
     (r, ahead), slack = throw.polar, throw.radius_and_rest[1]
     length, offset, short = coupler_length, number(guide.offset), minus(None, slack)
     x, y = unturned(placement.ray if ahead is None else turned(placement.ray, ahead), guide.direction)

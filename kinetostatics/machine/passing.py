@@ -76,7 +76,7 @@ def _quarter(angle, pivot, ground, facing):
 
 def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     """Coupler and rocker for the pin `on` of the crank, on the branch that is open (+1) or crossed (-1) (kernel)."""
-    throw, (d, rest) = placement.throws[on], length_and_rest(pivot)
+    throw, (d, rest) = placement.course(on).throw, length_and_rest(pivot)
     (a, direction), slack = throw.polar, throw.radius_and_rest[1]
     b, h, fixed, pivot = coupler_length, rocker_length, pivot, unturned(pivot, direction)
     less, short = minus(None, rest), minus(None, slack)
@@ -120,7 +120,7 @@ def slid(placement, on, coupler_length, guide, passage, side):
     sin(psi/2) ("near") vanishes. What to divide by is a factor and the distance from the change points.
     """
     kind, facing = parted(passage)
-    throw = placement.throws[on]
+    throw = placement.course(on).throw
     (a, direction), slack = throw.polar, throw.radius_and_rest[1]
     b, e = coupler_length, number(guide.offset)
     x, y = unturned((1.0, 0.0) if guide.direction is None else guide.direction, direction)
@@ -155,7 +155,7 @@ def slotted(placement, on, pivot, offset, passage, side):
     by a quarter of the angle: it is small where A passes close by the pivot.
     """
     kind, facing = parted(passage)
-    a, ahead = placement.throws[on].polar
+    a, ahead = placement.course(on).throw.polar
     d, pivot = length_and_rest(pivot)[0], unturned(pivot, ahead)
     half = _half(placement.angle, pivot, d, facing)
     if kind == MEETING:

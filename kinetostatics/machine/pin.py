@@ -5,8 +5,9 @@ from typing import Any, ClassVar
 
 from ..numbers import checks
 from ..numbers.planar import added
-from .group import FRAME, Group, Point, Resolved, Throw
+from .group import FRAME, Group, Point, Resolved
 from .links import Joint, Link, LinkMotion, arm, first_at, present, second_at
+from .placement import Course, Throw
 
 
 def place(link: LinkMotion, along, across):
@@ -101,7 +102,7 @@ class Pin(checks.Checked, Group):
         fixed = self.on == FRAME
         at = Joint(self.at, None, None) if fixed else place(placement.links[self.on], *map(present, self.at))
         placement.joints[self.name] = at
-        placement.throws.update(self.throws)
+        placement.courses.update({name: Course(throw=throw) for name, throw in self.throws.items()})
 
     def follow(self, placement, joints):
         """Keep a joint that moves as it was found in another way."""

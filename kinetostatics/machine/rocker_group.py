@@ -18,10 +18,11 @@ from ..numbers.elementary import apart, divisor, root, sqrt
 from ..numbers.leaves import with_fields
 from ..numbers.planar import added, cross, dot, number, quotient, stretched, subtracted, vector
 from . import change_points, on_crank, passing
-from .friction import Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction, separation
 from .knuckle import axis_of, straightened
-from .links import Joint, Link, LinkMotion, Swing, Wrench, between, tip
+from .links import Joint, Link, LinkMotion, Wrench, between, tip
+from .pairs import Turning
+from .placement import Course, Swing
 
 SMALLEST = 2.0**-53
 """Sine of the transmission angle that is not divided by less: smaller ones are right only where A meets O2."""
@@ -267,7 +268,7 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         given = self.coupler_length, self.rocker_length, self.pivot
         if self.passage:
             motion = passing.place(placement, self.on, *given, self.passage, self.side)
-        elif self.on in placement.throws:
+        elif placement.course(self.on).throw is not None:
             motion = turned_by_crank(placement, self.on, *given, self.side, self.is_close, self.knuckle)
         else:
             motion = place(placement.joints[self.on], *given, self.side)
@@ -286,7 +287,8 @@ class RockerGroup(checks.Checked, change_points.Passer, Group):
         placement.joints[self.pivot_name] = motion.rocker.joint
         placement.links[self._coupler] = motion.coupler
         placement.links[self._rocker] = motion.rocker
-        placement.swings[self.pin] = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
+        swing = Swing(self.pivot, self.rocker_length, motion.rocker.direction)
+        placement.courses[self.pin] = Course(swing=swing)
         placement.details[self._rocker] = motion
 
     def closure(self, placement):

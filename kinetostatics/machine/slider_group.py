@@ -30,10 +30,10 @@ from ..numbers.planar import (
     vector,
 )
 from . import change_points, elongation, on_crank, passing
-from .friction import Slide, Sliding, Turning
 from .group import FRAME, Bar, Group, Output, Point, Resolved, joint_reaction
 from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench, between
+from .pairs import Slide, Sliding, Turning
 
 SMALLEST = 2.0**-27
 """Cosine of the coupler below which there is only zero: its square is a difference with a rounding unit of 2^-53."""
@@ -280,7 +280,7 @@ class SliderGroup(checks.Checked, change_points.Passer, elongation.Reaching, Gro
         elif self.is_close:
             motion = passed(placement, self.on, *given, on_crank.slid, self.side)
         else:
-            motion = place(placement.joints[self.on], *given, self.side, placement.swings.get(self.on))
+            motion = place(placement.joints[self.on], *given, self.side, placement.course(self.on).swing)
         self._set(placement, motion)
 
     def follow(self, placement, joints):

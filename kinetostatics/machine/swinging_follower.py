@@ -19,9 +19,9 @@ from ..numbers import checks
 from ..numbers.elementary import atan, cos, sin
 from ..numbers.planar import added, cross, dot, left, length, number, stretched, subtracted, turned
 from . import follower
-from .friction import Turning
 from .group import FRAME, Bar, Output, Point, Resolved
 from .links import Joint, Link, LinkMotion, Wrench, between
+from .pairs import Turning
 from .roller import Roller
 
 TERMS = {

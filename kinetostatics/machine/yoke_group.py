@@ -13,10 +13,10 @@ from ..numbers import checks
 from ..numbers.elementary import cos, sin
 from ..numbers.planar import minus, number, plus, stretched, subtracted, turned, unturned, vector
 from .declared import Slot
-from .friction import Slide, Sliding, Turning
 from .group import FRAME, Group, Output, Point, Resolved, joint_reaction
 from .guide import Guide, guide_outputs, slid
 from .links import Joint, Link, LinkMotion, Wrench
+from .pairs import Slide, Sliding, Turning
 
 PARALLEL = 1e-9
 """Sine of the slot's angle from which on it counts as parallel to the guide."""

@@ -2,8 +2,8 @@
 
 from typing import Any, NamedTuple
 
-from ..machine.friction import Sliding
 from ..machine.group import FRAME
+from ..machine.pairs import Sliding
 from ..numbers.elementary import held, sign, sqrt
 from ..numbers.planar import minus, product
 

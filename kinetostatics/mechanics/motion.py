@@ -16,8 +16,9 @@ from ..machine.mechanism import Mechanism
 from ..numbers import checks, kinds
 from ..numbers.elementary import namespace, read_only, stack
 from ..numbers.lazy import cached_property
-from ..numbers.leaves import Leaves, taken_apart, wider
+from ..numbers.leaves import Leaves, wider
 from ..numbers.planar import number, plus, product, stretched, vector
+from ..numbers.structures import taken_apart
 from .gaps import gap, groups_behind
 from .quantities import of_mechanism
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from ..errors import QuantityError
-from ..machine.friction import Turning
+from ..machine.pairs import Turning
 from ..numbers import checks
 from ..numbers.elementary import sqrt
 

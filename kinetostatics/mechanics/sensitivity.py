@@ -12,26 +12,16 @@ what was computed says nothing.
 """
 
 import math
-from dataclasses import dataclass, fields, replace
 from functools import reduce
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import NotGivenError
-from ..machine.cams import Cam
-from ..machine.crank import ray
-from ..machine.group import Group
-from ..machine.guide import Guide
-from ..machine.links import Link, arm, first_at, second_at, virtual_work
-from ..machine.loads import Load, ProcessForce, Table
-from ..numbers.duals import Dual
+from ..machine.links import arm, first_at, second_at, virtual_work
 from ..numbers.elementary import UNIT
-from ..numbers.leaves import is_structural, mapped, with_fields
 from ..numbers.planar import product, subtracted, vector
-from .dynamics import Dynamics
-from .pushes import amount, moving, pushed
+from .seeded import Seeded, number_of
 
 SAFETY = 3.0
 """Factor that makes a bound of a magnification: other signs of errors, and rounding of the derivatives."""
@@ -41,8 +31,6 @@ PASSING = 0.1
 """Share of its worst case that a term counts as where it passes through zero."""
 BLOCK = 4096
 """Crank angles differentiated at a time."""
-STEP = 1e-4
-"""Step of the crank angle for the third derivative of a cam that takes plain numbers only, rad."""
 
 
 def condition(solution, points=None, reactions=None):
@@ -76,7 +64,7 @@ def condition(solution, points=None, reactions=None):
 
 def _at(solution, points, reactions):
     try:
-        seeded = _Seeded(solution, points)
+        seeded = Seeded(solution, points)
         return _magnified(seeded.solution, seeded.largest_pushes, points.size, reactions)
     except (TypeError, ValueError, AttributeError) as error:
         if points.size == 1:
@@ -85,159 +73,11 @@ def _at(solution, points, reactions):
     return np.concatenate([_at(solution, points[number : number + 1], reactions) for number in range(points.size)])
 
 
-class _Seeded:
-    """`solution`: one at some points, with numbers that carry derivatives in place of its own."""
-
-    def __init__(self, plain, points):
-        self._plain, self._points, self._shape = plain, points, plain.shape or (1,)
-        self._places = np.unravel_index(points, self._shape)
-        lengths: list[Any] = []
-        self._geometry(plain.mechanism, lengths.append)
-        for item in plain.loads:
-            mapped(_lengths(item), lengths.append)
-        self._seeds, self._count = 0, len(lengths) + len(plain.loads) + 2
-        self._angle = _array(self._seed(plain.crank_angle))
-        mechanism = self._geometry(plain.mechanism, self._seed, {Group: self._group})
-        speed, acceleration = mapped((plain.crank_speed, plain.crank_acceleration), self._constant)
-        idle = Dynamics(mechanism, self._angle, speed, acceleration, (), mapped(plain.friction, self._constant))
-        self.solution = replace(idle, loads=tuple(self._load(item, idle) for item in plain.loads))
-        self.largest_pushes = {
-            name: self._value(np.asarray(plain.largest(push))[..., None]) for name, push in plain.pushes.items()
-        }
-
-    def _geometry(self, item, number, special=None):
-        """The item with its masses as they are, and other numbers in place of its lengths."""
-
-        def link(own):
-            mass, inertia = mapped((own.mass, own.inertia), self._constant)
-            return with_fields(own, mass=mass, centre=mapped(own.centre, number), inertia=inertia)
-
-        def guide(line):
-            direction = (1.0, 0.0) if line.is_level else mapped(line.direction, self._constant)
-            return with_fields(line, angle=None, guide_offset=mapped(line.guide_offset, number), exact=direction)
-
-        return mapped(item, number, {Link: link, Guide: guide, **(special or {})})
-
-    def _constant(self, value):
-        return Dual(self._value(value)) if np.ndim(value) else value
-
-    def _value(self, value):
-        """Values at the points, one for all of a plain number."""
-        if not np.ndim(value):
-            return float(value)
-        return np.broadcast_to(np.asarray(value, dtype=float), self._shape)[self._places]
-
-    def _seed(self, value):
-        value = self._value(value)
-        return Dual(value, self._slopes(value))
-
-    def _slopes(self, by_seed):
-        """Derivatives by the next seed alone."""
-        slopes = np.zeros((self._count, self._points.size))
-        slopes[self._seeds] = by_seed
-        self._seeds += 1
-        return slopes
-
-    def _group(self, group):
-        parts = {
-            field.name: self._geometry(getattr(group, field.name), self._seed)
-            for field in fields(group)
-            if not is_structural(field) and field.name != "cam"
-        }
-        if hasattr(group, "cam"):
-            parts["cam"] = self._cam(group.cam)
-        return with_fields(group, **parts)
-
-    def _cam(self, cam):
-        known, angle = self._seeds, self._plain.crank_angle
-        plain = cam.polar(angle, ray(angle))
-        try:
-            copied = self._geometry(cam, self._seed)
-            self._require_equal(copied.polar(self._angle, ray(self._angle)), plain)
-        except Exception:  # whatever fails on numbers that are not plain
-            self._seeds = known
-            return _Values(self._tabled(cam, plain))
-        return copied
-
-    def _tabled(self, cam, plain):
-        """Radius and derivatives of a cam that takes plain numbers only, by its size and by the crank angle."""
-        angle = self._plain.crank_angle
-        third = (
-            (cam.polar(angle + STEP, ray(angle + STEP))[2] - cam.polar(angle - STEP, ray(angle - STEP))[2]) / 2 / STEP
-        )
-        values = [self._value(part) for part in (*plain, third)]
-        by_angle, by_size = self._angle[0].slopes, self._slopes(1.0)
-        return [_array(Dual(value, by_size * value + by_angle * slope)) for value, slope in pairwise(values)]
-
-    def _load(self, item, idle):
-        if not isinstance(item, Load):
-            found = self._given(lambda: item.push(moving(idle)), pushed(item, self._plain))
-            return ProcessForce(found, item.on)
-        lengths = {name: mapped(part, self._seed) for name, part in _lengths(item)}
-        copied = with_fields(mapped(item, self._constant), **lengths)
-        if item.is_given:
-            return copied
-        return with_fields(copied, **{item.VALUE: self._value_of(item, idle)})
-
-    def _value_of(self, item, idle):
-        """What a table or function gives, with derivatives where it lets them through."""
-        value = item.value_now
-        if not isinstance(value, Table):
-            return self._given(lambda: value(moving(idle)), amount(item, self._plain))
-        pieces = [self._value(part) for part in value.pieces(self._plain)]
-        return value.read(idle, [_array(Dual(part)) for part in pieces])
-
-    def _given(self, compute, plain):
-        """What a function of the user's computes, or its plain values where it takes plain numbers only."""
-        known = self._seeds
-        try:
-            found = compute()
-            self._require_equal([found], [plain])
-        except Exception:  # whatever fails on numbers that are not plain
-            self._seeds = known
-            found = self._constant(plain)
-        return _array(found) if isinstance(found, Dual) else found
-
-    def _require_equal(self, parts, plain):
-        for part, value in zip(parts, plain, strict=True):
-            own = _number(part).value
-            if not np.allclose(own, self._value(value), rtol=1e-6, atol=0.0, equal_nan=True):
-                raise ValueError("another value than by plain numbers")
-
-
-def _lengths(item):
-    """Name and value of each field of a load that holds lengths."""
-    return tuple((name, getattr(item, name)) for name in getattr(item, "LENGTHS", ()))
-
-
-@dataclass(frozen=True, eq=False)
-class _Values(Cam):
-    """A cam whose radius and derivatives are handed in."""
-
-    values: Any
-
-    def polar(self, angle, ray):
-        return self.values
-
-
-def _array(value):
-    """The form in which kernels take numbers that are not plain."""
-    found = np.empty(1, dtype=object)
-    found[0] = value
-    return found
-
-
-def _number(part):
-    """The number in what a kernel gives; an absent one is zero."""
-    part = np.ravel(part)[0] if isinstance(part, np.ndarray) else part
-    return part if isinstance(part, Dual) else Dual(0.0 if part is None else float(part))
-
-
 class _Sized:
     """Magnitude of a number or vector, sum of the magnitudes of its changes, and how much of it is certain."""
 
     def __init__(self, part):
-        parts = [_number(one) for one in (part if isinstance(part, tuple) else (part,))]
+        parts = [number_of(one) for one in (part if isinstance(part, tuple) else (part,))]
         slopes = [np.zeros((1, 1)) if one.slopes is None else one.slopes for one in parts]
         self.size, changes = reduce(np.hypot, [abs(one.value) for one in parts]), np.abs(reduce(np.hypot, slopes))
         self.change = changes.sum(axis=0)
@@ -270,7 +110,7 @@ def _magnified(solution, largest_pushes, count, reactions):
         shares.append(_over(motion.ratio_slope, PASSING * link.rate_change))
     shares += _of_forces(solution, links, largest_pushes, reactions)
     found = np.maximum(SAFETY * reduce(np.maximum, shares, np.zeros(count)), 1.0)
-    positions = [_number(part).value for joint in placement.joints.values() for part in joint.position]
+    positions = [number_of(part).value for joint in placement.joints.values() for part in joint.position]
     closed = np.isfinite(reduce(np.add, positions))
     return np.where(closed, np.where(np.isnan(found), np.inf, found), np.nan)
 
@@ -278,7 +118,7 @@ def _magnified(solution, largest_pushes, count, reactions):
 def _share(margin):
     """Infinite where rounding may open the mechanism, else 0."""
     found = _Sized(margin)
-    return np.where((found.certain > 0.0) & (_number(margin).value > 0.0), 0.0, np.inf)
+    return np.where((found.certain > 0.0) & (number_of(margin).value > 0.0), 0.0, np.inf)
 
 
 def _over(part, terms):
@@ -296,13 +136,13 @@ def _quotient(change, size):
 def _terms(solution):
     """Terms of every link by name."""
     placement, bodies = solution.placement, {name: link.body for name, link in solution.mechanism.links.items()}
-    square, alpha = (abs(_number(part).value) for part in solution.accelerating)
+    square, alpha = (abs(number_of(part).value) for part in solution.accelerating)
     gravity = 0.0 if solution.gravity is None else _Sized(solution.gravity).size
     found = {}
     for part in (solution.mechanism.crank, *solution.mechanism.groups):
         ends = [end for bar in part.bars for end in (bar.start, bar.end)] or (*part.hangs_on, *part.joints)
         joints = [placement.joints[name] for name in ends]
-        lengths = {bar.link: _number(bar.length).value for bar in part.bars}
+        lengths = {bar.link: number_of(bar.length).value for bar in part.bars}
         for name in part.links:
             link, body = placement.links[name], bodies[name]
             length = lengths.get(name, np.inf)  # what does not turn has none
@@ -318,8 +158,8 @@ def _terms(solution):
             )
             rate = np.maximum(_Sized(link.ratio).certain, speed / length)
             rate_change = np.maximum(rate * rate, acceleration / length)
-            force = _number(body.mass).value * (gravity + square * acceleration + alpha * speed)
-            moment = _number(body.inertia).value * (square * rate_change + alpha * rate)
+            force = number_of(body.mass).value * (gravity + square * acceleration + alpha * speed)
+            moment = number_of(body.inertia).value * (square * rate_change + alpha * rate)
             found[name] = _Terms(speed, acceleration, rate, rate_change, force, moment, length)
     return found
 

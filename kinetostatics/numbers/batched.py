@@ -5,8 +5,9 @@ import numpy as np
 from ..errors import ParameterError
 from .checks import fitting
 from .lazy import cached_property
-from .leaves import Leaves, taken_apart, wider
+from .leaves import Leaves, wider
 from .paths import places
+from .structures import taken_apart
 
 
 class Batched:

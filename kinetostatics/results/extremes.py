@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,12 +13,11 @@ from ..numbers import checks
 from ..numbers.elementary import UNIT
 from ..numbers.lazy import cached_property
 from .rounding import FLOOR, told
-from .turn import SAME, require_single, runs
+from .turn import require_single
+from .turning_points import Path, in_order, open_paths, turning_points
 
 CALM = 1e6
 """Condition up to which values are of ordinary size, and rounding is small beside them."""
-CONTINUED = 1e-4
-"""Difference of what a quantity tends to from both sides of a limit position, relative to its size, that is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,46 +183,33 @@ def extrema(solution, quantity):
     grows = callable(quantity) or solution.mechanism.grows(quantity)
     turn = solution.sampled_for_forces if grows else solution.sampled
     position, own = unit_of(solution, quantity) == "m", None if callable(quantity) else solution
+    called = quantity if isinstance(quantity, str) else "a function of the solution"
     left_out = np.empty(0) if position else turn.lost
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        samples = np.asarray(function(turn.at))
-        if samples.shape != turn.angle.shape:
-            raise ParameterError(
-                f"extremes: {quantity!r} has shape {samples.shape}, not one value for each of {turn.angle.shape} crank "
-                "angles"
-            )
-        called = quantity if isinstance(quantity, str) else "a function of the solution"
+        samples = _sampled(turn, function, quantity)
         good = np.isfinite(samples) & (position | turn.usable)
         size, floor = _sizes(turn, quantity, samples, good, position)
-        paths = [_Path(turn.angle, samples, floor, turn.period)]
+        paths = [Path(turn.angle, samples, floor, turn.period)]
         if not good.all():
-            paths = list(_open_paths(turn, function, samples, good, floor, size))
-        found = [_turning_points(path) for path in paths]
+            paths = list(open_paths(turn, function, samples, good, floor, size))
+        found = [turning_points(path) for path in paths]
         if not any(maximum.size for *_, maximum in found):
             constant = float(np.max(samples[good])) if good.any() else np.nan
             nothing = np.empty(0)
             return Extremes(called, nothing, nothing, nothing.astype(bool), constant, left_out, own)
-        brackets, value, floor, maximum = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
-        angle, sign = brackets[1], np.where(maximum, -1.0, 1.0)
-        inner = brackets[0] < brackets[2]
+        joined = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
+        angle, value, maximum = in_order(turn, function, size, *joined)
+    return Extremes(called, angle, value, maximum, np.nan, left_out, own)
 
-        def evaluate(angle):
-            return turn.evaluate(function, angle)
 
-        if inner.any():
-            minimised = _minimised(evaluate, brackets[:, inner], sign[inner])
-            angle[inner] = _polished(evaluate, minimised, sign[inner], floor[inner])
-
-            def beside(start, end):
-                return sign[inner] * (evaluate(start) - evaluate(end)) > floor[inner]
-
-            angle[inner] = turn.from_zero(angle[inner], beside)
-            value[inner] = evaluate(angle[inner])
-        angle = np.where(inner, angle, np.mod(angle, turn.period))
-        order = np.argsort(angle, kind="stable")
-        angle, value, maximum, inner = angle[order], value[order], maximum[order], inner[order]
-        kept = _kept(angle, value, maximum, inner, CONTINUED * size)
-    return Extremes(called, angle[kept], value[kept], maximum[kept], np.nan, left_out, own)
+def _sampled(turn, function, quantity):
+    samples = np.asarray(function(turn.at))
+    if samples.shape != turn.angle.shape:
+        raise ParameterError(
+            f"extremes: {quantity!r} has shape {samples.shape}, not one value for each of {turn.angle.shape} crank "
+            "angles"
+        )
+    return samples
 
 
 def _sizes(turn, quantity, samples, good, position):
@@ -237,114 +223,3 @@ def _sizes(turn, quantity, samples, good, position):
         return size, floor
     condition = np.sqrt(np.minimum(turn.condition, 1 / UNIT)) if position else turn.condition
     return size, np.fmax(floor, UNIT * condition * np.maximum(np.abs(samples), size))
-
-
-class _Path(NamedTuple):
-    """Samples of a quantity and their rounding, periodic; with a period of 0 open, from one limit to the next."""
-
-    angle: np.ndarray
-    value: np.ndarray
-    floor: np.ndarray
-    period: float
-
-
-def _open_paths(turn, function, samples, good, floor, size):
-    """Paths between samples that do not count, from limit to limit where the quantity tends to a value."""
-    limits = np.concatenate([turn.limits + shift for shift in (-turn.period, 0.0, turn.period)])
-    found = runs(good)
-    for run, earlier, later in zip(found, found[-1:] + found[:-1], found[1:] + found[:1], strict=True):
-        angle = turn.angle[run]
-        angle = np.where(angle < angle[0], angle + turn.period, angle)
-        before = angle[0] - (angle[0] - turn.angle[earlier[-1]]) % turn.period
-        after = angle[-1] + (turn.angle[later[0]] - angle[-1]) % turn.period
-        left = limits[(limits >= before - SAME) & (limits <= angle[0] + SAME)][-1:]
-        right = limits[(limits <= after + SAME) & (limits >= angle[-1] - SAME)][:1]
-        inside = (angle > np.append(left, -np.inf)[0] + SAME) & (angle < np.append(right, np.inf)[0] - SAME)
-        parts = [(angle[inside], samples[run][inside], floor[run][inside])]
-        for place, side, row in ((left, 1, 0), (right, -1, -1)):
-            tended = [turn.limit(function, end, side, size) for end in place]
-            parts.insert(row % 2 * len(parts), (place, tended, floor[run][[row] * place.size]))
-        angle, value, rounding = (np.concatenate(part) for part in zip(*parts, strict=True))
-        known = ~np.isnan(value)
-        yield _Path(angle[known], value[known], rounding[known], 0.0)
-
-
-def _turning_points(path):
-    """Crank angles around each extremum (3, K), its value, rounding, and whether it is a maximum (K,).
-
-    The middle of a level stretch counts once. The ends of an open path are extrema too, with no angles around. Rises
-    and falls that are no more than rounding are taken out, least first.
-    """
-    angle, value, floor, period = path
-    count = value.size
-    direction = np.sign(np.roll(value, -1) - value)
-    direction[-1:] = direction[-1:] if period else 0.0
-    moving = np.flatnonzero(direction)
-    following = np.append(moving[1:], moving[:1] + count)
-    turning = direction[moving] * direction[following % count] == -1
-    turning[-1:] &= period > 0
-    before, after = moving[turning], following[turning]
-    places, maximum = np.array([before, (before + after + 1) // 2, after + 1]), direction[before] > 0
-    if not period:
-        places = np.column_stack([[0] * 3, places, [count - 1] * 3])
-        maximum = np.concatenate([direction[moving[:1]] < 0, maximum, direction[moving[-1:]] > 0])
-        maximum = maximum if moving.size else np.array([True, False])
-    while maximum.size > 2 - bool(period) and (not period or np.all(maximum != np.roll(maximum, 1))):
-        middle = places[1] % count
-        height, rounding = value[middle], floor[middle]
-        change = np.abs(np.roll(height, -1) - height) / np.maximum(rounding, np.roll(rounding, -1))
-        least = int(np.argmin(change[: None if period else -1]))
-        if change[least] > 1:
-            break
-        pair = [least, (least + 1) % maximum.size]
-        if not period and (least == 0 or least == maximum.size - 2):  # the end stays, as the other kind
-            end = pair.pop(-1 if least else 0)
-            maximum[end] = ~maximum[end]
-        kept = np.delete(np.arange(maximum.size), pair)
-        places, maximum = places[:, kept], maximum[kept]
-    middle = places[1] % count
-    return angle[places % count] + period * (places // count), value[middle], floor[middle], maximum
-
-
-def _kept(angle, value, maximum, inner, near):
-    """Which extrema, in order of angle, stay: what goes on smoothly through a limit position has none there."""
-    same = (np.abs(angle - np.roll(angle, -1)) <= SAME) & ~inner & ~np.roll(inner, -1)
-    level = (value == np.roll(value, -1)) | (np.abs(value - np.roll(value, -1)) <= near)
-    pair = same & level & (np.arange(angle.size) < angle.size - 1)
-    through = pair & (maximum != np.roll(maximum, -1))
-    return ~(np.roll(pair, 1) | through)
-
-
-def _minimised(evaluate, brackets, sign):
-    from scipy.optimize import elementwise
-
-    found = elementwise.find_minimum(
-        lambda angle, sign: sign * evaluate(angle),
-        tuple(brackets),
-        args=(sign,),
-        tolerances={"xatol": 0.0, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
-    )
-    better = sign * evaluate(found.x) <= sign * evaluate(brackets[1])  # False where no bracket held, as at a jump
-    return np.where(better, found.x, brackets[1])
-
-
-def _polished(evaluate, angle, sign, floor, half_width=0.01, degree=8):
-    """Zero of the slope of a local Chebyshev fit, where its value is as good as the one it replaces."""
-    from numpy.polynomial import chebyshev
-
-    nodes = chebyshev.chebpts1(degree + 1)
-    samples = evaluate((angle[:, None] + half_width * nodes).ravel()).reshape(angle.size, -1)
-    series = chebyshev.chebfit(nodes, np.nan_to_num(samples).T, degree)
-    slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
-    place = np.zeros_like(angle)
-    for _ in range(3):
-        place -= _series(place, slope) / _series(place, bend)
-    refined = np.where(np.abs(place) < 1e-3, angle + half_width * place, angle)
-    return np.where(sign * evaluate(refined) <= sign * evaluate(angle) + 0.1 * floor, refined, angle)
-
-
-def _series(place, coefficients):
-    """Value of each column's Chebyshev series at its own place."""
-    from numpy.polynomial import chebyshev
-
-    return chebyshev.chebval(place, coefficients, tensor=False)

@@ -12,8 +12,9 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..machine.crank import ORIGIN, ray
-from ..machine.group import FRAME, MEMBERS, Placement
+from ..machine.group import FRAME, MEMBERS
 from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
+from ..machine.placement import Course, Placement
 from ..numbers import checks
 from ..numbers.planar import added, length, number, product, stretched, subtracted, turned, vector, work
 
@@ -130,7 +131,9 @@ class _Stage(NamedTuple):
             turned_by = angle + 0.3 * turn + 0.4 * turn * turn
             links[name] = LinkMotion(self._joint(1, turn, way), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
         placement = Placement(angle, direction, joints, links)
-        placement.departures.update({name: added(joints[name].second, joints[name].position) for name in self.hung})
+        for name in self.hung:
+            departure = added(joints[name].second, joints[name].position)
+            placement.courses[name] = Course(departure=departure)
         with np.errstate(all="ignore"):
             try:
                 self.group.place(placement)
@@ -196,17 +199,16 @@ def _of_shape(stage):
         if outward is not None:
             errors[f"outward part of {name}"] = _error(abs(sum(outward)), abs(elongation), stage.size)
     for name in group.joints:
-        joint = placement.joints[name]
-        if name in placement.orbits:
-            errors[f"orbit of {name}"] = _error(
-                stretched(sum(placement.orbits[name]), placement.ray), joint.position, stage.size
-            )
-        if name in placement.departures:
+        joint, course = placement.joints[name], placement.course(name)
+        if course.orbit is not None:
+            reached = stretched(sum(course.orbit), placement.ray)
+            errors[f"orbit of {name}"] = _error(reached, joint.position, stage.size)
+        if course.departure is not None:
             departure = added(vector(joint.second), joint.position)
-            errors[f"departure of {name}"] = _error(placement.departures[name], departure, stage.size)
-        if name in placement.swings:
-            centre, radius, direction = placement.swings[name]
-            errors[f"swing of {name}"] = _error(added(centre, stretched(radius, direction)), joint.position, stage.size)
+            errors[f"departure of {name}"] = _error(course.departure, departure, stage.size)
+        if course.swing is not None:
+            reached = added(course.swing.centre, stretched(course.swing.radius, course.swing.direction))
+            errors[f"swing of {name}"] = _error(reached, joint.position, stage.size)
     return errors
 
 

@@ -85,6 +85,21 @@ class Scene(Parameters):
     def __repr__(self):
         return f"<Scene: {self.mechanism.name}, {in_a_line(self)}>"
 
+    @classmethod
+    def of(cls, solution):
+        """The scene of a solution: all of it but its crank angles.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+        >>> ks.Scene.of(ks.solve(pump, 0.5, crank_speed=100.0)).crank_speed
+        100.0
+        """
+        return cls(
+            solution.mechanism, solution.crank_speed, solution.crank_acceleration, solution.loads, solution.friction
+        )
+
     @property
     def period(self):
         """Crank angle after which motion and loads repeat, rad."""

@@ -83,14 +83,12 @@ class _Moved:
     """The machine with each input smaller and larger by its uncertainty."""
 
     def __init__(self, solution, inputs):
-        self.inputs, self._solution = inputs, solution
+        self.inputs, self._scene, self._angle = inputs, Scene.of(solution), solution.crank_angle
         self._sides = lru_cache(None)(self._made)
 
     def _made(self, path):
-        own = self._solution
-        scene = Scene(own.mechanism, own.crank_speed, own.crank_acceleration, own.loads, own.friction)
-        given, by = scene.parameters[path], self.inputs[path]
-        return [scene.varied({path: given + way * by}).unsolved(own.crank_angle) for way in (-1.0, 1.0)]
+        given, by = self._scene.parameters[path], self.inputs[path]
+        return [self._scene.varied({path: given + way * by}).unsolved(self._angle) for way in (-1.0, 1.0)]
 
     def parts(self, name):
         """Half of what the largest magnitude differs by, by path, and the doubt that it says too little, or None."""

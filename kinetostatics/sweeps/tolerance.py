@@ -14,7 +14,8 @@ from ..numbers import checks
 from ..numbers.headings import parted
 from ..results.reductions import parsed
 from . import designs
-from .sweeps import FAILED, chosen, is_case, is_varied, listed, sweep
+from .asked import chosen, is_case, is_varied, listed
+from .sweeps import FAILED, sweep
 
 LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 

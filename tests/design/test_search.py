@@ -40,6 +40,7 @@ class Circle:
         self.low, self.high = np.zeros(2), np.array(high)
 
     def output(self, output, values):
+        """The sum of squares, and its derivatives."""
         return float(values @ values), 2.0 * values
 
 

@@ -8,18 +8,10 @@ import pytest
 
 import kinetostatics as ks
 from support import DATA
+from support.driven_saws import CUT, FAN, MOTOR, SAW, TURN, saw
 
-TURN = 2 * math.pi
-MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875)
-SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
 CAM = ks.cams.CosineLaw(0.3, 2.0)
-FAN = ks.Torque(lambda motion: -2.0 * motion.crank_speed * motion.crank_speed, on="crank")
-CUT = ks.ProcessForce(ks.Table(np.linspace(0.0, TURN, 41)[:-1], 4e3 + 4e3 * np.sin(TURN / 40 * np.arange(40))))
 DAMPER = ks.PointDamper(150.0, between=("A", (0.5, 1.0)))
-
-
-def saw(*loads):
-    return ks.Scene(SAW, 33.0, loads=(ks.Gravity(), *loads))
 
 
 @pytest.fixture(scope="module")

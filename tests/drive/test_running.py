@@ -1,22 +1,11 @@
 """A machine in periodic running as any solution."""
 
-import math
-
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
 import kinetostatics as ks
-
-TURN = 2 * math.pi
-MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875)
-SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
-FAN = ks.Torque(lambda motion: -2.0 * motion.crank_speed * motion.crank_speed, on="crank")
-CUT = ks.ProcessForce(ks.Table(np.linspace(0.0, TURN, 41)[:-1], 4e3 + 4e3 * np.sin(TURN / 40 * np.arange(40))))
-
-
-def saw(*loads):
-    return ks.Scene(SAW, 33.0, loads=(ks.Gravity(), *loads))
+from support.driven_saws import CUT, FAN, MOTOR, saw
 
 
 def test_speed_is_the_integral_of_acceleration_and_time_that_of_slowness():

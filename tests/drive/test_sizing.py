@@ -11,11 +11,9 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.driven_saws import MOTOR, SAW, TURN
 
-TURN = 2 * math.pi
 RPM = TURN / 60
-MOTOR = ks.drive.Motor.kloss(55e3, 153.9, synchronous_speed=157.0, overload=2.5, transmission=4.6875)
-SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
 
 
 def engine(torque, speed):

@@ -14,9 +14,9 @@ from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
 from kinetostatics.machine.declared import Slot
-from kinetostatics.machine.friction import Sliding, Turning
 from kinetostatics.machine.group import FRAME, Group, Output, Point, Resolved
 from kinetostatics.machine.links import Joint, LinkMotion, Wrench
+from kinetostatics.machine.pairs import Sliding, Turning
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.elementary import cos, sin

@@ -11,8 +11,8 @@ from kinetostatics import ConditionWarning
 from kinetostatics.engines.record import record
 from kinetostatics.engines.trace import BY_ANGLE, needed
 from kinetostatics.machine import lever_group, on_crank, rocker_group, slider_group
-from kinetostatics.machine.group import Throw
 from kinetostatics.machine.guide import Line
+from kinetostatics.machine.placement import Throw
 from kinetostatics.mechanics.quantities import scale
 from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from support.every import every

@@ -9,25 +9,11 @@ import pytest
 
 import kinetostatics as ks
 from support import multipliers
-from support.rubbing_machines import KINDS, Drawn, differences
+from support.rubbing_machines import JOINTS, KINDS, RUBBED, Drawn, differences
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
 CENTRIC = ks.crank_slider(0.1, 0.3)
 STEEP = ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0), coupler=ks.Link(1.0, (0.05, 0.02), 0.01))
-HEAVY = ks.crank_slider(
-    0.1,
-    0.3,
-    guide_offset=0.02,
-    crank=ks.Link(2.0, (0.03, 0.01), 0.01),
-    coupler=ks.Link(3.0, (0.1, 0.01), 0.02),
-    slider=ks.Link(4.0, (0.01, 0.02)),
-)
-ALL = {
-    "O": ks.PinFriction(0.1, 0.02),
-    "A": ks.PinFriction(0.1, 0.02),
-    "B": ks.PinFriction(0.1, 0.015),
-    "guide": ks.GuideFriction(0.15, 0.04),
-}
 DRIVE = {"crank_speed": 30.0, "crank_acceleration": 5.0, "loads": (ks.Gravity(), ks.ProcessForce(200.0))}
 
 
@@ -98,12 +84,12 @@ def test_the_shoe_rubs_more_once_its_couple_leaves_the_middle():
 
 
 def test_losses_are_what_the_drive_gives_more_and_never_negative():
-    s = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    s = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
     assert s.power_residual < 1e-14
     assert (s.friction_loss >= 0.0).all()
-    parts = sum(s.friction_loss_at(name) for name in ALL)
+    parts = sum(s.friction_loss_at(name) for name in JOINTS)
     assert np.allclose(parts, s.friction_loss, rtol=1e-14)
-    free = ks.solve(HEAVY, TURN, **DRIVE)
+    free = ks.solve(RUBBED, TURN, **DRIVE)
     gained = (s.balancing_torque - free.balancing_torque) * 30.0
     assert np.allclose(gained, s.friction_loss, rtol=0, atol=1e-13 * np.abs(free.balancing_torque).max() * 30.0)
 
@@ -118,9 +104,9 @@ def test_the_cam_drives_its_roller_by_a_force_that_grows_with_itself():
 
 
 def test_the_guide_reaction_has_the_friction_that_the_guide_force_has_not():
-    s = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    s = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
     assert np.array_equal(s.reaction("guide"), [s.guide_friction, s.guide_force])
-    outer = ks.solve(HEAVY, TURN, **DRIVE)
+    outer = ks.solve(RUBBED, TURN, **DRIVE)
     assert not outer.guide_friction.any()
     assert not outer.friction_loss.any()
     assert outer.converged.all()
@@ -135,11 +121,11 @@ def test_a_pin_carries_all_its_rods():
 
 def test_without_friction_no_bit_changes():
     none = {"O": ks.PinFriction(0.0, 0.02), "guide": ks.GuideFriction(0.0, 0.1)}
-    free, s = (ks.solve(HEAVY, TURN, friction=friction, **DRIVE) for friction in ({}, none))
+    free, s = (ks.solve(RUBBED, TURN, friction=friction, **DRIVE) for friction in ({}, none))
     for name in free.reactions:
         assert np.array_equal(free.reaction(name), s.reaction(name))
     assert np.array_equal(free.balancing_torque, s.balancing_torque)
-    assert free.apart[0] == ks.solve(HEAVY, TURN, **DRIVE).apart[0]
+    assert free.apart[0] == ks.solve(RUBBED, TURN, **DRIVE).apart[0]
 
 
 # Jamming
@@ -180,7 +166,7 @@ def test_no_guide_of_a_centric_machine_jams_below_the_known_coefficient():
 def test_what_is_not_found_to_rounding_is_said():
     from kinetostatics.mechanics import jamming
 
-    s = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    s = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
     s._values["friction_residual"] = np.full(TURN.shape, 1e-6)
     assert not s.converged.any()
     with pytest.warns(ks.ConditionWarning, match="not found to rounding at 90 of 90 crank angles"):
@@ -193,12 +179,12 @@ def test_what_is_not_found_to_rounding_is_said():
 @pytest.mark.slow
 def test_compiled_and_plain_programs_agree():
     pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-    scene = ks.Scene(HEAVY, friction={name: ALL[name] for name in ("B", "guide")}, **DRIVE)
+    scene = ks.Scene(RUBBED, friction={name: JOINTS[name] for name in ("B", "guide")}, **DRIVE)
     compiled, plain = (ks.compile(scene, ("guide", "balancing_torque"), engine=name) for name in ("compiled", "numpy"))
     for name, values in plain(TURN).items():
         assert np.abs(compiled(TURN)[name] - values).max() < 1e-15 * np.abs(values).max()
-    plain = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
-    single = ks.solve(HEAVY, float(TURN[7]), friction=ALL, **DRIVE)
+    plain = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
+    single = ks.solve(RUBBED, float(TURN[7]), friction=JOINTS, **DRIVE)
     assert single.balancing_torque == pytest.approx(plain.balancing_torque[7], rel=1e-14)
 
 
@@ -207,7 +193,7 @@ def test_enclosures_hold_what_is_computed():
     from kinetostatics.mechanics.quantities import components
     from kinetostatics.studies.methods.enclosures import enclosure
 
-    s = ks.solve(HEAVY, TURN[::30], friction=ALL, **DRIVE)
+    s = ks.solve(RUBBED, TURN[::30], friction=JOINTS, **DRIVE)
     for name in ("balancing_torque", "friction_loss", "guide_friction", "B"):
         found = enclosure(s, name)
         for exact, own in zip(found.middle, components(s, name), strict=True):
@@ -215,7 +201,7 @@ def test_enclosures_hold_what_is_computed():
 
 
 def test_derivatives_are_those_of_differences():
-    scene = ks.Scene(HEAVY, friction=ALL, **DRIVE)
+    scene = ks.Scene(RUBBED, friction=JOINTS, **DRIVE)
     program = ks.compile(scene, ("balancing_torque", "friction_loss"), engine="numpy")
     found = program.derivatives(TURN)
     for path in ("friction.guide.mu", "friction.A.radius", "coupler_length", "slider.mass", "crank_speed"):
@@ -228,14 +214,17 @@ def test_derivatives_are_those_of_differences():
 
 
 def test_a_program_takes_other_coefficients_and_other_designs():
-    scene = ks.Scene(HEAVY, friction=ALL, **DRIVE)
+    scene = ks.Scene(RUBBED, friction=JOINTS, **DRIVE)
     program = ks.compile(scene, "friction_loss", engine="numpy")
     two = np.array([[0.05], [0.2]])
     both = program(TURN, {"friction.guide.mu": two})["friction_loss"]
     for row, mu in zip(both, two.ravel(), strict=True):
         alone = scene.varied({"friction.guide.mu": float(mu)}).solve(TURN)
         assert np.allclose(row, alone.friction_loss, rtol=1e-13)
-    assert ks.Scene(HEAVY, friction={**ALL, "guide": ks.GuideFriction(two)}, **DRIVE).solve(TURN).shape == (2, 90)
+    assert ks.Scene(RUBBED, friction={**JOINTS, "guide": ks.GuideFriction(two)}, **DRIVE).solve(TURN).shape == (
+        2,
+        90,
+    )
 
 
 # Where friction jumps
@@ -264,7 +253,7 @@ def test_extremes_stand_on_both_sides_of_a_jump():
 def test_the_mean_torque_is_right_across_the_jumps():
     from kinetostatics.results.comparison import mean_absolute_torque
 
-    s = ks.solve(HEAVY, TURN, friction=ALL, crank_speed=30.0, loads=ks.Gravity())
+    s = ks.solve(RUBBED, TURN, friction=JOINTS, crank_speed=30.0, loads=ks.Gravity())
     ends = np.unique(np.concatenate([[0.0, 2 * np.pi], s.sampled.kinks]))
     edges = np.unique(np.concatenate([np.linspace(*pair, 9) for pair in itertools.pairwise(ends)]))
     nodes, weights = np.polynomial.legendre.leggauss(20)
@@ -279,21 +268,21 @@ def test_the_mean_torque_is_right_across_the_jumps():
 
 
 def test_tables_have_friction_and_its_losses_with_units():
-    s = ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+    s = ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
     columns = set(s.frame().columns)
     assert {"O_friction [N m]", "guide_friction [N]", "B_friction_loss [W]", "friction_loss [W]"} <= columns
-    assert not [name for name in ks.solve(HEAVY, TURN, **DRIVE).frame().columns if "friction" in name]
+    assert not [name for name in ks.solve(RUBBED, TURN, **DRIVE).frame().columns if "friction" in name]
 
 
 def test_ordinary_machines_say_nothing():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        ks.solve(HEAVY, TURN, friction=ALL, **DRIVE)
+        ks.solve(RUBBED, TURN, friction=JOINTS, **DRIVE)
 
 
 def test_a_program_with_stronger_friction_than_its_scenes_says_where_it_is_not_found_and_refuses_a_crank_at_rest():
     weak = {"O": ks.PinFriction(1e-4, 0.01), "B": ks.PinFriction(1e-4, 0.01), "guide": ks.GuideFriction(1e-4)}
-    program = ks.compile(ks.Scene(HEAVY, friction=weak, **DRIVE), "balancing_torque", engine="numpy")
+    program = ks.compile(ks.Scene(RUBBED, friction=weak, **DRIVE), "balancing_torque", engine="numpy")
     program(TURN, {"friction.O.mu": 1.1e-4})
     strong = {"friction.B.mu": 0.9, "friction.B.radius": 0.2, "friction.O.mu": 0.9, "friction.O.radius": 0.2}
     with pytest.warns(ks.ConditionWarning, match="not found to rounding"):

@@ -1,6 +1,5 @@
 """The chain unit as a case: its variants, what the command line prints and draws, and four-bars in case files."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -84,13 +83,6 @@ def test_plot_draws_the_studys_figures_and_the_mechanism(tmp_path, capsys):
     assert {f"chain_unit_{name}.svg" for name in FIGURES} <= written
     assert len(capsys.readouterr().out.splitlines()) == len(written)
     assert not {name for name in written if "cam" in name or "pressure" in name or "error" in name}
-
-
-@pytest.fixture
-def axes():
-    figure, ax = plt.subplots()
-    yield ax
-    plt.close(figure)
 
 
 @pytest.mark.parametrize("rho", [0.1, 0.5])

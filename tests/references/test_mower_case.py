@@ -73,13 +73,6 @@ def polar():
     plt.close(figure)
 
 
-@pytest.fixture
-def axes():
-    figure, ax = plt.subplots()
-    yield ax
-    plt.close(figure)
-
-
 # Variants
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.losses import losses
-from support.rubbing_machines import KINDS, Drawn
+from support.rubbing_machines import JOINTS, KINDS, RUBBED, Drawn
 
 R, MASS, MU, G, SPEED = 0.1, 3.0, 0.2, 9.81, 6.0
 YOKE = ks.scotch_yoke(R, slider=ks.Link(MASS))
@@ -27,22 +27,8 @@ def yoke(*loads, speed=SPEED, friction=RUBBING):
     return ks.solve(YOKE, 0.0, crank_speed=speed, loads=(ks.Gravity(), *loads), friction=friction)
 
 
-SHAKEN = ks.crank_slider(
-    0.1,
-    0.3,
-    guide_offset=0.02,
-    crank=ks.Link(2.0, (0.03, 0.01), 0.01),
-    coupler=ks.Link(3.0, (0.1, 0.01), 0.02),
-    slider=ks.Link(4.0, (0.01, 0.02)),
-)
 CAM = ks.cam_crank_slider(ks.cams.Circle(0.1, (-0.01, 0.0)), 0.4, coupler=ks.Link(2.0, 0.2), slider=ks.Link(4.0))
-ALL = {
-    "O": ks.PinFriction(0.1, 0.02),
-    "A": ks.PinFriction(0.1, 0.02),
-    "B": ks.PinFriction(0.1, 0.015),
-    "guide": ks.GuideFriction(0.15, 0.04),
-}
-CAM_ALL = ALL | {"slot": ks.SlotFriction(0.1), "cam": ks.RollerFriction(0.01, 0.02, 0.04)}
+CAM_ALL = JOINTS | {"slot": ks.SlotFriction(0.1), "cam": ks.RollerFriction(0.01, 0.02, 0.04)}
 
 
 @pytest.mark.parametrize("speed", [SPEED, -SPEED])
@@ -87,7 +73,7 @@ def test_without_friction_all_is_taken_or_nothing_flows():
 
 
 @pytest.mark.parametrize("speed", [30.0, -30.0])
-@pytest.mark.parametrize(("mechanism", "friction"), [(SHAKEN, ALL), (CAM, CAM_ALL)], ids=["slider", "cam"])
+@pytest.mark.parametrize(("mechanism", "friction"), [(RUBBED, JOINTS), (CAM, CAM_ALL)], ids=["slider", "cam"])
 def test_what_the_drive_gives_is_taken_or_lost(mechanism, friction, speed):
     loads = (ks.Gravity(), ks.ProcessForce(200.0), ks.Torque(-30.0, on="crank"), ks.Spring(3e3, 0.35))
     found = ks.solve(mechanism, 0.0, crank_speed=speed, loads=loads, friction=friction).losses
@@ -99,13 +85,13 @@ def test_what_the_drive_gives_is_taken_or_lost(mechanism, friction, speed):
 
 
 def test_means_are_parted_where_friction_jumps():
-    s = ks.solve(SHAKEN, 0.0, crank_speed=30.0, loads=ks.Gravity(), friction=ALL)
+    s = ks.solve(RUBBED, 0.0, crank_speed=30.0, loads=ks.Gravity(), friction=JOINTS)
     ends = np.unique(np.concatenate([[0.0, 2 * np.pi], s.sampled.kinks]))
     edges = np.unique(np.concatenate([np.linspace(*pair, 9) for pair in itertools.pairwise(ends)]))
     nodes, weights = np.polynomial.legendre.leggauss(24)
     angle = edges[:-1, None] + np.diff(edges)[:, None] * (nodes + 1) / 2
     at = s.at(angle.ravel())
-    for joint in ALL:
+    for joint in JOINTS:
         power = at.friction_loss_at(joint).reshape(angle.shape)
         mean = np.sum(power @ weights * np.diff(edges)) / (4 * np.pi)
         assert s.losses.friction[joint] == pytest.approx(mean, rel=1e-12), joint
@@ -131,7 +117,7 @@ def test_a_four_stroke_force_counts_over_both_turns():
 def test_under_a_motor_means_are_those_over_time():
     motor = ks.drive.Motor.linear(100.0, 100.0, transmission=4.0)
     scene = ks.Scene(
-        SHAKEN, 25.0, loads=(ks.Gravity(), ks.Torque(-20.0, on="crank"), ks.TorsionDamper(0.1, on="coupler"))
+        RUBBED, 25.0, loads=(ks.Gravity(), ks.Torque(-20.0, on="crank"), ks.TorsionDamper(0.1, on="coupler"))
     )
     run = ks.drive.steady(scene, motor, flywheel=0.3)
     found = run.solution.losses
@@ -142,13 +128,15 @@ def test_under_a_motor_means_are_those_over_time():
 
 
 def test_the_table_has_a_row_for_each_joint_and_all():
-    s = ks.solve(SHAKEN, 0.0, crank_speed=30.0, loads=(ks.Gravity(), ks.TorsionDamper(0.1, on="coupler")), friction=ALL)
+    s = ks.solve(
+        RUBBED, 0.0, crank_speed=30.0, loads=(ks.Gravity(), ks.TorsionDamper(0.1, on="coupler")), friction=JOINTS
+    )
     table = s.losses.frame()
-    assert list(table.index) == [*ALL, "TorsionDamper on 'coupler'", "all"]
+    assert list(table.index) == [*JOINTS, "TorsionDamper on 'coupler'", "all"]
     assert table["mean [W]"].iloc[:-1].sum() == pytest.approx(table.loc["all", "mean [W]"], rel=1e-14)
     assert table["share [%]"].iloc[:-1].sum() == pytest.approx(100.0)
     fine = s.at(np.linspace(0.0, 2 * np.pi, 5000))
-    for joint in ALL:
+    for joint in JOINTS:
         assert table.loc[joint, "largest [W]"] >= fine.friction_loss_at(joint).max() * (1 - 1e-12)
     assert (table["largest [W]"].iloc[-1] >= table["largest [W]"].iloc[:-1]).all()
     assert np.allclose(table["per turn [J]"], table["mean [W]"] * 2 * np.pi / 30.0)
@@ -158,7 +146,7 @@ def test_the_table_has_a_row_for_each_joint_and_all():
 def test_comparison_tells_what_is_lost_where_and_how_much_less():
     loads = (ks.Gravity(), ks.ProcessForce(200.0))
     one, other = (
-        ks.solve(m, 0.0, crank_speed=30.0, loads=loads, friction=f) for m, f in ((SHAKEN, ALL), (CAM, CAM_ALL))
+        ks.solve(m, 0.0, crank_speed=30.0, loads=loads, friction=f) for m, f in ((RUBBED, JOINTS), (CAM, CAM_ALL))
     )
     found = ks.compare(one, other)
     assert found.lost_power_ratio == one.losses.total / other.losses.total
@@ -169,7 +157,7 @@ def test_comparison_tells_what_is_lost_where_and_how_much_less():
 
 
 def test_comparison_of_machines_without_friction_says_nothing_of_losses():
-    with_, without = (ks.solve(SHAKEN, 0.0, crank_speed=30.0, loads=ks.Gravity(), friction=f) for f in (ALL, None))
+    with_, without = (ks.solve(RUBBED, 0.0, crank_speed=30.0, loads=ks.Gravity(), friction=f) for f in (JOINTS, None))
     assert list(ks.compare(without, without)._lost()) == []
     assert next(iter(ks.compare(without, with_)._lost()))[:2] == ("mean power lost, O", "W")
     assert ks.compare(without, with_).lost_powers[0] == 0.0

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import kinetostatics as ks
 from kinetostatics.machine.group import MEMBERS
 from kinetostatics.machine.links import Joint, Wrench
+from kinetostatics.machine.placement import Course, Orbit
 from support.every import every
 from support.scenes import Pan
 
@@ -160,9 +161,9 @@ DERIVATIVES = {
     ),
     "wrong length": lambda p: _joint(p, position=tuple(1.1 * part for part in p.joints["B"].position)),
     "other joint": lambda p: p.links.update(coupler=p.links["coupler"]._replace(joint=Joint((9.0, 0.0), None, None))),
-    "other swing": lambda p: p.swings.update(B=p.swings["B"]._replace(radius=0.31)),
-    "wrong departure": lambda p: p.departures.update(B=p.joints["B"].second),
-    "wrong orbit": lambda p: p.orbits.update(B=(0.3, 0.01)),
+    "other swing": lambda p: p.courses.update(B=Course(swing=p.course("B").swing._replace(radius=0.31))),
+    "wrong departure": lambda p: p.courses.update(B=Course(departure=p.joints["B"].second)),
+    "wrong orbit": lambda p: p.courses.update(B=Course(orbit=Orbit(0.3, 0.01))),
 }
 SEEN = {
     "wrong first": "first derivative of joint B",

@@ -1,7 +1,5 @@
 """Values of a solution as another engine or precision gives them, beside proven bounds and the exact values."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 import kinetostatics as ks
@@ -10,6 +8,7 @@ from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.numbers.leaves import with_fields
 from kinetostatics.studies.methods.enclosures import on_arb
 
+from .bounded import Found
 from .scenes import SCENES, SIZES, solve
 
 BITS = 200
@@ -32,15 +31,6 @@ def diverse():
         "friction": rubbed.solve(ANGLES),
         "speeds": ks.Scene(PUMP, np.linspace(90.0, 110.0, ANGLES.size)).solve(ANGLES),
     }
-
-
-class Found(NamedTuple):
-    """Values compared, those off by more than their bound, those without one, and the worst share of a bound."""
-
-    values: int
-    wrong: list
-    unbounded: int
-    share: float
 
 
 def exact_values(solution, names=None):

@@ -76,129 +76,145 @@ class System:
         with mp.workdps(DIGITS):
             return self._solved(mp.mpf(angle), times)
 
-    def _rate(self, function, angle):
-        with mp.workdps(2 * DIGITS):
-            h = STEP
-            parts = [function(angle + k * h) for k in (-2, -1, 0, 1, 2)]
-            first = (parts[0] - 8 * parts[1] + 8 * parts[3] - parts[4]) / (12 * h)
-            second = (-parts[0] + 16 * parts[1] - 30 * parts[2] + 16 * parts[3] - parts[4]) / (12 * h * h)
-            return first, second
-
     def _solved(self, angle, times):
-        omega, alpha = self.speed, self.acceleration
-        begun = omega or alpha
-        self.place, self.turning, rows, right = {}, {None: mp.mpf(0)}, {}, []
-        for number, (name, body) in enumerate(self.bodies.items()):
-            rows[name] = 3 * number
-            d = body.direction(angle)
-            first, second = self._rate(body.direction, angle)
-            self.turning[name] = mp.im(first * mp.conj(d))
-            turned = mp.im(second * mp.conj(d)) * omega**2 + mp.im(first * mp.conj(d)) * alpha
-            centre = lambda phi, body=body: body.point(phi) + body.centre * body.direction(phi)  # noqa: E731
-            first, second = self._rate(centre, angle)
-            force = body.mass * (second * omega**2 + first * alpha) - body.mass * self.gravity
-            moment = body.inertia * turned
-            self.place[name] = centre(angle)
-            for on, value, at in self.applied:
-                if on == name:
-                    pushed = value(angle)
-                    force -= pushed
-                    moment -= mp.im(mp.conj(at(angle) - self.place[name]) * pushed)
-            right += [mp.re(force), mp.im(force), moment]
-        self.rows, columns = rows, []
-
-        def add(vector, body, force, point, couple=0):
-            if body is not None:
-                row = rows[body]
-                vector[row] += mp.re(force)
-                vector[row + 1] += mp.im(force)
-                vector[row + 2] += mp.im(mp.conj(point - self.place[body]) * force) + couple
-
-        size = len(right)
-        layout = {}
-        for name, joint in self.joints.items():
-            point = joint.at(angle)
-            first, _ = self._rate(joint.at, angle)
-            units: list = [(1, 0), (1j, 0)]
-            if isinstance(joint, Roller):
-                tangent = first / abs(first)
-                units = [(1j * tangent, 0)]
-                layout[name] = [len(columns), tangent, abs(first)]
-            elif isinstance(joint, Slide):
-                e = joint.direction(angle)
-                moving, carried = joint.moving or joint.at, 0
-                if joint.against is not None:  # velocity of the point of `against` that is there now
-                    body = self.bodies[joint.against]
-                    z, d = body.point(angle), body.direction(angle)
-                    zd, dd = self._rate(body.point, angle)[0], self._rate(body.direction, angle)[0]
-                    carried = zd + dd * ((moving(angle) - z) / d)
-                sliding = mp.re(mp.conj(e) * (self._rate(moving, angle)[0] - carried))
-                units = [(1j * e, 0), (0, 1)]
-                layout[name] = [len(columns), e, sliding]
-            else:
-                layout[name] = [len(columns), None, None]
-            for force, couple in units:
-                vector = [mp.mpf(0)] * size
-                add(vector, joint.on, force, point, couple)
-                add(vector, getattr(joint, "against", None), -mp.mpc(force), point, -couple)
-                columns.append(vector)
-        driving = [mp.mpf(0)] * size
-        driving[rows["crank"] + 2] = mp.mpf(1)
-        columns.append(driving)
-        inverse = mp.matrix(columns).T ** -1
-
-        def friction(found):
-            """What friction puts on the equations, and what it is by joint."""
-            vector, known, loss = [mp.mpf(0)] * size, {}, {}
-            for name, joint in self.joints.items():
-                start, e, sliding = layout[name]
-                against = getattr(joint, "against", None)
-                point = joint.at(angle)
-                if isinstance(joint, Pin):
-                    relative = self.turning[joint.on] - self.turning[against]
-                    size_of = mp.hypot(found[start], found[start + 1])
-                    moment = -joint.rho * size_of * mp.sign(relative * begun)
-                    add(vector, joint.on, 0, point, moment)
-                    add(vector, against, 0, point, -moment)
-                    known[name], loss[name] = moment, -moment * relative * omega
-                elif isinstance(joint, Slide):
-                    press = abs(found[start])
-                    if joint.half_length is not None:
-                        press = max(press, abs(found[start + 1]) / joint.half_length)
-                    force = -joint.mu * press * mp.sign(sliding * begun)
-                    add(vector, joint.on, force * e, point)
-                    add(vector, against, -force * e, point)
-                    known[name], loss[name] = force, -force * sliding * omega
-                else:
-                    pressed, tangent, speed = found[start], e, sliding
-                    side = 1 if pressed > 0 else -1  # the cam touches the roller outside, or inside
-                    spin = -side * speed / joint.radius
-                    relative = spin - self.turning[joint.on]
-                    # forces on the roller: K and Kt at the cam, P at its pin; moment of the pin against its rotation
-                    share = joint.rho / joint.radius
-                    load = abs(pressed) / mp.sqrt(1 - share**2)
-                    on_roller = -joint.rho * load * mp.sign(relative * begun)
-                    contact = -1j * tangent * side * joint.radius
-                    along = -on_roller / mp.im(mp.conj(contact) * tangent)
-                    add(vector, joint.on, along * tangent, point, -on_roller)
-                    known[name], loss[name] = along, -on_roller * relative * omega
-            return vector, known, loss
-
-        found = inverse * mp.matrix(right)
+        at = _Pose(self, angle)
+        found = at.inverse * mp.matrix(at.right)
         for _ in range(times):
-            vector, known, loss = friction(found)
-            new = inverse * (mp.matrix(right) - mp.matrix(vector))
+            vector, known, loss = at.friction(found)
+            new = at.inverse * (mp.matrix(at.right) - mp.matrix(vector))
             change = mp.norm(new - found, mp.inf)
             found = new
             if change <= mp.mpf(10) ** -34 * mp.norm(found, mp.inf):
-                break
-        else:
-            return None
-        forces = {}
-        for name, joint in self.joints.items():
-            start = layout[name][0]
-            forces[name] = found[start] if isinstance(joint, Roller) else mp.mpc(found[start], found[start + 1])
-        return forces, found[size - 1], known, loss
+                return at.forces(found), found[len(found) - 1], known, loss
+        return None
+
+
+def rates(function, angle):
+    """First and second derivative of a function of the crank angle, by differences at twice the digits."""
+    with mp.workdps(2 * DIGITS):
+        h = STEP
+        parts = [function(angle + k * h) for k in (-2, -1, 0, 1, 2)]
+        first = (parts[0] - 8 * parts[1] + 8 * parts[3] - parts[4]) / (12 * h)
+        second = (-parts[0] + 16 * parts[1] - 30 * parts[2] + 16 * parts[3] - parts[4]) / (12 * h * h)
+        return first, second
+
+
+class _Pose:
+    """A system at one crank angle: three equations of each body, and the unknown forces of all joints in them.
+
+    `layout` has by joint its first unknown, and of a slide or roller the direction and rate of the motion along it.
+    """
+
+    def __init__(self, system, angle):
+        self.system, self.angle = system, angle
+        self.rows = {name: 3 * number for number, name in enumerate(system.bodies)}
+        self.place, self.turning = {}, {None: mp.mpf(0)}
+        self.right = [part for name, body in system.bodies.items() for part in self._of_body(name, body)]
+        self.layout, columns = {}, []
+        for name, joint in system.joints.items():
+            along, rate = self._along(joint)
+            self.layout[name] = len(columns), along, rate
+            columns += [self._put(joint, *unit) for unit in self._units(joint, along)]
+        driving = [mp.mpf(0)] * len(self.right)
+        driving[self.rows["crank"] + 2] = mp.mpf(1)
+        self.inverse = mp.matrix([*columns, driving]).T ** -1
+
+    def _of_body(self, name, body):
+        """Inertia of a body less what is known of its loads: force, and moment about its mass centre."""
+        omega, alpha = self.system.speed, self.system.acceleration
+        d = body.direction(self.angle)
+        first, second = rates(body.direction, self.angle)
+        self.turning[name] = mp.im(first * mp.conj(d))
+        turned = mp.im(second * mp.conj(d)) * omega**2 + mp.im(first * mp.conj(d)) * alpha
+        centre = lambda phi: body.point(phi) + body.centre * body.direction(phi)  # noqa: E731
+        first, second = rates(centre, self.angle)
+        force = body.mass * (second * omega**2 + first * alpha) - body.mass * self.system.gravity
+        moment = body.inertia * turned
+        self.place[name] = centre(self.angle)
+        for on, value, at in self.system.applied:
+            if on == name:
+                pushed = value(self.angle)
+                force -= pushed
+                moment -= mp.im(mp.conj(at(self.angle) - self.place[name]) * pushed)
+        return mp.re(force), mp.im(force), moment
+
+    def _along(self, joint):
+        """Direction and rate of the motion along a joint; None of a pin."""
+        if isinstance(joint, Pin):
+            return None, None
+        first, _ = rates(joint.at, self.angle)
+        if isinstance(joint, Roller):
+            return first / abs(first), abs(first)
+        e = joint.direction(self.angle)
+        moving, carried = joint.moving or joint.at, 0
+        if joint.against is not None:  # velocity of the point of `against` that is there now
+            body = self.system.bodies[joint.against]
+            z, d = body.point(self.angle), body.direction(self.angle)
+            zd, dd = (rates(part, self.angle)[0] for part in (body.point, body.direction))
+            carried = zd + dd * ((moving(self.angle) - z) / d)
+        return e, mp.re(mp.conj(e) * (rates(moving, self.angle)[0] - carried))
+
+    def _units(self, joint, along):
+        """What the unknowns of a joint are ones of: forces and couples."""
+        if isinstance(joint, Pin):
+            return (1, 0), (1j, 0)
+        return ((1j * along, 0),) if isinstance(joint, Roller) else ((1j * along, 0), (0, 1))
+
+    def _put(self, joint, force, couple=0, into=None):
+        """A force and couple of a joint in the equations of both its bodies."""
+        vector = [mp.mpf(0)] * len(self.right) if into is None else into
+        for body, way in ((joint.on, 1), (getattr(joint, "against", None), -1)):
+            if body is not None:
+                row, given = self.rows[body], way * mp.mpc(force)
+                vector[row] += mp.re(given)
+                vector[row + 1] += mp.im(given)
+                vector[row + 2] += mp.im(mp.conj(joint.at(self.angle) - self.place[body]) * given) + way * couple
+        return vector
+
+    def friction(self, found):
+        """What friction puts on the equations, and what it and its loss are by joint."""
+        vector, known, loss = [mp.mpf(0)] * len(self.right), {}, {}
+        rub = {Pin: self._of_pin, Slide: self._of_slide, Roller: self._of_roller}
+        for name, joint in self.system.joints.items():
+            known[name], loss[name], force, couple = rub[type(joint)](joint, found, *self.layout[name])
+            self._put(joint, force, couple, vector)
+        return vector, known, loss
+
+    @property
+    def _begun(self):
+        return self.system.speed or self.system.acceleration
+
+    def _of_pin(self, joint, found, start, along, rate):
+        relative = self.turning[joint.on] - self.turning[joint.against]
+        moment = -joint.rho * mp.hypot(found[start], found[start + 1]) * mp.sign(relative * self._begun)
+        return moment, -moment * relative * self.system.speed, 0, moment
+
+    def _of_slide(self, joint, found, start, along, rate):
+        press = abs(found[start])
+        if joint.half_length is not None:
+            press = max(press, abs(found[start + 1]) / joint.half_length)
+        force = -joint.mu * press * mp.sign(rate * self._begun)
+        return force, -force * rate * self.system.speed, force * along, 0
+
+    def _of_roller(self, joint, found, start, along, rate):
+        """Forces on the roller: K and Kt at the cam, P at its pin; moment of the pin against its rotation."""
+        side = 1 if found[start] > 0 else -1  # the cam touches the roller outside, or inside
+        relative = -side * rate / joint.radius - self.turning[joint.on]
+        load = abs(found[start]) / mp.sqrt(1 - (joint.rho / joint.radius) ** 2)
+        on_roller = -joint.rho * load * mp.sign(relative * self._begun)
+        contact = -1j * along * side * joint.radius
+        force = -on_roller / mp.im(mp.conj(contact) * along)
+        return force, -on_roller * relative * self.system.speed, force * along, -on_roller
+
+    def forces(self, found):
+        """Forces by joint, of what was solved for."""
+        starts = {name: start for name, (start, *_) in self.layout.items()}
+        return {
+            name: found[starts[name]]
+            if isinstance(joint, Roller)
+            else mp.mpc(found[starts[name]], found[starts[name] + 1])
+            for name, joint in self.system.joints.items()
+        }
 
 
 def circle(a, ra, b, rb, side):

@@ -9,6 +9,21 @@ import kinetostatics as ks
 
 from .rubbing import Body, Pin, Roller, Slide, System, circle
 
+RUBBED = ks.crank_slider(
+    0.1,
+    0.3,
+    guide_offset=0.02,
+    crank=ks.Link(2.0, (0.03, 0.01), 0.01),
+    coupler=ks.Link(3.0, (0.1, 0.01), 0.02),
+    slider=ks.Link(4.0, (0.01, 0.02)),
+)
+JOINTS = {
+    "O": ks.PinFriction(0.1, 0.02),
+    "A": ks.PinFriction(0.1, 0.02),
+    "B": ks.PinFriction(0.1, 0.015),
+    "guide": ks.GuideFriction(0.15, 0.04),
+}
+"""A crank-slider off its centre, and friction in all its joints."""
 KINDS = ("slider", "cam", "four-bar", "six-bar", "coupler point", "lever", "cylinder", "yoke", "dyad")
 
 

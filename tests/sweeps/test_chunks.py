@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.sweeps import chunks
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support.every import every
@@ -85,14 +84,6 @@ def test_the_hundredth_design_impossible_among_many():
     assert found[FAILED].ne("").sum() == 100
     assert found.loc[::100, FAILED].str.startswith("Link: mass").all()
     assert found.loc[1::100, FAILED].str.startswith("crank-slider cannot be assembled").all()
-
-
-@every("angles", [12, 13, 36, 48, 100])
-def test_few_crank_angles_a_turn_are_as_many_as_tell_its_numbers(angles):
-    outputs, designs = ["largest balancing_torque", "mean_absolute A"], pd.DataFrame({"crank_speed": [2.0, 2.5]})
-    options = {"variant": "idle"}
-    found = sweep(shipped("shaper"), designs, outputs, angles=angles, **options)
-    assert_equal(found, sweep(shipped("shaper"), designs, outputs, angles=chunks.LEAST, **options))
 
 
 @every("case, variant", [("shaper", "idle"), ("mower_drive_optimal", "cam-robust"), ("sawframe_2r63", "cam-circle")])

@@ -1,20 +1,11 @@
 """Animations: all that moves is within the axes, at every step of the period, with its forces."""
 
-import matplotlib.pyplot as plt
 import numpy as np
-import pytest
 
 import kinetostatics as ks
 
 BARS = {"coupler": ks.Link(2.0, (0.2, 0.05), 0.1), "rocker": ks.Link(1.0, 0.1, 0.02)}
 FOUR_BAR = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), **BARS)
-
-
-@pytest.fixture
-def axes():
-    figure, ax = plt.subplots()
-    yield ax
-    plt.close(figure)
 
 
 def test_force_arrows_start_at_their_joints_and_point_along_the_reactions(axes):

@@ -26,13 +26,6 @@ def saw():
     return {name: case.solve(name, angles=360) for name in case.variants}
 
 
-@pytest.fixture
-def axes():
-    figure, ax = plt.subplots()
-    yield ax
-    plt.close(figure)
-
-
 @pytest.mark.parametrize("name", PLOTS)
 def test_plot_returns_the_axes_given_with_units_on_both(name, saw, axes):
     open_figures = plt.get_fignums()

@@ -3,7 +3,6 @@
 import itertools
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.patches import Polygon
@@ -16,13 +15,6 @@ from support.chains import chain
 BARS = {"coupler": ks.Link(2.0, (0.2, 0.05), 0.1), "rocker": ks.Link(1.0, 0.1, 0.02)}
 FOUR_BAR = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), **BARS)
 SAW = ks.crank_slider(0.1, 0.4, crank=ks.Link(1.0, -0.06, 0.1), slider=ks.Link(1.0))
-
-
-@pytest.fixture
-def axes():
-    figure, ax = plt.subplots()
-    yield ax
-    plt.close(figure)
 
 
 def drawn(mechanism, ax, loads=(), angle=40.0, **options):

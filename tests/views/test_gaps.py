@@ -19,13 +19,6 @@ def solved(mechanism, speed=7.0, **options):
     return ks.solve(mechanism, TURN, crank_speed=speed, on_gap="nan", **options)
 
 
-@pytest.fixture
-def axes():
-    figure, ax = plt.subplots()
-    yield ax
-    plt.close(figure)
-
-
 def shades(ax):
     return [tuple(np.round([patch.get_x(), patch.get_x() + patch.get_width()], 6)) for patch in ax.patches]
 

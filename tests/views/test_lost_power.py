@@ -1,6 +1,5 @@
 """Figures of lost power: stacks that add up, labels with units, words where nothing rubs."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -12,13 +11,6 @@ from kinetostatics.views import figures
 def saw():
     case = ks.load_case("sawframe_2r63_friction")
     return {name: case.solve(name, 180) for name in ("plain", "cam-cosine")}
-
-
-@pytest.fixture
-def axes():
-    figure, ax = plt.subplots()
-    yield ax
-    plt.close(figure)
 
 
 def test_the_stack_over_the_turn_reaches_to_the_whole_loss(saw, axes):

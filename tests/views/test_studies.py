@@ -1,19 +1,11 @@
 """Figures of the studies: what their curves hold, and what they are refused."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
 import kinetostatics as ks
 
 UNIT = ks.linkage.chain_unit(0.1, 1.0, 0.5)
-
-
-@pytest.fixture
-def axes():
-    figure, ax = plt.subplots()
-    yield ax
-    plt.close(figure)
 
 
 def test_motion_of_the_chain_unit_is_relative_to_the_speed_and_counted_in_the_sense_of_the_crank(axes):

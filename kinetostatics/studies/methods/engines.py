@@ -15,9 +15,7 @@ from .method import Method, NotGivenError
 
 
 def _solved(solution, angle):
-    drive = solution.crank_speed, solution.crank_acceleration
-    scene = Scene(solution.mechanism, *drive, solution.loads, solution.friction)
-    return unchecked(scene, angle, "numpy")
+    return unchecked(Scene.of(solution), angle, "numpy")
 
 
 def _numpy(solution, quantity, setting):

@@ -20,7 +20,6 @@ from ...machine.rocker_group import RockerGroup, RockerMotion
 from ...machine.slider_group import SliderGroup, SliderMotion
 from ...mechanics.quantities import components
 from ...numbers.planar import added, cross, dot, left, minus, stretched, subtracted, vector
-from ...solution.solution import Solution
 from .method import Method, NotGivenError, on_a_side, require_frictionless, require_one_design
 from .printed import (
     CircleAsPrinted,
@@ -185,9 +184,8 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     >>> bool(abs(theirs.balancing_torque - plain.balancing_torque).max() < 1e-9)  # N m
     True
     """
-    given = {field.name: getattr(solution, field.name) for field in fields(Solution)}
     mechanism = replace(solution.mechanism, groups=_groups(solution.mechanism, sign))
-    return Solution(**given | {"mechanism": mechanism, "engine": KERNELS})
+    return replace(solution, mechanism=mechanism, engine=KERNELS)
 
 
 def exactly_cancelled(solution):

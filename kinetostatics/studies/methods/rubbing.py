@@ -7,8 +7,8 @@ last, until nothing changes. What is left of an error each time is about the coe
 from typing import ClassVar
 
 from ...errors import NotGivenError
-from ...machine.friction import Rolling, Sliding, Turning
 from ...machine.group import FRAME
+from ...machine.pairs import Rolling, Sliding, Turning
 from .structures import structure
 
 TIMES = 2000

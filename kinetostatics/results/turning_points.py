@@ -1,0 +1,156 @@
+"""Where sampled values turn: found in order between limits, rounding left out, and closed in upon by evaluation."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .turn import SAME, runs
+
+CONTINUED = 1e-4
+"""Difference of what a quantity tends to from both sides of a limit position, relative to its size, that is none."""
+
+
+class Path(NamedTuple):
+    """Samples of a quantity and their rounding, periodic; with a period of 0 open, from one limit to the next."""
+
+    angle: np.ndarray
+    value: np.ndarray
+    floor: np.ndarray
+    period: float
+
+
+def open_paths(turn, function, samples, good, floor, size):
+    """Paths between samples that do not count, from limit to limit where the quantity tends to a value."""
+    limits = np.concatenate([turn.limits + shift for shift in (-turn.period, 0.0, turn.period)])
+    found = runs(good)
+    for run, earlier, later in zip(found, found[-1:] + found[:-1], found[1:] + found[:1], strict=True):
+        angle = turn.angle[run]
+        angle = np.where(angle < angle[0], angle + turn.period, angle)
+        before = angle[0] - (angle[0] - turn.angle[earlier[-1]]) % turn.period
+        after = angle[-1] + (turn.angle[later[0]] - angle[-1]) % turn.period
+        left = limits[(limits >= before - SAME) & (limits <= angle[0] + SAME)][-1:]
+        right = limits[(limits <= after + SAME) & (limits >= angle[-1] - SAME)][:1]
+        inside = (angle > np.append(left, -np.inf)[0] + SAME) & (angle < np.append(right, np.inf)[0] - SAME)
+        parts = [(angle[inside], samples[run][inside], floor[run][inside])]
+        for place, side, row in ((left, 1, 0), (right, -1, -1)):
+            tended = [turn.limit(function, end, side, size) for end in place]
+            parts.insert(row % 2 * len(parts), (place, tended, floor[run][[row] * place.size]))
+        angle, value, rounding = (np.concatenate(part) for part in zip(*parts, strict=True))
+        known = ~np.isnan(value)
+        yield Path(angle[known], value[known], rounding[known], 0.0)
+
+
+def turning_points(path):
+    """Crank angles around each extremum (3, K), its value, rounding, and whether it is a maximum (K,).
+
+    The middle of a level stretch counts once. The ends of an open path are extrema too, with no angles around. Rises
+    and falls that are no more than rounding are taken out, least first.
+    """
+    angle, value, floor, period = path
+    count = value.size
+    direction = np.sign(np.roll(value, -1) - value)
+    direction[-1:] = direction[-1:] if period else 0.0
+    moving = np.flatnonzero(direction)
+    following = np.append(moving[1:], moving[:1] + count)
+    turning = direction[moving] * direction[following % count] == -1
+    turning[-1:] &= period > 0
+    before, after = moving[turning], following[turning]
+    places, maximum = np.array([before, (before + after + 1) // 2, after + 1]), direction[before] > 0
+    if not period:
+        places = np.column_stack([[0] * 3, places, [count - 1] * 3])
+        maximum = np.concatenate([direction[moving[:1]] < 0, maximum, direction[moving[-1:]] > 0])
+        maximum = maximum if moving.size else np.array([True, False])
+    while maximum.size > 2 - bool(period) and (not period or np.all(maximum != np.roll(maximum, 1))):
+        middle = places[1] % count
+        height, rounding = value[middle], floor[middle]
+        change = np.abs(np.roll(height, -1) - height) / np.maximum(rounding, np.roll(rounding, -1))
+        least = int(np.argmin(change[: None if period else -1]))
+        if change[least] > 1:
+            break
+        pair = [least, (least + 1) % maximum.size]
+        if not period and (least == 0 or least == maximum.size - 2):  # the end stays, as the other kind
+            end = pair.pop(-1 if least else 0)
+            maximum[end] = ~maximum[end]
+        kept = np.delete(np.arange(maximum.size), pair)
+        places, maximum = places[:, kept], maximum[kept]
+    middle = places[1] % count
+    return angle[places % count] + period * (places // count), value[middle], floor[middle], maximum
+
+
+def in_order(turn, function, size, brackets, value, floor, maximum):
+    """Angle, value and kind of turning points in order of angle, those between two samples closed in upon.
+
+    Parameters
+    ----------
+    turn : Turn
+    function : function
+        Of a solution; its values over crank angles.
+    size : float
+        Of the quantity.
+    brackets, value, floor, maximum : arrays (3, K) and (K,)
+        As of `turning_points`; of an end of a path all three angles are one.
+    """
+    angle, sign = brackets[1], np.where(maximum, -1.0, 1.0)
+    inner = brackets[0] < brackets[2]
+
+    def evaluate(angle):
+        return turn.evaluate(function, angle)
+
+    if inner.any():
+        minimised = _minimised(evaluate, brackets[:, inner], sign[inner])
+        angle[inner] = _polished(evaluate, minimised, sign[inner], floor[inner])
+
+        def beside(start, end):
+            return sign[inner] * (evaluate(start) - evaluate(end)) > floor[inner]
+
+        angle[inner] = turn.from_zero(angle[inner], beside)
+        value[inner] = evaluate(angle[inner])
+    angle = np.where(inner, angle, np.mod(angle, turn.period))
+    order = np.argsort(angle, kind="stable")
+    angle, value, maximum, inner = angle[order], value[order], maximum[order], inner[order]
+    kept = _kept(angle, value, maximum, inner, CONTINUED * size)
+    return angle[kept], value[kept], maximum[kept]
+
+
+def _kept(angle, value, maximum, inner, near):
+    """Which extrema, in order of angle, stay: what goes on smoothly through a limit position has none there."""
+    same = (np.abs(angle - np.roll(angle, -1)) <= SAME) & ~inner & ~np.roll(inner, -1)
+    level = (value == np.roll(value, -1)) | (np.abs(value - np.roll(value, -1)) <= near)
+    pair = same & level & (np.arange(angle.size) < angle.size - 1)
+    through = pair & (maximum != np.roll(maximum, -1))
+    return ~(np.roll(pair, 1) | through)
+
+
+def _minimised(evaluate, brackets, sign):
+    from scipy.optimize import elementwise
+
+    found = elementwise.find_minimum(
+        lambda angle, sign: sign * evaluate(angle),
+        tuple(brackets),
+        args=(sign,),
+        tolerances={"xatol": 0.0, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
+    )
+    better = sign * evaluate(found.x) <= sign * evaluate(brackets[1])  # False where no bracket held, as at a jump
+    return np.where(better, found.x, brackets[1])
+
+
+def _polished(evaluate, angle, sign, floor, half_width=0.01, degree=8):
+    """Zero of the slope of a local Chebyshev fit, where its value is as good as the one it replaces."""
+    from numpy.polynomial import chebyshev
+
+    nodes = chebyshev.chebpts1(degree + 1)
+    samples = evaluate((angle[:, None] + half_width * nodes).ravel()).reshape(angle.size, -1)
+    series = chebyshev.chebfit(nodes, np.nan_to_num(samples).T, degree)
+    slope, bend = chebyshev.chebder(series), chebyshev.chebder(series, 2)
+    place = np.zeros_like(angle)
+    for _ in range(3):
+        place -= _series(place, slope) / _series(place, bend)
+    refined = np.where(np.abs(place) < 1e-3, angle + half_width * place, angle)
+    return np.where(sign * evaluate(refined) <= sign * evaluate(angle) + 0.1 * floor, refined, angle)
+
+
+def _series(place, coefficients):
+    """Value of each column's Chebyshev series at its own place."""
+    from numpy.polynomial import chebyshev
+
+    return chebyshev.chebval(place, coefficients, tensor=False)
