@@ -36,9 +36,13 @@ def _of(solution, quantity):
         found = extrema(solution, quantity)
     except KinetostaticsError:  # a force that does not repeat, for one, can still be drawn where it is solved
         return np.empty(0)
-    angle = found.angle[np.isfinite(found.value)]
-    there = np.abs(angle[:, None] - np.mod(solution.crank_angle, solution.period)).min(axis=1) < PLACED
-    return np.concatenate([angle[~there], _corners(solution.sampled)])
+    return between(solution, found.angle[np.isfinite(found.value)])
+
+
+def between(solution, extremes):
+    """Crank angles of extremes where the solution has none, and of kinks and both sides of jumps, rising."""
+    there = np.abs(extremes[:, None] - np.mod(solution.crank_angle, solution.period)).min(axis=1) < PLACED
+    return np.unique(np.concatenate([extremes[~there], _corners(solution.sampled)]))
 
 
 def _corners(turn):
