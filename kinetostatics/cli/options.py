@@ -133,7 +133,10 @@ def _sweep(group):
         "--output", action="append", type=_text, metavar="OUTPUT", help='"largest O", "ratio mean_absolute ..."'
     )
     command.add_argument(
-        "--variant", type=_text, metavar="NAME", help="whose parameters vary (the first besides the reference)"
+        "--variant",
+        type=_text,
+        metavar="NAME",
+        help="whose parameters vary (the first besides the reference, which is what ratios refer to)",
     )
     command.add_argument("--reference", type=_text, metavar="NAME", help="what ratios refer to (the reference)")
     command.add_argument(
