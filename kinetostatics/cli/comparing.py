@@ -63,6 +63,8 @@ def _print_json(case, tables, special):
 
 
 def _print(case, tables, bounds, special):
+    from ..results.comparison import left_out
+
     say(case.title)
     if case.published.note:
         say("\n" + " ".join(case.published.note.split()))
@@ -72,12 +74,17 @@ def _print(case, tables, bounds, special):
     if len(tables) == 1:
         ((name, table),) = tables.items()
         say(f"\n{case.reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
-        _print_known(table.drop(index=RESIDUAL), bounds[name])
+        more = left_out(table, [case.reference, name])
+        _print_known(table.drop(index=[RESIDUAL, *more]), bounds[name])
     else:
         say(f"\nvalues of {case.reference} and of what it is compared with\n")
-        _print_known(_values(case, tables), _values(case, bounds))
+        values, ratios = _values(case, tables), _ratios(case, tables)
+        more = left_out(values, [case.reference, *tables])
+        _print_known(values.drop(index=more), _values(case, bounds))
         say(f"\nratios, {case.reference} / each: above 1 is in favour of the variant, below 1 against it\n")
-        _print_known(_ratios(case, tables), _ratios(case, bounds))
+        _print_known(ratios.drop(index=more, errors="ignore"), _ratios(case, bounds))
+    if more:
+        say(f"\n{len(more)} torque extrema between the smallest and the largest are left out; --csv has them")
     residual = max(float(table.loc[RESIDUAL, list(table.columns[1:3])].max()) for table in tables.values())
     say(f"\npower balance: the torques by equilibrium and by powers differ by {residual:.1e} of the largest power")
 

@@ -73,7 +73,11 @@ def _explain(group):
     command = _command(group, "explain", commands.explain, "the hand calculation of a quantity at one crank angle")
     command.add_argument("--angle", type=_angle, required=True, metavar="ANGLE", help='crank angle, "39.3 deg"')
     command.add_argument(
-        "--quantity", type=_text, default="balancing_torque", metavar="NAME", help="or a joint's reaction (%(default)s)"
+        "--quantity",
+        type=_text,
+        default="balancing_torque",
+        metavar="NAME",
+        help='or a joint\'s reaction, "O", its magnitude "|O|" (%(default)s)',
     )
     command.add_argument("--variant", type=_text, metavar="NAME", help="of this variant (the reference)")
     command.add_argument("--out", type=_text, metavar="FILE", help="write it, as .html, .tex or .txt")
@@ -129,7 +133,10 @@ def _sweep(group):
         "--output", action="append", type=_text, metavar="OUTPUT", help='"largest O", "ratio mean_absolute ..."'
     )
     command.add_argument(
-        "--variant", type=_text, metavar="NAME", help="whose parameters vary (the first besides the reference)"
+        "--variant",
+        type=_text,
+        metavar="NAME",
+        help="whose parameters vary (the first besides the reference, which is what ratios refer to)",
     )
     command.add_argument("--reference", type=_text, metavar="NAME", help="what ratios refer to (the reference)")
     command.add_argument(

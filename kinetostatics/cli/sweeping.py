@@ -77,7 +77,7 @@ def _labels(wanted, varied):
 def _taken(names, wanted, options):
     """What is said of the variant that designs vary, and of the one that ratios refer to."""
     varied, reference = names
-    why = "the reference" if varied == reference else "the first besides the reference"
+    why = "the reference" if varied == reference else f"the first besides the reference {reference}"
     against = f"; ratios refer to {reference}" if any(item.ratio for item in wanted) else ""
     return chosen(varied, options, why) + against
 

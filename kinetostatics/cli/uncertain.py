@@ -5,7 +5,7 @@ from functools import partial
 
 from ..errors import ParameterError
 from ..numbers import checks, spreads
-from ..numbers.shown import at_most
+from ..numbers.shown import about, at_most
 from ..numbers.units import factor, to_si
 from ..solution.tolerated import largest_with_uncertainty, with_uncertainty
 from .printed import print_table, say
@@ -48,7 +48,7 @@ def tell(solution, given):
     rounding = table["rounding"].fillna(0.0)
     both = zip(table["largest"], table["tolerance"] + rounding, strict=True)
     columns = {"tolerance": "from tolerances", "rounding": "from rounding"}
-    bounds = {name: list(map(at_most, table[name])) for name in columns}
+    bounds = {"tolerance": list(map(about, table["tolerance"])), "rounding": list(map(at_most, table["rounding"]))}
     shown = table.assign(largest=[with_uncertainty(*pair) for pair in both], **bounds)
     print()
     print_table(shown.rename(columns=columns), _of_two_digits(table))

@@ -30,7 +30,7 @@ def first_look(kind, judged=()):
     odd += [f"longest > {hints.LONGEST}", f"longest > {hints.SLENDER} * shortest"] if bars else []
     odd += [f"{noted(inertia)} > {hints.THICK} * {noted(mass)} * {noted(long)} ** 2" for inertia, mass, long in turning]
     if present(scene.crank_speed) is not None and scene.mechanism.crank.length is not None:
-        odd += [f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {hints.SOUND}"]
+        odd += [f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {hints.FASTEST}"]
     odd += [f"0.0 < {noted(inertia)} < thin * {noted(mass)}" for inertia, mass in bodies]
     odd += [f"abs({noted(gap)}) <= 1e-9 * {noted(length)}" for length, gap in arms]
     source = f"""def line(numbers):

@@ -12,6 +12,7 @@ from ..mechanics.dynamics import Dynamics
 from ..mechanics.friction import Rubbing, driving
 from ..mechanics.friction_laws import size_of
 from ..mechanics.pushes import pushed, settled, title_of
+from ..mechanics.quantities import magnitude
 from ..numbers.lazy import cached_property
 from ..numbers.planar import number, plus, product
 from .naming import AXES, Named, Names, node_of
@@ -59,13 +60,17 @@ def told(state, paths, units):
     return made, recorder
 
 
-def result(made, quantity, found):
-    """Recorded numbers of a quantity, named; numbers that nothing makes are plain ones."""
+def result(made, quantity, found, sized=False):
+    """Recorded numbers of a quantity, named, of a vector that is `sized` its magnitude; what nothing makes is plain."""
     parts = found.read(made)
     with made.names.under("Result"):
-        symbol, words = symbol_of(quantity), found.label
+        symbol = Symbol("R", "", quantity) if found.kind == "reaction" else symbol_of(quantity)
+        words = found.label
         if found.vector:
-            return made.names.vector(tuple(parts), symbol, words, found.unit, turned="always")
+            parts = made.names.vector(tuple(parts), symbol, words, found.unit, turned="always")
+            if not sized:
+                return parts
+            parts, words = magnitude(parts), f"magnitude of the {words}"
         return (made.names.number(parts, symbol, words, found.unit, turned="always"),)
 
 

@@ -15,8 +15,8 @@ LONGEST = 100.0
 """Length, m, that no link has."""
 SLENDER = 2000.0
 """How many times the longest link may be as long as the shortest: millimetres beside metres make more."""
-SOUND = 340.0
-"""Speed of sound, m/s, below which all pins stay."""
+FASTEST = 60.0
+"""Speed of a crank's pin, m/s, that no machine has: stresses by inertia go by its square, racing engines end at 50."""
 TURN_TWICE = 2.0 * np.pi * np.pi / 180.0
 """A turn in radians that was taken for degrees."""
 
@@ -60,9 +60,9 @@ def _fast(length, crank_speed, longest):
     if length is None or not (checks.known(length) and checks.known(crank_speed)) or longest > LONGEST:
         return
     radius, speed = _most(length), _most(abs(crank_speed))
-    if radius * speed > SOUND:
+    if radius * speed > FASTEST:
         yield (
-            f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than sound; is crank_speed, "
+            f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than in any racing engine; is crank_speed, "
             f"{speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
         )
 
@@ -146,6 +146,16 @@ def _inertia(bar, link, crank):
         return None
     rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
     return f"the inertia of the {bar.link}, {odd:.4g} kg m2, is {beside} that of {rod}; {advice}"
+
+
+def of_count(given):
+    """Say if a crank angle looks like a count of them: a whole number of more than two turns."""
+    if not isinstance(given, int | np.integer) or given < 4 * np.pi:
+        return ()
+    return (
+        f"{given} is taken as one crank angle, {given} rad; for {given} of them over the turn give "
+        f"np.linspace(0, 2 * np.pi, {given}, endpoint=False), for degrees np.radians({given})",
+    )
 
 
 def of_angles(angle):

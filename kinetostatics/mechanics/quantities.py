@@ -137,6 +137,21 @@ def quantity(solution, name) -> Quantity:
     return known[name]
 
 
+def without_bars(solution, name):
+    """Name of a quantity, of "|O|" that of the vector whose magnitude it is.
+
+    Raises
+    ------
+    QuantityError
+        The mechanism has no such quantity, or it is no vector.
+    """
+    bars = isinstance(name, str) and len(name) > 2 and name[0] == name[-1] == "|"
+    bare = name[1:-1] if bars else name
+    if not quantity(solution, bare).vector and bars:
+        raise QuantityError(f"{name}: only of a vector there is a magnitude, and {bare} is a number")
+    return bare
+
+
 def components(solution, name):
     """Values of a scalar quantity over the crank angles, or both components of a vector; "closure": of each group.
 

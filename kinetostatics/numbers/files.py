@@ -92,12 +92,18 @@ def read_columns(path, wanted):
 
 def headings(path):
     """Name and unit of each column of a CSV file, from its first line that is no comment."""
-    return [parted(heading) for heading in _rows(path)[0]]
+    return list(map(_parted, _rows(path)[0]))
+
+
+def _parted(heading):
+    """Name and unit of a heading, blanks in the name as underscores: "crank angle [deg]" heads crank_angle."""
+    name, unit = parted(heading)
+    return "_".join(name.split()), unit
 
 
 def _column(headings, rows, name, wanted):
     """Values of a column in the SI unit wanted; `ValueError` says what is wrong with it."""
-    names, units = zip(*map(parted, headings), strict=True)
+    names, units = zip(*map(_parted, headings), strict=True)
     places = [place for place, found in enumerate(names) if found == name]
     if len(places) != 1:
         there = ", ".join(map(repr, headings[:20]))

@@ -48,3 +48,8 @@ def power_of(value):
 def at_most(bound):
     """A bound with two digits, rounded up."""
     return number(float(Decimal(float(bound)).normalize(Context(2, ROUND_CEILING))), 2)
+
+
+def about(uncertainty):
+    """An uncertainty with two digits, rounded up, but not for less than a thousandth of it: 0.1 mm stay 0.1 mm."""
+    return at_most(0.999 * uncertainty)

@@ -13,9 +13,11 @@ from .extremes import extremes
 from .losses import lose
 from .means import mean_absolute_torque, mean_absolute_torque_errors
 from .pairing import chosen, counted, of_partners, partners
-from .rounding import Known, without_rounding
+from .rounding import MOST, Known, without_rounding
 
 TORQUE = "balancing_torque"
+EXTREMUM = "torque extremum"
+"""What rows of the table are called that tell one, before its number."""
 ENDS = {"smallest": np.argmin, "largest": np.argmax}
 
 
@@ -195,7 +197,7 @@ class Comparison:
         errors = zip(own, of_partners(partners(*self._between_jumps), other), strict=True)
         pairs = zip(reference.value, matched, strict=True)
         for number, (pair, error) in enumerate(zip(pairs, errors, strict=True), 1):
-            yield self._row(f"torque extremum {number}", TORQUE, pair, error)
+            yield self._row(f"{EXTREMUM} {number}", TORQUE, pair, error)
         paired = np.isfinite(matched)
         peaks = self._largest("largest |balancing torque|", TORQUE)
         for shown, peak in zip((reference.value, matched), peaks.values, strict=True):
@@ -228,6 +230,15 @@ class _Row(NamedTuple):
     def bound_of_ratio(self):
         with np.errstate(divide="ignore", invalid="ignore"):
             return float(np.abs(self.ratio) * np.sum(np.divide(self.bounds, np.abs(self.values))))
+
+
+def left_out(table, names):
+    """Rows of torque extrema that a table for people can do without, if they are many: all but each column's ends."""
+    rows = table.loc[[label for label in table.index if str(label).startswith(EXTREMUM)], list(names)]
+    if len(rows) <= MOST:
+        return []
+    rows = rows.astype(float).dropna(axis="columns", how="all")
+    return list(rows.index.difference([*rows.idxmin(), *rows.idxmax()], sort=False))
 
 
 def compare(reference, balanced):

@@ -109,7 +109,7 @@ class Losses:
     def peaks(self):
         """Largest power lost, W, with its crank angle, rad, by joint and damper, and of "all" together."""
         found = {name: _largest(extrema(self.solution, power)) for name, power in self.powers.items()}
-        return found | {"all": _largest(extrema(self.solution, self._power))}
+        return found | {"all": _largest(extrema(self.solution, self.power))}
 
     def frame(self):
         """What is lost where, a pandas DataFrame: mean, share of all losses, largest and where, energy per turn."""
@@ -124,7 +124,8 @@ class Losses:
         columns = {"mean [W]": mean, "share [%]": share, "largest [W]": largest, "largest at [deg]": degrees}
         return pd.DataFrame(columns | {"per turn [J]": mean * self.turn_time}, pd.Index(names, name="lost at"))
 
-    def _power(self, at):
+    def power(self, at):
+        """Lost by friction and dampers at the crank angles of a solution, W."""
         return sum(power(at) for power in self.powers.values())
 
     def __str__(self):

@@ -19,6 +19,8 @@ PLACED = 1e-7
 """Crank angle, rad, below which the place of an extremum is 0: values about it agree to all digits."""
 AT_JUMP = 1e-6
 """Distance from a jump, rad, within which a bound may be of what stands beyond it."""
+MOST = 24
+"""Extremes of a curve that are told one by one; of more, as a measured load makes, the smallest and the largest."""
 BESIDE = 1e-4
 """Distance from a jump, rad, at which bounds are those of one side."""
 
@@ -118,8 +120,13 @@ def told(extremes):
     if not len(extremes):
         same = "no value" if np.isnan(extremes.constant) else f"{number(extremes.constant)}{unit} all over the period"
         return f"no extremes of {extremes.quantity}: {same}{beside}"
-    rows = (f"{angle:12.6f} deg  {number(value, bound=error):>11}{unit}" for angle, value, error in known)
-    return "\n".join([f"{len(extremes)} extremes of {extremes.quantity}{beside}", *rows])
+    rows = [f"{angle:12.6f} deg  {number(value, bound=error):>11}{unit}" for angle, value, error in known]
+    lines = [f"{len(extremes)} extremes of {extremes.quantity}{beside}", *rows]
+    if len(rows) > MOST:
+        ends = sorted({int(np.argmin(extremes.value)), int(np.argmax(extremes.value))})
+        more = f"the smallest and the largest; .angle and .value have {len(rows) - len(ends)} more between"
+        lines = [*lines[:1], *(rows[place] for place in ends), more]
+    return "\n".join(lines)
 
 
 def zeroed(values, floor):

@@ -10,7 +10,7 @@ import numpy as np
 from ..engines import programs
 from ..engines.backends import Backend
 from ..engines.bounded import of_magnitude, where_known
-from ..errors import ConditionWarning, ParameterError, QuantityError
+from ..errors import ConditionWarning, ParameterError
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.elementary import read_only
@@ -115,8 +115,8 @@ class Certainty(Parameters):
         >>> bool((s.error_bound("balancing_torque") < 1e-13).all())
         True
         """
-        name = self._inner(quantity)
-        checks.require("error_bound", checks.truth("tight", tight))
+        checks.require("error_bound", checks.quantity(quantity), checks.truth("tight", tight))
+        name = quantities.without_bars(self, quantity)
         values, bounds = self._with_bounds(name, tight)
         return _rounding(values, bounds, name != quantity)
 
@@ -175,7 +175,8 @@ class Certainty(Parameters):
         require_free("uncertainty", self.mechanism, inputs, fixed(self.places, self.mechanism))
         given = {path: (value, self.places[path].rule.unit, {"low": 0.0}) for path, value in inputs.items()}
         inputs = checks.singles("uncertainty", **given)
-        name = self._inner(quantity)
+        checks.require("uncertainty", checks.quantity(quantity))
+        name = quantities.without_bars(self, quantity)
         values, bounds = self._with_bounds(name)
         rounding = _rounding(values, bounds, name != quantity)
         found, doubt = self._slopes(name, inputs, values, rounding) if inputs else ({}, None)
@@ -206,16 +207,6 @@ class Certainty(Parameters):
     def _with_bounds(self, name, tight=False):
         """Values of a quantity, and bounds on their errors."""
         return [found[name] for found in self.engine.with_bounds(self.dynamics, (name,), tight)]
-
-    def _inner(self, quantity):
-        """The vector whose magnitude is asked for, or the quantity itself."""
-        magnitude = isinstance(quantity, str) and len(quantity) > 2 and quantity[0] == quantity[-1] == "|"
-        name = quantity[1:-1] if magnitude else quantity
-        if magnitude and not quantities.quantity(self, name).vector:
-            raise QuantityError(f"{quantity}: only of a vector there is a magnitude, and {name} is a number")
-        checks.require("quantity", checks.quantity(name))
-        quantities.quantity(self, name)
-        return name
 
 
 def _rounding(values, bounds, of_its_magnitude):

@@ -13,7 +13,8 @@ class Explained:
         Parameters
         ----------
         quantity : str
-            Any that the solution has: "balancing_torque", a joint (its reaction), "slider_acceleration" ...
+            Any that the solution has: "balancing_torque", a joint (its reaction), "slider_acceleration" ...;
+            ``"|O|"`` for the magnitude of a vector.
         angle : float
             Crank angle, rad; it need not be one of those solved.
         design : int or tuple of int, optional

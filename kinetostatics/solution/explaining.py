@@ -3,6 +3,7 @@
 The steps are the kernels' own arithmetic, recorded with names (engines `told`, `lines`): none is written down twice.
 """
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,8 @@ from ..engines.lines import lines
 from ..engines.naming import node_of
 from ..engines.styles import LATEX, MATHML, TEXT, written
 from ..engines.told import result, told
-from ..errors import NotGivenError, ParameterError, QuantityError
+from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
+from ..machine import hints
 from ..mechanics import quantities
 from ..numbers import checks
 from ..numbers.leaves import mapped
@@ -26,39 +28,41 @@ from .parameters import leaves_of
 
 def explain(solution, quantity, angle, design=None):
     """Hand calculation of a quantity of a solution; see `Solution.explain`."""
-    found = _quantity(solution, quantity)
+    found, inner = _quantity(solution, quantity)
+    sized = inner != quantity
     state = _alone(solution, angle, design)
     numbered = {int(number): path for path, number in leaves_of(state.places, state.dynamics).items()}
     units = {path: place.rule.unit for path, place in state.places.items()}
     made, recorder = told(state.dynamics, numbered, units)
-    nodes = list(map(node_of, result(made, quantity, found)))
+    nodes = list(map(node_of, result(made, inner, found, sized)))
     with np.errstate(all="ignore"):
-        parts = np.array(quantities.components(state.dynamics, quantity), dtype=float)
-    rounded = zip(nodes, _without_rounding(state, quantity, parts), strict=True)
+        read = quantities.sizes if sized else quantities.components
+        parts = np.array(read(state.dynamics, inner), dtype=float)
+    rounded = zip(nodes, _without_rounding(state, quantity, inner, parts), strict=True)
     zeros, nodes = {node for node, part in rounded if part == 0.0}, [node for node in nodes if node is not None]
     steps = _steps(made.names, lines(made.names, nodes, recorder, state.dynamics), zeros) if nodes else {}
     results, angle = tuple(steps[node] for node in nodes), float(state.crank_angle)
-    value = parts if found.vector else float(parts[0])
-    return Explanation(
-        state.mechanism.name, quantity, found.label, angle, tuple(steps.values()), results, value, found.unit
-    )
+    value = parts if found.vector and not sized else float(parts[0])
+    label = f"|{found.label}|" if sized else found.label
+    return Explanation(state.mechanism.name, quantity, label, angle, tuple(steps.values()), results, value, found.unit)
 
 
 def _quantity(solution, name):
-    """The quantity of that name, if it is one of mechanics."""
+    """The quantity of that name, if it is one of mechanics, and its name without the bars of a magnitude."""
     known = {key: found for key, found in quantities.of_scene(solution).items() if found.kind != "check"}
-    if not isinstance(name, str) or name not in known:
+    inner = quantities.without_bars(solution, name) if isinstance(name, str) else None
+    if inner not in known:
         raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", name, tuple(known)))
-    return known[name]
+    return known[inner], inner
 
 
-def _without_rounding(state, quantity, parts):
-    """Components of a quantity, 0 where tables say so."""
+def _without_rounding(state, quantity, inner, parts):
+    """Components of a quantity or its magnitude, 0 where tables say so."""
     try:
         bounds = state.error_bound(quantity)
     except NotGivenError:
         bounds = np.nan
-    return without_rounding(state, quantity, parts, bounds)
+    return without_rounding(state, inner, parts, bounds)
 
 
 def _steps(names, found, zeros):
@@ -84,6 +88,8 @@ def _alone(solution, angle, design):
     """The solution of one design at one crank angle, checked as `solve` does."""
     asked = crank_angles(angle, "explain")
     checks.require("explain", None if asked.size == 1 else f"one crank angle is told at a time, got {asked.size}")
+    for hint in hints.of_angles(asked):
+        warnings.warn(HintWarning(solution.mechanism.name, hint), stacklevel=4)
     asked = float(asked.reshape(()))
     batch = solution.shape[:-1]
     place = _design(batch, design)

@@ -173,7 +173,8 @@ def solve(
     mechanism : Mechanism
         As made by `crank_slider`, `cam_crank_slider` or from a crank and groups of your own.
     crank_angle : array (..., N)
-        rad, counter-clockwise from +x; the last axis is the turn, axes before it broadcast with designs.
+        rad, counter-clockwise from +x; the last axis is the turn, axes before it broadcast with designs. A single
+        number is one angle, a whole one too: a count is taken by `Scene.solve`.
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
@@ -215,7 +216,8 @@ def solve(
     ConditionWarning
         Half of the digits are lost at some crank angle: `Solution.condition` exceeds 1e8.
     HintWarning
-        Something looks like a slip of units: angles in degrees, lengths in mm, a speed in rpm, hardly any inertia.
+        Something looks like a slip: angles in degrees, a count of angles, lengths in mm, a speed in rpm, hardly any
+        inertia.
     UserWarning
         The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
 
@@ -249,7 +251,7 @@ def _begun(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
-    for text in (*odd(solution), *hints.of_angles(solution.crank_angle)):
+    for text in (*odd(solution), *(hints.of_count(crank_angle) or hints.of_angles(solution.crank_angle))):
         warnings.warn(HintWarning(scene.mechanism.name, text), stacklevel=3)
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded

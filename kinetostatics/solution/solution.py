@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from ..engines.engines import NUMPY
-from ..errors import ConditionWarning, ParameterError
+from ..errors import ConditionWarning, HintWarning, ParameterError
+from ..machine import hints
 from ..machine.loads import period_of
 from ..machine.pairs import Turning
 from ..mechanics import assembly
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.motion import Motion
-from ..mechanics.quantities import all_found, scale, values
+from ..mechanics.quantities import all_found, scale, values, without_bars
 from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import made
@@ -83,7 +84,10 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
                 f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
                 "(or, for a load, a Table or a function of the motion) to evaluate at other angles"
             )
-        return replace(self, crank_angle=crank_angles(crank_angle))
+        angle = crank_angles(crank_angle)
+        for hint in hints.of_count(crank_angle):
+            warnings.warn(HintWarning(self.mechanism.name, hint), stacklevel=2)
+        return replace(self, crank_angle=angle)
 
     @property
     def period(self):
@@ -239,6 +243,8 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
     def condition_of(self, quantity):
         """How many times relative errors are magnified in one quantity, relative to its largest value, (..., N).
 
+        Of a vector that is its magnitude, "O" as "|O|".
+
         Geometry (`condition`) times cancellation: the largest of the terms that a force or torque is the sum of, over
         its largest value, where spring and inertia nearly balance for instance. 16 - log10 of it are the digits left.
 
@@ -250,6 +256,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         >>> bool(s.condition_of("O").max() < 1e3)  # 13 digits and more
         True
         """
+        quantity = quantity if callable(quantity) else without_bars(self, quantity)
         largest = np.asarray(self.dynamics.largest(values(replace(self, silent=True), quantity)))
         terms = np.broadcast_to(scale(self, quantity), largest.shape)
         cancelled = np.divide(terms, largest, out=np.ones(largest.shape), where=largest > 0)

@@ -7,7 +7,8 @@ import numpy as np
 
 from ..errors import ConditionWarning, ParameterError
 from ..mechanics.quantities import of_scene
-from ..numbers.shown import at_most, number
+from ..numbers.shown import about, number
+from ..results.bends import SMOOTH
 from ..results.extremes import extrema
 from ..results.rounding import AT_JUMP, Known
 from .scene import Scene
@@ -16,6 +17,8 @@ from .second_order import Doubt, told
 COLUMNS = ("quantity", "unit", "largest", "at [deg]", "tolerance", "rounding", "most from", "share [%]")
 KINDS = ("force", "whole", "slider", "motion", "contact", "reaction")
 """Of quantities that the table tells."""
+UNBENT = (*SMOOTH, "whole")
+"""Of those that no load or friction bends: motion, and the inertia forces of the whole machine."""
 AGAIN = "balancing_torque_by_power"
 """Says what the torque says."""
 
@@ -68,8 +71,9 @@ def largest_with_uncertainty(solution, inputs):
 def _row(known, name, quantity, moved):
     """A row of the table, and the doubt that it says too little, or None."""
     value, angle, rounding = known.end(name, lambda values: np.argmax(np.abs(values)))
-    if np.any(np.abs(angle - known.solution.sampled.kinks) < AT_JUMP):
-        parts, doubt = moved.parts(name)
+    at_kink = np.any(np.abs(angle - known.solution.sampled.kinks) < AT_JUMP)
+    if at_kink and quantity.kind not in UNBENT:
+        parts, doubt = moved.parts(name, rounding)
     else:
         sure, doubt = known.solution.at(angle).with_doubt(f"|{name}|" if quantity.vector else name, moved.inputs)
         parts = {path: float(part) for path, part in sure.inputs.items()}
@@ -90,13 +94,17 @@ class _Moved:
         given, by = self._scene.parameters[path], self.inputs[path]
         return [self._scene.varied({path: given + way * by}).unsolved(self._angle) for way in (-1.0, 1.0)]
 
-    def parts(self, name):
-        """Half of what the largest magnitude differs by, by path, and the doubt that it says too little, or None."""
+    def parts(self, name, rounding):
+        """Half of what the largest magnitude differs by, by path, and the doubt that it says too little, or None.
+
+        Within a bound on rounding that is 0.
+        """
         found, doubt = {}, None
         for path in self.inputs:
             try:
                 low, high = (_largest(side, name) for side in self._sides(path))
-                found[path] = 0.5 * abs(high - low)
+                half = 0.5 * abs(high - low)
+                found[path] = 0.0 if half <= rounding else half
             except ParameterError as why:  # a slider beyond its table, for one
                 doubt = Doubt(name, "and may be more", f"with {path} moved, {why}")
         return found, doubt
@@ -109,4 +117,4 @@ def _largest(solution, name):
 
 def with_uncertainty(value, uncertainty):
     """A number to the second digit of its uncertainty, and that: "40578.9 +- 3.1"."""
-    return f"{number(value, bound=0.1 * uncertainty)} +- {at_most(uncertainty)}"
+    return f"{number(value, bound=0.1 * uncertainty)} +- {about(uncertainty)}"

@@ -95,6 +95,8 @@ def styled(named):
 
 LONG = 20
 """Letters of a label from which on a legend has one column."""
+COLUMNS = (3, 2, 1)
+"""Of a legend above curves: as many as fit into the axes."""
 ALIKE = 2e-3
 """Distance of curves, beside the extent of all, up to which one covers the other."""
 NOTHING = 1e-9
@@ -219,8 +221,13 @@ def finished(ax, ylabel, legend, period=360, counted=FROM_X):
     ax.grid(alpha=0.3)
     if legend:
         handles, texts = ax.get_legend_handles_labels()
-        columns = 3 if max(map(len, texts), default=0) < LONG else 1
+        most = COLUMNS if max(map(len, texts), default=0) < LONG else COLUMNS[-1:]
         texts = [textwrap.fill(text, 2 * LONG, break_on_hyphens=False) for text in texts]
-        ax.margins(y=0.18 if columns > 1 else 0.35)
-        ax.legend(handles, texts, frameon=False, loc="upper center", ncols=columns, fontsize="small", columnspacing=1.0)
+        style = {"frameon": False, "loc": "upper center", "fontsize": "small", "columnspacing": 1.0}
+        for columns in most:
+            box = ax.legend(handles, texts, ncols=columns, **style).get_window_extent()
+            if box.width <= ax.bbox.width:
+                break
+        share = min(box.height / ax.bbox.height, 0.4)
+        ax.margins(y=max(0.18, share / (1.0 - 2.0 * share)))
     return ax

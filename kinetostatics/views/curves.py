@@ -25,6 +25,7 @@ from .canvas import (
     styled,
 )
 from .labels import label
+from .peaks import with_peaks
 from .studies import require_turning
 
 LEAST_MARKS = 0.01
@@ -33,6 +34,8 @@ LEAST_MARKS = 0.01
 
 def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     """One quantity over the crank angle; curves that cover each other are one, under all their labels.
+
+    Extremes between the crank angles solved, kinks and jumps are on the curve.
 
     Parameters
     ----------
@@ -57,7 +60,7 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     ('crank angle from +x, counter-clockwise [deg]', 2)
     """
     ax = axes(ax)
-    named = labelled(solutions, quantity)
+    named = with_peaks(labelled(solutions, quantity), quantity)
     read = {name: values(solution, quantity) for name, solution in named.items()}
     declared = _declared(named, quantity)
     factor, shown = display(declared.unit, list(read.values()))
@@ -187,7 +190,8 @@ def acceleration_error(solutions, ax=None, slider=None):
 def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     """Hodograph of a joint reaction: the curve its tip draws over the turn (figure 7).
 
-    Where it has no value it ends at a cross, where it grows far beyond the rest at the head of an arrow.
+    Extremes of the magnitude between the crank angles solved, kinks and jumps are on it. Where it has no value it ends
+    at a cross, where it grows far beyond the rest at the head of an arrow.
 
     Parameters
     ----------
@@ -215,7 +219,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X):
     """
     marks = singles("hodograph", marks=(marks, "deg", {"low": LEAST_MARKS}))["marks"]
     ax = axes(ax)
-    named = labelled(solutions, joint)
+    named = with_peaks(labelled(solutions, joint), joint)
     curves = {name: _vector(solution, joint) for name, solution in named.items()}
     declared = _declared(named, joint)
     factor, shown = display(declared.unit, curves.values())

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..numbers.checks import require
 from .canvas import INK, axes, display, finished, labelled, single
+from .peaks import with_peaks
 
 
 def lost_power(solution, ax=None):
@@ -33,8 +34,9 @@ def lost_power(solution, ax=None):
     _require_friction({"solution": solution})
     ax = axes(ax)
     lost = solution.losses
-    angle = np.degrees(solution.crank_angle)
-    powers = {name: np.broadcast_to(power(solution), angle.shape) for name, power in lost.powers.items()}
+    drawn = with_peaks({"": solution}, lost.power, *lost.powers.values())[""]
+    angle = np.degrees(drawn.crank_angle)
+    powers = {name: np.broadcast_to(power(drawn), angle.shape) for name, power in lost.powers.items()}
     factor, unit = display("W", [np.sum(list(powers.values()), axis=0)])
     ax.stackplot(angle, *(factor * power for power in powers.values()), labels=list(powers), alpha=0.85, lw=0)
     ax.axhline(factor * lost.total, color=INK, ls="--", lw=1.0, label="mean")

@@ -19,6 +19,7 @@ from .canvas import (
     labelled,
     styled,
 )
+from .peaks import with_peaks
 
 
 def chain_unit_motion(solutions, link, order=1, ax=None):
@@ -55,16 +56,15 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     ax = axes(ax)
     named = labelled(solutions, f"{link} rate")
     require_turning(named)
-    curves = {}
-    for name, solution in named.items():
-        turning = getattr(four_bar_of(solution.mechanism), link).link
-        speed = solution.crank_speed
-        relative = (
-            solution.rate(turning) / speed
-            if order == 1
-            else solution.angular_acceleration(turning) / (speed * abs(speed))
-        )
-        curves[name] = in_order(solution, relative, FROM_Y_CLOCKWISE)
+
+    def relative(solution):
+        turning, speed = getattr(four_bar_of(solution.mechanism), link).link, solution.crank_speed
+        if order == 1:
+            return solution.rate(turning) / speed
+        return solution.angular_acceleration(turning) / (speed * abs(speed))
+
+    named = with_peaks(named, relative)
+    curves = {name: in_order(solution, relative(solution), FROM_Y_CLOCKWISE) for name, solution in named.items()}
     drawn_over_turn(ax, curves)
     kind = "velocity" if order == 1 else "acceleration"
     return finished(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1, counted=FROM_Y_CLOCKWISE)
@@ -97,7 +97,7 @@ def shaking_force(solutions, by="direction", ax=None):
     if ax is None:
         ax = plt.subplots(subplot_kw={"projection": "polar"}, layout="constrained")[1]
     ax = axes(ax)
-    named = labelled(solutions, "shaking_force")
+    named = with_peaks(labelled(solutions, "shaking_force"), "shaking_force")
     sizes = {name: magnitude(solution.shaking_force) for name, solution in named.items()}
     factor, shown = display("N", sizes.values())
     largest = max(float(np.max(size)) for size in sizes.values())

@@ -232,13 +232,17 @@ def test_another_quantity_and_another_vector_can_be_chosen(page):
         box.dispatchEvent(new Event('change'));
         const { model } = report.figures[arguments[0]];
         const { data } = model.renderers.find((x) => x.name === 'line 1').data_source;
-        return [model.left[0].axis_label.text, [...(data.value || data.y)]]"""
-    label, values = driver.execute_script(script, "explore", "cam_force")
+        return [model.left[0].axis_label.text, [...data.angle], [...(data.value || data.y)], [...(data.x || [])]]"""
+    label, degrees, values, _ = driver.execute_script(script, "explore", "cam_force")
     assert label == "cam force [kN]"
-    np.testing.assert_allclose(values[:-1], 1e-3 * solutions[OTHER].cam_force, rtol=1e-12)
-    label, values = driver.execute_script(script, "hodograph", "B")
+    assert degrees[-1] == 360.0
+    whole = solutions[OTHER].at(np.radians(degrees))
+    np.testing.assert_allclose(values, 1e-3 * whole.cam_force, rtol=1e-12)
+    assert max(values) == pytest.approx(1e-3 * ks.extremes(whole, "cam_force").largest, rel=1e-12)
+    label, degrees, y, x = driver.execute_script(script, "hodograph", "B")
     assert label == "reaction B, y [kN]"
-    np.testing.assert_allclose(values[:-1], 1e-3 * solutions[OTHER].reaction("B")[1], rtol=1e-9)
+    np.testing.assert_allclose(y, 1e-3 * whole.at(np.radians(degrees)).reaction("B")[1], rtol=1e-9, atol=1e-12)
+    assert np.hypot(x, y).max() == pytest.approx(1e-3 * ks.extremes(whole, "B").largest, rel=1e-12)
     assert severe(driver) == []
 
 

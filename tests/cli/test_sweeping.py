@@ -28,9 +28,12 @@ def test_json_and_csv_hold_every_design_in_full(tmp_path, capsys):
 @every(
     "options, words",
     [
-        ([], "variant cam-circle, the first besides the reference (another by --variant)"),
+        ([], "variant cam-circle, the first besides the reference plain (another by --variant)"),
         (["--variant", "plain"], "variant plain"),
-        (["--reference", "cam-circle"], "variant plain, the first besides the reference (another by --variant)"),
+        (
+            ["--reference", "cam-circle"],
+            "variant plain, the first besides the reference cam-circle (another by --variant)",
+        ),
         (["--output", "ratio largest O"], "(another by --variant); ratios refer to plain"),
         (["--variant", "plain", "--reference", "cam-cosine", "--output", "ratio largest O"], "refer to cam-cosine"),
     ],

@@ -19,6 +19,13 @@ def test_columns_are_read_to_si_in_the_order_wanted(tmp_path):
     assert headings(path) == [("force", "kN"), ("angle", "deg")]
 
 
+def test_blanks_in_headings_count_as_underscores(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("crank angle [deg], force back [kN]\n0, 1\n360, 1\n")
+    assert headings(path) == [("crank_angle", "deg"), ("force_back", "kN")]
+    assert [column.tolist() for column in read_columns(path, {"force_back": "N"})] == [[1000.0, 1000.0]]
+
+
 def test_a_file_that_is_larger_than_it_may_be_is_refused(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text("x" * 100)

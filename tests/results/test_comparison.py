@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.results.comparison import left_out
 
 
 def yoke(mass, speed=10.0):
@@ -132,3 +133,18 @@ def test_bounds_stand_in_the_rows_and_columns_of_the_numbers():
     assert bounds.loc["torque extremum 1", "coining"] < 1e-9  # of its own side of the jump
     assert np.isnan(bounds.loc["torque extremum 1", "idle"])
     assert np.isnan(bounds.loc["mean |balancing torque|", "coining"])
+
+
+def test_of_very_many_torque_extrema_a_table_for_people_keeps_the_ends():
+    import pandas as pd
+
+    rows = [f"torque extremum {number}" for number in range(1, 41)]
+    table = pd.DataFrame({"unit": "N m", "a": np.sin(np.arange(40.0)), "b": np.cos(np.arange(40.0))}, index=rows)
+    table.loc["largest O"] = ["N", 1e9, 1e9]
+    more = left_out(table, ["a", "b"])
+    kept = table.drop(index=more)
+    assert len(more) + len(kept) == 41
+    assert len(kept) <= 5
+    for name in ("a", "b"):
+        assert {table[name].iloc[:40].min(), table[name].iloc[:40].max(), 1e9} <= set(kept[name])
+    assert left_out(table.iloc[20:], ["a", "b"]) == []

@@ -76,3 +76,16 @@ def test_an_end_is_the_value_with_its_place_and_error_of_a_constant_that():
 
 def test_nan_stays():
     assert np.isnan(zeroed([np.nan], 1.0)).all()
+
+
+def test_of_very_many_extremes_the_smallest_and_the_largest_are_told():
+    angle = np.linspace(0.0, 2 * np.pi, 361)
+    force = 1e3 * np.sin(angle) + np.where(np.arange(361) % 2, 20.0, -20.0) * np.sin(angle)
+    pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0))
+    s = ks.solve(pump, 0.0, crank_speed=10.0, loads=ks.ProcessForce(ks.Table(angle, force)))
+    found = ks.extremes(s, "guide_force")
+    head, *ends, more = str(found).splitlines()
+    assert head == f"{len(found)} extremes of guide_force"
+    assert len(found) > 100
+    assert sorted(float(line.split()[2]) for line in ends) == pytest.approx(found.range, rel=1e-5)
+    assert more == f"the smallest and the largest; .angle and .value have {len(found) - 2} more between"

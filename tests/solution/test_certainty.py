@@ -25,6 +25,13 @@ def test_bounds_are_shaped_as_the_quantity_and_locked():
         s.error_bound("O")[0] = 0.0
 
 
+def test_the_condition_of_a_magnitude_is_that_of_its_vector():
+    s = solved()
+    np.testing.assert_array_equal(s.condition_of("|O|"), s.condition_of("O"))
+    with pytest.raises(ks.QuantityError, match="only of a vector there is a magnitude"):
+        s.condition_of("|balancing_torque|")
+
+
 def test_the_bound_of_a_magnitude_covers_those_of_its_components():
     s = solved()
     x, y = s.error_bound("O")

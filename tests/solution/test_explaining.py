@@ -95,6 +95,23 @@ def test_branches_that_pass_change_points(name):
         ask(solution, quantity, 0.7)
 
 
+@every("quantity", ["|O|", "|B|", "|shaking_force|"])
+def test_a_magnitude_is_told_by_its_components(quantity):
+    solution = solved(SCENES["plain, everything"], 1.1)
+    told, vector = solution.explain(quantity, 1.1), solution.explain(quantity.strip("|"), 1.1)
+    assert told.value == told.results[0].value == pytest.approx(np.hypot(*vector.value), rel=1e-15)
+    assert told.label == f"|{vector.label}|"
+    assert told.text.endswith(f"{quantity} = {told.results[0].shown} N")
+    assert [step.formula for step in told.steps[:-1]] == [step.formula for step in vector.steps]
+    assert largest_error(told) < STEP
+
+
+@every(("quantity", "words"), [("|balancing_torque|", "only of a vector"), ("|Q|", "quantity is 'Q', allowed")])
+def test_magnitudes_of_what_is_no_vector_are_refused(quantity, words):
+    with pytest.raises(ks.QuantityError, match=words):
+        solved(SCENES["plain, everything"], 1.1).explain(quantity, 1.1)
+
+
 @every("name", ["plain, everything", "circle cam, everything", "six-bar"])
 def test_crank_acceleration_inclined_guides_and_every_mass(name):
     for quantity in ("balancing_torque", "shaking_moment", "kinetic_energy"):

@@ -1,5 +1,7 @@
 """Largest values with their uncertainty: by hand where the formula is known."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,27 @@ def test_a_peak_that_a_row_of_a_table_makes_moves_with_the_inputs():
     assert row["tolerance"] == pytest.approx(1000.0 * 0.1 / 0.08 * 1e-5, rel=1e-3)
 
 
+RUBBING = ks.solve(
+    ks.crank_slider(0.1, 0.4, crank=ks.Link(5.0, 0.01), slider=ks.Link(3.0)),
+    0.0,
+    crank_speed=10.0,
+    loads=ks.ProcessForce(ks.Table([0.2, 0.6], [-500.0, -500.0], over="travel", back=[0.0, 0.0])),
+    friction={"guide": ks.GuideFriction(0.1)},
+)
+
+
+def test_at_a_jump_motion_is_as_uncertain_as_its_formula_and_what_an_input_does_not_change_is_not():
+    """The slider is r + l from O at the outer dead centre, where friction and the load jump."""
+    table = largest_with_uncertainty(RUBBING, {"crank_length": 1e-4, "coupler_length": 1e-4})
+    row = table.loc["slider position"]
+    assert row["tolerance"] == pytest.approx(1e-4 * np.sqrt(2.0), rel=1e-12)
+    assert row["share [%]"] == pytest.approx(50.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        table = largest_with_uncertainty(RUBBING, {"crank.mass": 6.0, "slider.centre.along": 1e-3})
+    assert set(table.index[table["tolerance"] > 0.0]) == {"reaction O", "shaking force"}
+
+
 def test_without_uncertain_numbers_rounding_is_all():
     table = largest_with_uncertainty(YOKE, {})
     assert (table["tolerance"] == 0.0).all()
@@ -46,7 +69,7 @@ def test_what_does_not_vary_and_what_says_the_torque_again_is_left_out():
 @every("value, uncertainty, text", [
     (40578.94, 3.0, "40578.9 +- 3"), (40578.94, 31.2, "40579 +- 32"), (5578.43, 318.0, "5580 +- 320"),
     (-10.16, 0.074, "-10.16 +- 0.074"), (2.3, 0.25, "2.3 +- 0.25"), (1.0, 20.0, "0 +- 20"), (0.0, 2.0, "0 +- 2"),
-    (7.0, 20.0, "7 +- 20"),
+    (7.0, 20.0, "7 +- 20"), (0.36, 1e-4 + 3e-16, "0.36 +- 0.0001"), (0.36, 1.01e-4, "0.36 +- 0.00011"),
 ])  # fmt: skip
 def test_a_number_is_told_to_the_second_digit_of_its_uncertainty(value, uncertainty, text):
     assert with_uncertainty(value, uncertainty) == text

@@ -123,3 +123,19 @@ def test_a_unit_is_chosen_by_ordinary_values():
     reaction = np.append(np.linspace(10.0, 20.0, 99), 8e16)
     assert canvas.display("N", [reaction]) == (1.0, "N")
     assert canvas.display("N", [1e4 * reaction]) == (1e-3, "kN")
+
+
+@pytest.mark.parametrize(("width", "columns"), [(6.4, 3), (3.4, 2), (1.6, 1)])
+def test_a_legend_has_as_many_columns_as_fit_and_stands_above_the_curves(width, columns):
+    figure, ax = plt.subplots(figsize=(width, 4.0))
+    for name in ("plain", "cam-circle", "cam-cosine", "plain-rolling", "cam-rolling"):
+        ax.plot([0.0, 180.0, 360.0], [-1.0, 1.0, -1.0], label=name)
+    canvas.finished(ax, "force [N]", True)
+    figure.canvas.draw()
+    legend = ax.get_legend()
+    box, frame = legend.get_window_extent(), ax.get_window_extent()
+    assert legend._ncols == columns
+    assert frame.x0 <= box.x0
+    assert box.x1 <= frame.x1
+    assert ax.transData.transform((180.0, 1.0))[1] < box.y0 + 0.02 * frame.height
+    plt.close(figure)

@@ -8,6 +8,7 @@ from matplotlib.animation import FuncAnimation, PillowWriter
 import kinetostatics as ks
 from kinetostatics.casefile.starters import starter
 from kinetostatics.views import figures
+from kinetostatics.views.peaks import with_peaks
 
 PLOTS = {
     "torque": ks.plots.torque,
@@ -37,10 +38,14 @@ def test_plot_returns_the_axes_given_with_units_on_both(name, saw, axes):
 
 def test_torque_curves_hold_the_numbers_of_the_solutions(saw, axes):
     ks.plots.torque({name: saw[name] for name in ("plain", "cam-cosine")}, ax=axes)
-    curves = {line.get_label(): line.get_ydata() for line in axes.lines if not line.get_label().startswith("_")}
+    curves = {line.get_label(): line.get_data() for line in axes.lines if not line.get_label().startswith("_")}
     assert axes.get_ylabel() == "balancing torque [kN m]"
-    for name, curve in curves.items():
-        np.testing.assert_allclose(1000 * curve, saw[name].balancing_torque)
+    for name, (degrees, curve) in curves.items():
+        assert np.isin(np.degrees(saw[name].crank_angle), degrees).all()
+        torque = saw[name].at(np.radians(degrees)).balancing_torque
+        np.testing.assert_allclose(1000 * curve, torque, atol=1e-12 * np.abs(torque).max())
+        found = ks.extremes(saw[name], "balancing_torque").value
+        assert [1000 * curve.max(), 1000 * curve.min()] == pytest.approx([found.max(), found.min()], rel=1e-14)
     assert len(curves) == 2
 
 
@@ -88,7 +93,8 @@ def test_hodograph_marks_stand_at_the_reactions_of_their_crank_angles(saw, axes)
 
 def test_pressure_angle_is_drawn_in_degrees(saw, axes):
     ks.plots.pressure_angle(saw["cam-circle"], ax=axes)
-    np.testing.assert_allclose(axes.lines[0].get_ydata(), np.degrees(saw["cam-circle"].pressure_angle))
+    s = with_peaks({"": saw["cam-circle"]}, "pressure_angle")[""]
+    np.testing.assert_allclose(axes.lines[0].get_ydata(), np.degrees(s.pressure_angle))
     assert "[deg]" in axes.get_ylabel()
 
 

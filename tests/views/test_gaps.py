@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views import canvas, gaps
+from kinetostatics.views.peaks import with_peaks
 from support.every import every
 
 TURN = np.radians(np.arange(0.0, 360.0, 0.5))
@@ -105,19 +106,20 @@ def test_a_hodograph_ends_at_heads_of_arrows_where_it_goes_on_and_at_crosses_whe
     loads, friction = [ks.Gravity(), ks.ProcessForce(500.0)], {"guide": ks.GuideFriction(1.9)}
     solution = solved(pump, 30.0, loads=loads, friction=friction)
     ks.plots.hodograph(solution, ax=axes)
+    solution = with_peaks({"": solution}, "O")[""]
     whole, drawn = solution.reaction("O"), np.array(axes.lines[0].get_data())[:, :-1]
     found = list(gaps.ends(solution, whole, drawn))
     there, missing = np.isfinite(drawn[0]), np.isnan(whole[0])
     assert len(found) == np.sum(there & ~np.roll(there, -1)) + np.sum(there & ~np.roll(there, 1)) > 2
     for end in found:
-        beside = [row % TURN.size for row in (end.row - 1, end.row + 1) if not there[row % TURN.size]]
+        beside = [row % there.size for row in (end.row - 1, end.row + 1) if not there[row % there.size]]
         assert {"jams" if missing[row] else "" for row in beside} == {end.why}
     assert {end.why for end in found} == {"", "jams"}
     marks = [line.get_marker() for line in axes.lines if len(line.get_xdata()) == 1]
     assert {mark if isinstance(mark, str) else mark[0] for mark in marks} == {"x", 3}
     (note,) = [text.get_text() for text in axes.texts if "beyond" in text.get_text()]
     assert note.splitlines()[1] == "× jams"
-    assert {f"{np.degrees(TURN[end.row]):.4g}°" for end in found if not end.why} & {
+    assert {f"{np.degrees(solution.crank_angle[end.row]):.4g}°" for end in found if not end.why} & {
         text.get_text() for text in axes.texts
     }
 

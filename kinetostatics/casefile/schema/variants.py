@@ -93,7 +93,7 @@ class MechanismVariant(Table):
     crank: LinkTable = LinkTable()
     """Mass properties, from O along the crank."""
     gravity: GravityTable | None = None
-    """Weight; without it there is none. An empty table: 9.81 m/s^2 straight down."""
+    """Weight; without it there is none. An empty table: 9.81 m/s^2 straight down (standard: 9.80665)."""
     balancing: BalancingTable | None = None
     """Counterweights to be found."""
     drive: DriveTable | None = None

@@ -20,7 +20,8 @@ class Gravity(Load):
     Parameters
     ----------
     acceleration : float
-        m/s2.
+        m/s2. Unless told 9.81, the rounded value that studies and textbooks count with; standard gravity is 9.80665,
+        0.03 % less (ISO 80000-3).
     direction : float
         Angle of the direction it pulls in, from +x, rad; straight down (-pi/2) unless told.
 

@@ -48,10 +48,10 @@ _PART = re.compile(r"([^\s.]*?)(\d*)(?=[\s.]|$)")
 
 
 def nearest(value, allowed):
-    """The allowed word that is meant by, or is like, the one given, or None."""
+    """The allowed word that is meant by, or is like, the one given without a unit and bars of a magnitude, or None."""
     import difflib
 
-    text, allowed = _UNIT.sub("", str(value)[:100]), list(allowed)
+    text, allowed = _UNIT.sub("", str(value)[:100]).strip("|"), list(allowed)
     for spelled in (text, *_others_for(text.lower()), text.rpartition(" ")[2]):
         found = next((word for word in allowed if str(word).lower() == spelled.lower()), None)
         if found is not None:

@@ -10,6 +10,7 @@ import numpy as np
 from ...errors import MissingLibraryError
 from ...mechanics.quantities import of_scene, quantity, values
 from ..canvas import display, in_sight
+from ..peaks import with_peaks
 from .words import pretty
 
 COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
@@ -42,7 +43,7 @@ def script():
 
 def over_turn(solutions, name, height=300):
     """A quantity of those machines that have it over the crank angle, of a vector its size."""
-    have = {row: s for row, s in enumerate(solutions.values()) if name in of_scene(s)}
+    have = _having(solutions, name)
     known = quantity(next(iter(have.values())), name)
     found = {row: values(s, name) for row, s in have.items()}
     sight = in_sight(list(found.values()))
@@ -51,6 +52,11 @@ def over_turn(solutions, name, height=300):
     curves = {row: (np.degrees(s.crank_angle), factor * found[row]) for row, s in have.items()}
     label = f"|{known.label}|" if known.vector else known.label
     return curves_over(list(solutions), curves, f"{label} [{pretty(unit) or '1'}]", height)
+
+
+def _having(solutions, name):
+    """Solutions that have a quantity, by their row, at the crank angles of its extremes too."""
+    return with_peaks({row: s for row, s in enumerate(solutions.values()) if name in of_scene(s)}, name)
 
 
 def curves_over(names, curves, label, height=300):
@@ -72,7 +78,7 @@ def curves_over(names, curves, label, height=300):
 
 
 def _period(angle):
-    return float(angle[-1] + angle[1] - angle[0]) if len(angle) > 1 else 360.0
+    return float(angle[-1] - angle[0] + np.max(np.diff(angle))) if len(angle) > 1 else 360.0
 
 
 def _repeated(angle, value, period):
@@ -86,7 +92,7 @@ def _repeated(angle, value, period):
 
 def hodograph(solutions, name, height=420):
     """The curve that the tip of a vector draws over the turn, of those machines that have it."""
-    have = {row: s for row, s in enumerate(solutions.values()) if name in of_scene(s)}
+    have = _having(solutions, name)
     vectors = {row: of_scene(s)[name].read(s) for row, s in have.items()}
     known = of_scene(next(iter(have.values())))[name]
     sight = in_sight([np.hypot(*vector) for vector in vectors.values()])

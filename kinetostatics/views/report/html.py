@@ -12,7 +12,7 @@ from ...results.losses import lose
 from ...version import __version__
 from ..canvas import display
 from . import figures, sections
-from .movement import movements
+from .movement import movements, packed
 from .readings import readings
 from .words import pretty
 
@@ -125,6 +125,7 @@ def _turning(subject):
     return {
         "step": subject.reference.step,
         "counts": [machine.solution.crank_angle.size for machine in machines],
+        "between": [packed(np.degrees(machine.between.crank_angle), "<f8") for machine in machines],
         "start": int(np.nanargmax(torque)) if np.isfinite(torque).any() else 0,
         "way": -1 if np.any(np.asarray(first.crank_speed) < 0) else 1,
         "forceUnit": {"factor": unit[0], "unit": pretty(unit[1])},

@@ -22,29 +22,32 @@ def readings(machines):
     for machine in machines.values():
         for name, quantity in of_scene(machine.solution).items():
             if quantity.kind in KINDS and name not in found and not _is_still(machine.solution, quantity):
-                found[name] = {"quantity": quantity, "of": [_values(other, name) for other in machines.values()]}
+                found[name] = {
+                    "quantity": quantity,
+                    "of": [_values(other, other.solution, name) for other in machines.values()],
+                    "between": [_values(other, other.between, name) for other in machines.values()],
+                }
     ordered = sorted(found.items(), key=lambda item: KINDS.index(item[1]["quantity"].kind))
     texts = {
         name: output.text for machine in machines.values() for name, output in machine.scene.mechanism.outputs.items()
     }
-    return {name: _sent(item["quantity"], item["of"], texts.get(name, "")) for name, item in ordered}
+    return {name: _sent(text=texts.get(name, ""), **item) for name, item in ordered}
 
 
 def _is_still(solution, quantity):
     return quantity.kind == "rate" and still(solution.placement.links[quantity.owner].ratio)
 
 
-def _values(machine, name):
-    """Values over the angles, (1 or 2, N), or None of a machine that lacks the quantity."""
-    solution = machine.solution
-    if name not in of_scene(solution) or _is_still(solution, of_scene(solution)[name]):
+def _values(machine, solution, name):
+    """Values over the angles of a solution, (1 or 2, N), or None of a machine that lacks the quantity."""
+    if name not in of_scene(solution) or _is_still(machine.solution, of_scene(solution)[name]):
         return None
-    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(scale(solution, name)))
+    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(scale(machine.solution, name)))
     return zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
 
 
-def _sent(quantity, of_each, text):
-    arrays = [values for values in of_each if values is not None]
+def _sent(quantity, of, between, text):
+    arrays = [values for values in of if values is not None]
     sizes = [np.hypot(*values) if quantity.vector else values for values in arrays]
     factor, unit = display(quantity.unit, sizes)
     sight = in_sight(sizes)
@@ -57,7 +60,8 @@ def _sent(quantity, of_each, text):
         "vector": quantity.vector,
         "sight": factor * sight if np.isfinite(sight) else None,
         "decimals": decimals(factor * ordinary(sizes)),
-        "values": [None if values is None else packed(factor * values, "<f8") for values in of_each],
+        "values": [None if values is None else packed(factor * values, "<f8") for values in of],
+        "between": [None if values is None else packed(factor * values, "<f8") for values in between],
     }
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from ...errors import DriveError, KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import unit_of
 from ...numbers.shown import DIGITS, at_most
+from ...results.comparison import left_out
 from ...results.losses import lose
 from ...results.means import mean_absolute_torque
 from .tables import Table, digits_of, of_frame, times, with_published
@@ -80,7 +81,8 @@ def _coefficients(subject):
     for machine in subject.others:
         frames[machine.name], bounds[machine.name] = subject.comparison(machine)
     rows = []
-    for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index):
+    more = {row for other, frame in frames.items() for row in left_out(frame, [name, other])}
+    for quantity in dict.fromkeys(row for frame in frames.values() for row in frame.index if row not in more):
         with_row = [other for other, frame in frames.items() if quantity in frame.index]
         known = [frames[other].loc[quantity] for other in with_row]
         cells = [
@@ -91,6 +93,8 @@ def _coefficients(subject):
         published = next((row["published"] for row in known if row.get("published")), "")
         rows.append([quantity, pretty(known[0]["unit"]), first, *cells, published])
     note = f"Below each value how many times larger that of {name} is: above 1, the machine has less than {name}."
+    if more:
+        note += f" {len(more)} torque extrema between the smallest and the largest are left out."
     return _without_empty(Table("", ["", "unit", name, *frames, "published"], rows, 2, note))
 
 

@@ -17,6 +17,7 @@ from ...numbers.lazy import cached_property
 from ...results.comparison import Comparison
 from ...results.tables import extremes_by_name
 from ...solution.scene import Scene
+from ..peaks import between
 
 MOST = 1440
 """Angles over the period that a reader can choose, at most."""
@@ -55,6 +56,13 @@ class Machine:
     def extremes(self):
         """Extremes of all quantities by name: `Row` of `tables`."""
         return extremes_by_name(self.solution)
+
+    @cached_property
+    def between(self):
+        """The solution at 0 and at what lies between the angles to choose: extremes of tables, kinks, jumps."""
+        ends = np.reshape([row.ends for row in self.extremes.values()], (-1, 2))
+        angles = between(self.solution, np.radians(ends[np.isfinite(ends).all(axis=1), 1]))
+        return self.solution.at(np.append(0.0, angles))
 
     @property
     def motor(self):

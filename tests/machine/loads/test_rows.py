@@ -16,6 +16,7 @@ def written(folder, text):
     ("text", "options", "words"),
     [
         ("crank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
+        ("crank angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
         ("# bench 3, 12 May\ncrank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
         ("crank_angle [rad], torque [N mm]\n0, 1\n2, 2\n4, 3\n", {"unit": "N m"}, None),
         ("travel [mm], pressure [bar]\n0, 1\n1, 2\n", {}, "no column 'force'"),
@@ -26,7 +27,7 @@ def written(folder, text):
         ("travel [mm], force [kN]\n1, 1\n2, 2\n1, 3\n3, 1\n", {}, "travel must rise.* give the stroke back"),
         ("travel [mm], force [kN]\n1, 1\n", {}, "at least 2 rows"),
         ("travel [mm], force [kN], back [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'back' would not be read.*force_back"),
-        ("travel [mm], force [kN], Force back [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'Force back' would not be read"),
+        ("travel [mm], force [kN], Force back [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'Force_back' would not be read"),
         ("travel [mm], force [kN], force_return [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'force_return' would not be read"),
         ("travel [mm], pressure [bar], force_back [kN]\n1, 1, 5\n2, 1, 5\n", {"area": 1.0}, "pressure_back"),
         ("crank_angle [deg], force [N], force_back [N]\n0, 1, 5\n120, 2, 5\n240, 3, 5\n", {}, "over travel"),

@@ -28,6 +28,7 @@ def test_synonyms_are_of_words_that_the_library_has():
         ("max O", QUANTITIES, "O"),
         ("piston_pin", QUANTITIES, "B"),
         ("o", QUANTITIES, "O"),
+        ("|O|", QUANTITIES, "O"),
         ("crank_length (mm)", ("crank_length", "coupler_length"), "crank_length"),
         ("crank_length [mm]", ("crank_length", "coupler_length"), "crank_length"),
         ("rod.mass", tuple(SCENE.parameters), "coupler.mass"),

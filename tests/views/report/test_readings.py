@@ -3,9 +3,11 @@
 import warnings
 
 import numpy as np
+import pytest
 
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.results.rounding import FLOOR
+from kinetostatics.views.report.movement import unpacked
 from kinetostatics.views.report.readings import decimals, readings
 from kinetostatics.views.report.subject import subject_of
 from support.every import every
@@ -30,6 +32,22 @@ def test_every_value_is_that_of_the_solution_and_rounding_is_0():
                 wanted = np.stack([np.broadcast_to(part, solution.shape) for part in components(solution, name)])
                 difference = series(found, name, row) / item["factor"] - wanted
                 assert (np.abs(difference) <= 2 * FLOOR * largest + 1e-15 * np.abs(wanted)).all(), name
+
+
+def test_extremes_stand_between_the_angles():
+    for case in ("sawframe_2r63", "compressor"):
+        found = of(case)["quantities"]
+        for row, machine in enumerate(subject(case).machines.values()):
+            for name, item in found.items():
+                if item["values"][row] is not None and name in machine.extremes:
+                    parts = [
+                        unpacked(item[key][row], "<f8").reshape(2 if item["vector"] else 1, -1) / item["factor"]
+                        for key in ("values", "between")
+                    ]
+                    parts = np.concatenate(parts, axis=1)
+                    size = np.hypot(*parts) if item["vector"] else parts[0]
+                    low, _, high, _ = machine.extremes[name].ends
+                    assert [size.min(), size.max()] == pytest.approx([low, high], rel=1e-9, abs=1e-9 * max(high, -low))
 
 
 def test_a_quantity_that_a_machine_lacks_stands_empty():

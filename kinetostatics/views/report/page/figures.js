@@ -9,7 +9,6 @@
   const model = (name) => figures[name] && figures[name].model;
   const renderer = (name, wanted) => model(name).renderers.find((item) => item.name === wanted);
   const closed = (values) => [...values, values[0]];
-  const steps = (length) => Array.from({ length }, (_, place) => place * data.step);
   const named = (row, length) => Array(length).fill(data.drawings[row].name);
   const title = (item, text) => `${text} [${item.unit || "1"}]`;
 
@@ -63,13 +62,11 @@
   function chooseVector() {
     if (!model("hodograph")) return; // it is drawn as chosen
     const item = data.quantities[vector.value];
-    data.counts.forEach((count, row) => {
-      const line = renderer("hodograph", `line ${row}`), all = report.values(vector.value, row);
-      const seen = all && all[0].map((x, place) => inSight(item, Math.hypot(x, all[1][place])));
-      const parts = all && all.map((part) => part.map((value, place) => seen[place] ? value : NaN));
-      line.data_source.data = parts
-        ? { angle: closed(steps(count)), x: closed(parts[0]), y: closed(parts[1]), variant: named(row, count + 1) }
-        : { angle: [], x: [], y: [], variant: [] };
+    data.counts.forEach((_, row) => {
+      const line = renderer("hodograph", `line ${row}`), curve = report.curve(vector.value, row);
+      const seen = curve && curve.parts[0].map((x, place) => inSight(item, Math.hypot(x, curve.parts[1][place])));
+      const [x, y] = curve ? curve.parts.map((part) => closed(part.map((value, place) => seen[place] ? value : NaN))) : [[], []];
+      line.data_source.data = { angle: curve ? closed(curve.angle) : [], x, y, variant: named(row, x.length) };
     });
     [model("hodograph").below[0], model("hodograph").left[0]].forEach((axis, place) => {
       axis.axis_label.text = title(item, `${item.label}, ${"xy"[place]}`);
@@ -79,14 +76,20 @@
 
   function chooseQuantity() {
     if (!model("explore")) return;
-    const item = data.quantities[other.value], angle = steps(Math.round(period / data.step) + 1);
+    const item = data.quantities[other.value];
     data.counts.forEach((count, row) => {
-      const parts = report.values(other.value, row), source = renderer("explore", `line ${row}`).data_source;
-      const size = (place) => parts.length > 1 ? Math.hypot(parts[0][place], parts[1][place]) : parts[0][place];
-      const value = (place) => inSight(item, Math.abs(size(place))) ? size(place) : NaN;
-      source.data = parts
-        ? { angle, value: angle.map((_, place) => value(place % count)), variant: named(row, angle.length) }
-        : { angle: [], value: [], variant: [] };
+      const curve = report.curve(other.value, row), angle = [], value = [];
+      if (curve) {
+        const sizes = curve.parts.length > 1 ? curve.parts[0].map((x, place) => Math.hypot(x, curve.parts[1][place])) : curve.parts[0];
+        const shown = sizes.map((size) => inSight(item, Math.abs(size)) ? size : NaN);
+        for (let start = 0; start < period; start += count * data.step) {
+          angle.push(...curve.angle.map((own) => start + own));
+          value.push(...shown);
+        }
+        angle.push(period);
+        value.push(shown[0]);
+      }
+      renderer("explore", `line ${row}`).data_source.data = { angle, value, variant: named(row, angle.length) };
     });
     model("explore").left[0].axis_label.text = title(item, item.vector ? `|${item.label}|` : item.label);
   }

@@ -18,6 +18,17 @@ window.report = (() => {
     return found[key];
   }
 
+  // Angles in degrees and values of a quantity of a machine over its period, with extremes, kinks and jumps between the angles to choose; or null.
+  function curve(name, row) {
+    const parts = values(name, row);
+    if (!parts) return null;
+    const more = unpacked(data.between[row], Float64Array), others = unpacked(data.quantities[name].between[row], Float64Array);
+    const angle = [...Array.from(parts[0], (_, place) => place * data.step), ...more];
+    const order = [...angle.keys()].sort((one, other) => angle[one] - angle[other]);
+    const all = parts.map((part, place) => [...part, ...others.subarray(place * more.length, (place + 1) * more.length)]);
+    return { angle: order.map((place) => angle[place]), parts: all.map((part) => order.map((place) => part[place])) };
+  }
+
   // Values in SI at an angle.
   function atRow(name, machine, row) {
     const parts = values(name, machine), factor = data.quantities[name].factor;
@@ -109,5 +120,5 @@ window.report = (() => {
   new ResizeObserver(() => drawings.forEach((drawing) => drawing.build())).observe(document.querySelector(".panels"));
   choose(data.start);
   document.documentElement.dataset.ready = Math.round(performance.now());
-  return { data, values, followers, drawings, get index() { return index; } };
+  return { data, values, curve, followers, drawings, get index() { return index; } };
 })();
