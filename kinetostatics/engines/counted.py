@@ -12,15 +12,17 @@ from typing import Any, NamedTuple
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .bounds import SAFE, Bounds, Error, fused, is_scaling, is_zero
-from .functions import ULP, moved_apart
-from .trace import BY_ANGLE, INPUTS, Graph, Node
+from .functions import ULP, is_over_root, moved_apart
+from .trace import BY_ANGLE, INPUTS, Graph, Node, is_number
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
 DIVIDING = ("/", "sqrt", "root", "divisor")
 """Operations that have pivots."""
+TINIEST = 2.0**-1074
+"""What a product may lose that is too small for a double, rounded as it is."""
 NO_POWER = 2.0**-60
-"""Stands for the power 0 of a pivot with a guard, so that a bound is infinite where that acts."""
+"""Stands for the power 0 of a pivot, so that a bound is infinite where that may vanish or its guard acts."""
 
 
 class Relative(NamedTuple):
@@ -44,7 +46,14 @@ class Counted:
         ``input(bounds) -> Error`` of inputs that are not exact.
     dust : float or None
         What a product or quotient may lose if it is too small for a double; None if none is.
+
+    Attributes
+    ----------
+    no_power : float
+        Stands for the power 0 of a pivot; 0 where pivots are known not to vanish.
     """
+
+    no_power = NO_POWER
 
     def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
         self._graph, self._inputs, self._dust = graph, inputs or {}, dust or 0.0
@@ -59,6 +68,7 @@ class Counted:
         self._caps: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
+        self._sure: dict[Node, bool] = {}
 
     def count(self, nodes):
         """Find what is relative among nodes in the order of computing."""
@@ -80,9 +90,9 @@ class Counted:
         if node in self._inputs:
             return None
         if kind in ("+", "-", "total"):
-            return self._counted_sum(node, [part for part in parts if not is_zero(part)])
+            return self._counted_sum(node, self.summands(node))
         if kind == "*":
-            return EXACT if is_zero(node) else self._counted_product(node, 1.0, is_scaling)
+            return self._counted_zero(node) if is_zero(node) else self._counted_product(node, 1.0, is_scaling)
         if kind == "/":
             return self._counted_product(node, -1.0, lambda part: part is parts[1] and is_scaling(part))
         if kind in ("sqrt", "root"):
@@ -95,6 +105,29 @@ class Counted:
         if kind == "sign":  # of a product only what is lost as too small may turn it
             return EXACT if found.dust is None and not found.pivots else None
         return Relative(ULP[kind], {}, None) if is_exact(found) else None
+
+    def summands(self, node):
+        """Parts of a sum but zeros that are there in any case."""
+        return [part for part in node.arguments if not (is_zero(part) and is_exact(self.relative(part)))]
+
+    def _counted_zero(self, node):
+        """Zero times what may be none is that as well."""
+        (part,) = (factor for factor in node.arguments if isinstance(factor, Node))
+        found = self.relative(part)
+        if found is None:
+            return EXACT if not self.no_power or self._is_sure(part) else None
+        return EXACT._replace(pivots={pivot: self.no_power for pivot in found.pivots if self.no_power})
+
+    def _is_sure(self, part):
+        """Whether a part is there in any case: nothing behind it is divided by, or has a root, that may vanish."""
+        if not isinstance(part, Node):
+            return True
+        if part not in self._sure:
+            divided = part.arguments[1:] if part.operation == "/" else ()
+            errors = self.relative(part), *map(self.as_divisor, divided)
+            is_sure = not any(error.pivots for error in errors if error)
+            self._sure[part] = is_sure and (errors[0] is not None or all(map(self._is_sure, part.arguments)))
+        return self._sure[part]
 
     def _counted_input(self, node):
         if node not in self._inputs:
@@ -124,19 +157,19 @@ class Counted:
         if one is None or other is None:
             return None
         pivots = {
-            pivot: one.pivots.get(pivot, 0.0) + sign * other.pivots.get(pivot, 0.0)
+            pivot: one.pivots.get(pivot, 0.0) + sign * other.pivots.get(pivot, 0.0) or self.no_power
             for pivot in one.pivots | other.pivots
         }
         own = 0.0 if is_exactly(left) or is_exactly(right) else 1.0
         return Relative(
             one.roundings + other.roundings + own,
-            {pivot: power or NO_POWER for pivot, power in pivots.items() if power or pivot in self._guards},
+            {pivot: power for pivot, power in pivots.items() if power},
             self._dust_of_product(node, one, other, sign),
         )
 
     def _dust_of_product(self, node, one, other, sign):
         left, right = node.arguments
-        least = None if _is_over_root(node) and other.pivots else self._dust
+        least = None if is_over_root(node) and other.pivots else self._dust
         dust = least or None
         if not is_nothing(one.dust):
             dust = self.fused(one.dust, self.cap(right) if sign > 0.0 else self._cap_over(right), dust)
@@ -153,12 +186,14 @@ class Counted:
 
     def _counted_root(self, node):
         found = self.as_square(node.arguments[0])
-        dust = found.dust
-        if dust is not None:
-            dust = math.sqrt(dust / UNIT) if isinstance(dust, float) else (dust / UNIT).sqrt()
+        dust = None if found.dust is None else self.root_of_dust(found.dust)
         return Relative(
             1.0 + 0.5 * found.roundings, {pivot: 0.5 * power for pivot, power in found.pivots.items()}, dust
         )
+
+    def root_of_dust(self, dust):
+        """What a root is off at most by what its square lost."""
+        return math.sqrt(dust / UNIT) if isinstance(dust, float) else (dust / UNIT).sqrt()
 
     def as_square(self, part):
         """Error of a part whose root is taken: its own if it cannot be negative, or of a pivot."""
@@ -277,7 +312,7 @@ class Counted:
             if not fixed:
                 break
             (rest,) = (part for part in inner.arguments if varies(part))
-            one, other = one * self.size(fixed[0]), self.size(rest)
+            one, other = one * self.size(fixed[0]) + TINIEST, self.size(rest)
         return one, other
 
     def fused(self, one, other, more):
@@ -305,25 +340,12 @@ class Counted:
         return self._positive[part]
 
 
-def _is_over_root(node):
-    """Whether a node is one over a root, which is not too small for a double unless the square is infinite."""
-    above, below = node.arguments
-    while isinstance(below, Node) and below.operation == "divisor":
-        below = below.arguments[0]
-    is_root = isinstance(below, Node) and below.operation in ("sqrt", "root")
-    return node.operation == "/" and is_root and not isinstance(above, Node) and abs(above) >= 1.0
-
-
 def is_exact(error):
     return error is not None and not error.roundings and not error.pivots and error.dust is None
 
 
 def is_nothing(dust):
     return dust is None or is_number(dust, 0.0)
-
-
-def is_number(part, number):
-    return not isinstance(part, Node) and part == number
 
 
 def varies(part):

@@ -128,7 +128,7 @@ class Graph(list):
         factors = [part for part in arguments if isinstance(part, Node) or part != 1.0]
         if operation == "*" and len(factors) == 1:
             return factors[0]
-        if operation == "/" and _is_number(arguments[1], 1.0):
+        if operation == "/" and is_number(arguments[1], 1.0):
             return arguments[0]
         key = (operation, *((part.index,) if isinstance(part, Node) else part for part in arguments))
         if key not in self._known:
@@ -205,11 +205,11 @@ class LeanGraph(Graph):
             return -self._over(arguments[0])
         if part.operation == "/":
             above, below = arguments
-            return below if _is_number(above, 1.0) else super().node("/", below, above)
+            return below if is_number(above, 1.0) else super().node("/", below, above)
         if (
             part.operation == "*"
             and min(map(_varies, arguments)) < part.varies
-            and not any(_is_number(part, 0.0) for part in arguments)
+            and not any(is_number(part, 0.0) for part in arguments)
         ):
             return self.node("*", *map(self._over, arguments))
         return super().node("/", 1.0, part)
@@ -239,14 +239,14 @@ def _is_over(part, other):
         isinstance(part, Node)
         and part.operation == "/"
         and part.arguments[1] is other
-        and _is_number(part.arguments[0], 1.0)
+        and is_number(part.arguments[0], 1.0)
     )
 
 
 def _is_none_of_turn(part, other):
     """Whether a part is zero and the other the sine or cosine of the crank angle, which is finite."""
     return (
-        _is_number(part, 0.0)
+        is_number(part, 0.0)
         and isinstance(other, Node)
         and other.operation in ("sin", "cos")
         and other.arguments[0].operation == "angle"
@@ -256,14 +256,14 @@ def _is_none_of_turn(part, other):
 def _secant(square):
     """Where a square is 1 + x^2 / h^2 with h the root of (a - x) (a + x): a and h, for its root is |a| / h."""
     one, power = _parts(square, "+")
-    if not _is_number(one, 1.0):
+    if not is_number(one, 1.0):
         one, power = power, one
     tangent, same = _parts(power, "*")
-    if not _is_number(one, 1.0) or tangent is not same:
+    if not is_number(one, 1.0) or tangent is not same:
         return None
     for x, over in _either_way(tangent, "*"):
         above, root = _parts(over, "/")
-        if _is_number(above, 1.0) and isinstance(root, Node) and root.operation == "sqrt":
+        if is_number(above, 1.0) and isinstance(root, Node) and root.operation == "sqrt":
             for less, more in _either_way(root.arguments[0], "*"):
                 a, other = _parts(less, "-")
                 if other is x and any(one is a and two is x for one, two in _either_way(more, "+")):
@@ -282,7 +282,7 @@ def _either_way(part, operation):
     return ((left, right), (right, left))
 
 
-def _is_number(part, number):
+def is_number(part, number):
     return not isinstance(part, Node) and part == number
 
 
