@@ -113,8 +113,7 @@ class Counted:
     def _counted_zero(self, node):
         """Zero times what may be none is that as well."""
         (part,) = (factor for factor in node.arguments if isinstance(factor, Node))
-        found = self.relative(part)
-        if found is None:
+        if (found := self.relative(part)) is None:
             return EXACT if not self.no_power or self._is_sure(part) else None
         return EXACT._replace(pivots={pivot: self.no_power for pivot in found.pivots if self.no_power})
 
@@ -123,8 +122,7 @@ class Counted:
         if not isinstance(part, Node):
             return True
         if part not in self._sure:
-            divided = part.arguments[1:] if part.operation == "/" else ()
-            errors = self.relative(part), *map(self.as_divisor, divided)
+            errors = self.relative(part), *map(self.as_divisor, part.arguments[1:] if part.operation == "/" else ())
             is_sure = not any(error.pivots for error in errors if error)
             self._sure[part] = is_sure and (errors[0] is not None or all(map(self._is_sure, part.arguments)))
         return self._sure[part]
