@@ -13,7 +13,7 @@ from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .bounds import SAFE, Bounds, Error, fused, is_scaling, is_zero
 from .functions import ULP, is_over_root, moved_apart
-from .trace import BY_ANGLE, INPUTS, Graph, Node, is_number
+from .trace import BY_ANGLE, INPUTS, Graph, Node, is_number, varies
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
@@ -64,7 +64,7 @@ class Counted:
         self._guards: dict[Node, dict[Node, None]] = {}
         self._squares: set[Any] = set()
         self._divisors: set[Any] = set()
-        self._reciprocals: dict[Node, Any] = {}
+        self._reciprocals: dict[tuple[Node | None, Node], Any] = {}
         self._caps: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
@@ -212,24 +212,28 @@ class Counted:
         """Bound on one over the magnitude of a computed value: its reciprocal where that is computed."""
         if not isinstance(node, Node):
             return 1.0 / abs(node)
-        if node not in self._reciprocals:
+        guards = None, *self._guards.get(node, ())  # where they act, a pivot has no bound in any case
+        known = next((self._reciprocals[guard, node] for guard in guards if (guard, node) in self._reciprocals), None)
+        if known is None:
             size = node if node in self._squares else self.size(node)  # what is negative has no root
-            self._reciprocals[node] = 1.0 / self._graph.node("divisor", size, 0.0)
-        return self._reciprocals[node]
+            known = self._reciprocals[None, node] = 1.0 / self._graph.node("divisor", size, 0.0)
+        return known
 
     def _tell_reciprocal(self, node):
-        """Take note of reciprocals among the values, of what is guarded, and of squares of what they are of."""
+        """Take note of reciprocals among the values, of what they are of, and of what that is a root of, or guards."""
         if node.operation != "/" or isinstance(node.arguments[0], Node):
             return
         above, below = node.arguments
         if below in self._squares or abs(above) < 1.0:  # that may be too small for a double
             return
-        over = self.size(node) * (1.0 / abs(above))
-        while isinstance(below, Node) and below not in self._reciprocals:
-            self._reciprocals[below] = over
+        over, guard = self.size(node) * (1.0 / abs(above)), None
+        while isinstance(below, Node) and (guard, below) not in self._reciprocals:
+            self._reciprocals[guard, below] = over
             if below.operation in ("sqrt", "root"):
                 over = over * over
-            elif below.operation != "divisor":
+            elif below.operation == "divisor":
+                guard = below
+            else:
                 return
             below = below.arguments[0]
 
@@ -344,7 +348,3 @@ def is_exact(error):
 
 def is_nothing(dust):
     return dust is None or is_number(dust, 0.0)
-
-
-def varies(part):
-    return isinstance(part, Node) and part.varies == BY_ANGLE

@@ -39,9 +39,9 @@ from typing import Any, NamedTuple
 from ..numbers.elementary import UNIT
 from ..numbers.planar import minus
 from .bounds import DUST, SAFE, is_scaling, is_zero
-from .counted import ROUNDED, Counted, varies
+from .counted import ROUNDED, Counted
 from .functions import ULP, beside_one, moved_apart
-from .trace import BY_DESIGN, Node, needed
+from .trace import BY_DESIGN, Node, needed, varies
 
 KNOWN = 2.0**-4
 """Relative errors of pivots stay below it."""

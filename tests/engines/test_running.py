@@ -91,6 +91,15 @@ def test_a_guard_that_acts_leaves_no_bound_but_one_as_large_however_small_it_is(
     assert not share < 1.0 - inside
 
 
+def test_a_quotient_by_what_a_guard_makes_larger_elsewhere_keeps_its_own_bound():
+    graph = Graph()
+    other, unit = map(graph.parameter, range(2))
+    sine = graph.angle().sin()
+    outputs = other / sine.kept_off_zero(unit), 1.0 / sine.kept_off_zero(unit), (sine + other) / sine
+    bounds = bounds_of(graph, outputs, [0.3, 1e8], angle=1e-3)
+    assert bounds[-1] >= UNIT * 0.3e3
+
+
 def test_a_design_s_number_that_a_rounding_makes_too_small_still_counts():
     graph = Graph()
     tiny, small = map(graph.parameter, range(2))

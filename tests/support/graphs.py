@@ -9,6 +9,7 @@ from kinetostatics.engines.bounds import Error
 from kinetostatics.engines.trace import INPUTS, Graph, LeanGraph, Node, needed
 from kinetostatics.numbers import elementary
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN
+from kinetostatics.numbers.twofold import Twofold
 
 PARAMETERS, UNITS = 5, 2
 DESIGNS, ANGLES = 6, 3
@@ -16,8 +17,10 @@ DIGITS = 5000
 """Bits of exact values: sums of the largest and smallest numbers cancel."""
 OPERATIONS = (
     *("+", "-", "*", "/", "+", "-", "*", "/", "square-root", "squares", "root", "guard", "apart"),
-    *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus"),
+    *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus", "nothing", "scaled", "beside one", "sum"),
 )
+CONSTANTS = 0.5, 2.0, -1.0, 1.0 / 3.0, 1e-300, 1e300, 5e-324
+"""Plain numbers that others are multiplied by."""
 
 
 def recipe(random, count):
@@ -39,7 +42,13 @@ def recorded(steps, inputs):
         unit = values[PARAMETERS + places[1] % UNITS]
         if kind == "rest":  # of lengths of a design alone
             places = [place % PARAMETERS for place in places[:2]] + places[2:]
-        values.append(_recorded(kind, *(values[place] for place in places), unit))
+        if kind == "sum":
+            parts = [values[place % len(values)] for place in range(places[0], places[0] + 2 + places[1] % 5)]
+            values.append(elementary.total(*parts))
+        elif kind == "scaled":
+            values.append(values[places[0]] * CONSTANTS[places[1] % len(CONSTANTS)])
+        else:
+            values.append(_recorded(kind, *(values[place] for place in places), unit))
     return values
 
 
@@ -60,6 +69,8 @@ def _recorded(kind, one, other, third, fourth, unit):
         "minus": lambda: -one,
         "abs": lambda: abs(one),
         "atan": lambda: one.arctan(),
+        "nothing": lambda: other + 0.0 * one,
+        "beside one": lambda: 1.0 + one,
     }
     return two_parts[kind]() if kind in two_parts else getattr(one, kind)()
 
@@ -142,17 +153,17 @@ def numbers(random, count):
 
 
 class Case:
-    """A random recipe, recorded; its values, bounds and exact values at random numbers.
+    """A random recipe of less than so many operations, recorded; its values, bounds and exact values.
 
     Attributes
     ----------
     program : Program
     """
 
-    def __init__(self, seed):
+    def __init__(self, seed, most=16):
         self._random = random = np.random.default_rng(seed)
         graph = (LeanGraph if random.random() < 0.7 else Graph)()
-        self.steps = recipe(random, int(random.integers(3, 16)))
+        self.steps = recipe(random, int(random.integers(3, most)))
         angle = graph.angle()
         parameters = [graph.parameter(place) for place in range(PARAMETERS + UNITS)]
         row = graph.row(0)
@@ -182,9 +193,9 @@ class Case:
             count = len(self.places)
             for place in np.ndindex(DESIGNS, ANGLES):
                 for output in range(count):
-                    value, bound = (float(results[part][place]) for part in (output, output + count))
+                    value, bound = (results[part][place] for part in (output, output + count))
                     truth = exact[place[0]][place[1]][output]
-                    if _is_off(value, bound, truth):
+                    if _is_off(value, float(bound), truth):
                         found.append((name, self.places[output], place, value, bound, truth, table[place[0]].tolist()))
         return found
 
@@ -202,9 +213,13 @@ class Case:
             ctx.prec = before
 
 
-def _is_off(value, bound, truth):
+def _is_off(whole, bound, truth):
+    """Whether a value, of a double or more digits, is off by more than its bound."""
     from flint import arb, ctx
 
+    value, rest = (whole.value, whole.rest) if isinstance(whole, Twofold) else (whole, 0.0)
+    with np.errstate(invalid="ignore"):
+        value, rest = float(value), float(value - value.dtype.type(float(value))) + float(rest or 0.0)
     if not np.isfinite(value):  # which has no bound that users see
         return False
     if not np.isfinite(bound):
@@ -213,7 +228,7 @@ def _is_off(value, bound, truth):
         return True
     ctx.prec, before = DIGITS, ctx.prec
     try:
-        return bound < 0.0 or abs(arb(value) - truth) > arb(bound)
+        return bound < 0.0 or abs(arb(value) + arb(rest) - truth) > arb(bound)
     finally:
         ctx.prec = before
 
