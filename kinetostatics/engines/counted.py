@@ -118,12 +118,12 @@ class Counted:
         return EXACT._replace(pivots={pivot: self.no_power for pivot in found.pivots if self.no_power})
 
     def _is_sure(self, part):
-        """Whether a part is there in any case: nothing behind it is divided by, or has a root, that may vanish."""
+        """Whether a part is there in any case: no pivot is behind it, nor a function that is finite of infinity."""
         if not isinstance(part, Node):
             return True
         if part not in self._sure:
             errors = self.relative(part), *map(self.as_divisor, part.arguments[1:] if part.operation == "/" else ())
-            is_sure = not any(error.pivots for error in errors if error)
+            is_sure = part.operation not in ("atan", "sign") and not any(error.pivots for error in errors if error)
             self._sure[part] = is_sure and (errors[0] is not None or all(map(self._is_sure, part.arguments)))
         return self._sure[part]
 

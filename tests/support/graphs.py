@@ -19,7 +19,7 @@ OPERATIONS = (
     *("+", "-", "*", "/", "+", "-", "*", "/", "square-root", "squares", "root", "guard", "apart"),
     *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus", "nothing", "scaled", "beside one", "sum"),
 )
-CONSTANTS = 0.5, 2.0, -1.0, 1.0 / 3.0, 1e-300, 1e300, 5e-324
+CONSTANTS = 0.5, 2.0, -1.0, 1.0 / 3.0, 1e-30, 1e30, 5e-324
 """Plain numbers that others are multiplied by."""
 
 
