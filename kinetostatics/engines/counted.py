@@ -68,7 +68,6 @@ class Counted:
         self._caps: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
-        self._sure: dict[Node, bool] = {}
 
     def count(self, nodes):
         """Find what is relative among nodes in the order of computing."""
@@ -90,9 +89,9 @@ class Counted:
         if node in self._inputs:
             return None
         if kind in ("+", "-", "total"):
-            return self._counted_sum(node, self.summands(node))
+            return self._counted_sum(node, [part for part in parts if not is_zero(part)])
         if kind == "*":
-            return self._counted_zero(node) if is_zero(node) else self._counted_product(node, 1.0, is_scaling)
+            return EXACT if is_zero(node) else self._counted_product(node, 1.0, is_scaling)
         if kind == "/":
             return self._counted_product(node, -1.0, lambda part: part is parts[1] and is_scaling(part))
         if kind in ("sqrt", "root"):
@@ -105,27 +104,6 @@ class Counted:
         if kind == "sign":  # of a product only what is lost as too small may turn it
             return EXACT if found.dust is None and not found.pivots else None
         return Relative(ULP[kind], {}, None) if is_exact(found) else None
-
-    def summands(self, node):
-        """Parts of a sum but zeros that are there in any case."""
-        return [part for part in node.arguments if not (is_zero(part) and is_exact(self.relative(part)))]
-
-    def _counted_zero(self, node):
-        """Zero times what may be none is that as well."""
-        (part,) = (factor for factor in node.arguments if isinstance(factor, Node))
-        if (found := self.relative(part)) is None:
-            return EXACT if not self.no_power or self._is_sure(part) else None
-        return EXACT._replace(pivots={pivot: self.no_power for pivot in found.pivots if self.no_power})
-
-    def _is_sure(self, part):
-        """Whether a part is there in any case: no pivot is behind it, nor a function that is finite of infinity."""
-        if not isinstance(part, Node):
-            return True
-        if part not in self._sure:
-            errors = self.relative(part), *map(self.as_divisor, part.arguments[1:] if part.operation == "/" else ())
-            is_sure = part.operation not in ("atan", "sign") and not any(error.pivots for error in errors if error)
-            self._sure[part] = is_sure and (errors[0] is not None or all(map(self._is_sure, part.arguments)))
-        return self._sure[part]
 
     def _counted_input(self, node):
         if node not in self._inputs:

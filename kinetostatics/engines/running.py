@@ -168,7 +168,7 @@ class RunningBounds(Counted):
         if (near := beside_one(self._graph, node, self._of_sign)) is not None:
             terms = [((1.0 + free) * ROUNDED, self.size(node)), (ROUNDED, near), (1.0, self._lost)]
             return Absolute(terms, free)
-        parts = self.summands(node)
+        parts = [part for part in node.arguments if not is_zero(part)]
         own = 1.0 if len(parts) > 1 else 0.0
         reserve = min(
             (self._absolute[part].reserve - own for part in parts if self.relative(part) is None), default=free
@@ -216,8 +216,6 @@ class RunningBounds(Counted):
         left, right = node.arguments
         if self.relative(left) is not None:
             left, right = right, left
-        if is_zero(node):
-            return Absolute([(1.0, 0.0 * self.bound(left)), (1.0, self._lost)], self.free(node))
         found = self.relative(right)
         if found is not None:
             own = 0.0 if any(map(is_scaling, node.arguments)) else 1.0

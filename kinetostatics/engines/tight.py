@@ -127,6 +127,11 @@ class _Local(_OfBoth):
 
     as_square = as_divisor
 
+    def over(self, node):
+        """By a guard's reciprocal too: where that acts the stretched bounds are infinite."""
+        known = next((over for (_, part), over in self._reciprocals.items() if part is node), None)
+        return super().over(node) if known is None else known
+
     def _counted_divisor(self, node):
         return self.as_divisor(node.arguments[0])
 

@@ -58,23 +58,13 @@ def test_a_root_over_itself_kept_off_zero_has_no_bound_where_that_acts(form):
     assert not np.isfinite(acting)
 
 
-@every("form", [lambda root: root / root, lambda root: root * (1.0 / root), lambda root: 2.0 + 0.0 * root])
+@every("form", [lambda root: root / root, lambda root: root * (1.0 / root)])
 @every("graph", [Graph, LeanGraph])
 def test_a_root_that_may_be_none_leaves_no_bound_though_it_cancels(graph, form):
     recorded = graph()
     one, other, unit = map(recorded.parameter, range(3))
     share = form((recorded.angle().cos() * one - other).forgiving_root(unit))
     known, doubtful = (bounds_of(recorded, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, UNIT))
-    assert known < 20.0 * UNIT
-    assert not np.isfinite(doubtful)
-
-
-def test_zero_times_what_is_divided_by_what_may_vanish_has_no_bound():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
-    turning = graph.angle().cos() * one
-    part = 2.0 + 0.0 * ((turning - 3.0) / (turning - other))
-    known, doubtful = (bounds_of(graph, [part], [1.0, 1.0 - rest]) for rest in (0.5, UNIT))
     assert known < 20.0 * UNIT
     assert not np.isfinite(doubtful)
 

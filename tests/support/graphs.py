@@ -17,7 +17,7 @@ DIGITS = 5000
 """Bits of exact values: sums of the largest and smallest numbers cancel."""
 OPERATIONS = (
     *("+", "-", "*", "/", "+", "-", "*", "/", "square-root", "squares", "root", "guard", "apart"),
-    *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus", "nothing", "scaled", "beside one", "sum"),
+    *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus", "scaled", "beside one", "sum"),
 )
 CONSTANTS = 0.5, 2.0, -1.0, 1.0 / 3.0, 1e-30, 1e30, 5e-324
 """Plain numbers that others are multiplied by."""
@@ -69,7 +69,6 @@ def _recorded(kind, one, other, third, fourth, unit):
         "minus": lambda: -one,
         "abs": lambda: abs(one),
         "atan": lambda: one.arctan(),
-        "nothing": lambda: other + 0.0 * one,
         "beside one": lambda: 1.0 + one,
     }
     return two_parts[kind]() if kind in two_parts else getattr(one, kind)()
