@@ -13,7 +13,7 @@ def of_magnitude(vector, bounds):
 
 def where_known(values, bounds):
     """Bounds as users have them: infinite where none is proven, NaN where there is no value."""
-    return np.where(np.isnan(values), np.nan, np.where(np.isnan(bounds) | np.isinf(values), np.inf, bounds))
+    return np.where(np.isnan(values), np.nan, np.where((bounds >= 0.0) & ~np.isinf(values), bounds, np.inf))
 
 
 def with_bounds(program, state, leaves, compiled=False, tight=False):

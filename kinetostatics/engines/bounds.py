@@ -241,7 +241,7 @@ def is_scaling(part):
 def _of_sum(bounds, more, node, *parts):
     if (near := beside_one(bounds._graph, node, bounds.total)) is not None:
         return Error(0.0, near)
-    others = [part for part in parts if not is_zero(part)]
+    others = [part for part in parts if not is_zero(part) or bounds.error(part).rest is not None]
     if len(others) < 2 and more is None:
         return bounds.error(others[0]) if others else EXACT
     return Error(0.0, reduce(plus, map(bounds.total, others), more))
@@ -267,8 +267,9 @@ def _signed(part):
 
 
 def _of_product(bounds, more, node, left, right):
-    if is_zero(node):
-        return EXACT
+    if is_zero(node):  # of what may be none, it is none
+        total = next(bounds.total(factor) for factor in (left, right) if isinstance(factor, Node))
+        return Error(0.0, 0.0 * total) if isinstance(total, Node) else EXACT
     for factor, above in ((left, right), (right, left)):
         if bounds.is_reciprocal(factor) and not bounds.is_dust(factor):  # as of a quotient
             rest = _of_quotient(bounds, more, node, above, factor.arguments[1]).rest

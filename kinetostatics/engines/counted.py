@@ -12,15 +12,17 @@ from typing import Any, NamedTuple
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
 from .bounds import SAFE, Bounds, Error, fused, is_scaling, is_zero
-from .functions import ULP, moved_apart
-from .trace import BY_ANGLE, INPUTS, Graph, Node
+from .functions import ULP, is_over_root, moved_apart
+from .trace import BY_ANGLE, INPUTS, Graph, Node, is_number, varies
 
 ROUNDED = SAFE * UNIT
 """What a rounding counts for in a bound, beside that of the bound itself."""
 DIVIDING = ("/", "sqrt", "root", "divisor")
 """Operations that have pivots."""
+TINIEST = 2.0**-1074
+"""What a product may lose that is too small for a double, rounded as it is."""
 NO_POWER = 2.0**-60
-"""Stands for the power 0 of a pivot with a guard, so that a bound is infinite where that acts."""
+"""Stands for the power 0 of a pivot, so that a bound is infinite where that may vanish or its guard acts."""
 
 
 class Relative(NamedTuple):
@@ -44,7 +46,14 @@ class Counted:
         ``input(bounds) -> Error`` of inputs that are not exact.
     dust : float or None
         What a product or quotient may lose if it is too small for a double; None if none is.
+
+    Attributes
+    ----------
+    no_power : float
+        Stands for the power 0 of a pivot; 0 where pivots are known not to vanish.
     """
+
+    no_power = NO_POWER
 
     def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
         self._graph, self._inputs, self._dust = graph, inputs or {}, dust or 0.0
@@ -55,7 +64,7 @@ class Counted:
         self._guards: dict[Node, dict[Node, None]] = {}
         self._squares: set[Any] = set()
         self._divisors: set[Any] = set()
-        self._reciprocals: dict[Node, Any] = {}
+        self._reciprocals: dict[tuple[Node | None, Node], Any] = {}
         self._caps: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
@@ -124,19 +133,19 @@ class Counted:
         if one is None or other is None:
             return None
         pivots = {
-            pivot: one.pivots.get(pivot, 0.0) + sign * other.pivots.get(pivot, 0.0)
+            pivot: one.pivots.get(pivot, 0.0) + sign * other.pivots.get(pivot, 0.0) or self.no_power
             for pivot in one.pivots | other.pivots
         }
         own = 0.0 if is_exactly(left) or is_exactly(right) else 1.0
         return Relative(
             one.roundings + other.roundings + own,
-            {pivot: power or NO_POWER for pivot, power in pivots.items() if power or pivot in self._guards},
+            {pivot: power for pivot, power in pivots.items() if power},
             self._dust_of_product(node, one, other, sign),
         )
 
     def _dust_of_product(self, node, one, other, sign):
         left, right = node.arguments
-        least = None if _is_over_root(node) and other.pivots else self._dust
+        least = None if is_over_root(node) and other.pivots else self._dust
         dust = least or None
         if not is_nothing(one.dust):
             dust = self.fused(one.dust, self.cap(right) if sign > 0.0 else self._cap_over(right), dust)
@@ -153,12 +162,14 @@ class Counted:
 
     def _counted_root(self, node):
         found = self.as_square(node.arguments[0])
-        dust = found.dust
-        if dust is not None:
-            dust = math.sqrt(dust / UNIT) if isinstance(dust, float) else (dust / UNIT).sqrt()
+        dust = None if found.dust is None else self.root_of_dust(found.dust)
         return Relative(
             1.0 + 0.5 * found.roundings, {pivot: 0.5 * power for pivot, power in found.pivots.items()}, dust
         )
+
+    def root_of_dust(self, dust):
+        """What a root is off at most by what its square lost."""
+        return math.sqrt(dust / UNIT) if isinstance(dust, float) else (dust / UNIT).sqrt()
 
     def as_square(self, part):
         """Error of a part whose root is taken: its own if it cannot be negative, or of a pivot."""
@@ -179,24 +190,28 @@ class Counted:
         """Bound on one over the magnitude of a computed value: its reciprocal where that is computed."""
         if not isinstance(node, Node):
             return 1.0 / abs(node)
-        if node not in self._reciprocals:
+        guards = None, *self._guards.get(node, ())  # where they act, a pivot has no bound in any case
+        known = next((self._reciprocals[guard, node] for guard in guards if (guard, node) in self._reciprocals), None)
+        if known is None:
             size = node if node in self._squares else self.size(node)  # what is negative has no root
-            self._reciprocals[node] = 1.0 / self._graph.node("divisor", size, 0.0)
-        return self._reciprocals[node]
+            known = self._reciprocals[None, node] = 1.0 / self._graph.node("divisor", size, 0.0)
+        return known
 
     def _tell_reciprocal(self, node):
-        """Take note of reciprocals among the values, of what is guarded, and of squares of what they are of."""
+        """Take note of reciprocals among the values, of what they are of, and of what that is a root of, or guards."""
         if node.operation != "/" or isinstance(node.arguments[0], Node):
             return
         above, below = node.arguments
         if below in self._squares or abs(above) < 1.0:  # that may be too small for a double
             return
-        over = self.size(node) * (1.0 / abs(above))
-        while isinstance(below, Node) and below not in self._reciprocals:
-            self._reciprocals[below] = over
+        over, guard = self.size(node) * (1.0 / abs(above)), None
+        while isinstance(below, Node) and (guard, below) not in self._reciprocals:
+            self._reciprocals[guard, below] = over
             if below.operation in ("sqrt", "root"):
                 over = over * over
-            elif below.operation != "divisor":
+            elif below.operation == "divisor":
+                guard = below
+            else:
                 return
             below = below.arguments[0]
 
@@ -277,7 +292,7 @@ class Counted:
             if not fixed:
                 break
             (rest,) = (part for part in inner.arguments if varies(part))
-            one, other = one * self.size(fixed[0]), self.size(rest)
+            one, other = one * self.size(fixed[0]) + TINIEST, self.size(rest)
         return one, other
 
     def fused(self, one, other, more):
@@ -305,26 +320,9 @@ class Counted:
         return self._positive[part]
 
 
-def _is_over_root(node):
-    """Whether a node is one over a root, which is not too small for a double unless the square is infinite."""
-    above, below = node.arguments
-    while isinstance(below, Node) and below.operation == "divisor":
-        below = below.arguments[0]
-    is_root = isinstance(below, Node) and below.operation in ("sqrt", "root")
-    return node.operation == "/" and is_root and not isinstance(above, Node) and abs(above) >= 1.0
-
-
 def is_exact(error):
     return error is not None and not error.roundings and not error.pivots and error.dust is None
 
 
 def is_nothing(dust):
     return dust is None or is_number(dust, 0.0)
-
-
-def is_number(part, number):
-    return not isinstance(part, Node) and part == number
-
-
-def varies(part):
-    return isinstance(part, Node) and part.varies == BY_ANGLE

@@ -56,6 +56,15 @@ def _is_of_angle(part):
     return isinstance(part, Node) and part.operation in OTHER and part.arguments[0].operation == "angle"
 
 
+def is_over_root(node):
+    """Whether a node is one over a root, which is not too small for a double unless the square is infinite."""
+    above, below = node.arguments
+    while isinstance(below, Node) and below.operation == "divisor":
+        below = below.arguments[0]
+    is_root = isinstance(below, Node) and below.operation in ("sqrt", "root")
+    return node.operation == "/" and is_root and not isinstance(above, Node) and abs(above) >= 1.0
+
+
 def lost_by_total(graph, node):
     """Bound on the error of a total, in `UNIT`, beside the rounding of itself.
 

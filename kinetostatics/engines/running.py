@@ -37,10 +37,11 @@ from collections import Counter
 from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
+from ..numbers.planar import minus
 from .bounds import DUST, SAFE, is_scaling, is_zero
-from .counted import ROUNDED, Counted, varies
+from .counted import ROUNDED, Counted
 from .functions import ULP, beside_one, moved_apart
-from .trace import BY_DESIGN, Node, needed
+from .trace import BY_DESIGN, Node, needed, varies
 
 KNOWN = 2.0**-4
 """Relative errors of pivots stay below it."""
@@ -48,6 +49,8 @@ LIMIT = 2.0**1022
 """What relative errors of pivots are held times, over a quarter of `KNOWN`: an overflow where they reach that."""
 GUARDED = 2.0**1000
 """Makes what a guard adds infinite, times `LIMIT`."""
+UNGUARDED = 2.0**34
+"""Over a guard that is too small for it this overflows, and there is no bound."""
 RESERVE = 6.0
 """Roundings in reserve where they are free, and those to be left at least where they are charged to a factor."""
 STEP = 4.0
@@ -133,7 +136,8 @@ class RunningBounds(Counted):
             bound = None if node in guards else self._with_reserve(node)
             found = (0.0 if bound is None else 4.0 / self.known * bound) * self.over(node)
             for guard in guards:
-                found = self.fused(GUARDED, guard - guard.arguments[0], found)
+                root, unit = guard.arguments
+                found = self.fused(GUARDED + 0.0 * (UNGUARDED / unit), guard - root, found)
             self._pivots[node] = (LIMIT * found) * (1.0 / LIMIT)
         return self._pivots[node]
 
@@ -148,11 +152,10 @@ class RunningBounds(Counted):
             terms = [((relative + free) * ROUNDED, self.size(node)), (ROUNDED, rest), (1.0, self._lost)]
             return Absolute(terms, free)
         if kind == "sign":
-            cleared = self.above(self.size(parts[0]), self.total(parts[0]))
-            return Absolute([(1.0, 0.0 / cleared), (1.0, self._lost)], 0.0)
+            return Absolute([self.doubt(parts[0]), (1.0, self._lost)], 0.0)
         if kind in ("sin", "cos", "atan"):
             terms = [((ULP[kind] + free) * ROUNDED, self.size(node)), (1.0, self._lost)]
-            return Absolute([*terms, *self.of_function(self.whole(parts[0]))], free)
+            return Absolute([*terms, *self.of_function(self._with_reserve(parts[0]))], free)
         if kind == "rest":  # truly nothing
             return Absolute([(ROUNDED / UNIT, self.size(node))], 0.0)
         if kind == "*":
@@ -193,9 +196,16 @@ class RunningBounds(Counted):
         """Whether a sum's own rounding is charged to itself."""
         return node.operation == "total"
 
-    def of_function(self, whole):
-        """Terms of a function that changes no faster than its argument, which has a whole bound."""
-        return [(1.0, whole)]
+    def of_function(self, bound):
+        """Terms of a function that changes no faster than its argument, which has a bound."""
+        return [(1.0, bound)]
+
+    def doubt(self, part):
+        """Term that is no number where the sign of a part may truly be the other, though it be too large for a double.
+
+        So its reserve, which is infinite then, is not taken off.
+        """
+        return 1.0, 0.0 / self._graph.node("divisor", minus(self.size(part), self._with_reserve(part)), 0.0)
 
     def _of_sign(self, sign):
         """Bound on the error of a sign that a design has."""

@@ -17,7 +17,7 @@ adjoints, some thousand `UNIT` of what F would be if nothing cancelled. As C is 
 from collections.abc import Callable
 from typing import Any
 
-from .bounds import DUST
+from .bounds import DUST, Bounds
 from .counted import EXACT
 from .functions import moved_apart
 from .running import KNOWN, Absolute, RunningBounds
@@ -34,15 +34,17 @@ def tight_bound(graph, inputs, output, dust=DUST):
     (most,) = stretched.of([output])
     if not isinstance(most, Node):
         return most
-    local = _Local(graph, inputs, stretched, output)
+    local = _Local(graph, inputs, stretched, output, dust)
     (own,) = local.of([output])
     slopes, cancelling = _adjoints(output, local), None
     for node, (_, slope) in slopes.items():
         if node in local.cut:
             cancelling = local.fused(abs(slope), local.bound(node), cancelling)
     small = 0.0 if dust is None else 4.0 * len(slopes) * 2.0**-50 / SEED
-    terms = [(2.0 / STRETCH, most), (1.0 / SEED, cancelling), (1.0, own), (1.0, small)]
-    return -graph.node("divisor", -local.summed(terms), -most)
+    least = local.summed([(2.0 / STRETCH, most), (1.0, own), (1.0, small)])
+    if cancelling is not None:  # by itself: the seed comes first, so that nothing gets too small
+        least = local.fused(1.0 / SEED, cancelling, least)
+    return -graph.node("divisor", -least, -most)
 
 
 class _OfBoth(RunningBounds):
@@ -60,17 +62,20 @@ class _Stretched(_OfBoth):
     def larger(self, part, times=1.0):
         return self.fused(STRETCH, self.bound(part), times * self.size(part))
 
-    def of_function(self, whole):
+    def root_of_dust(self, dust):
+        """So many times what it is of dust that is not stretched, too."""
+        return super().root_of_dust(STRETCH * dust)
+
+    def of_function(self, bound):
         """Its slope changes no faster than its argument either."""
-        return super().of_function(whole) + ([] if whole is None else [(0.5 * STRETCH * whole, whole)])
+        return super().of_function(bound) + ([] if bound is None else [(0.5 * STRETCH * bound, bound)])
 
     def _found(self, node):
         """None is proven where an absolute value may have the other sign than its magnitude was taken with."""
         if node.operation != "abs" or node.varies < BY_ANGLE:
             return super()._found(node)
         (part,) = node.arguments
-        cleared = self.above(self.size(part), self.total(part))
-        return Absolute([(1.0, 0.0 / cleared), (1.0, self.bound(part))], self._absolute[part].reserve)
+        return Absolute([self.doubt(part), (1.0, self.bound(part))], self._absolute[part].reserve)
 
 
 class _Local(_OfBoth):
@@ -84,8 +89,11 @@ class _Local(_OfBoth):
     cut : set of Node
     """
 
-    def __init__(self, graph, inputs, stretched, output):
+    no_power = 0.0
+
+    def __init__(self, graph, inputs, stretched, output, dust):
         super().__init__(graph, inputs, dust=None)
+        self._by_design = Bounds(graph, inputs, dust)
         self._stretched, self._output, self.cut = stretched, output, set()
         self._users: dict[Node, list[Node]] = {}
         for node in needed([output]):
@@ -118,6 +126,11 @@ class _Local(_OfBoth):
         return self.relative(part) or super().as_divisor(part)
 
     as_square = as_divisor
+
+    def over(self, node):
+        """By a guard's reciprocal too: where that acts the stretched bounds are infinite."""
+        known = next((over for (_, part), over in self._reciprocals.items() if part is node), None)
+        return super().over(node) if known is None else known
 
     def _counted_divisor(self, node):
         return self.as_divisor(node.arguments[0])

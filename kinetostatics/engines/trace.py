@@ -161,6 +161,11 @@ def _with_signs_taken_in(operation, *arguments):
     return operation, (*left, right)
 
 
+def varies(part):
+    """Whether a part is a number of the crank angle."""
+    return isinstance(part, Node) and part.varies == BY_ANGLE
+
+
 def is_negative(part):
     return isinstance(part, Node) and part.operation == "-" and len(part.arguments) == 1
 

@@ -24,6 +24,8 @@ from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN, apart
 from support.bounded import FAMILIES, over_worst, solution
 from support.elsewhere import errors, exact_values
 from support.every import every
+from support.graphs import Case
+from support.graphs_elsewhere import MORE_DIGITS, SINGLE_PRECISION, runs_in_more_digits
 from support.inclined import INCLINED
 
 U = 2.0**-24
@@ -283,3 +285,13 @@ def test_numbers_of_more_digits_are_within_their_bound_by_either_kind(name, flin
             off = [(abs(flint.arb(one) + flint.arb(rest) - true), flint.arb(most)) for true, one, rest, most in pairs]
             assert all(error <= most for error, most in off)
     assert np.isfinite(bound).mean() > 0.9
+
+
+def test_no_random_graph_in_single_precision_is_off_by_more_than_its_bounds(flint):
+    assert [wrong for seed in range(60) for wrong in Case(seed).wrong(SINGLE_PRECISION)] == []
+
+
+def test_no_random_graph_in_more_digits_is_off_by_more_than_its_bounds(flint):
+    cases = [case for case in map(Case, range(60)) if runs_in_more_digits(case)]
+    assert len(cases) > 10
+    assert [wrong for case in cases for wrong in case.wrong(MORE_DIGITS)] == []

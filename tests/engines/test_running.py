@@ -8,6 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import programs
 from kinetostatics.engines.bounds import DUST
+from kinetostatics.engines.lean import LeanGraph
 from kinetostatics.engines.running import KNOWN, LIMIT, RunningBounds, steepest
 from kinetostatics.engines.tight import tight_bound
 from kinetostatics.engines.trace import Graph
@@ -56,6 +57,56 @@ def test_a_root_over_itself_kept_off_zero_has_no_bound_where_that_acts(form):
     (known,), (acting,) = (bounds_of(graph, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, 2.0**-40))
     assert known < 8.0 * UNIT
     assert not np.isfinite(acting)
+
+
+@every("form", [lambda root: root / root, lambda root: root * (1.0 / root)])
+@every("graph", [Graph, LeanGraph])
+def test_a_root_that_may_be_none_leaves_no_bound_though_it_cancels(graph, form):
+    recorded = graph()
+    one, other, unit = map(recorded.parameter, range(3))
+    share = form((recorded.angle().cos() * one - other).forgiving_root(unit))
+    known, doubtful = (bounds_of(recorded, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, UNIT))
+    assert known < 20.0 * UNIT
+    assert not np.isfinite(doubtful)
+
+
+@every("unit", [1e-150, 1e-297, 1e-300, 1e-305, 5e-324])
+def test_a_guard_that_acts_leaves_no_bound_but_one_as_large_however_small_it_is(unit):
+    graph = Graph()
+    one, small = map(graph.parameter, range(2))
+    part = one * graph.angle()
+    outputs = part.kept_off_zero(small), part / part.kept_off_zero(small)
+    inside = 1.0 - 2.0**-10
+    kept, share = bounds_of(graph, outputs, [inside * unit, unit], angle=1.0)
+    assert not kept < unit - inside * unit
+    assert not share < 1.0 - inside
+
+
+def test_a_quotient_by_what_a_guard_makes_larger_elsewhere_keeps_its_own_bound():
+    graph = Graph()
+    other, unit = map(graph.parameter, range(2))
+    sine = graph.angle().sin()
+    outputs = other / sine.kept_off_zero(unit), 1.0 / sine.kept_off_zero(unit), (sine + other) / sine
+    bounds = bounds_of(graph, outputs, [0.3, 1e8], angle=1e-3)
+    assert bounds[-1] >= UNIT * 0.3e3
+
+
+def test_a_design_s_number_that_a_rounding_makes_too_small_still_counts():
+    graph = Graph()
+    tiny, small = map(graph.parameter, range(2))
+    product = (graph.angle().cos() / small) * tiny
+    found = *RunningBounds(graph).of([product]), tight_bound(graph, {}, product)
+    bounds = programs.Program(None, found)._by_numbers(np.array([1.0]), [5e-324, 4.1e-193], (1,))[:, 0]
+    assert np.all(bounds >= UNIT * (5e-324 / 4.1e-193) * np.cos(1.0))
+
+
+@every("function", [lambda part: part.arctan(), sign])
+def test_a_function_of_what_is_too_large_for_a_double_has_a_bound_that_is_one(function):
+    graph = Graph()
+    huge, other = map(graph.parameter, range(2))
+    part = graph.angle() * huge + other
+    (bound,) = bounds_of(graph, [function(part * part)], [1e160, 1.0], angle=1.0)
+    assert not bound < 0.0
 
 
 @every("power", [1, 3, 12, 20])

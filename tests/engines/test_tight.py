@@ -35,6 +35,24 @@ def test_no_value_of_random_machines_is_off_by_more_than_its_tight_bound(flint, 
     assert compared.wrong == []
 
 
+@every("design", [True, False])
+def test_what_is_lost_under_roots_of_roots_counts_in_full(design):
+    graph = Graph()
+    tiny = graph.parameter(0) if design else graph.parameter(0) * graph.angle()
+    root = (tiny * tiny + tiny * tiny).sqrt().sqrt().sqrt()  # computed 0
+    _, tight = found(graph, root, 1.0, 1e-166)
+    assert not tight < 3.4e-42
+
+
+def test_an_adjoint_is_not_lost_by_numbers_of_a_design_that_are_tiny():
+    graph = Graph()
+    row, tiny, unit = graph.row(0), *map(graph.parameter, range(2))
+    root = (row.kept_off_zero(unit) * tiny).forgiving_root(unit)
+    bound = tight_bound(graph, {row: lambda bounds: Error(0.0, 1.0)}, root)
+    (least,) = programs.Program(None, (bound,)).by_numpy(np.zeros(1), [4e-164, 1e-152], [np.full(1, 3e-5)], (1,))
+    assert least >= 0.5 * UNIT * (4e-164 / 3e-5) ** 0.5
+
+
 def test_errors_of_what_is_used_twice_cancel():
     graph = Graph()
     other, factor = map(graph.parameter, range(2))

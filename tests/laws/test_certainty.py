@@ -14,6 +14,7 @@ from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.elementary import UNIT
 from support.bounded import FAMILIES, solution
 from support.every import every
+from support.shipped import shipped
 
 LOOSE = 1000.0
 """How many times more than condition times rounding a bound may be: it has every operation on its worst side."""
@@ -52,6 +53,16 @@ def test_where_a_bound_is_wide_the_condition_is_large(family, seed):
     made = solution(family, seed)
     for _, bound, condition in looked_at(made) if made is not None else ():
         assert np.all(bound <= LOOSE * UNIT * condition)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("case", ks.shipped_cases())
+def test_the_condition_of_no_shipped_case_claims_digits_that_a_bound_does_not_prove(case):
+    for variant in shipped(case).variants.values():
+        made = variant.scene.solve(np.linspace(0.01, 6.27, 40), on_gap="nan")
+        for quantity, bound, condition in looked_at(made):
+            assert np.all(bound <= LOOSE * UNIT * condition), quantity
 
 
 @every("family", ("chain", "plain", "four-bar", "place"))

@@ -10,6 +10,7 @@ from kinetostatics.engines.lean import LeanGraph
 from kinetostatics.engines.trace import INPUTS, Graph, Node, needed
 from kinetostatics.numbers import elementary
 from kinetostatics.numbers.elementary import APART, UNIT, UNSEEN
+from kinetostatics.numbers.twofold import Twofold
 
 PARAMETERS, UNITS = 5, 2
 DESIGNS, ANGLES = 6, 3
@@ -17,8 +18,10 @@ DIGITS = 5000
 """Bits of exact values: sums of the largest and smallest numbers cancel."""
 OPERATIONS = (
     *("+", "-", "*", "/", "+", "-", "*", "/", "square-root", "squares", "root", "guard", "apart"),
-    *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus"),
+    *("abs", "sign", "sin", "cos", "atan", "held", "total", "rest", "minus", "scaled", "beside one", "sum"),
 )
+CONSTANTS = 0.5, 2.0, -1.0, 1.0 / 3.0, 1e-30, 1e30, 5e-324
+"""Plain numbers that others are multiplied by."""
 
 
 def recipe(random, count):
@@ -40,7 +43,13 @@ def recorded(steps, inputs):
         unit = values[PARAMETERS + places[1] % UNITS]
         if kind == "rest":  # of lengths of a design alone
             places = [place % PARAMETERS for place in places[:2]] + places[2:]
-        values.append(_recorded(kind, *(values[place] for place in places), unit))
+        if kind == "sum":
+            parts = [values[place % len(values)] for place in range(places[0], places[0] + 2 + places[1] % 5)]
+            values.append(elementary.total(*parts))
+        elif kind == "scaled":
+            values.append(values[places[0]] * CONSTANTS[places[1] % len(CONSTANTS)])
+        else:
+            values.append(_recorded(kind, *(values[place] for place in places), unit))
     return values
 
 
@@ -61,6 +70,7 @@ def _recorded(kind, one, other, third, fourth, unit):
         "minus": lambda: -one,
         "abs": lambda: abs(one),
         "atan": lambda: one.arctan(),
+        "beside one": lambda: 1.0 + one,
     }
     return two_parts[kind]() if kind in two_parts else getattr(one, kind)()
 
@@ -103,7 +113,7 @@ def _moves(part):
     return any(not isinstance(factor, Node) and factor in (APART, APART * UNSEEN) for factor in factors)
 
 
-def _root(square):
+def _root(square, unit=None):
     """What is negative and too small for a double counts as zero: no sign is known of it."""
     return square.sqrt() if square > -(2.0**-900) else None
 
@@ -114,8 +124,8 @@ _EXACTLY = {
     "-": lambda one, other=None: -one if other is None else one - other,
     "*": lambda one, other: one * other,
     "/": lambda one, other: None if other.is_zero() else one / other,
-    "sqrt": lambda one: None if one < 0 else one.sqrt(),
-    "root": lambda one, unit: _root(one),
+    "sqrt": _root,
+    "root": _root,
     "divisor": lambda one, unit: one,
     "held": lambda one: one,
     "abs": abs,
@@ -143,17 +153,17 @@ def numbers(random, count):
 
 
 class Case:
-    """A random recipe, recorded; its values, bounds and exact values at random numbers.
+    """A random recipe of less than so many operations, recorded; its values, bounds and exact values.
 
     Attributes
     ----------
     program : Program
     """
 
-    def __init__(self, seed):
+    def __init__(self, seed, most=16):
         self._random = random = np.random.default_rng(seed)
         graph = (LeanGraph if random.random() < 0.7 else Graph)()
-        self.steps = recipe(random, int(random.integers(3, 16)))
+        self.steps = recipe(random, int(random.integers(3, most)))
         angle = graph.angle()
         parameters = [graph.parameter(place) for place in range(PARAMETERS + UNITS)]
         row = graph.row(0)
@@ -168,7 +178,7 @@ class Case:
         """By way, program and how it is run: every value that is off by more than its bound."""
         random = self._random
         table = numbers(random, DESIGNS * (PARAMETERS + UNITS)).reshape(DESIGNS, -1)
-        table[:, PARAMETERS:] = np.maximum(abs(table[:, PARAMETERS:]), 2.0**-900)
+        table[:, PARAMETERS:] = abs(table[:, PARAMETERS:])
         angle = random.choice([0.0, np.pi / 2, np.pi, 1.0, 0.3, 1e-9, 5.0, -2.0], (DESIGNS, ANGLES))
         rows = [numbers(random, DESIGNS * ANGLES).reshape(DESIGNS, ANGLES)]
         given = [column[:, None] for column in table.T]
@@ -183,9 +193,9 @@ class Case:
             count = len(self.places)
             for place in np.ndindex(DESIGNS, ANGLES):
                 for output in range(count):
-                    value, bound = (float(results[part][place]) for part in (output, output + count))
+                    value, bound = (results[part][place] for part in (output, output + count))
                     truth = exact[place[0]][place[1]][output]
-                    if _is_off(value, bound, truth):
+                    if _is_off(value, float(bound), truth):
                         found.append((name, self.places[output], place, value, bound, truth, table[place[0]].tolist()))
         return found
 
@@ -203,16 +213,22 @@ class Case:
             ctx.prec = before
 
 
-def _is_off(value, bound, truth):
+def _is_off(whole, bound, truth):
+    """Whether a value, of a double or more digits, is off by more than its bound."""
     from flint import arb, ctx
 
-    if not (np.isfinite(bound) and np.isfinite(value)):  # which users have none of
+    value, rest = (whole.value, whole.rest) if isinstance(whole, Twofold) else (whole, 0.0)
+    with np.errstate(invalid="ignore"):
+        value, rest = float(value), float(value - value.dtype.type(float(value))) + float(rest or 0.0)
+    if not np.isfinite(value):  # which has no bound that users see
+        return False
+    if not np.isfinite(bound):
         return bound < 0.0
     if truth is None:
         return True
     ctx.prec, before = DIGITS, ctx.prec
     try:
-        return bound < 0.0 or abs(arb(value) - truth) > arb(bound)
+        return bound < 0.0 or abs(arb(value) + arb(rest) - truth) > arb(bound)
     finally:
         ctx.prec = before
 
