@@ -25,6 +25,9 @@ class Cam:
     (0.286231, 0.013975)
     """
 
+    knots = ()
+    """Crank angles at which its second derivative bends or jumps, each a `Knot`."""
+
     def polar(self, angle, ray):
         raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")
 

@@ -254,6 +254,11 @@ class Group:
         return ()
 
     @property
+    def knots(self):
+        """Where the law of a cam that leads it bends or jumps, each a `Knot`."""
+        return ()
+
+    @property
     def curves(self):
         """Joints that run on a curve, with what drawings call it."""
         return {}

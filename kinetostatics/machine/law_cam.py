@@ -23,7 +23,7 @@ from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .cam import Cam
-from .law import TURN, knots_of, law_problem
+from .law import TURN, bends_of, knots_of, law_problem
 
 GRID = np.linspace(-np.pi, np.pi, 2881)
 """Crank angles from the guide at which the highest and lowest d are bracketed, rad."""
@@ -103,6 +103,11 @@ class LawCam(Cam):
     def singular_angles(self):
         """Crank angles at which the coupler is across the crank ray, rad from +x."""
         return tuple((self.guide_angle + turning.angle) % TURN for turning in (self.far, self.near))
+
+    @cached_property
+    def knots(self):
+        """Where the law bends or jumps, each a `Knot` at a crank angle from +x."""
+        return tuple(knot._replace(angle=knot.angle + self.guide_angle) for knot in bends_of(self.law))
 
     @property
     def force_error(self):

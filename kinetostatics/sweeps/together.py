@@ -16,10 +16,11 @@ from ..mechanics import contact
 from ..mechanics.quantities import quantity, scale, sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
-from ..numbers.leaves import with_fields
+from ..numbers.leaves import Leaves, put_together, taken_apart, with_fields
 from ..results.bends import bends, bent
 from ..results.passes import Passes
 from ..results.pieces import Pieces
+from ..results.refining import GOAL, refined
 from ..results.rounding import FLOOR
 from ..results.turn import NEAR
 from ..solution.scene import unchecked
@@ -143,7 +144,7 @@ def noise(scene, job, outputs):
     solution = solution_of(scene, job.angles)
     if any(bent(solution, item.quantity, job.straight) for item in outputs):
         count = math.prod(solution.shape[:-1])
-        solution = solution_of(scene, _pieces(solution, job, outputs, count).angle)
+        solution = solution_of(scene, _pieces(solution, job, outputs, count)[0].angle)
     with np.errstate(all="ignore"):
         found = [_is_noise(solution, item.quantity) for item in outputs]
     return np.array(found)
@@ -156,31 +157,46 @@ def _is_noise(solution, name):
 
 
 def _pieces(solution, job, outputs, count):
-    """The turn of designs, parted where loads bend."""
-    found, order = bends(solution, job.straight), max(item.order or 0 for item in outputs)
-    return Pieces.of(np.broadcast_to(found, (count, found.shape[1])), solution.period, job.angles, order)
+    """The turn of designs, parted where loads bend, and by what share of its largest value a load may bend besides."""
+    (found, rest), order = bends(solution, job.straight), max(item.order or 0 for item in outputs)
+    return Pieces.of(np.broadcast_to(found, (count, found.shape[1])), solution.period, job.angles, order), rest
 
 
 def _by_pieces(scene, job, solution, outputs, count):
     """Numbers (outputs, designs), and whether so many crank angles do not tell them, where loads bend."""
-    pieces = _pieces(solution, job, outputs, count)
-    angle, names = pieces.angle, quantities(outputs)
-    values = {name: np.empty(angle.shape) for name in names}
-    step = max(1, VALUES // count)
-    for start in range(0, angle.shape[1], step):
-        some = slice(start, start + step)
-        for name, found in zip(names, _sizes(solution_of(scene, angle[:, some]), names, job.engine), strict=True):
-            values[name][:, some] = found
-    found = np.empty((2, len(outputs), count))
-    step = max(1, VALUES // angle.shape[1])
+    (pieces, rest), names = _pieces(solution, job, outputs, count), quantities(outputs)
+    wanted = [(item, quantity(solution, item.quantity).vector) for item in outputs]
+
+    def evaluated(designs, angle):
+        own, values = _of_designs(scene, designs, count), {name: np.empty(angle.shape) for name in names}
+        step = max(1, VALUES // len(angle))
+        for start in range(0, angle.shape[1], step):
+            some = slice(start, start + step)
+            for name, found in zip(names, _sizes(solution_of(own, angle[:, some]), names, job.engine), strict=True):
+                values[name][:, some] = found
+        return values
+
+    found, step = np.empty((2, len(outputs), count)), max(1, VALUES // pieces.angle.shape[1])
     for start in range(0, count, step):
-        some = slice(start, start + step)
-        own = pieces.some(some)
+        some = np.arange(start, min(start + step, count))
+        first = pieces.some(some)
         with np.errstate(all="ignore"):
-            for row, item in enumerate(outputs):
-                vector = quantity(solution, item.quantity).vector
-                found[:, row, some] = own.estimated(item, values[item.quantity][some], vector)
+            values = evaluated(some, first.angle)
+            again = lambda of, angle, some=some: evaluated(some[of], angle)  # noqa: E731
+            for designs, parts, told in refined(first, values, wanted, again, max(GOAL, rest)):
+                for row, (item, vector) in enumerate(wanted):
+                    found[:, row, some[designs]] = parts.estimated(item, told[item.quantity], vector)
     return found
+
+
+def _of_designs(scene, designs, count):
+    """The scene of some of its designs."""
+    if len(designs) == count:
+        return scene
+    leaves = Leaves()
+    structure = taken_apart(scene, leaves)
+    numbers = (part[designs] if np.shape(part)[:1] == (count,) else part for part in leaves.numbers)
+    return put_together(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
 
 
 def _sizes(solution, names, engine):
