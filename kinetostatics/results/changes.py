@@ -51,7 +51,8 @@ def sign_changes(function, period, samples):
 
 def _brackets(signs, values, angle):
     """Crank angles before and after each change, and of which function, (designs, K), from values (functions, designs,
-    N)."""
+    N).
+    """
     changed = (np.signbit(values[..., :-1]) != np.signbit(values[..., 1:])) & ~np.isnan(np.diff(values))
     row, design, place = np.nonzero(changed)
     found = [(design, angle[0, place], angle[0, place + 1], row)]

@@ -100,7 +100,10 @@ class Pieces(NamedTuple):
         values = self._by_node(values)
         if output.reduction in PEAKS:
             found, height = self._peaks(output.reduction, values, vector)
-            error, size = self._of_peaks(values, signs(output.reduction), vector).max(axis=1), np.ptp(values, axis=(0, 2))
+            error, size = (
+                self._of_peaks(values, signs(output.reduction), vector).max(axis=1),
+                np.ptp(values, axis=(0, 2)),
+            )
             told = replace(output, reduction=output.reduction.removesuffix("_at"))
             return found, is_rough(told, height, error, lambda rough: size[rough])
         swing = output.reduction == "swing"

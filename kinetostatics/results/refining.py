@@ -76,7 +76,9 @@ def _asked(outputs):
     for output, vector in outputs:
         _, known, summed = found.get(output.quantity, (vector, frozenset(), False))
         peak = output.reduction in PEAKS
-        found[output.quantity] = _Asked(vector, known.union(signs(output.reduction) if peak else ()), summed or not peak)
+        found[output.quantity] = _Asked(
+            vector, known.union(signs(output.reduction) if peak else ()), summed or not peak
+        )
     return found
 
 

@@ -35,9 +35,10 @@ def left_out(table, straight=STRAIGHT):
     """Share of its largest value by which a table bends at the rows that count as straight, one by one."""
     x, strokes = table.x, table.strokes
     if table.over == "angle":
-        x, strokes = np.concatenate([x[-1:] - table.period, x, x[:1] + table.period]), [
-            np.concatenate([y[-1:], y, y[:1]]) for y in strokes
-        ]
+        x, strokes = (
+            np.concatenate([x[-1:] - table.period, x, x[:1] + table.period]),
+            [np.concatenate([y[-1:], y, y[:1]]) for y in strokes],
+        )
     share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
     off = np.abs([y[1:-1] - y[:-2] - share * (y[2:] - y[:-2]) for y in strokes]).max(axis=0)
     inner = off if table.over == "angle" else np.pad(off, 1)
