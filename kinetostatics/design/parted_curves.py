@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..results.means import NODES, WEIGHTS
-from ..results.pieces import PLACES, SERIES
+from ..results.pieces import APPROACHES, PLACES, SERIES
 from .measures import SECTORS, SIDES, WIDER
 
 POWERS = np.arange(NODES.size)
@@ -84,44 +84,51 @@ class PartedCurve(NamedTuple):
 
         Of the curve, or of the integral of what it is above its mean.
         """
-        values = self.values**2 if self.vector and not energy else self.values
-        slopes = 2.0 * self.values * self.slopes if self.vector and not energy else self.slopes
-        real = self.pieces.width[0] > 0.0
-        rows = self._rows(energy)
-        heights = side * (rows @ values.ravel() if energy else (values @ AT.T).ravel())
-        start, width = self.pieces.start[0, :, None], self.pieces.width[0, :, None]
-        angle = (start + width * (0.5 + 0.5 * PLACES)).ravel()
-        heights[~np.repeat(real, PLACES.size)] = -np.inf
-        sector = np.minimum((angle / self.pieces.period * sectors).astype(int), sectors - 1)
-        order, best = np.argsort(heights, kind="stable"), np.zeros(sectors, dtype=int)
+        square = self.vector and not energy
+        values = self.values**2 if square else self.values
+        slopes = 2.0 * self.values * self.slopes if square else self.slopes
+        angle = self.pieces.start[0, :, None] + self.pieces.width[0, :, None] * (0.5 + 0.5 * PLACES)
+        heights = side * (self._gained(angle) if energy else values @ AT.T)
+        heights[self.pieces.width[0] == 0.0] = -np.inf
+        sector = np.minimum((angle.ravel() / self.pieces.period * sectors).astype(int), sectors - 1)
+        order, best = np.argsort(heights, axis=None, kind="stable"), np.zeros(sectors, dtype=int)
         best[sector[order]] = order
-        found, changes = heights[best], np.zeros((len(self.slopes), sectors))
+        found, changes = np.empty(sectors), np.empty((len(self.slopes), sectors))
+        mean = np.sum(self.pieces.width[0, :, None] * WEIGHTS * values) / self.pieces.period
         for part, (piece, place) in enumerate(zip(*np.divmod(best, PLACES.size), strict=True)):
+            series = side * (SERIES @ values[piece])
             if energy:
-                changes[:, part] = side * np.tensordot(slopes, rows[best[part]].reshape(values.shape), 2)
+                series[0] -= side * mean
+                weights = self._gain(piece, _peak(np.polynomial.polynomial.polyint(series), PLACES[place]))
+                found[part] = side * np.sum(weights * values)
+                changes[:, part] = side * np.tensordot(slopes, weights, 2)
                 continue
-            weights, exact = _at_peak(side * values[piece], place)
+            at = _peak(series, PLACES[place])
+            weights = at**POWERS @ SERIES
             found[part] = side * weights @ values[piece]
             changes[:, part] = side * (slopes[:, piece] @ weights)
-            if exact in (-1.0, 1.0):
-                changes[:, part] += side * self._moved(values, slopes, piece, exact)
-        if self.vector and not energy:
+            if abs(at) == 1.0:
+                changes[:, part] += side * self._moved(values, slopes, piece, at)
+        if square:
             height = np.sqrt(np.maximum(side * found, np.finfo(float).tiny))
             return side * height, changes / (2.0 * height)
         return found, changes
 
-    def _rows(self, energy):
-        """Weights (places, nodes) of all values in the integral of what is above the mean, at places of all pieces."""
-        if not energy:
-            return None
-        width = self.pieces.width[0]
+    def _gained(self, angle):
+        """Integral of what the curve is above its mean, at places of all pieces (P, places)."""
+        width = self.pieces.width[0, :, None]
+        parts = np.sum(width * WEIGHTS * self.values, axis=1, keepdims=True)
+        inner = 0.5 * width * (self.values @ GROWN.T)
+        return np.cumsum(parts, axis=0) - parts + inner - angle / self.pieces.period * parts.sum()
+
+    def _gain(self, piece, place):
+        """Weights (P, nodes) of the values in that integral, at a place of a piece."""
+        start, width = self.pieces.start[0], self.pieces.width[0]
         whole = width[:, None] * WEIGHTS
-        count = width.size
-        before = np.tril(np.ones((count, count)), -1)[:, None, :, None] * whole
-        own = np.eye(count)[:, None, :, None] * (0.5 * width[:, None, None, None] * GROWN[None, :, None, :])
-        passed = self.pieces.start[0, :, None] + width[:, None] * (0.5 + 0.5 * PLACES)
-        mean = passed[..., None, None] / self.pieces.period * whole
-        return (before + own - mean).reshape(count * PLACES.size, -1)
+        found = -(start[piece] + width[piece] * (0.5 + 0.5 * place)) / self.pieces.period * whole
+        found[:piece] += whole[:piece]
+        found[piece] += 0.5 * width[piece] * (_grown(place) @ SERIES)
+        return found
 
     def _moved(self, values, slopes, piece, end):
         """What the move of a kink at an end of a piece adds to the derivatives of the value there (n,)."""
@@ -143,19 +150,23 @@ class PartedCurve(NamedTuple):
         return (after if end < 0.0 else before) * (one - other) / (after - before)
 
 
-def _at_peak(values, place):
-    """Weights of values at the nodes in the highest value around one of the places, and where that is."""
-    series = SERIES @ values
-    first, second = np.polynomial.polynomial.polyder(series), np.polynomial.polynomial.polyder(series, 2)
-    at = start = PLACES[place]
-    low, high = max(at - (PLACES[1] - PLACES[0]), -1.0), min(at + (PLACES[1] - PLACES[0]), 1.0)
-    for _ in range(6):
-        bend = np.polynomial.polynomial.polyval(at, second)
-        if bend >= 0.0:
+def _grown(place):
+    """Integrals of the powers from the beginning of a piece to a place, or places (..., 1)."""
+    return (place ** (POWERS + 1) - (-1.0) ** (POWERS + 1)) / (POWERS + 1)
+
+
+def _peak(series, place):
+    """Where a polynomial is highest around one of the places."""
+    step = PLACES[1] - PLACES[0]
+    slope, bend = (np.polynomial.polynomial.polyder(series, order) for order in (1, 2))
+    low, high, at = max(place - step, -1.0), min(place + step, 1.0), place
+    for _ in range(APPROACHES):
+        curved = np.polynomial.polynomial.polyval(at, bend)
+        if curved >= 0.0:
             break
-        at = min(max(at - np.polynomial.polynomial.polyval(at, first) / bend, low), high)
-    weights = at**POWERS @ SERIES
-    return (weights, at) if weights @ values >= AT[place] @ values else (AT[place], start)
+        at = min(max(at - np.polynomial.polynomial.polyval(at, slope) / curved, low), high)
+    higher = np.polynomial.polynomial.polyval(at, series) >= np.polynomial.polynomial.polyval(place, series)
+    return at if higher else place
 
 
 def _signed(values):
