@@ -25,8 +25,10 @@ class Cam:
     (0.286231, 0.013975)
     """
 
-    knots = ()
-    """Crank angles at which its second derivative bends or jumps, each a `Knot`."""
+    @property
+    def knots(self) -> tuple:
+        """Where its second derivative bends or jumps, each a `Knot`."""
+        return ()
 
     def polar(self, angle, ray):
         raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")

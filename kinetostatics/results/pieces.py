@@ -82,9 +82,10 @@ class Pieces(NamedTuple):
         passed = np.take_along_axis(last - bent, before, axis=1)  # bends before the end of the piece before
         wrapped = last[:, -1:] - passed[:, -1:]
         joined = last[:, :-1] == np.where(before[:, :-1] > 0, passed[:, :-1], -wrapped)
-        order_ = (~real).argsort(axis=1, kind="stable")
+        first = (~real).argsort(axis=1, kind="stable")
         parts = np.where(real, edges[:, :-1], inside), np.where(real, width, 0.0), joined
-        return cls(*(np.take_along_axis(part, order_, axis=1) for part in parts), period)
+        start, width, joined = (np.take_along_axis(part, first, axis=1) for part in parts)
+        return cls(start, width, joined, period)
 
     def some(self, designs):
         """Those of some designs."""

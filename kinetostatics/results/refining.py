@@ -72,7 +72,7 @@ class _Asked(NamedTuple):
 
 
 def _asked(outputs):
-    found = {}
+    found: dict[str, _Asked] = {}
     for output, vector in outputs:
         _, known, summed = found.get(output.quantity, (vector, frozenset(), False))
         peak = output.reduction in PEAKS

@@ -239,7 +239,8 @@ def _kinks(solution):
     found: list[Any] = [(rubbing, rubbing), (law, law)]
     for part in kinked(solution.loads):
         again = beginnings(part, solution)[:, None]
-        found.append(tuple(np.ravel(angles + again) for angles in part.kinks(solution)))
+        kinks, jumps = part.kinks(solution)
+        found.append((np.ravel(np.concatenate([kinks, jumps]) + again), np.ravel(jumps + again)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
 
 

@@ -37,8 +37,8 @@ class Parted(NamedTuple):
     Attributes
     ----------
     scene : Scene
-    count : int
-        Of its designs.
+    designs : int
+        How many it has.
     pieces : Pieces
         As they are to begin with.
     goal : float
@@ -47,7 +47,7 @@ class Parted(NamedTuple):
     """
 
     scene: Any
-    count: int
+    designs: int
     pieces: Any
     goal: float
     engine: str = "numpy"
@@ -77,8 +77,8 @@ class Parted(NamedTuple):
         known = {name: quantity(self.scene, name).vector for name in names}
         wanted = [(item, known[item.quantity]) for item in outputs]
         step = max(1, VALUES // self.pieces.angle.shape[1])
-        for start in range(0, self.count, step):
-            some = np.arange(start, min(start + step, self.count))
+        for start in range(0, self.designs, step):
+            some = np.arange(start, min(start + step, self.designs))
             first = self.pieces.some(some)
 
             def evaluated(designs, angle, some=some):
@@ -90,7 +90,7 @@ class Parted(NamedTuple):
 
     def estimated(self, outputs):
         """Numbers (outputs, designs), and whether so many crank angles do not tell them."""
-        found = np.empty((2, len(outputs), self.count))
+        found = np.empty((2, len(outputs), self.designs))
         with np.errstate(all="ignore"):
             for designs, pieces, told in self.refined(outputs):
                 for row, item in enumerate(outputs):
@@ -100,11 +100,11 @@ class Parted(NamedTuple):
 
     def _of(self, designs):
         """The scene of some of its designs."""
-        if len(designs) == self.count:
+        if len(designs) == self.designs:
             return self.scene
         leaves = Leaves()
         structure = taken_apart(self.scene, leaves)
-        numbers = (part[designs] if np.shape(part)[:1] == (self.count,) else part for part in leaves.numbers)
+        numbers = (part[designs] if np.shape(part)[:1] == (self.designs,) else part for part in leaves.numbers)
         return put_together(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
 
 
