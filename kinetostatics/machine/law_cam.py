@@ -32,11 +32,9 @@ SAME = 1e-10
 NEAR = 0.5
 """Distance from a singular angle, rad, up to which L -+ d are found by quadrature; farther they lose no digits."""
 PANELS = np.linspace(-NEAR, NEAR, 5)
-"""Between which it is done."""
 TINY = 1e-60
 """Distance from a singular angle, rad, below which there is only the angle itself."""
-NODES, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(10))
-PLACES = NODES + 0.5
+PLACES, WEIGHTS = (part / 2 + by for part, by in zip(np.polynomial.legendre.leggauss(10), (0.5, 0.0), strict=True))
 
 
 class Turning(NamedTuple):
@@ -106,7 +104,6 @@ class LawCam(Cam):
 
     @cached_property
     def knots(self):
-        """Where the law bends or jumps, each a `Knot` at a crank angle from +x."""
         return tuple(knot._replace(angle=knot.angle + self.guide_angle) for knot in bends_of(self.law))
 
     @property

@@ -25,6 +25,8 @@ LAST = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, 
 """The last four coefficients of the same polynomial by Legendre's, from values at the nodes."""
 SLOWEST = 0.1
 """Least share of the last terms that those left out are taken to be: what is smooth may hide what is not."""
+SMALL = 1e-3
+"""Share of the largest value of a step at a bend that is taken to come of the polynomials: bends are mostly kinks."""
 AHEAD = 4.0
 """How many times as much as the first of them all of them may be, at a kink, where they hardly decrease."""
 APPROACHES = 6
@@ -160,7 +162,9 @@ class Pieces(NamedTuple):
         first, last = even - odd, even + odd
         count = np.maximum((self.width > 0.0).sum(axis=1), 1)[:, None] - 1
         before = np.column_stack([np.take_along_axis(last, count, axis=1), last[:, :-1]])
-        gap = np.where(self.joined & (self.width > 0.0), np.abs(first - before), 0.0)
+        gap = np.abs(first - before)
+        goes_on = self.joined | (gap < SMALL * np.abs(values).max(axis=(0, 2))[:, None])
+        gap = np.where(goes_on & (self.width > 0.0), gap, 0.0)
         after = np.column_stack([gap[:, 1:], np.zeros(len(gap))])
         np.put_along_axis(after, count, gap[:, :1], axis=1)
         return np.where(self.width < NARROWEST, 0.0, np.maximum(_rest(values), np.maximum(gap, after)))

@@ -92,7 +92,7 @@ def of_smooth_curve(count, around=True):
 @every("around", [True, False])
 @every("angles", [12, 360])
 def test_a_smooth_curve_in_fine_rows_is_swept_as_one_without_parting_any_turn(monkeypatch, around, angles):
-    monkeypatch.setattr(together, "_by_pieces", None)
+    monkeypatch.setattr(together, "Parted", None)
     scene, names = of_smooth_curve(1100, around), ("balancing_torque", "O")
     outputs = [f"{kind} {name}" for name in names for kind in ("largest", "mean_absolute", "rms")]
     found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.05]}), outputs, angles=angles)

@@ -87,7 +87,7 @@ class Table:
 
     def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None):
         given = {"x": x, "y": y} if back is None else {"x": x, "y": y, "back": back}
-        unit = _unit_of(y) or _unit_of(back)
+        unit = rows.unit_of(y) or rows.unit_of(back)
         value = checks.Number(unit or "N", table=True)
         found = checks.examined(
             "table",
@@ -346,13 +346,3 @@ class Table:
 
     def __hash__(self):
         return hash(self._content)
-
-
-def _unit_of(values):
-    """Unit of values that are quantities, "" of plain numbers."""
-    for unit in ("N", "N*m"):
-        try:
-            return "" if checks.plain(values, unit) is values else unit
-        except checks.DimensionError:
-            continue
-    return ""
