@@ -107,7 +107,8 @@ class Sampled:
 
     def _on_pieces(self, numbers, changes, sloped):
         """Curves of some samples, each on pieces between its own bends."""
-        output, found = own(self.output), [None] * len(next(iter(numbers.values())))
+        output = own(self.output)
+        found: list[Any] = [None] * len(next(iter(numbers.values())))
         parted = Parted.of(scene_of(self.problem.source).varied(numbers), (output,), PARTED * self.turns)
         for samples, pieces, told in parted.refined((output,)):
             some = {path: values[samples] for path, values in numbers.items()}
