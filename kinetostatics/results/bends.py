@@ -22,11 +22,14 @@ class Bends(NamedTuple):
     ----------
     angle : array (1 or designs, K)
         Crank angles over the period; NaN where a design has fewer.
+    jumps : array (1 or designs, K) of bool
+        Where quantities may jump; elsewhere they go on with a kink.
     rest : float
         Share of its largest value by which a load may bend besides.
     """
 
     angle: Any
+    jumps: Any
     rest: float
 
 
@@ -40,18 +43,23 @@ def bent(solution, name, straight=STRAIGHT):
 
 def bends(solution, straight=STRAIGHT):
     """The `Bends` of a solution, of loads those that bend by so much."""
-    found, rest = [of_laws(solution)[None]], 0.0
+    law = of_laws(solution)[None]
+    found, rest = [(law, np.isin(law, of_laws(solution, jumps=True)))], 0.0
     if solution.friction.acting:
         found.append(_of_friction(solution))
     for part in kinked(solution.loads):
-        own, left = bends_of(part, solution, straight)
-        found.append((own[..., None] + beginnings(part, solution)).reshape(len(own), -1))
+        own, jumps, left = bends_of(part, solution, straight)
+        again = beginnings(part, solution)
+        found.append(((own[..., None] + again).reshape(len(own), -1), np.repeat(jumps, again.size)[None]))
         rest = max(rest, left)
-    most = max(map(len, found))
-    return Bends(np.column_stack([np.broadcast_to(part, (most, part.shape[1])) for part in found]), rest)
+    most = max(len(angle) for angle, _ in found)
+    rows = ([np.broadcast_to(part, (most, part.shape[1])) for part in row] for row in zip(*found, strict=True))
+    return Bends(*map(np.column_stack, rows), rest)
 
 
 def _of_friction(solution):
-    """Where rates that turn friction about, and forces that bend it, change their signs."""
+    """Where rates that turn friction about, and forces that bend it, change their signs; and whether it is rates."""
+    rates = len(solution.dynamics.rubbing.turning) if solution.dynamics.friction_signs else 0
     samples = SAMPLES * round(solution.period / TURN)
-    return sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, samples)[1]
+    row, angle = sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, samples)
+    return angle, row < rates

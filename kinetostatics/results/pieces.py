@@ -25,8 +25,6 @@ LAST = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, 
 """The last four coefficients of the same polynomial by Legendre's, from values at the nodes."""
 SLOWEST = 0.1
 """Least share of the last terms that those left out are taken to be: what is smooth may hide what is not."""
-SMALL = 1e-3
-"""Share of the largest value of a step at a bend that is taken to come of the polynomials: bends are mostly kinks."""
 AHEAD = 4.0
 """How many times as much as the first of them all of them may be, at a kink, where they hardly decrease."""
 APPROACHES = 6
@@ -45,7 +43,7 @@ class Pieces(NamedTuple):
     start, width : array (designs, P)
         Where each piece begins, and how wide it is, rad; empty ones come last.
     joined : array (designs, P) of bool
-        Whether nothing bends where a piece begins, so that values go on there from the piece before, or the last.
+        Whether nothing jumps where a piece begins, so that values go on there from the piece before, or the last.
     period : float
     """
 
@@ -55,7 +53,7 @@ class Pieces(NamedTuple):
     period: float
 
     @classmethod
-    def of(cls, bends, period, angles, order=0):
+    def of(cls, bends, period, angles, order=0, jumps=True):
         """Pieces of designs, parted at bends and evenly.
 
         Parameters
@@ -67,11 +65,13 @@ class Pieces(NamedTuple):
             Crank angles over the period that are to do where nothing bends.
         order : int
             Highest order of a harmonic of the crank angle that is asked for.
+        jumps : bool or array (1 or designs, K) of bool
+            Whether quantities may jump at these bends, or go on with a kink.
         """
         count = max(round(period / TURN) * 2 * order, -(-angles // NODES.size))
         even = np.broadcast_to(np.linspace(0.0, period, count + 1), (len(bends), count + 1))
         edges = np.column_stack([even, np.where(np.isnan(bends), 0.0, bends)])
-        bent = np.column_stack([np.zeros(even.shape, dtype=int), ~np.isnan(bends)])
+        bent = np.column_stack([np.zeros(even.shape, dtype=int), ~np.isnan(bends) & jumps])
         rising = edges.argsort(axis=1, kind="stable")
         edges, bent = (np.take_along_axis(part, rising, axis=1) for part in (edges, bent))
         width = np.diff(edges)
@@ -162,9 +162,7 @@ class Pieces(NamedTuple):
         first, last = even - odd, even + odd
         count = np.maximum((self.width > 0.0).sum(axis=1), 1)[:, None] - 1
         before = np.column_stack([np.take_along_axis(last, count, axis=1), last[:, :-1]])
-        gap = np.abs(first - before)
-        goes_on = self.joined | (gap < SMALL * np.abs(values).max(axis=(0, 2))[:, None])
-        gap = np.where(goes_on & (self.width > 0.0), gap, 0.0)
+        gap = np.where(self.joined & (self.width > 0.0), np.abs(first - before), 0.0)
         after = np.column_stack([gap[:, 1:], np.zeros(len(gap))])
         np.put_along_axis(after, count, gap[:, :1], axis=1)
         return np.where(self.width < NARROWEST, 0.0, np.maximum(_rest(values), np.maximum(gap, after)))

@@ -57,9 +57,9 @@ class Parted(NamedTuple):
         """For some outputs, of at least so many crank angles, with loads taken as straight where they bend by less."""
         solution = solution_of(scene, 1)
         count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
-        found, rest = bends(solution, straight)
+        found, jumps, rest = bends(solution, straight)
         found = np.broadcast_to(found, (count, found.shape[1]))
-        return cls(scene, count, Pieces.of(found, solution.period, angles, order), max(GOAL, rest), engine)
+        return cls(scene, count, Pieces.of(found, solution.period, angles, order, jumps), max(GOAL, rest), engine)
 
     def values(self, names, designs, angle):
         """Values of quantities, of vectors magnitudes, of some designs (D,) at crank angles (D, N)."""

@@ -76,3 +76,12 @@ def test_loads_bend_forces_and_no_motion():
     assert bent(s, "balancing_torque")
     assert not bent(s, "slider_velocity")
     assert not bent(solved([ks.Gravity()]), "O")
+
+
+def test_friction_jumps_where_it_turns_about_and_strokes_at_their_ends_alone():
+    s = solved([table([0.0] * 5)], {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.02)})
+    found = bends(s)
+    stops = table([0.0] * 5).force.kinks(s)[1]
+    jumping = found.angle[0][found.jumps[0]]
+    assert all(np.abs(stops - angle).min() < 1e-9 for angle in jumping)
+    assert 0 < found.jumps.sum() < found.jumps.size

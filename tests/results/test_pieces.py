@@ -90,14 +90,14 @@ def test_values_that_go_on_otherwise_in_the_next_piece_are_told():
 
 
 def test_a_kink_just_before_a_bend_is_told_by_the_step_there():
-    """No node lies between a kink and a bend that is near; what jumps there by much is no sign of it."""
+    """No node lies between a kink and a bend that is near; what jumps there is no sign of it."""
     kink = lambda angle: np.abs(angle - 0.9999) + np.where(angle > 1.0, -2.0 * (angle - 1.0), 0.0)  # noqa: E731
-    for jump, doubted in ((0.0, True), (1.0, False)):
-        pieces = Pieces.of(np.array([[0.0, 1.0]]), TURN, 192)
-        values = kink(pieces.angle) + np.where(pieces.angle > 1.0, jump, 0.0)
+    for jump in (False, True):
+        pieces = Pieces.of(np.array([[0.0, 1.0]]), TURN, 192, jumps=np.array([[True, jump]]))
+        values = kink(pieces.angle) + np.where(pieces.angle > 1.0, float(jump), 0.0)
         at = np.flatnonzero(pieces.start[0] == 1.0)[0]
         doubts = pieces.of_integrals(values)[0] / pieces.width[0].clip(1e-9) * TURN
-        assert (doubts[at - 1] > 1e-4) == doubted
+        assert (doubts[at - 1] > 1e-4) != jump
 
 
 def test_nothing_is_joined_at_bends_nor_at_edges_that_rounding_sets_apart_from_them():

@@ -27,10 +27,11 @@ def is_bent(part, straight):
 
 
 def bends_of(part, motion, straight):
-    """Crank angles (1 or designs, K) of them, NaN where a design has fewer, and by what share it may bend besides."""
+    """Crank angles (1 or designs, K), NaN where a design has fewer, which (K,) jump, by what share it bends besides."""
     if hasattr(part, "bends"):
         return part.bends(motion, straight)
-    return np.concatenate([np.ravel(angles) for angles in part.kinks(motion)])[None], 0.0
+    kinks, jumps = map(np.ravel, part.kinks(motion))
+    return np.concatenate([kinks, jumps])[None], np.arange(kinks.size + jumps.size) >= kinks.size, 0.0
 
 
 def period_on(part, mechanism):

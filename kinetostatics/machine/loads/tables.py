@@ -324,13 +324,14 @@ class Table:
     def bends(self, motion, straight):
         """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer.
 
-        And the share of its largest value by which it may bend besides.
+        Also which (K,) are jumps, and the share of its largest value by which it may bend besides.
         """
         inner, rest = self.x[bending(self, straight)], left_out(self, straight)
         if self.over == "angle":
-            return np.mod(inner, self.period)[None], rest
+            return np.mod(inner, self.period)[None], np.zeros(inner.size, dtype=bool), rest
         ends, passed = crossings(motion, self._slider(motion), inner)
-        return passed if self.back is None else np.column_stack([ends, passed]), rest
+        found = passed if self.back is None else np.column_stack([ends, passed])
+        return found, np.arange(found.shape[1]) < found.shape[1] - passed.shape[1], rest
 
     @property
     def _content(self):

@@ -55,8 +55,9 @@ def test_what_declares_kinks_is_found_and_nothing_else():
 
 
 def test_of_what_declares_kinks_alone_all_bend_and_nothing_besides():
-    angle, rest = bends_of(Pulse(), None, 1e-5)
+    angle, jumps, rest = bends_of(Pulse(), None, 1e-5)
     assert angle.tolist() == [[1.0, 1.0 + 2e-5]]
+    assert jumps.tolist() == [True, True]
     assert rest == 0.0
 
 
@@ -64,8 +65,8 @@ def test_rows_of_a_table_that_count_as_straight_are_told_by_how_much_they_bend()
     x = np.linspace(0.0, 2 * np.pi, 500)
     smooth, sharp = (ks.Table(x, y) for y in (np.sin(x), np.interp(x, x[[0, 250, 499]], [0.0, 1.0, 0.0])))
     step = x[1]
-    assert 0.05 * step**2 < bends_of(smooth, None, 1e-3)[1] < step**2
-    assert bends_of(sharp, None, 1e-5)[1] < 1e-9
+    assert 0.05 * step**2 < bends_of(smooth, None, 1e-3)[2] < step**2
+    assert bends_of(sharp, None, 1e-5)[2] < 1e-9
 
 
 @pytest.mark.parametrize("kind", LOADS)
