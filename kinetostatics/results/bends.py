@@ -54,7 +54,8 @@ def bends(solution, straight=STRAIGHT):
         rest = max(rest, left)
     most = max(len(angle) for angle, _ in found)
     rows = ([np.broadcast_to(part, (most, part.shape[1])) for part in row] for row in zip(*found, strict=True))
-    return Bends(*map(np.column_stack, rows), rest)
+    angle, jumps = map(np.column_stack, rows)
+    return Bends(angle, jumps, rest)
 
 
 def _of_friction(solution):
