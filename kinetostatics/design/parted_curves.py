@@ -21,8 +21,8 @@ SLOPE = POWERS[1:] * np.array([[-1.0], [1.0]]) ** (POWERS[1:] - 1) @ SERIES[1:]
 """The same in the slopes at both ends of a piece, by the place from -1 to 1."""
 GROWN = (PLACES[:, None] ** (POWERS + 1) - (-1.0) ** (POWERS + 1)) / (POWERS + 1) @ SERIES
 """The same in the integral from the beginning of a piece."""
-LEVEL = 1e-6
-"""Step at a bend, by the largest value, below which a curve goes on there."""
+LEVEL = 1e-4
+"""Change of the slope from one piece to the next, by the largest value over the period, that is no kink."""
 
 
 class PartedCurve(NamedTuple):
@@ -135,17 +135,17 @@ class PartedCurve(NamedTuple):
         pieces = self.pieces
         count = int((pieces.width[0] > 0.0).sum())
         later = piece if end < 0.0 else (piece + 1) % count
-        if pieces.joined[0, later]:
+        if not pieces.joined[0, later]:
             return np.zeros(len(slopes))
         earlier = (later - 1) % count
         sides = []
         for number, row in ((earlier, 1), (later, 0)):
             weights = AT[-1 if row else 0]
             rate = 2.0 / pieces.width[0, number] * (SLOPE[row] @ values[number])
-            sides.append((weights @ values[number], rate, slopes[:, number] @ weights))
-        (low, before, one), (high, after, other) = sides
+            sides.append((rate, slopes[:, number] @ weights))
+        (before, one), (after, other) = sides
         steep = np.abs(values).max() / pieces.period
-        if abs(high - low) > LEVEL * np.abs(values).max() or abs(after - before) < LEVEL * steep:
+        if abs(after - before) < LEVEL * steep:
             return np.zeros(len(slopes))
         return (after if end < 0.0 else before) * (one - other) / (after - before)
 
