@@ -8,7 +8,6 @@ import numpy as np
 
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
-from . import measures
 from .demands import Demand
 from .derived import scene_of
 from .problem import compared_value
@@ -210,7 +209,7 @@ def _slopes(problem, goal, values):
         return sign * output(values)[1][:, None]
     if not is_raised(goal):
         return sign * problem.output(output, values)[1][:, None]
-    heights, slopes = measures.bounded(output.reduction, problem.curves(values)[output.quantity], problem.turns)
+    heights, slopes = problem.curve(output, values).bounded(output.reduction, problem.turns)
     order = np.argsort(-heights)
     near = order[heights[order] >= heights.max() - BINDS * abs(heights.max())]
     return slopes[:, near]

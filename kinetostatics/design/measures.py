@@ -26,6 +26,14 @@ class Curve(NamedTuple):
     values: np.ndarray
     slopes: np.ndarray
 
+    def reduced(self, reduction, turns=1):
+        """Value of a reduction, and its derivatives (n,)."""
+        return reduced(reduction, self, turns)
+
+    def bounded(self, reduction, turns=1):
+        """Values (parts,) whose largest is a reduction of `SIDES`, with derivatives (n, parts)."""
+        return bounded(reduction, self, turns)
+
 
 def size(values, slopes) -> Curve:
     """Magnitude of a vector, from its components (2, N) and their derivatives (n, 2, N)."""

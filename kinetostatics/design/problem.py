@@ -11,13 +11,18 @@ from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..numbers.units import to_si
+from ..results.bends import bent
 from ..solution.compile import compile as compiled
+from ..solution.parted import Parted, solution_of
 from . import measures
 from .derived import Derived, scene_of
+from .parted_curves import PartedCurve
 from .progress import no_bar
 
 SHARED = ("crank_speed", "crank_acceleration")
 """Numbers that a reference takes from the design."""
+PARTED = 192
+"""Crank angles a turn that are enough to begin with where the turn is parted."""
 REMEMBERED = 8
 """Designs whose curves are remembered."""
 
@@ -51,6 +56,8 @@ class Problem:
         self.evaluations = 0
         self.stepped = no_bar
         self._curves: dict[bytes, dict] = {}
+        self._parted: dict[tuple, Any] = {}
+        self._bends: set[str] | None = None
         self._compared: Any = None if reference is None else _Compared(reference, self)
 
     @property
@@ -74,9 +81,38 @@ class Problem:
             self._curves[key] = self._computed(values)
         return self._curves[key]
 
+    def curve(self, output, values):
+        """Curve of a quantity that tells an output of a design: on pieces between bends where it has some."""
+        if self._bends is None:
+            solution = solution_of(scene_of(self.source), 1)
+            self._bends = {name for name in self.quantities if bent(solution, name)}
+        if output.quantity not in self._bends:
+            return self.curves(values)[output.quantity]
+        key = str(own(output)), values.tobytes()
+        if key not in self._parted:
+            while len(self._parted) >= REMEMBERED * len(self.quantities):
+                self._parted.pop(next(iter(self._parted)))
+            self._parted[key] = self._on_pieces(own(output), values)
+        return self._parted[key]
+
+    def _on_pieces(self, output, values):
+        self.evaluations += 1
+        try:
+            numbers, changes = self.derived(values)
+            parted = Parted.of(scene_of(self.scene(values)), (output,), min(self.angles, PARTED * self.turns))
+            ((_, pieces, told),) = parted.refined((output,))
+            angle = pieces.angle[0]
+            slopes = self.program.derivatives(angle, self.derived.paths, numbers)[output.quantity]
+            found = _curve(self.program(angle, numbers)[output.quantity], slopes, changes, angle)
+        except KinetostaticsError:
+            return self.curves(values)[output.quantity]
+        shape = told[output.quantity].shape[1:]
+        vector = of_scene(scene_of(self.source))[output.quantity].vector
+        return PartedCurve(found.values.reshape(shape), found.slopes.reshape(-1, *shape), pieces, vector)
+
     def output(self, output, values):
         """Value of an output of a design, and its derivatives."""
-        found, slopes = measures.reduced(output.reduction, self.curves(values)[output.quantity], self.turns)
+        found, slopes = self.curve(output, values).reduced(output.reduction, self.turns)
         if not output.ratio:
             return found, slopes
         above, rises = self._compared.output(output, values)
@@ -173,8 +209,12 @@ def compared_value(output, scene, reference):
 
 def true_value(output, scene, angles=5760):
     """Value of an output of a scene, so many samples that it is true to rounding where the scene is smooth."""
+    plain, turns = own(output), turns_of(scene)
+    if bent(solution_of(scene, 1), output.quantity):
+        found, _ = Parted.of(scene, (plain,), PARTED * turns).estimated((plain,))
+        return float(found[0, 0])
     values = values_of(scene.solve(angles), output.quantity)
-    found, _ = own(output).estimated(np.broadcast_to(values, (angles,))[None], turns_of(scene))
+    found, _ = plain.estimated(np.broadcast_to(values, (angles,))[None], turns)
     return float(found[0])
 
 

@@ -13,11 +13,15 @@ from ..errors import KinetostaticsError
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
+from ..results.bends import bent
+from ..results.means import NODES
 from ..solution.compile import compile as compiled
+from ..solution.parted import Parted, solution_of
 from . import measures
 from .demands import wanted
 from .derived import Derived, scene_of
-from .problem import chosen, own, turns_of
+from .parted_curves import PartedCurve
+from .problem import PARTED, chosen, own, turns_of
 from .spread import deviations, harrell_davis, not_spread, samples_problem
 
 ANGLES, TOGETHER = 180, 16
@@ -45,6 +49,7 @@ class Sampled:
         zeros = [path for path in self.paths if self._own[path] == 0.0]
         self.program = compiled(scene, output.quantity, zeros, problem.engine)
         self._vector = (2,) if of_scene(scene)[output.quantity].vector else ()
+        self._bent = not spread.trim and bent(solution_of(scene, 1), output.quantity)
         self.weights = harrell_davis(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
@@ -85,26 +90,45 @@ class Sampled:
         """Output of some samples, with derivatives (samples, n)."""
         if self.spread.trim:
             curves, slopes, above = self._trimmed(numbers, changes, sloped)
+        elif self._bent:
+            curves, above = self._on_pieces(numbers, changes, sloped), self._above(numbers)
         else:
             (curves, slopes), above = self._curves(numbers, changes, sloped), self._above(numbers)
         found, rows = np.empty(len(curves)), np.zeros((len(curves), changes.shape[-1]))
         for place, curve in enumerate(curves):
-            own_slopes = slopes[place] if sloped else np.zeros((0, curve.size))
-            value, row = measures.reduced(self.output.reduction, measures.Curve(curve, own_slopes), self.turns)
+            if not self._bent:
+                curve = measures.Curve(curve, slopes[place] if sloped else np.zeros((0, curve.size)))
+            value, row = curve.reduced(self.output.reduction, self.turns)
             if self.output.ratio:
                 value, row = above[place] / value, -above[place] / value**2 * row
             found[place] = value
             rows[place] = row if sloped else 0.0
         return found, rows
 
-    def _curves(self, numbers, changes, sloped):
-        """Values (samples, N) and derivatives (samples, n, N)."""
-        quantity = self.output.quantity
-        shape = (*self._vector, len(next(iter(numbers.values()))), self.angle.size)
-        values = np.broadcast_to(self.program(self.angle, numbers)[quantity], shape)
+    def _on_pieces(self, numbers, changes, sloped):
+        """Curves of some samples, each on pieces between its own bends."""
+        output = own(self.output)
+        found: list[Any] = [None] * len(next(iter(numbers.values())))
+        parted = Parted.of(scene_of(self.problem.source).varied(numbers), (output,), PARTED * self.turns)
+        for samples, pieces, told in parted.refined((output,)):
+            some = {path: values[samples] for path, values in numbers.items()}
+            values, shape = told[output.quantity], pieces.start.shape[1:] + NODES.shape
+            slopes = np.zeros((len(samples), 0, *shape))
+            if sloped:
+                values, slopes = self._curves(some, changes[:, samples], True, pieces.angle)
+            for place, sample in enumerate(samples):
+                parts = values[place].reshape(shape), slopes[place].reshape(-1, *shape)
+                found[sample] = PartedCurve(*parts, pieces.some([place]), bool(self._vector))
+        return found
+
+    def _curves(self, numbers, changes, sloped, angle=None):
+        """Values (samples, N) and derivatives (samples, n, N), at the crank angles of all or of each."""
+        quantity, angle = self.output.quantity, self.angle if angle is None else angle
+        shape = (*self._vector, len(next(iter(numbers.values()))), angle.shape[-1])
+        values = np.broadcast_to(self.program(angle, numbers)[quantity], shape)
         if not sloped:
             return (np.hypot(*values) if self._vector else values), None
-        found = self.program.derivatives(self.angle, self._derived.paths, numbers)[quantity]
+        found = self.program.derivatives(angle, self._derived.paths, numbers)[quantity]
         by_path = np.array([np.broadcast_to(part, shape) for part in found.values()])
         slopes = np.einsum("psn,p...sa->n...sa", changes[: len(by_path)], by_path, optimize=True)
         if self._vector:
@@ -114,7 +138,13 @@ class Sampled:
 
     def _above(self, numbers):
         """The reference's output for each sample."""
-        return self._reduced(self._of_reference(numbers)) if self.output.ratio else None
+        if not self.output.ratio:
+            return None
+        reference, plain = self._reference(numbers), own(self.output)
+        if not bent(solution_of(reference, 1), plain.quantity):
+            return self._reduced(self._of_reference(numbers))
+        found = Parted.of(reference, (plain,), PARTED * self.turns).estimated((plain,))[0, 0]
+        return np.broadcast_to(found, len(next(iter(numbers.values()))))
 
     def _reduced(self, curves):
         """The output, not its ratio, of curves (samples, N)."""
@@ -122,12 +152,15 @@ class Sampled:
 
     def _of_reference(self, numbers):
         """Curves of the reference, with those of the numbers that spread that it has too."""
-        reference = scene_of(self.problem.reference)
-        known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
-        found = reference.varied({path: numbers[path] for path in known}).solve(self.angle)
+        found = self._reference(numbers).solve(self.angle)
         return np.broadcast_to(
             values_of(found, self.output.quantity), (len(next(iter(numbers.values()))), self.angle.size)
         )
+
+    def _reference(self, numbers):
+        reference = scene_of(self.problem.reference)
+        known = [path for path in numbers if path in (*self.spread.spreads, SPEED) and path in reference.units]
+        return reference.varied({path: numbers[path] for path in known})
 
     def _trimmed(self, numbers, changes, sloped):
         """Curves at the speed within the trim that makes each sample's output best."""

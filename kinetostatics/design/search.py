@@ -163,7 +163,7 @@ def side_of(problem, limit, values):
     sign = -1.0 if relation == ">=" else 1.0
     bounded = output.reduction in measures.SIDES and not output.ratio and relation != "="
     if bounded and (relation == "<=") == (output.reduction != "smallest"):
-        found, slopes = measures.bounded(output.reduction, problem.curves(values)[output.quantity], problem.turns)
+        found, slopes = problem.curve(output, values).bounded(output.reduction, problem.turns)
         return found - sign * limit.value, slopes
     found, slopes = problem.output(output, values)
     return np.array([sign * (found - limit.value)]), sign * slopes[:, None]

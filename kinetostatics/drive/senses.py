@@ -8,7 +8,8 @@ import numpy as np
 
 from ..machine.pairs import Rolling
 from ..mechanics.friction_laws import rate_of
-from ..results.turn import sign_changes
+from ..results.changes import sign_changes
+from ..results.turn import SAMPLES
 
 SAME = 1e-12
 """Crank angles this near to the ends of the period, rad, are there."""
@@ -51,7 +52,7 @@ class Senses:
             found = (rate_of(part, name, pair, placement) for part, name, pair in moving)
             return [1.0 if rate is None else rate for rate in found]
 
-        row, angle = sign_changes(rates, period)
+        row, angle = (part[0] for part in sign_changes(rates, period, SAMPLES))
         angle = np.where((angle < SAME) | (angle > period - SAME), 0.0, angle)
         edges = {name: np.unique(angle[row == place]) for place, (_, name, _) in enumerate(moving)}
         signs = {}

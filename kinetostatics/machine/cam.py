@@ -25,6 +25,11 @@ class Cam:
     (0.286231, 0.013975)
     """
 
+    @property
+    def knots(self) -> tuple:
+        """Where its second derivative bends or jumps, each a `Knot`."""
+        return ()
+
     def polar(self, angle, ray):
         raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")
 

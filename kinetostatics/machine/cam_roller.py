@@ -145,6 +145,10 @@ class CamRoller(checks.Checked, Group):
         return (*getattr(self.cam, "lengths", ()), *self.block.centre)
 
     @property
+    def knots(self):
+        return getattr(self.cam, "knots", ())
+
+    @property
     def reaches(self):
         """Smallest radius of the pitch curve, on a grid if the cam does not tell."""
         found = getattr(self.cam, "smallest_radius", None)

@@ -40,6 +40,10 @@ class Follower(checks.Checked, Group):
         return (Led(self.moved, self.pin, "crank", "contact_force" + self.label),)
 
     @property
+    def knots(self):
+        return self.cam.knots
+
+    @property
     def contact_force(self):
         """Output by name that all of them have."""
         text = f"cam on {self.moved} along the common normal, positive outward"

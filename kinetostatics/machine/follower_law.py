@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from ..numbers import checks
+from ..numbers.lazy import cached_property
 from .crank import ray as ray_at
-from .law import law_problem
+from .law import bends_of, law_problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +22,11 @@ class FollowerLaw:
 
     def __repr__(self):
         return f"<FollowerLaw by {type(self.law).__name__}>"
+
+    @cached_property
+    def knots(self):
+        """Where the law bends or jumps, each a `Knot`."""
+        return bends_of(self.law)
 
     @property
     def lengths(self):

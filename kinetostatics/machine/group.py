@@ -11,6 +11,7 @@ frozen dataclass derived from `Group`. It declares, by name,
     guides      the guide of each link that slides along one, without turning
     slots       the links in which a joint slides, each a `Slot`
     led         the joints that a cam leads, each a `Led`
+    knots       where the law of a cam bends or jumps, each a `law.Knot`
     curves      the joints that run on a curve, with what drawings call it
     rollers     radii of rollers, by the joints that are their centres
     outlines    curves fixed to links, as cams are, points (2, K) by link, in its axes
@@ -64,10 +65,8 @@ belongs to its structure, and gives `turns` and `change_points`; `kink(throws)` 
 its structure owes to lengths of groups beside it, `beside(groups, throws)` says.
 
 *Friction.* Where links rub, `resolve` is asked several times: what it finds must be linear in the loads.
-
 *outputs.* Each name that `resolve` returns, reactions as vectors, with its unit. From these declarations alone come
 tables, figures and sweeps. `ks.check(group)` tests them; tests/machine/test_group.py has a whole example.
-
 *Hand calculations.* `Solution.explain` tells what the kernels compute, under the names of local variables. The module
 may say in ``TERMS`` how an engineer writes a variable, and what it is: ``{"across": ("d", "from pin to guide")}``, of
 one kernel alone as ``"resolve.across"``, which may be an argument too; primes count derivatives, ``"r'"``.
@@ -210,6 +209,11 @@ class Group:
     @property
     def led(self):
         """Joints that a cam leads, each a `Led`."""
+        return ()
+
+    @property
+    def knots(self):
+        """Where the law of a cam that leads it bends or jumps, each a `Knot`."""
         return ()
 
     @property

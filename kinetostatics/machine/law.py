@@ -1,7 +1,7 @@
 """What a law of motion is: a position as function of the crank angle with three exact derivatives."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,19 @@ PLACES, WEIGHTS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)]), np.
 """Of Gauss's quadrature over a part of 1."""
 MOST_JUMPS = 0.1
 """Share of these parts in which something may jump."""
+
+
+BESIDE = 1e-7
+"""Angles on both sides of a knot, rad, at which it is looked at."""
+JUMP = 1e-4
+"""Share of its largest value by which an acceleration or a jerk jumps at a knot that is none by rounding."""
+
+
+class Knot(NamedTuple):
+    """A crank angle, rad, at which the jerk of a law `jumps`, or its acceleration does too."""
+
+    angle: float
+    jumps: bool
 
 
 class Law:
@@ -78,6 +91,17 @@ class Shifted(Law):
 def knots_of(law):
     """Angles at which the jerk of a law jumps, or may; none where it does not say."""
     return tuple(getattr(law, "knots", ()))
+
+
+def bends_of(law):
+    """Knots of a law at which its acceleration or its jerk jumps, each a `Knot`; not those that are smooth."""
+    angle = np.unique(np.mod(np.array(knots_of(law), dtype=float), TURN))
+    if not angle.size:
+        return ()
+    largest = [np.max(np.abs(part)) for part in _parts(law, np.linspace(0.0, TURN, STEPS))[2:]]
+    before, after = (_parts(law, np.mod(angle + side * BESIDE, TURN))[2:] for side in (-1.0, 1.0))
+    jumps = [np.abs(there - here) > JUMP * size for here, there, size in zip(before, after, largest, strict=True)]
+    return tuple(Knot(float(place), bool(jumps[0][k])) for k, place in enumerate(angle) if jumps[0][k] or jumps[1][k])
 
 
 def angles(phi):

@@ -22,18 +22,16 @@ import numpy as np
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from .cam import Cam
-from .law import TURN, knots_of
+from .law import TURN, bends_of, knots_of
 
 GRID = np.linspace(-np.pi, np.pi, 2881)
 """Crank angles from the guide at which the highest and lowest d are bracketed, rad."""
 NEAR = 0.5
 """Distance from a singular angle, rad, up to which L -+ d are found by quadrature; farther they lose no digits."""
 PANELS = np.linspace(-NEAR, NEAR, 5)
-"""Between which it is done."""
 TINY = 1e-60
 """Distance from a singular angle, rad, below which there is only the angle itself."""
-NODES, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(10))
-PLACES = NODES + 0.5
+PLACES, WEIGHTS = (part / 2 + by for part, by in zip(np.polynomial.legendre.leggauss(10), (0.5, 0.0), strict=True))
 
 
 class Turning(NamedTuple):
@@ -100,6 +98,10 @@ class LawCam(Cam):
     def singular_angles(self):
         """Crank angles at which the coupler is across the crank ray, rad from +x."""
         return tuple((self.guide_angle + turning.angle) % TURN for turning in (self.far, self.near))
+
+    @cached_property
+    def knots(self):
+        return tuple(knot._replace(angle=knot.angle + self.guide_angle) for knot in bends_of(self.law))
 
     @property
     def force_error(self):

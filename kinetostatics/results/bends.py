@@ -1,10 +1,13 @@
-"""Where loads and friction of designs bend or jump: crank angles over the period, for each design its own."""
+"""Where loads, friction and laws of cams bend or jump: crank angles over the period, for each design its own."""
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..machine.loads import STRAIGHT, TURN, Table, in_rows, is_bent, value_of
+from ..machine.loads import STRAIGHT, TURN, bends_of, is_bent, kinked
 from ..mechanics.quantities import quantity
-from .turn import ASIDE, beginnings
+from .changes import sign_changes
+from .turn import beginnings, of_laws
 
 SMOOTH = ("slider", "motion", "rate")
 """Kinds of quantities that no load moves."""
@@ -12,49 +15,52 @@ SAMPLES = 720
 """Crank angles a turn between which what turns friction about changes its sign once at most."""
 
 
+class Bends(NamedTuple):
+    """Where designs bend.
+
+    Attributes
+    ----------
+    angle : array (1 or designs, K)
+        Crank angles over the period; NaN where a design has fewer.
+    jumps : array (1 or designs, K) of bool
+        Where quantities may jump; elsewhere they go on with a kink.
+    rest : float
+        Share of its largest value by which a load may bend besides.
+    """
+
+    angle: Any
+    jumps: Any
+    rest: float
+
+
 def bent(solution, name, straight=STRAIGHT):
-    """Whether friction, or a table among the loads that bends by so much, may bend a quantity of a solution."""
-    return bool(solution.friction.acting or _tables(solution, straight)) and quantity(solution, name).kind not in SMOOTH
+    """Whether friction, the law of a cam, or a load that bends by so much, may bend a quantity of a solution."""
+    if of_laws(solution).size:
+        return True
+    loads = any(is_bent(part, straight) for part in kinked(solution.loads))
+    return bool(solution.friction.acting or loads) and quantity(solution, name).kind not in SMOOTH
 
 
 def bends(solution, straight=STRAIGHT):
-    """Crank angles (1 or designs, K) at which tables or friction bend or may jump; NaN where a design has fewer."""
-    found = [_of_friction(solution)] if solution.friction.acting else []
-    for table in _tables(solution, straight):
-        own = table.bends(solution, straight)
-        found.append((own[..., None] + beginnings(table, solution)).reshape(len(own), -1))
-    most = max(map(len, found))
-    return np.column_stack([np.broadcast_to(part, (most, part.shape[1])) for part in found])
-
-
-def _tables(solution, straight):
-    """Tables among the loads that bend by so much."""
-    return [item for item in map(value_of, solution.loads) if isinstance(item, Table) and is_bent(item, straight)]
+    """The `Bends` of a solution, of loads those that bend by so much."""
+    law = of_laws(solution)[None]
+    found, rest = [(law, np.isin(law, of_laws(solution, jumps=True)))], 0.0
+    if solution.friction.acting:
+        found.append(_of_friction(solution))
+    for part in kinked(solution.loads):
+        own, jumps, left = bends_of(part, solution, straight)
+        again = beginnings(part, solution)
+        found.append(((own[..., None] + again).reshape(len(own), -1), np.repeat(jumps, again.size)[None]))
+        rest = max(rest, left)
+    most = max(len(angle) for angle, _ in found)
+    rows = ([np.broadcast_to(part, (most, part.shape[1])) for part in row] for row in zip(*found, strict=True))
+    angle, jumps = map(np.column_stack, rows)
+    return Bends(angle, jumps, rest)
 
 
 def _of_friction(solution):
-    """Where rates that turn friction about, and forces that bend it, change their signs."""
-    from scipy.optimize import elementwise
-
-    def signs(angle):
-        with np.errstate(all="ignore"):
-            found = solution.at(angle).dynamics.friction_signs
-        return [np.broadcast_arrays(np.atleast_2d(row), angle)[0] for row in found]
-
-    grid = (ASIDE + np.linspace(0.0, solution.period, SAMPLES * round(solution.period / TURN) + 1))[None]
-    values = np.stack(np.broadcast_arrays(*signs(grid)), axis=1)  # (designs, functions, N)
-    changed = (np.signbit(values[..., :-1]) != np.signbit(values[..., 1:])) & ~np.isnan(np.diff(values))
-    design, row, place = np.nonzero(changed)
-    low, high, row = in_rows(design, len(values), grid[0, place], grid[0, place + 1], row)
-    if not low.size:
-        return low
-    asked = np.arange(low.size).reshape(low.shape)
-    known = np.nan_to_num(row).astype(int)
-
-    def own(angle, asked):
-        everywhere = low.copy()
-        everywhere.flat[asked] = angle
-        return np.take_along_axis(np.stack(signs(everywhere)), known[None], axis=0)[0].flat[asked]
-
-    found = elementwise.find_root(own, (low, high), args=(asked,)).x
-    return np.mod(np.where(np.isnan(found), high, found), solution.period)
+    """Where rates that turn friction about, and forces that bend it, change their signs; and whether it is rates."""
+    rates = len(solution.dynamics.rubbing.turning) if solution.dynamics.friction_signs else 0
+    samples = SAMPLES * round(solution.period / TURN)
+    row, angle = sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, samples)
+    return angle, row < rates

@@ -2,30 +2,37 @@
 
 The turn is parted where anything bends, for each design where it does, and evenly besides. On every piece a quantity is
 smooth, so few values tell all of it: its peaks, also those at bends, and its integrals. No value is taken at a bend, so
-it does not matter on which side of it rounding would put that.
+it does not matter on which side of it rounding would put that. What a piece does not tell is told of it by its series,
+and by what its neighbours have where they join; `refining` halves such pieces.
 """
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..machine.loads import TURN
 from .means import NODES, WEIGHTS
-from .reductions import OVER_THE_ANGLE, PEAK, PEAKS, is_rough
+from .reductions import OVER_THE_ANGLE, PEAKS, is_rough
 
 STEP = 0.25
 PLACES = np.arange(-1.0, 1.0 + STEP / 2, STEP)
 """Places on a piece, from -1 to 1, between which peaks are sought."""
 SERIES = np.linalg.inv(np.polynomial.polynomial.polyvander(2.0 * NODES - 1.0, NODES.size - 1))
 """Coefficients of the polynomial over these places from values at the nodes."""
-LAST = 0.5 ** (NODES.size - 2)
-"""Largest part of the last term that no polynomial of fewer terms can take; of one before the last twice as much."""
-SHARP = 1e-9
-"""Share of the largest magnitude on a piece that the last term has where the magnitude is not smooth."""
+_LEGENDRE = np.polynomial.legendre.legvander(2.0 * NODES - 1.0, NODES.size - 1)
+LAST = (((2.0 * np.arange(NODES.size) + 1.0) * WEIGHTS[:, None] * _LEGENDRE)[:, -4:]).T
+"""The last four coefficients of the same polynomial by Legendre's, from values at the nodes."""
+SLOWEST = 0.1
+"""Least share of the last terms that those left out are taken to be: what is smooth may hide what is not."""
+AHEAD = 4.0
+"""How many times as much as the first of them all of them may be, at a kink, where they hardly decrease."""
 APPROACHES = 6
 """Steps of Newton's method to a peak or zero that is known to a quarter of half a piece."""
 NARROW = 1e-12
 """Piece, rad, that is none: its ends are one place, found twice, and what jumps there may do so between them."""
+NARROWEST = 1e-9
+"""Piece, rad, on which what changes jumps: its values are those at the nodes."""
 
 
 class Pieces(NamedTuple):
@@ -34,16 +41,19 @@ class Pieces(NamedTuple):
     Attributes
     ----------
     start, width : array (designs, P)
-        Where each piece begins, and how wide it is, rad; empty ones stand inside of the widest.
+        Where each piece begins, and how wide it is, rad; empty ones come last.
+    joined : array (designs, P) of bool
+        Whether nothing jumps where a piece begins, so that values go on there from the piece before, or the last.
     period : float
     """
 
     start: Any
     width: Any
+    joined: Any
     period: float
 
     @classmethod
-    def of(cls, bends, period, angles, order=0):
+    def of(cls, bends, period, angles, order=0, jumps=True):
         """Pieces of designs, parted at bends and evenly.
 
         Parameters
@@ -55,18 +65,33 @@ class Pieces(NamedTuple):
             Crank angles over the period that are to do where nothing bends.
         order : int
             Highest order of a harmonic of the crank angle that is asked for.
+        jumps : bool or array (1 or designs, K) of bool
+            Whether quantities may jump at these bends, or go on with a kink.
         """
         count = max(round(period / TURN) * 2 * order, -(-angles // NODES.size))
         even = np.broadcast_to(np.linspace(0.0, period, count + 1), (len(bends), count + 1))
-        edges = np.sort(np.column_stack([even, np.where(np.isnan(bends), 0.0, bends)]), axis=1)
-        start, width = edges[:, :-1], np.diff(edges)
+        edges = np.column_stack([even, np.where(np.isnan(bends), 0.0, bends)])
+        bent = np.column_stack([np.zeros(even.shape, dtype=int), ~np.isnan(bends) & jumps])
+        rising = edges.argsort(axis=1, kind="stable")
+        edges, bent = (np.take_along_axis(part, rising, axis=1) for part in (edges, bent))
+        width = np.diff(edges)
         widest = width.argmax(axis=1)[:, None]
-        inside = np.take_along_axis(start + 0.5 * width, widest, axis=1)
-        return cls(np.where(width < NARROW, inside, start), np.where(width < NARROW, 0.0, width), period)
+        inside = np.take_along_axis(edges[:, :-1] + 0.5 * width, widest, axis=1)
+        real = width >= NARROW
+        last = np.cumsum(bent, axis=1)
+        before = np.maximum.accumulate(np.where(real, np.arange(1, width.shape[1] + 1), 0), axis=1)  # ends of pieces
+        before = np.column_stack([np.zeros(len(bends), dtype=int), before])
+        passed = np.take_along_axis(last - bent, before, axis=1)  # bends before the end of the piece before
+        wrapped = last[:, -1:] - passed[:, -1:]
+        joined = last[:, :-1] == np.where(before[:, :-1] > 0, passed[:, :-1], -wrapped)
+        first = (~real).argsort(axis=1, kind="stable")
+        parts = np.where(real, edges[:, :-1], inside), np.where(real, width, 0.0), joined
+        start, width, joined = (np.take_along_axis(part, first, axis=1) for part in parts)
+        return cls(start, width, joined, period)
 
     def some(self, designs):
         """Those of some designs."""
-        return Pieces(self.start[designs], self.width[designs], self.period)
+        return Pieces(self.start[designs], self.width[designs], self.joined[designs], self.period)
 
     @property
     def angle(self):
@@ -74,52 +99,104 @@ class Pieces(NamedTuple):
         return (self.start[..., None] + self.width[..., None] * NODES).reshape(len(self.start), -1)
 
     def estimated(self, output, values, vector=False):
-        """Numbers (designs,) of an `Output` from values (designs, N), and whether these do not tell them.
-
-        What is the magnitude of a vector has corners where the vector is zero, but its square has none.
-        """
-        values = np.moveaxis(values.reshape(*self.start.shape, NODES.size), -1, 0)
+        """Numbers (designs,) of an `Output` from values (designs, N), and whether these do not tell them."""
+        values = self._by_node(values)
         if output.reduction in PEAKS:
-            found, error, size = self._peaks(output.reduction, values, vector)
-        elif output.reduction == "swing":
-            found, error, size = self._swing(values)
-        else:
-            found, error, size = self._mean(output, values, vector)
+            found, height = self._peaks(output.reduction, values, vector)
+            error, size = (
+                self._of_peaks(values, signs(output.reduction), vector).max(axis=1),
+                np.ptp(values, axis=(0, 2)),
+            )
+            told = replace(output, reduction=output.reduction.removesuffix("_at"))
+            return found, is_rough(told, height, error, lambda rough: size[rough])
+        swing = output.reduction == "swing"
+        found = self._swing(values) if swing else self._mean(output, values, vector)
+        size = found if swing else np.abs(values).max(axis=(0, 2))
+        error = self._of_integrals(values).sum(axis=1) * (2.0 * self.period if swing else 2.0 if output.order else 1.0)
         return found, is_rough(output, found, error, lambda rough: size[rough])
 
+    def of_peaks(self, values, signs, vector):
+        """About how wrong each piece (designs, P) may make the highest values, and the lowest, if -1.0 is a sign.
+
+        Zero where neither may lie. What is the magnitude of a vector has corners where the vector is zero, but its
+        square has none.
+        """
+        return self._of_peaks(self._by_node(values), signs, vector)
+
+    def of_integrals(self, values):
+        """About how wrong each piece (designs, P) may make the mean."""
+        return self._of_integrals(self._by_node(values))
+
+    def _of_peaks(self, values, signs, vector):
+        values = values * values if vector else values
+        series, doubt = self._series(values), self._doubts(values)
+        samples = np.stack([_at(series, place) for place in PLACES])
+        room = doubt + STEP**2 / 8.0 * sum(power * (power - 1) * np.abs(row) for power, row in enumerate(series))
+        found = np.zeros(doubt.shape)
+        for sign in signs:
+            top = (sign * samples).max(axis=0)
+            rival = top + room >= (top - doubt).max(axis=1, keepdims=True)
+            found = np.maximum(found, np.where(rival, _rooted(sign * top, doubt) if vector else doubt, 0.0))
+        return found
+
+    def _of_integrals(self, values):
+        return self._doubts(values) * self.width / self.period
+
+    def _by_node(self, values):
+        return np.moveaxis(values.reshape(*self.start.shape, NODES.size), -1, 0)
+
+    def _series(self, values):
+        """Coefficients of the polynomial of each piece over places from -1 to 1, from values at the nodes."""
+        series = _series(values)
+        narrow = (self.width > 0.0) & (self.width < NARROWEST)
+        if narrow.any():
+            low, high = values.min(axis=0)[narrow], values.max(axis=0)[narrow]
+            series[:, narrow] = 0.0
+            series[0, narrow], series[1, narrow] = 0.5 * (low + high), 0.5 * (high - low)
+        return series
+
+    def _doubts(self, values):
+        """About how much the polynomial of each piece may be off (designs, P): by its series, and by its neighbours."""
+        series = _series(values)
+        even, odd = sum(series[2::2], series[0]), sum(series[3::2], series[1])
+        first, last = even - odd, even + odd
+        count = np.maximum((self.width > 0.0).sum(axis=1), 1)[:, None] - 1
+        before = np.column_stack([np.take_along_axis(last, count, axis=1), last[:, :-1]])
+        gap = np.where(self.joined & (self.width > 0.0), np.abs(first - before), 0.0)
+        after = np.column_stack([gap[:, 1:], np.zeros(len(gap))])
+        np.put_along_axis(after, count, gap[:, :1], axis=1)
+        return np.where(self.width < NARROWEST, 0.0, np.maximum(_rest(values), np.maximum(gap, after)))
+
     def _peaks(self, reduction, values, vector):
-        series = _series(values * values if vector else values)
-        signs = {"largest": (1.0,), "smallest": (-1.0,)}.get(reduction.removesuffix("_at"), (1.0, -1.0))
-        heights, places, errors = zip(*(self._end(series, sign, vector) for sign in signs), strict=True)
-        error, size = np.maximum.reduce(errors), np.ptp(values, axis=(0, 2))
+        """Number of each design, and the height of the peak that it is of."""
+        series = self._series(values * values if vector else values)
+        heights, places = zip(*(self._end(series, sign, vector) for sign in signs(reduction)), strict=True)
         if reduction in OVER_THE_ANGLE:
-            return places[0], np.where(error > PEAK * np.abs(heights[0]), np.inf, 0.0), size
+            return places[0], heights[0]
         if reduction == "range":
-            return heights[0] - heights[1], error, size
-        return np.maximum(heights[0], -heights[-1]) if reduction == "largest_absolute" else heights[0], error, size
+            found = heights[0] - heights[1]
+        else:
+            found = np.maximum(heights[0], -heights[-1]) if reduction == "largest_absolute" else heights[0]
+        return found, found
 
     def _end(self, series, sign, vector):
-        """Largest or smallest value of each design, where it is, and about how much it may be wrong."""
-        height, piece, place, error = _highest(sign * series)
+        """Largest or smallest value of each design, and where it is."""
+        height, piece, place = _highest(sign * series)
         design = np.arange(len(piece))
         height, angle = sign * height, self.start[design, piece] + self.width[design, piece] * (0.5 + 0.5 * place)
         if vector:
             height = np.sqrt(np.maximum(height, 0.0))
-            error = error / np.maximum(np.maximum(height, np.sqrt(error)), np.finfo(float).tiny)
-        return height, np.where(np.isnan(height), np.nan, np.mod(angle, self.period)), error
+        return height, np.where(np.isnan(height), np.nan, np.mod(angle, self.period))
 
     def _mean(self, output, values, vector):
         kind, order = output.reduction, output.order
-        error, size = self._sum(_rest(_series(values))[None]), np.abs(values).max(axis=(0, 2))
         if order is not None:
             angle = order * (self.start + self.width * NODES[:, None, None])
             parts = (self._sum(values * wave(angle)) for wave in (np.cos, np.sin))
-            return np.hypot(*parts) * (1.0 if order == 0 else 2.0), 2.0 * error, size
+            return np.hypot(*parts) * (1.0 if order == 0 else 2.0)
         if kind == "rms":
-            return np.sqrt(self._sum(values * values)), error, size
-        if vector:
-            return self._sum(_magnitudes(values)), error, size
-        return self._sum(values if kind == "mean" else _sizes(values)), error, size
+            return np.sqrt(self._sum(values * values))
+        return self._sum(values if kind == "mean" or vector else _sizes(values))
 
     def _sum(self, values):
         """Mean over the period of values at the nodes, or of one value for each piece; the same with empty pieces."""
@@ -133,9 +210,18 @@ class Pieces(NamedTuple):
         inner = _integral(series) * (0.5 * self.width)
         gained = np.cumsum(_at(inner, 1.0) - _at(inner, -1.0), axis=1)
         inner[0] += np.column_stack([np.zeros(len(gained)), gained[:, :-1]]) - _at(inner, -1.0)
-        found = _highest(inner)[0] + _highest(-inner)[0]
-        error = 2.0 * self.period * self._sum(_rest(series)[None])
-        return found, error, found
+        return _highest(inner)[0] + _highest(-inner)[0]
+
+
+def signs(reduction):
+    """Signs with which a peak is the highest value."""
+    return {"largest": (1.0,), "smallest": (-1.0,)}.get(reduction.removesuffix("_at"), (1.0, -1.0))
+
+
+def _rooted(square, doubt):
+    """By how much roots of squares may be wrong, which may be wrong by so much."""
+    root = np.sqrt(np.maximum(np.maximum(square, doubt), np.finfo(float).tiny))
+    return doubt / root
 
 
 def _series(values):
@@ -143,15 +229,15 @@ def _series(values):
     return np.stack([sum(weight * row for weight, row in zip(weights, values, strict=True)) for weights in SERIES])
 
 
-def _rest(series):
-    """About how much polynomials may be off: their last term, and the one that would follow, as even ones decrease.
+def _rest(values):
+    """About how much polynomials may be off: the terms left out, as those that are there decrease.
 
-    What lies alike on both sides of the middle has no odd terms.
+    Two terms go together, one even and one odd: where what is not smooth lies so that one vanishes, the other does not.
     """
-    last, before = LAST * np.abs(series[-1]), 2.0 * LAST * np.abs(series[-2])
+    first, second, third, fourth = (sum(w * row for w, row in zip(weights, values, strict=True)) for weights in LAST)
+    before, last = np.hypot(first, second), np.hypot(third, fourth)
     with np.errstate(divide="ignore", invalid="ignore"):
-        falls = np.fmin(before / (8.0 * LAST * np.abs(series[-4])), 1.0)
-    return last + before * falls
+        return AHEAD * last * np.clip(np.nan_to_num(last / before, nan=1.0), SLOWEST, 1.0)
 
 
 def _integral(series):
@@ -181,7 +267,7 @@ def _approached(function, slope, place, low, high):
 
 
 def _highest(series):
-    """Largest value of the polynomials (terms, designs, pieces) of each design, on which piece, where, and its error.
+    """Largest value of the polynomials (terms, designs, pieces) of each design, on which piece, and where.
 
     Those pieces are looked at on which a value may be above those at the places.
     """
@@ -199,35 +285,15 @@ def _highest(series):
     np.maximum.at(highest, design, height)
     known, of = np.unique(np.where(height == highest[design], design, len(top)), return_index=True)
     known, of = known[known < len(top)], of[known < len(top)]
-    found = np.full((3, len(top)), np.nan)
-    found[:, known] = height[of], place[of], _rest(own[:, of])
+    found = np.full((2, len(top)), np.nan)
+    found[:, known] = height[of], place[of]
     pieces = np.zeros(len(top), dtype=int)
     pieces[known] = piece[of]
-    return found[0], pieces, found[1], found[2]
+    return found[0], pieces, found[1]
 
 
 def _means(values):
     return sum(weight * row for weight, row in zip(WEIGHTS, values, strict=True))
-
-
-def _magnitudes(values):
-    """Mean magnitude of a vector on each piece (1, designs, pieces), also where it comes near zero and turns about.
-
-    There the square, which is smooth, is integrated on both sides of where it is least, at places that gather there.
-    """
-    found, series = _means(values), _series(values)
-    design, piece = np.nonzero(_rest(series) > SHARP * np.abs(values).max(axis=0))
-    own = _series(values[:, design, piece] ** 2)
-    slope = _slope(own)
-    first = PLACES[np.stack([_at(own, place) for place in PLACES]).argmin(axis=0)]
-    least = _approached(slope, _slope(slope), first, np.maximum(first - STEP, -1.0), np.minimum(first + STEP, 1.0))
-    total = np.zeros(design.size)
-    for end in (-1.0, 1.0):
-        for node, weight in zip(NODES, WEIGHTS, strict=True):
-            square = _at(own, least + (end - least) * node**3)
-            total += 3.0 * node**2 * weight * np.abs(end - least) * np.sqrt(np.maximum(square, 0.0))
-    found[design, piece] = 0.5 * total
-    return found[None]
 
 
 def _sizes(values):

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, Table, is_given, period_of, refusals, value_of
+from ..machine.loads import TURN, is_given, kinked, period_of, period_on, refusals
 from ..mechanics import assembly, contact
 from ..mechanics.pushes import given, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
+from .changes import sign_changes
 
 SAMPLES = 1440
 """Samples a turn that bracket extrema, beside those at and between kinks: two nearer than these may pass unseen."""
@@ -36,8 +37,6 @@ BETWEEN = (2.0**-20, 0.5, 1.0 - 2.0**-20)
 """Shares of the way from one kink to the next at which samples stand: they tell how a curve leaves and nears each."""
 BESIDE = (-(2.0**-44), 2.0**-44)
 """Distances from a jump, rad, at which samples stand on both sides of it."""
-ASIDE = 1e-3
-"""Crank angle from 0, rad, so that no sample meets a dead centre."""
 SAME = 1e-9
 """Crank angles this near, rad, are the same."""
 LONGEST = 6
@@ -62,7 +61,7 @@ class Turn:
     limits : array
         Crank angles at which a group stands in a limit position, or nearly so, ends of gaps among them.
     kinks : array
-        Crank angles at which a table has a kink, or may jump.
+        Crank angles at which friction, a load or the law of a cam has a kink, or may jump.
     passed : array
         Those of `limits` that are change points passed, where forces grow; empty where no forces are asked for.
     """
@@ -234,51 +233,35 @@ class Turn:
 
 
 def _kinks(solution):
-    """Crank angles of kinks and jumps of friction, and of all tables among the loads, over the period."""
+    """Crank angles of kinks and jumps of friction, of loads and of cams' laws, over the period."""
     rubbing = _friction_changes(solution)
-    found: list[Any] = [(rubbing, rubbing)]
-    for table in map(value_of, solution.loads):
-        if isinstance(table, Table):
-            again = beginnings(table, solution)[:, None]
-            found.append(tuple(np.ravel(angles + again) for angles in table.kinks(solution)))
+    law = of_laws(solution, jumps=True)
+    found: list[Any] = [(rubbing, rubbing), (law, law)]
+    for part in kinked(solution.loads):
+        again = beginnings(part, solution)[:, None]
+        kinks, jumps = part.kinks(solution)
+        found.append((np.ravel(np.concatenate([kinks, jumps]) + again), np.ravel(jumps + again)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
 
 
-def beginnings(table, solution):
-    """Crank angles at which a table begins anew over the period of a solution."""
-    return np.arange(0.0, solution.period - SAME, table.period_on(solution.mechanism))
+def beginnings(part, solution):
+    """Crank angles at which what declares kinks begins anew over the period of a solution."""
+    return np.arange(0.0, solution.period - SAME, period_on(part, solution.mechanism))
+
+
+def of_laws(solution, jumps=False):
+    """Crank angles over the period at which laws of cams bend or jump, or jump only."""
+    found = [knot.angle for group in solution.mechanism.groups for knot in group.knots if knot.jumps or not jumps]
+    again = np.arange(0.0, solution.period - SAME, TURN)[:, None]
+    return np.ravel(np.mod(np.array(found, dtype=float), TURN) + again)
 
 
 def _friction_changes(solution):
     """Crank angles at which friction jumps, as a rate changes its sign, or has a kink, as a force does."""
     if not solution.friction.acting:
         return np.empty(0)
-    _, angles = sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period)
+    _, angles = sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, SAMPLES)
     return np.unique(angles)
-
-
-def sign_changes(function, period):
-    """Where functions of the crank angle change their signs over a period: which of the functions, and crank angles."""
-    from scipy.optimize import elementwise
-
-    def signs(angle):
-        with np.errstate(all="ignore"):
-            return np.array([np.broadcast_to(row, angle.shape) for row in function(angle)])
-
-    grid = ASIDE + np.linspace(0.0, period, SAMPLES + 1)
-    found = signs(grid)
-    if not found.size:
-        return np.empty(0, dtype=int), np.empty(0)
-    row, place = np.nonzero(np.signbit(found[:, :-1]) != np.signbit(found[:, 1:]))
-    if not row.size:
-        return row, np.empty(0)
-
-    def own(angle, row):
-        return signs(angle)[row, np.arange(row.size)] if angle.ndim == 1 else own(angle.ravel(), row.ravel())
-
-    root = elementwise.find_root(own, (grid[place], grid[place + 1]), args=(row,))
-    ends = np.where(found[row, place] == 0.0, grid[place], grid[place + 1])
-    return row, np.mod(np.where(np.isfinite(root.x), root.x, ends), period)
 
 
 def _beside(angle, others):

@@ -9,40 +9,24 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from ..engines import loops, programs, sharing
-from ..errors import NotGivenError, ParameterError
-from ..machine.friction import PASSES
+from ..errors import ParameterError
 from ..machine.loads import TURN, refusals
 from ..mechanics import contact
-from ..mechanics.quantities import quantity, scale, sizes
+from ..mechanics.quantities import scale, sizes
 from ..numbers import checks
 from ..numbers.elementary import ROUNDING
-from ..numbers.leaves import with_fields
-from ..results.bends import bends, bent
+from ..results.bends import bent
 from ..results.passes import Passes
-from ..results.pieces import Pieces
 from ..results.rounding import FLOOR
 from ..results.turn import NEAR
-from ..solution.scene import unchecked
+from ..solution.parted import VALUES, Parted, quantities, solution_of
 
-VALUES = 100_000
-"""Values over designs and angles that NumPy computes at a time: about what the cache holds."""
 DESIGNS = 128
 """Designs whose turns are parted at a time: so many that the calls count little, and memory is no concern."""
 BLOCK = 40_000
 """Values of all quantities over designs and angles that a compiled loop leaves at a time: a third of a core's cache."""
 SHARES = 8
 """Parts of a chunk that each thread gets, so that none waits long for another."""
-
-
-def quantities(outputs):
-    return list(dict.fromkeys(item.quantity for item in outputs))
-
-
-def solution_of(scene, angles):
-    """Solution at so many crank angles over the period, or at these."""
-    if scene.friction.acting:  # nobody looks at each design's friction, so it gets more passes than most need
-        scene = with_fields(scene, friction=with_fields(scene.friction, passes=PASSES[1]))
-    return unchecked(scene, scene.turn(angles), "numpy")
 
 
 def run(scene, job, count, outputs):
@@ -79,7 +63,7 @@ def run(scene, job, count, outputs):
     if parted.any():
         apart = [item for item in outputs if item not in even]
         found = np.empty((2, len(outputs), made))
-        found[:, ~parted], found[:, parted] = (numbers, rough), _by_pieces(scene, job, solution, apart, made)
+        found[:, ~parted], found[:, parted] = (numbers, rough), _parted(scene, job, apart).estimated(apart)
         numbers, rough = found[0], found[1] > 0
     shape = len(outputs), count
     rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
@@ -139,12 +123,15 @@ def _by_numpy(solution, outputs, count, found, threads):
     return fill, step
 
 
+def _parted(scene, job, outputs):
+    return Parted.of(scene, outputs, job.angles, job.straight, job.engine)
+
+
 def noise(scene, job, outputs):
     """Whether outputs are of what changes over the turn by rounding of its terms only: (outputs, designs or 1)."""
     solution = solution_of(scene, job.angles)
     if any(bent(solution, item.quantity, job.straight) for item in outputs):
-        count = math.prod(solution.shape[:-1])
-        solution = solution_of(scene, _pieces(solution, job, outputs, count).angle)
+        solution = solution_of(scene, _parted(scene, job, outputs).pieces.angle)
     with np.errstate(all="ignore"):
         found = [_is_noise(solution, item.quantity) for item in outputs]
     return np.array(found)
@@ -154,42 +141,3 @@ def _is_noise(solution, name):
     values = sizes(solution, name)[0]
     size = np.maximum(scale(solution, name), np.abs(values).max(axis=-1))
     return np.ravel(np.ptp(values, axis=-1) <= FLOOR * size)
-
-
-def _pieces(solution, job, outputs, count):
-    """The turn of designs, parted where loads bend."""
-    found, order = bends(solution, job.straight), max(item.order or 0 for item in outputs)
-    return Pieces.of(np.broadcast_to(found, (count, found.shape[1])), solution.period, job.angles, order)
-
-
-def _by_pieces(scene, job, solution, outputs, count):
-    """Numbers (outputs, designs), and whether so many crank angles do not tell them, where loads bend."""
-    pieces = _pieces(solution, job, outputs, count)
-    angle, names = pieces.angle, quantities(outputs)
-    values = {name: np.empty(angle.shape) for name in names}
-    step = max(1, VALUES // count)
-    for start in range(0, angle.shape[1], step):
-        some = slice(start, start + step)
-        for name, found in zip(names, _sizes(solution_of(scene, angle[:, some]), names, job.engine), strict=True):
-            values[name][:, some] = found
-    found = np.empty((2, len(outputs), count))
-    step = max(1, VALUES // angle.shape[1])
-    for start in range(0, count, step):
-        some = slice(start, start + step)
-        own = pieces.some(some)
-        with np.errstate(all="ignore"):
-            for row, item in enumerate(outputs):
-                vector = quantity(solution, item.quantity).vector
-                found[:, row, some] = own.estimated(item, values[item.quantity][some], vector)
-    return found
-
-
-def _sizes(solution, names, engine):
-    """Values of quantities, of vectors their magnitudes."""
-    state, compiled = solution.dynamics, engine == "compiled"
-    try:
-        program, leaves = programs.of(state, tuple(names), sizes=True, lasting=not compiled)
-    except NotGivenError:
-        with np.errstate(all="ignore"):
-            return [sizes(solution, name)[0] for name in names]
-    return program.run(state, leaves, compiled)

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.design import measures
 from kinetostatics.design.demands import wanted
 from kinetostatics.design.problem import Problem, true_value
+from kinetostatics.results.reductions import parsed
 from support.case_files import case_file
 from support.improved_saws import CIRCLE
 from support.plain_case import PLAIN
@@ -64,3 +66,34 @@ roller = { radius = "50 mm", width = "60 mm", youngs_modulus = "210 GPa", poisso
     value, slopes = problem.output(wanted("largest contact_pressure", told), problem.start)
     assert value > 0
     assert slopes[0] > 0  # a stiffer cam is pressed harder
+
+
+def spiky(width=2e-5):
+    """A pump on which a force acts on less than a thousandth of the turn, between even samples."""
+    table = ks.Table([0.1, 0.2, 0.2 + width, 0.2 + 2 * width, 0.3], [0.0, 0.0, 3e3, 0.0, 0.0], over="travel")
+    made = ks.crank_slider(0.05, 0.19, guide_offset=0.01, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(2.0))
+    return ks.Scene(made, 30.0, loads=[ks.Gravity(), ks.ProcessForce(table)])
+
+
+def test_a_peak_beside_a_kink_is_seen_by_a_search_that_even_samples_miss():
+    output, scene = parsed("largest balancing_torque"), spiky()
+    problem = Problem(scene, {"slider.mass": (1.0, 3.0)}, ["balancing_torque"])
+    truth = ks.extremes(scene.solve(4), "balancing_torque").range[1]
+    even = measures.reduced("largest", problem.curves(problem.start)["balancing_torque"])[0]
+    assert even < 0.7 * truth
+    assert problem.output(output, problem.start)[0] == pytest.approx(truth, rel=1e-9)
+    assert true_value(output, scene) == pytest.approx(truth, rel=1e-9)
+
+
+def test_a_search_keeps_a_limit_beside_a_kink():
+    """Heavier, the slider meets the force with more of its own: the peak of the torque grows with its mass."""
+    scene = spiky()
+    before = true_value(parsed("largest O"), scene)
+    found = ks.design.optimise(
+        scene,
+        {"slider.mass": (1.0, 6.0)},
+        maximise="mean_absolute balancing_torque",
+        limits=[f"largest O <= {1.02 * before} N"],
+        progress=False,
+    )
+    assert true_value(parsed("largest O"), found.scene) <= 1.02 * before * (1 + 1e-6)

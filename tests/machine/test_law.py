@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from kinetostatics.machine.law import Law, knots_of
+from kinetostatics.machine.law import Law, bends_of, knots_of
 
 RISING = ks.laws.joined(
     ks.laws.cycloidal(1.7, 2.3, 2.0), ks.laws.dwell(2.3, 0.5), ks.laws.cycloidal(2.3, 1.7, 2 * np.pi - 2.5)
@@ -34,3 +34,15 @@ def test_a_law_that_does_not_say_what_it_is_cannot_be_called():
 
     with pytest.raises(TypeError, match="Empty must define __call__"):
         Empty()(0.0)
+
+
+def test_knots_bend_where_the_acceleration_or_the_jerk_jumps_and_nowhere_else():
+    rise, back = ks.laws.harmonic(0.05, 0.07, 2.0), ks.laws.cycloidal(0.07, 0.05, 2.0)
+    rest = 2 * np.pi - 5.0
+    law = ks.laws.joined(rise, ks.laws.dwell(0.07, 1.0), back, ks.laws.dwell(0.05, rest), smooth="velocity")
+    found = bends_of(law)
+    assert [round(knot.angle, 12) for knot in found if knot.jumps] == [0.0, 2.0]
+    assert [round(knot.angle, 12) for knot in found if not knot.jumps] == [3.0, 5.0]
+    angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    assert bends_of(ks.laws.table(angle, 0.05 + 0.01 * np.cos(angle))) == ()
+    assert bends_of(ks.laws.cosine(0.01, 0.05)) == ()

@@ -18,7 +18,7 @@ def table(back=None):
 
 
 def test_a_table_bends_where_its_rows_are_off_a_line():
-    at = bends(solved([table()]))[0]
+    at = bends(solved([table()])).angle[0]
     place = solved().mechanism.place(at).travels["slider"].position
     np.testing.assert_allclose(np.sort(place), [0.18, 0.18, 0.2, 0.2], rtol=0, atol=1e-15)
 
@@ -26,7 +26,7 @@ def test_a_table_bends_where_its_rows_are_off_a_line():
 def test_strokes_that_differ_jump_at_the_ends():
     load = table([0.0] * 5)
     _, jumps = load.force.kinks(solved())
-    at = bends(solved([load]))[0]
+    at = bends(solved([load])).angle[0]
     assert all(np.abs(at - jump).min() < 1e-12 for jump in jumps)
     assert at.size == 6
 
@@ -36,15 +36,15 @@ def test_rows_of_a_smooth_curve_bend_nothing_until_they_are_looked_at_more_close
     one, other = (ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel", back=back)) for back in (None, -x))
     assert not bent(solved([one]), "O")
     assert bent(solved([one]), "O", 1e-9)
-    assert bends(solved([one]), 1e-9).shape[1] > 500
-    assert bends(solved([one, other])).shape[1] == 2  # where strokes that differ may jump
+    assert bends(solved([one]), 1e-9).angle.shape[1] > 500
+    assert bends(solved([one, other])).angle.shape[1] == 2  # where strokes that differ may jump
 
 
 def test_a_table_over_the_angle_bends_in_every_turn_of_the_period():
     x = np.arange(0.0, 6.1, 0.5)
     twice = ks.Torque(ks.Table(x, np.interp(x, [0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0])), on="crank")
     four = ks.ProcessForce(ks.Table(np.linspace(0, 4 * np.pi, 9), np.zeros(9), period=4 * np.pi), period=4 * np.pi)
-    at = np.unique(bends(solved([twice, four])))
+    at = np.unique(bends(solved([twice, four])).angle)
     assert {0.0, 1.0, 2.0, 2 * np.pi, 1.0 + 2 * np.pi, 2.0 + 2 * np.pi} <= set(at)
 
 
@@ -52,21 +52,21 @@ def test_no_bend_is_beyond_a_period_that_is_thirteen_turns_but_for_rounding():
     once = ks.Torque(ks.Table([0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0]), on="crank")
     long = ks.ProcessForce(ks.Table(np.linspace(0, 26 * np.pi, 9), np.zeros(9), period=26 * np.pi), period=26 * np.pi)
     s = solved([once, long])
-    at = bends(s)
+    at = bends(s).angle
     assert np.nanmax(at) < s.period
     assert np.sum(np.isclose(at % (2 * np.pi), 1.0)) == 13
 
 
 def test_friction_bends_where_a_turn_knows_it():
     s = solved((), {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.02), "B": ks.PinFriction(0.1, 0.02)})
-    np.testing.assert_allclose(np.unique(bends(s)), s.sampled.kinks, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(np.unique(bends(s).angle), s.sampled.kinks, rtol=0, atol=1e-12)
 
 
 def test_friction_of_designs_bends_for_each_where_it_does_alone():
     friction, crank = {"guide": ks.GuideFriction(0.1), "B": ks.PinFriction(0.1, 0.02)}, np.array([[0.03], [0.05]])
-    both = np.sort(bends(solved((), friction, crank)), axis=1)
+    both = np.sort(bends(solved((), friction, crank)).angle, axis=1)
     for row, length in zip(both, crank[:, 0], strict=True):
-        alone = np.sort(bends(solved((), friction, float(length)))[0])
+        alone = np.sort(bends(solved((), friction, float(length))).angle[0])
         np.testing.assert_allclose(row[: alone.size], alone, rtol=0, atol=1e-12)
 
 
@@ -76,3 +76,12 @@ def test_loads_bend_forces_and_no_motion():
     assert bent(s, "balancing_torque")
     assert not bent(s, "slider_velocity")
     assert not bent(solved([ks.Gravity()]), "O")
+
+
+def test_friction_jumps_where_it_turns_about_and_strokes_at_their_ends_alone():
+    s = solved([table([0.0] * 5)], {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.02)})
+    found = bends(s)
+    stops = table([0.0] * 5).force.kinks(s)[1]
+    jumping = found.angle[0][found.jumps[0]]
+    assert all(np.abs(stops - angle).min() < 1e-9 for angle in jumping)
+    assert 0 < found.jumps.sum() < found.jumps.size

@@ -13,8 +13,7 @@ BENDS = np.array([[1.0, 1.002, 4.0, np.nan], [2.0, 2.001, 2.002, 5.0]])
 def found(text, function, bends=BENDS, angles=192, period=TURN, vector=False):
     output = parsed(text)
     pieces = Pieces.of(bends, period, angles, output.order or 0)
-    values = function(pieces.angle)
-    numbers, rough = pieces.estimated(output, values, vector)
+    numbers, rough = pieces.estimated(output, function(pieces.angle), vector)
     assert not rough.any(), text
     return numbers
 
@@ -75,10 +74,39 @@ def test_two_turns_are_reduced_over_both():
 
 
 def test_the_magnitude_of_a_vector_that_passes_zero_is_known_there():
-    bends, place = np.array([[1.0]]), 2.3456
-    near = lambda angle: np.hypot(np.sin(angle - place), 1e-4)  # noqa: E731
-    assert found("smallest O", near, bends, vector=True) == pytest.approx(1e-4, rel=1e-3)
-    assert found("mean O", near, bends, vector=True) == pytest.approx(2 / np.pi, rel=1e-6)
+    near = lambda angle: np.hypot(np.sin(angle - 2.3456), 1e-4)  # noqa: E731
+    assert found("smallest O", near, np.array([[1.0]]), vector=True) == pytest.approx(1e-4, rel=1e-3)
+
+
+def test_values_that_go_on_otherwise_in_the_next_piece_are_told():
+    """A kink between the last node of a piece and its end is seen by none of them."""
+    pieces = Pieces.of(np.array([[1.0]]), TURN, 192)
+    for beside, doubted in ((-0.002, True), (0.002, True), (0.0, False)):
+        values = np.abs(pieces.angle - pieces.start[0, 7] - beside)
+        wrap = np.abs(values[0, 0] - values[0, -1])
+        kinked = pieces.of_peaks(values, (1.0, -1.0), False)[0, 6:8]
+        assert wrap > 1.0
+        assert (kinked.max() > 1e-4) == doubted, (beside, kinked)
+
+
+def test_a_kink_just_before_a_bend_is_told_by_the_step_there():
+    """No node lies between a kink and a bend that is near; what jumps there is no sign of it."""
+    kink = lambda angle: np.abs(angle - 0.9999) + np.where(angle > 1.0, -2.0 * (angle - 1.0), 0.0)  # noqa: E731
+    for jump in (False, True):
+        pieces = Pieces.of(np.array([[0.0, 1.0]]), TURN, 192, jumps=np.array([[True, jump]]))
+        values = kink(pieces.angle) + np.where(pieces.angle > 1.0, float(jump), 0.0)
+        at = np.flatnonzero(pieces.start[0] == 1.0)[0]
+        doubts = pieces.of_integrals(values)[0] / pieces.width[0].clip(1e-9) * TURN
+        assert (doubts[at - 1] > 1e-4) != jump
+
+
+def test_nothing_is_joined_at_bends_nor_at_edges_that_rounding_sets_apart_from_them():
+    place = np.linspace(0.0, TURN, 25)[3]
+    pieces = Pieces.of(np.array([[place + 1e-14, 0.0], [4.0, np.nan]]), TURN, 192)
+    real = pieces.width > 0.0
+    apart = [start[~joined & real] for start, joined, real in zip(pieces.start, pieces.joined, real, strict=True)]
+    np.testing.assert_allclose(apart[0], [0.0, place], rtol=0, atol=1e-12)
+    assert apart[1].tolist() == [4.0]
 
 
 def test_values_that_are_no_polynomial_between_bends_are_told():
@@ -104,7 +132,7 @@ def test_a_jump_between_a_bend_and_an_even_edge_that_rounding_sets_apart_is_no_p
     place = np.linspace(0.0, TURN, 25)[3]
     step = lambda angle: np.where(angle > place, 3.0, 1.0)  # noqa: E731
     for beside in (np.nextafter(place, 9.0), place + 1e-14):
-        bends = np.array([[beside, 4.0], [beside, np.nan]])
+        bends = np.array([[beside, 4.0, 0.0], [beside, np.nan, TURN]])
         for text, expected in {"largest O": 3.0, "smallest O": 1.0, "range O": 2.0}.items():
             assert found(text, step, bends) == pytest.approx(expected, rel=1e-14), text
             assert found(text, step, bends, vector=True) == pytest.approx(expected, rel=1e-14), text

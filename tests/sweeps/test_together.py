@@ -7,6 +7,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import sharing
 from kinetostatics.engines.sharing import shared
+from kinetostatics.mechanics.quantities import sizes
 from kinetostatics.sweeps import together
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories, spikes
@@ -94,7 +95,7 @@ def of_smooth_curve(count, around=True):
 @every("around", [True, False])
 @every("angles", [12, 360])
 def test_a_smooth_curve_in_fine_rows_is_swept_as_one_without_parting_any_turn(monkeypatch, around, angles):
-    monkeypatch.setattr(together, "_by_pieces", None)
+    monkeypatch.setattr(together, "Parted", None)
     scene, names = of_smooth_curve(1100, around), ("balancing_torque", "O")
     outputs = [f"{kind} {name}" for name in names for kind in ("largest", "mean_absolute", "rms")]
     found = sweep(scene, pd.DataFrame({"crank_length": [0.04, 0.05]}), outputs, angles=angles)
@@ -196,3 +197,47 @@ def test_what_designs_have_in_common_is_computed_once_to_the_same_bits(numba, mo
     pd.testing.assert_frame_equal(ks.sweep(scene, designs, outputs, **asked), whole, check_exact=True)
     assert made
     assert all(len(tables) for _, tables in made)
+
+
+def followed(mass):
+    """A follower whose acceleration jumps, by a cosine of acceleration between rests."""
+    rise, back = ks.laws.harmonic(0.05, 0.07, 2.0), ks.laws.harmonic(0.07, 0.05, 1.5)
+    rest = ks.laws.dwell(0.05, 2 * np.pi - 4.5)
+    law = ks.laws.joined(rise, ks.laws.dwell(0.07, 1.0), back, rest, smooth="velocity")
+    follower = ks.RollerFollower(law, follower=ks.Link(mass))
+    return ks.Scene(ks.Mechanism("valve", ks.Crank(None), (follower,)), 100.0, loads=[ks.Gravity()])
+
+
+def test_laws_of_cams_are_parted_where_they_jump():
+    """Peaks of the force stand just beside the jumps of the acceleration, where no even sample does."""
+    found = sweep(followed, pd.DataFrame({"mass": [1.0, 2.0]}), ["largest contact_force", "smallest contact_force"])
+    at = followed(2.0).solve(np.array([1e-12, 2.0 - 1e-12, 3.0 + 1e-12, 4.5 - 1e-12])).scalar("contact_force")
+    assert found[FAILED].tolist() == ["", ""]
+    assert found.iloc[1, 1] == pytest.approx(at.max(), rel=1e-9)
+    assert found.iloc[1, 2] == pytest.approx(at.min(), rel=1e-9)
+
+
+@every("seed", range(6))
+def test_friction_bends_where_a_reaction_passes_near_zero_however_near(seed):
+    """Where |R| is sqrt(a^2 + b^2 t^2), friction bends within a / b; nobody tells where that is."""
+    rng = np.random.default_rng([3, seed])
+    saw = ks.crank_slider(
+        0.1, 0.4, guide_offset=rng.uniform(0, 0.03), coupler=ks.Link(5.0, 0.1, 0.1), slider=ks.Link(20.0)
+    )
+    friction = {name: ks.PinFriction(rng.uniform(0.05, 0.2), 0.02) for name in "OAB"}
+    push = ks.ProcessForce(rng.uniform(-1.0, 1.0) * 20.0 * 20.0**2 * 0.1)
+    scene = ks.Scene(saw, 20.0, loads=[ks.Gravity(), push], friction=friction)
+    names = ("O", "A", "B", "friction_loss")
+    found = sweep(scene, pd.DataFrame({"crank_speed": [15.0, 20.0]}), [f"smallest {name}" for name in names])
+    assert found[FAILED].tolist() == ["", ""]
+    angle = np.linspace(0.0, 2 * np.pi, 7201)[:, None] + np.zeros(1)
+    for name, number in zip(names, found.iloc[1, 1:-1], strict=True):
+        low, high, least, size = angle[:-1, 0], angle[1:, 0], np.inf, 0.0
+        for _ in range(14):
+            at = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 5)
+            values = sizes(together.solution_of(scene, at.ravel()), name)[0].reshape(at.shape)
+            least, size = min(least, values.min()), max(size, values.max())
+            near = np.argsort(values.min(axis=1))[:20]
+            place = np.clip(values[near].argmin(axis=1), 1, 3)
+            low, high = at[near, place - 1], at[near, place + 1]
+        assert number == pytest.approx(least, abs=3e-8 * size)

@@ -7,12 +7,14 @@ places      points of links, by which loads say where they act
 points      forces, springs and dampers at points
 torsion     couples on links
 tables      values by crank angle or travel: rows their rows, bending those that bend, crossings where they are passed
+kinked      what loads declare of their kinks and jumps
 period      turns after which loads repeat
 """
 
-from .bending import STRAIGHT, is_bent
+from .bending import STRAIGHT
 from .crossings import in_rows
 from .gravity import Gravity
+from .kinked import bends_of, is_bent, kinked, period_on
 from .load import Load, is_given, may_refuse, refusals, value_of
 from .period import MOST_TURNS, TURN, WholeTurns, period_of
 from .points import Force, PointDamper, PointForce, PointSpring
@@ -52,11 +54,14 @@ __all__ = [
     "TorsionDamper",
     "TorsionSpring",
     "WholeTurns",
+    "bends_of",
     "in_rows",
     "is_bent",
     "is_given",
+    "kinked",
     "may_refuse",
     "period_of",
+    "period_on",
     "refusals",
     "value_of",
 ]

@@ -31,9 +31,18 @@ def bending(table, straight=STRAIGHT):
     return curve.sharp(curve.joints(0, table.x.size - 1), (table.x[-1] - table.x[0]) / AROUND)
 
 
-def is_bent(table, straight=STRAIGHT):
-    """Whether a table bends by so much, or may jump where a slider turns back; any table bends by more than 0."""
-    return straight == 0.0 or table.back is not None or bending(table, straight).size > 0
+def left_out(table, straight=STRAIGHT):
+    """Share of its largest value by which a table bends at the rows that count as straight, one by one."""
+    x, strokes = table.x, table.strokes
+    if table.over == "angle":
+        x, strokes = (
+            np.concatenate([x[-1:] - table.period, x, x[:1] + table.period]),
+            [np.concatenate([y[-1:], y, y[:1]]) for y in strokes],
+        )
+    share = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
+    off = np.abs([y[1:-1] - y[:-2] - share * (y[2:] - y[:-2]) for y in strokes]).max(axis=0)
+    inner = off if table.over == "angle" else np.pad(off, 1)
+    return float(np.delete(inner, bending(table, straight)).max(initial=0.0) / (abs(table.largest) or 1.0))
 
 
 def _around(angle, value, period, room):

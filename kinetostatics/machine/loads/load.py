@@ -14,7 +14,7 @@ such a function gives in its place before (`settled` in mechanics/pushes.py). ``
 lengths and angles of the geometry. ``potential(motion)``, of loads that have one, is their potential energy, J; those
 that turn to heat what they take, as dampers do, say so by ``DISSIPATES``. ``misplaced(mechanism)`` says what of a
 mechanism it names wrongly, ``refusals(motion)`` where it has no value, if it ``REFUSES`` some motion; ``signs(motion)``
-how it is drawn.
+how it is drawn. Where it has kinks and jumps, it or its value may declare: see `kinked`.
 """
 
 from typing import Any, ClassVar, NamedTuple

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ...errors import ParameterError
+from ...numbers import checks
 from ...numbers.elementary import namespace
 from .period import TURN
 
@@ -121,3 +122,13 @@ def _missing(angle, value, period, step):
 
 def _degrees(angle):
     return f"{math.degrees(angle):.9g} deg"
+
+
+def unit_of(values):
+    """Unit of values that are quantities, "" of plain numbers."""
+    for unit in ("N", "N*m"):
+        try:
+            return "" if checks.plain(values, unit) is values else unit
+        except checks.DimensionError:
+            continue
+    return ""

@@ -11,7 +11,7 @@ from ...numbers import checks
 from ...numbers.elementary import namespace
 from ...numbers.leaves import with_fields
 from . import rows
-from .bending import STRAIGHT, bending
+from .bending import bending, left_out
 from .crossings import crossings
 from .period import TURN, WholeTurns
 
@@ -87,7 +87,7 @@ class Table:
 
     def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None):
         given = {"x": x, "y": y} if back is None else {"x": x, "y": y, "back": back}
-        unit = _unit_of(y) or _unit_of(back)
+        unit = rows.unit_of(y) or rows.unit_of(back)
         value = checks.Number(unit or "N", table=True)
         found = checks.examined(
             "table",
@@ -317,12 +317,21 @@ class Table:
         ends, passed = (part[~np.isnan(part)] for part in crossings(motion, self._slider(motion), self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
-    def bends(self, motion, straight=STRAIGHT):
-        """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer."""
+    def is_bent(self, straight):
+        """Whether it bends by so much, or may jump where a slider turns back; any table bends by more than 0."""
+        return straight == 0.0 or self.back is not None or bending(self, straight).size > 0
+
+    def bends(self, motion, straight):
+        """Crank angles (1 or designs, K) in its period at which it bends or may jump; NaN where a design has fewer.
+
+        Also which (K,) are jumps, and the share of its largest value by which it may bend besides.
+        """
+        inner, rest = self.x[bending(self, straight)], left_out(self, straight)
         if self.over == "angle":
-            return np.mod(self.x[bending(self, straight)], self.period)[None]
-        ends, passed = crossings(motion, self._slider(motion), self.x[bending(self, straight)])
-        return passed if self.back is None else np.column_stack([ends, passed])
+            return np.mod(inner, self.period)[None], np.zeros(inner.size, dtype=bool), rest
+        ends, passed = crossings(motion, self._slider(motion), inner)
+        found = passed if self.back is None else np.column_stack([ends, passed])
+        return found, np.arange(found.shape[1]) < found.shape[1] - passed.shape[1], rest
 
     @property
     def _content(self):
@@ -338,13 +347,3 @@ class Table:
 
     def __hash__(self):
         return hash(self._content)
-
-
-def _unit_of(values):
-    """Unit of values that are quantities, "" of plain numbers."""
-    for unit in ("N", "N*m"):
-        try:
-            return "" if checks.plain(values, unit) is values else unit
-        except checks.DimensionError:
-            continue
-    return ""

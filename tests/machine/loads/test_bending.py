@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 import kinetostatics as ks
-from kinetostatics.machine.loads.bending import STRAIGHT, bending, is_bent
+from kinetostatics.machine.loads.bending import STRAIGHT, bending
 from support.every import every
 
 TURN = 2 * np.pi
@@ -40,8 +40,8 @@ SMOOTH = {
 
 @every("name", SMOOTH)
 def test_fine_rows_of_a_smooth_curve_bend_nothing(name):
-    assert not is_bent(SMOOTH[name])
-    assert is_bent(SMOOTH[name], 0.0)
+    assert not SMOOTH[name].is_bent(STRAIGHT)
+    assert SMOOTH[name].is_bent(0.0)
 
 
 SHARP = {

@@ -1,0 +1,39 @@
+"""What loads declare of their kinks and jumps.
+
+A load, or what gives its value (a `Table`, a function of the motion), declares them by
+
+    kinks(motion)               crank angles (K,) of kinks, and (J,) of jumps, in its period, whatever the motion's own
+
+and may by ``bends(motion, straight)`` and ``is_bent(straight)`` leave out those that bend by less than a share of its
+largest value, as `Table` does, for each of many designs its own. What declares none is sampled, and said not to be
+resolved where samples do not tell it.
+"""
+
+import numpy as np
+
+from .load import value_of
+from .period import TURN
+
+
+def kinked(loads):
+    """Parts of loads that declare kinks: loads themselves, or their values."""
+    parts = (part for item in loads for part in (item, value_of(item)))
+    return [part for part in parts if hasattr(part, "kinks")]
+
+
+def is_bent(part, straight):
+    """Whether what declares kinks has some that bend by so much."""
+    return not hasattr(part, "is_bent") or part.is_bent(straight)
+
+
+def bends_of(part, motion, straight):
+    """Crank angles (1 or designs, K), NaN where a design has fewer, which (K,) jump, by what share it bends besides."""
+    if hasattr(part, "bends"):
+        return part.bends(motion, straight)
+    kinks, jumps = map(np.ravel, part.kinks(motion))
+    return np.concatenate([kinks, jumps])[None], np.arange(kinks.size + jumps.size) >= kinks.size, 0.0
+
+
+def period_on(part, mechanism):
+    """Crank angle after which what declares kinks repeats on a mechanism, rad."""
+    return part.period_on(mechanism) if hasattr(part, "period_on") else getattr(part, "period", TURN)

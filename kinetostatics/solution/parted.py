@@ -1,0 +1,120 @@
+"""Outputs of scenes whose loads, friction or cams bend: the turn of each parted there, and finer where need be."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..engines import programs
+from ..errors import NotGivenError
+from ..machine.friction import PASSES
+from ..machine.loads import STRAIGHT
+from ..mechanics.quantities import quantity, sizes
+from ..numbers.leaves import Leaves, put_together, with_fields
+from ..numbers.structures import taken_apart
+from ..results.bends import bends
+from ..results.pieces import Pieces
+from ..results.refining import GOAL, refined
+from .scene import unchecked
+
+VALUES = 100_000
+"""Values over designs and angles that NumPy computes at a time: about what the cache holds."""
+
+
+def solution_of(scene, angles):
+    """Solution at so many crank angles over the period, or at these."""
+    if scene.friction.acting:  # nobody looks at each design's friction, so it gets more passes than most need
+        scene = with_fields(scene, friction=with_fields(scene.friction, passes=PASSES[1]))
+    return unchecked(scene, scene.turn(angles), "numpy")
+
+
+def quantities(outputs):
+    return list(dict.fromkeys(item.quantity for item in outputs))
+
+
+class Parted(NamedTuple):
+    """The turn of designs, parted where they bend.
+
+    Attributes
+    ----------
+    scene : Scene
+    designs : int
+        How many it has.
+    pieces : Pieces
+        As they are to begin with.
+    goal : float
+        Share of the largest value of a quantity by which an output may be wrong.
+    engine : "numpy" or "compiled"
+    """
+
+    scene: Any
+    designs: int
+    pieces: Any
+    goal: float
+    engine: str = "numpy"
+
+    @classmethod
+    def of(cls, scene, outputs, angles, straight=STRAIGHT, engine="numpy"):
+        """For some outputs, of at least so many crank angles, with loads taken as straight where they bend by less."""
+        solution = solution_of(scene, 1)
+        count, order = math.prod(solution.shape[:-1]), max(item.order or 0 for item in outputs)
+        found, jumps, rest = bends(solution, straight)
+        found = np.broadcast_to(found, (count, found.shape[1]))
+        return cls(scene, count, Pieces.of(found, solution.period, angles, order, jumps), max(GOAL, rest), engine)
+
+    def values(self, names, designs, angle):
+        """Values of quantities, of vectors magnitudes, of some designs (D,) at crank angles (D, N)."""
+        own, values = self._of(designs), {name: np.empty(angle.shape) for name in names}
+        step = max(1, VALUES // len(angle))
+        for start in range(0, angle.shape[1], step):
+            some = slice(start, start + step)
+            for name, found in zip(names, _sizes(solution_of(own, angle[:, some]), names, self.engine), strict=True):
+                values[name][:, some] = found
+        return values
+
+    def refined(self, outputs):
+        """Parts of the designs: which, their pieces, and values by quantity, so fine that they tell if any do."""
+        names = quantities(outputs)
+        known = {name: quantity(self.scene, name).vector for name in names}
+        wanted = [(item, known[item.quantity]) for item in outputs]
+        step = max(1, VALUES // self.pieces.angle.shape[1])
+        for start in range(0, self.designs, step):
+            some = np.arange(start, min(start + step, self.designs))
+            first = self.pieces.some(some)
+
+            def evaluated(designs, angle, some=some):
+                return self.values(names, some[designs], angle)
+
+            values = evaluated(np.arange(some.size), first.angle)
+            for designs, pieces, found in refined(first, values, wanted, evaluated, self.goal):
+                yield some[designs], pieces, found
+
+    def estimated(self, outputs):
+        """Numbers (outputs, designs), and whether so many crank angles do not tell them."""
+        found = np.empty((2, len(outputs), self.designs))
+        with np.errstate(all="ignore"):
+            for designs, pieces, told in self.refined(outputs):
+                for row, item in enumerate(outputs):
+                    vector = quantity(self.scene, item.quantity).vector
+                    found[:, row, designs] = pieces.estimated(item, told[item.quantity], vector)
+        return found
+
+    def _of(self, designs):
+        """The scene of some of its designs."""
+        if len(designs) == self.designs:
+            return self.scene
+        leaves = Leaves()
+        structure = taken_apart(self.scene, leaves)
+        numbers = (part[designs] if np.shape(part)[:1] == (self.designs,) else part for part in leaves.numbers)
+        return put_together(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
+
+
+def _sizes(solution, names, engine):
+    """Values of quantities, of vectors their magnitudes."""
+    state, compiled = solution.dynamics, engine == "compiled"
+    try:
+        program, leaves = programs.of(state, tuple(names), sizes=True, lasting=not compiled)
+    except NotGivenError:
+        with np.errstate(all="ignore"):
+            return [sizes(solution, name)[0] for name in names]
+    return program.run(state, leaves, compiled)

@@ -1,0 +1,90 @@
+"""What loads declare of their kinks: tables, functions of the motion, loads of the user's own; others declare none."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import kinetostatics as ks
+from kinetostatics.machine.loads import bends_of, is_bent, kinked, period_on
+from support.sweeping import sweep
+
+PUMP = ks.crank_slider(0.05, 0.19, guide_offset=0.01, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(2.0))
+
+
+def push(motion):
+    """A force that is there for a thousandth of a degree."""
+    angle = np.mod(motion.crank_angle, 2 * np.pi)
+    return np.where((angle > 1.0) & (angle < 1.0 + 2e-5), 4e4, 0.0)
+
+
+class Pulse:
+    """The same, which declares where it jumps."""
+
+    def __call__(self, motion):
+        """Force, N."""
+        return push(motion)
+
+    def kinks(self, motion):
+        """No kinks, and two jumps."""
+        return np.empty(0), np.array([1.0, 1.0 + 2e-5])
+
+
+class Knock:
+    """A load of the user's own that does so itself."""
+
+    on = "slider"
+
+    def push(self, motion):
+        """Force, N."""
+        return push(motion)
+
+    def kinks(self, motion):
+        """As of the pulse."""
+        return Pulse().kinks(motion)
+
+
+LOADS = {"value": ks.ProcessForce(Pulse()), "load": Knock()}
+
+
+def test_what_declares_kinks_is_found_and_nothing_else():
+    table = ks.ProcessForce(ks.Table([0.0, 1.0, 2.0, 2 * np.pi], [0.0, 1.0, 0.0, 0.0]))
+    found = kinked([ks.Gravity(), table, ks.ProcessForce(push), *LOADS.values()])
+    assert found == [table.force, LOADS["value"].force, LOADS["load"]]
+    assert is_bent(found[1], 1e-5)
+    assert period_on(found[1], PUMP) == 2 * np.pi
+
+
+def test_of_what_declares_kinks_alone_all_bend_and_nothing_besides():
+    angle, jumps, rest = bends_of(Pulse(), None, 1e-5)
+    assert angle.tolist() == [[1.0, 1.0 + 2e-5]]
+    assert jumps.tolist() == [True, True]
+    assert rest == 0.0
+
+
+def test_rows_of_a_table_that_count_as_straight_are_told_by_how_much_they_bend():
+    x = np.linspace(0.0, 2 * np.pi, 500)
+    smooth, sharp = (ks.Table(x, y) for y in (np.sin(x), np.interp(x, x[[0, 250, 499]], [0.0, 1.0, 0.0])))
+    step = x[1]
+    assert 0.05 * step**2 < bends_of(smooth, None, 1e-3)[2] < step**2
+    assert bends_of(sharp, None, 1e-5)[2] < 1e-9
+
+
+@pytest.mark.parametrize("kind", LOADS)
+def test_a_pulse_that_is_declared_is_swept_whole(kind):
+    scene = ks.Scene(PUMP, 30.0, loads=[LOADS[kind]])
+    designs, outputs = (
+        pd.DataFrame({"slider.mass": [1.0, 2.0]}),
+        ["largest B", "smallest_at balancing_torque", "mean balancing_torque"],
+    )
+    found = sweep(scene, designs, outputs, engine="numpy")
+    assert found["failed"].tolist() == ["", ""]
+    middle = ks.solve(PUMP, 1.0 + 1e-5, crank_speed=30.0, loads=[LOADS[kind]])
+    assert found["largest B [N]"][1] == pytest.approx(float(np.hypot(*middle.reaction("B"))), rel=1e-4)
+    work = -4e4 * float(middle.slider_velocity) / 30.0 * 2e-5
+    assert found["mean balancing_torque [N m]"][1] == pytest.approx(work / (2 * np.pi), rel=1e-4)
+
+
+def test_extremes_know_a_pulse_that_is_declared():
+    s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=[LOADS["value"]])
+    middle = s.at(np.array([1.0 + 1e-5]))
+    assert ks.extremes(s, "B").largest == pytest.approx(float(np.hypot(*middle.reaction("B"))[0]), rel=1e-4)
