@@ -93,8 +93,9 @@ def test_curve_on_the_figure_equals_the_50_digit_table(case, axes, rho, link, or
     assert ks.plots.chain_unit_motion({f"rho-{rho}": solution}, link, order, ax=axes) is axes
     angle, values = axes.lines[0].get_data()
     expected = table(rho)
-    assert_close(angle, expected["angle_deg"])
-    assert_close(values, sign * expected[column], 1e-12)
+    apart = np.abs(angle - expected["angle_deg"][:, None])  # extremes of the curve are drawn too
+    assert apart.min(axis=1).max() < 1e-12
+    assert_close(values[apart.argmin(axis=1)], sign * expected[column], 1e-12)
     assert axes.get_xlabel() == "crank angle from +y, clockwise [deg]"
     assert axes.get_ylabel() == f"relative angular {'velocity' if order == 1 else 'acceleration'} of the {link} [1]"
 
@@ -105,7 +106,7 @@ def test_figure_counts_in_the_cranks_own_sense_whatever_its_speed(axes):
     for speed in (-1.0, 31.4):
         for order in (1, 2):
             ks.plots.chain_unit_motion(ks.solve(mechanism, angle, crank_speed=speed), "rocker", order, ax=axes)
-    curves = [line.get_ydata() for line in axes.lines if len(line.get_xdata()) == 72]
+    curves = [line.get_ydata() for line in axes.lines if len(line.get_xdata()) >= 72]
     assert_close(curves[2], curves[0])
     assert_close(curves[3], -curves[1])
 
