@@ -60,6 +60,7 @@ CHANCY = {
     ("four-bar toggle", KANE, "nan"),
     ("four-bar change point", SINGLE, "nan"),
     ("four-bar change point", NEWTON, "raised"),
+    ("four-bar change point", NEWTON, "flipped"),
     ("rhombus", SINGLE, "nan"),
     ("rhombus", SERIES, "nan"),
     ("rhombus", KANE, "nan"),
