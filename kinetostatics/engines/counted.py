@@ -58,7 +58,7 @@ class Counted:
     def __init__(self, graph: Graph, inputs: dict[Node, Callable[..., Error]] | None, dust: float | None):
         self._graph, self._inputs, self._dust = graph, inputs or {}, dust or 0.0
         self._lost = ROUNDED * self._dust
-        self._by_design = Bounds(graph, inputs, dust=dust)
+        self._take_by_design(dust)
         self._relative: dict[Node, Relative | None] = {}
         self._pivots: dict[Node, Any] = {}
         self._guards: dict[Node, dict[Node, None]] = {}
@@ -77,6 +77,11 @@ class Counted:
             self._tell_reciprocal(node)
         for node in nodes:
             self._relative[node] = self._counted(node)
+
+    def _take_by_design(self, dust):
+        """Bound what a design fixes, where so much may be lost."""
+        self._by_design = Bounds(self._graph, self._inputs, dust)
+        self._tiniest = None if dust is None else TINIEST
 
     def relative(self, part):
         """Error of a part if it is relative, else None."""
@@ -292,7 +297,7 @@ class Counted:
             if not fixed:
                 break
             (rest,) = (part for part in inner.arguments if varies(part))
-            one, other = one * self.size(fixed[0]) + TINIEST, self.size(rest)
+            one, other = plus(one * self.size(fixed[0]), self._tiniest), self.size(rest)
         return one, other
 
     def fused(self, one, other, more):

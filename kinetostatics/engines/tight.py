@@ -17,7 +17,7 @@ adjoints, some thousand `UNIT` of what F would be if nothing cancelled. As C is 
 from collections.abc import Callable
 from typing import Any
 
-from .bounds import DUST, Bounds
+from .bounds import DUST
 from .counted import EXACT
 from .functions import moved_apart
 from .running import KNOWN, Absolute, RunningBounds
@@ -93,7 +93,7 @@ class _Local(_OfBoth):
 
     def __init__(self, graph, inputs, stretched, output, dust):
         super().__init__(graph, inputs, dust=None)
-        self._by_design = Bounds(graph, inputs, dust)
+        self._take_by_design(dust)
         self._stretched, self._output, self.cut = stretched, output, set()
         self._users: dict[Node, list[Node]] = {}
         for node in needed([output]):

@@ -312,3 +312,12 @@ def test_no_random_graph_is_off_by_more_than_its_bounds_compiled(flint, numba):
 
 def test_an_output_that_is_a_plain_number_is_exact():
     assert RunningBounds(Graph()).of([0.0]) == (0.0,)
+
+
+@every("case, variant", [("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("shaper", "cutting")])
+def test_nothing_is_too_small_in_ordinary_machines_so_that_numpy_takes_the_shorter_bounds(case, variant):
+    """Where anything were, all would be computed again with what may be lost."""
+    s = shipped(case).variants[variant].scene.solve(np.linspace(0.0, 6.0, 30))
+    program, leaves = programs.of(s.dynamics, (*s.reactions, "balancing_torque"))
+    bounded = program.bounded()
+    assert np.array_equal(bounded.run(s.dynamics, leaves), bounded._without_dust.run(s.dynamics, leaves))
