@@ -18,7 +18,7 @@ VECTORS = {"+avx512f": (8, 1), "+avx": (4, 2)}
 """By feature of a processor, best first: how many numbers its vectors hold, and how many vectors go together."""
 LEAST = (2, 2)
 """The same without these features."""
-MANY = 400
+MANY = 450
 """Values at each crank angle of which there are enough to compute while others wait: one vector then goes alone."""
 CALLED = {"sin": "llvm.sin.{}", "cos": "llvm.cos.{}", "atan": "atan"}
 """Functions that are called for each number by itself, and what numba calls them."""
