@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..engines.compiled import available
 from ..errors import DriveError
 from ..machine.friction import PASSES
 from ..machine.pairs import Rolling, Sliding
@@ -48,6 +49,7 @@ class RubbingDriven(Driven):
         super().__init__(owner, scene, motor, flywheel, engine, direction)
         self.senses = Senses.of(self.scene)
         self._engine, self._passes = engine, PASSES[0]
+        self._single_by_loop = engine == "compiled" or (engine is None and available())
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()
 
@@ -95,7 +97,7 @@ class RubbingDriven(Driven):
         given = {"crank_speed": speed, "crank_acceleration": acceleration}
         given |= {f"friction.{name}.sense": sense for name, sense in senses.items()}
         if not shape:
-            found = self._program.unlooked(float(angle), given, self._engine != "numpy")
+            found = self._program.unlooked(float(angle), given, self._single_by_loop)
             return {name: float(value) for name, value in found.items()}
         columns = {path: np.broadcast_to(value, shape).reshape(-1, 1) for path, value in given.items()}
         rows = self._program.unlooked(np.reshape(angle, (-1, 1)), columns, self._engine == "compiled")

@@ -30,11 +30,12 @@ def name_problems(parts):
     links = [FRAME]
     forces = dict.fromkeys(("closure", *RESERVED), "result of every mechanism")
     problems = []
+    repeated = []
 
     def add(table, what, kind, names):
         for name in names:
             if name in table:
-                problems.append(f"{kind} adds {what} {name!r} a second time, after the {table[name]}; {REMEDY}")
+                repeated.append(f"{kind} adds {what} {name!r} a second time, after the {table[name]}")
             table[name] = f"{what} of {kind}"
 
     for part in parts:
@@ -53,12 +54,13 @@ def name_problems(parts):
                 found = checks.choice(f"{kind}: link that carries joint {name!r}", point.link, links)
                 problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
         joints.update(part.joints)
+        own = [link for link in part.links if link not in points]
         add(points, "joint", kind, _spelled(part, "joints"))
         add(points, "link", kind, part.links)
         outputs = _spelled(part, "outputs")
         for vector, what in ((True, "reaction"), (False, "quantity")):
             add(forces, what, kind, [name for name in outputs if part.outputs[name].vector == vector])
         endings = [*RATES, *(ending for link in part.guides for ending in TRAVELS)]
-        add(forces, "quantity", kind, [f"{link}{ending}" for link in part.links for ending in endings])
+        add(forces, "quantity", kind, [f"{link}{ending}" for link in own for ending in endings])
         add(forces, "quantity", kind, [*part.motions, *part.contacts])
-    return problems
+    return [*problems, *repeated, *([REMEDY] if repeated else [])]

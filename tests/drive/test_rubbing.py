@@ -1,9 +1,12 @@
 """Machines that rub in periodic running: the true acceleration, losses, many digits."""
 
+import sys
+
 import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.drive.rubbing import driven_by
 from support.driven_rubbing import MOTOR, PUMP, REFERENCE, RUBBING, SAW, SMALL
 
 CAM = ks.Scene(
@@ -116,3 +119,16 @@ def test_the_summary_tells_the_power_lost_by_joint():
     table = summary({"saw": run}, {"saw": None})["saw"]
     assert table["lost by friction, mean"] == run.mean_friction_loss
     assert table["lost by friction at guide, mean"] == run.mean_friction_loss_at("guide")
+
+
+def test_without_numba_friction_beside_a_table_is_computed_by_numpy(monkeypatch):
+    """One crank angle after another, as a start-up asks; a table needs rows, which no short loop has."""
+    monkeypatch.setitem(sys.modules, "numba", None)
+    work = ks.ProcessForce(ks.Table([0.19, 0.3, 0.33], [0.0, 0.0, -6e3], over="travel", back=[0.0, 0.0, 0.0]))
+    press = ks.crank_slider(0.06, 0.26, slider=ks.Link(22.0))
+    scene = ks.Scene(press, 12.0, loads=work, friction={"O": ks.PinFriction(0.05, 0.025)})
+    driven = driven_by("start", scene, SMALL, 3.0)
+    one = driven.rubbed(1.0, 12.0, 0.0, {"O": 1.0})
+    several = driven.rubbed(np.array([1.0, 2.0]), np.full(2, 12.0), np.zeros(2), {"O": 1.0})
+    for name, value in several.items():
+        assert one[name] == pytest.approx(value[0], rel=1e-14), name

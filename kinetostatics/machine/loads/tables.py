@@ -190,7 +190,12 @@ class Table:
         back = over == "travel" and f"{value}_back" in names
         read = [f"{value}_back"] if back else []
         others = [f"{name}_back" for name in names if name != value]
-        unread = [name for name in names if BACKWARDS.search(name) and name not in (*read, *others)]
+        beside = f"{value}_" if over == "travel" else None
+        unread = [
+            name
+            for name in names
+            if (BACKWARDS.search(name) or (beside and name.startswith(beside))) and name not in (*read, *others)
+        ]
         if unread:
             wanted = (
                 f"the stroke back is headed {value}_back" if over == "travel" else "a stroke back stands over travel"

@@ -29,6 +29,11 @@ def written(folder, text):
         ("travel [mm], force [kN], back [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'back' would not be read.*force_back"),
         ("travel [mm], force [kN], Force back [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'Force_back' would not be read"),
         ("travel [mm], force [kN], force_return [kN]\n1, 1, 5\n2, 1, 5\n", {}, "'force_return' would not be read"),
+        (
+            "travel [mm], force [kN], force_bak [kN]\n1, 1, 5\n2, 1, 5\n",
+            {},
+            "'force_bak' would not be read.*force_back",
+        ),
         ("travel [mm], pressure [bar], force_back [kN]\n1, 1, 5\n2, 1, 5\n", {"area": 1.0}, "pressure_back"),
         ("crank_angle [deg], force [N], force_back [N]\n0, 1, 5\n120, 2, 5\n240, 3, 5\n", {}, "over travel"),
         ("travel [m], force [N], pressure [Pa], pressure_back [Pa]\n1, 1, 5, 5\n2, 1, 5, 5\n3, 1, 5, 5\n", {}, None),
