@@ -19,6 +19,7 @@ from ..results.bends import bent
 from ..results.passes import Passes
 from ..results.rounding import FLOOR
 from ..results.turn import NEAR
+from ..solution.drive_and_loads import over_the_angles
 from ..solution.parted import VALUES, Parted, quantities, solution_of
 
 DESIGNS = 128
@@ -43,6 +44,8 @@ def run(scene, job, count, outputs):
             f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
             "(designs, 1) of the values handed in"
         )
+    if count == solution.shape[-1] > 1 and over_the_angles(scene):  # fewer designs at a time tell which of both it is
+        raise ParameterError(f"an array of shape ({count},) may be of so many designs, or of so many crank angles")
     parted = np.array([bent(solution, item.quantity, job.straight) for item in outputs])
     even = [item for item, apart in zip(outputs, parted, strict=True) if not apart]
     numbers, gaps = np.empty((len(even), made)), np.zeros(made, dtype=int)

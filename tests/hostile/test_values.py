@@ -81,6 +81,7 @@ BAD = {
     "masked": (np.ma.array([[1.0], [2.0]], mask=[[0], [1]]), "a masked array"),
     "huge integer": (10**400, "too large"),
     "huge fraction": (Fraction(10**400, 3), "too large"),
+    "huge integer in a batch": (np.array([[1], [10**400]]), "too large"),
     "1e200": (1e200, "to be computed in double precision"),
     "nothing in a batch": (np.empty((0, 1)), "holds nothing"),
     "one value for each angle": (np.ones((1, 72)), "its last axis would be the crank angle"),

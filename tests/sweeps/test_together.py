@@ -9,6 +9,7 @@ from kinetostatics.engines import sharing
 from kinetostatics.engines.sharing import shared
 from kinetostatics.mechanics.quantities import sizes
 from kinetostatics.sweeps import together
+from kinetostatics.sweeps.job import LEAST
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories, spikes
 from support.every import every
@@ -26,6 +27,17 @@ def test_a_batch_of_another_shape_is_refused():
     made = lambda crank, mass: factories.pump(np.full((3, 1), 0.1), 1.0)  # noqa: E731
     found = sweep(made, DESIGNS[:2], OUTPUTS, angles=36)
     assert found[FAILED].str.contains("arrays must have the shape (designs, 1)", regex=False).all()
+
+
+def test_as_many_designs_as_crank_angles_are_told_from_values_at_these():
+    pump = ks.crank_slider(0.1, 0.4, coupler=ks.Link(1.0, 0.2, 0.01), slider=ks.Link(2.0))
+
+    def made(shape):
+        return lambda acceleration: ks.Scene(pump, 30.0, np.reshape(acceleration, shape))
+
+    designs = pd.DataFrame({"acceleration": np.linspace(100.0, 300.0, LEAST)})
+    column, flat = (sweep(made(shape), designs, "largest O", angles=LEAST) for shape in ((-1, 1), -1))
+    assert flat["largest O [N]"].to_numpy() == pytest.approx(column["largest O [N]"].to_numpy(), rel=1e-12)
 
 
 @pytest.mark.slow

@@ -112,7 +112,10 @@ def _locked(array):
         kind = float if all(issubclass(item, PLAIN) for item in kinds) else object
     elif array.dtype.kind not in "iuf":
         raise UnfitError(f"of {array.dtype}; give real numbers")
-    array = array.astype(kind)
+    try:
+        array = array.astype(kind)
+    except OverflowError:
+        raise UnfitError("with one that is too large") from None
     array.flags.writeable = False
     return array
 

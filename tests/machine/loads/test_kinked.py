@@ -55,7 +55,7 @@ def test_what_declares_kinks_is_found_and_nothing_else():
 
 
 def test_of_what_declares_kinks_alone_all_bend_and_nothing_besides():
-    angle, jumps, rest = bends_of(Pulse(), None, 1e-5)
+    angle, jumps, rest = bends_of(Pulse(), ks.solve(PUMP, 0.0, crank_speed=30.0), 1e-5)
     assert angle.tolist() == [[1.0, 1.0 + 2e-5]]
     assert jumps.tolist() == [True, True]
     assert rest == 0.0
@@ -88,3 +88,42 @@ def test_extremes_know_a_pulse_that_is_declared():
     s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=[LOADS["value"]])
     middle = s.at(np.array([1.0 + 1e-5]))
     assert ks.extremes(s, "B").largest == pytest.approx(float(np.hypot(*middle.reaction("B"))[0]), rel=1e-4)
+
+
+class Declaring(Pulse):
+    """A pulse that declares whatever it is told."""
+
+    def __init__(self, declared):
+        self.declared = declared
+
+    def kinks(self, motion):
+        """As told."""
+        return self.declared
+
+
+OUTSIDE = ([8.0], [1.0 - 4 * np.pi, 1.0 + 2e-5 + 2 * np.pi, -1.0]), ([9.0, -20.0], [[1.0], [1.0 + 2e-5]])
+
+
+@pytest.mark.parametrize("declared", OUTSIDE)
+def test_kinks_declared_outside_the_period_are_those_within_it(declared):
+    tables = [
+        sweep(
+            ks.Scene(PUMP, 30.0, loads=ks.ProcessForce(pulse)),
+            pd.DataFrame({"slider.mass": [1.0, 2.0]}),
+            ["mean balancing_torque", "rms O"],
+            engine="numpy",
+        )
+        for pulse in (Pulse(), Declaring(declared))
+    ]
+    assert tables[1]["failed"].tolist() == ["", ""]
+    for name in ("mean balancing_torque [N m]", "rms O [N]"):
+        assert tables[1][name].to_numpy() == pytest.approx(tables[0][name].to_numpy(), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "declared", [None, [1.0, 2.0, 3.0], ([np.nan], [1.0]), ([], [np.inf]), (["a"], []), ([1j], [])]
+)
+def test_what_are_no_crank_angles_of_kinks_is_refused_by_name(declared):
+    s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=ks.ProcessForce(Declaring(declared)))
+    with pytest.raises(ks.ParameterError, match=r"Declaring\.kinks must return two arrays of finite crank angles"):
+        ks.extremes(s, "O")
