@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NONE
-from ..machine.loads import TURN, is_given, kinked, period_on, value_of
+from ..machine.loads import TURN, is_given, kinked, kinks_of, period_on, value_of
 from ..mechanics.pushes import title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -96,7 +96,7 @@ class Driven:
         found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
         for part in kinked(self.scene.loads):
             repeats = np.arange(0.0, self.period - SAME, period_on(part, self.scene.mechanism))[:, None]
-            found.append(np.ravel(np.concatenate(part.kinks(motion)) + repeats))
+            found.append(np.ravel(np.concatenate(kinks_of(part, motion)) + repeats))
         return apart(np.concatenate(found), self.period)
 
     def at(self, angle, speed=None) -> State:

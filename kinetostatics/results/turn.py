@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..machine.loads import TURN, is_given, kinked, period_of, period_on, refusals
+from ..machine.loads import TURN, is_given, kinked, kinks_of, period_of, period_on, refusals
 from ..mechanics import assembly, contact
 from ..mechanics.pushes import given, title_of
 from ..numbers import checks
@@ -239,7 +239,7 @@ def _kinks(solution):
     found: list[Any] = [(rubbing, rubbing), (law, law)]
     for part in kinked(solution.loads):
         again = beginnings(part, solution)[:, None]
-        kinks, jumps = part.kinks(solution)
+        kinks, jumps = kinks_of(part, solution)
         found.append((np.ravel(np.concatenate([kinks, jumps]) + again), np.ravel(jumps + again)))
     return tuple(np.unique(np.concatenate(angles)) for angles in zip(*found, strict=True))
 

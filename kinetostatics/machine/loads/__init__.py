@@ -14,7 +14,7 @@ period      turns after which loads repeat
 from .bending import STRAIGHT
 from .crossings import in_rows
 from .gravity import Gravity
-from .kinked import bends_of, is_bent, kinked, period_on
+from .kinked import bends_of, is_bent, kinked, kinks_of, period_on
 from .load import Load, is_given, may_refuse, refusals, value_of
 from .period import MOST_TURNS, TURN, WholeTurns, period_of
 from .points import Force, PointDamper, PointForce, PointSpring
@@ -59,6 +59,7 @@ __all__ = [
     "is_bent",
     "is_given",
     "kinked",
+    "kinks_of",
     "may_refuse",
     "period_of",
     "period_on",

@@ -27,11 +27,17 @@ def is_bent(part, straight):
     return not hasattr(part, "is_bent") or part.is_bent(straight)
 
 
+def kinks_of(part, motion):
+    """Crank angles (K,) of kinks and (J,) of jumps of what declares them, from 0 to its period."""
+    period = period_on(part, motion.mechanism)
+    return tuple(np.mod(np.ravel(found), period) for found in part.kinks(motion))
+
+
 def bends_of(part, motion, straight):
     """Crank angles (1 or designs, K), NaN where a design has fewer, which (K,) jump, by what share it bends besides."""
     if hasattr(part, "bends"):
         return part.bends(motion, straight)
-    kinks, jumps = map(np.ravel, part.kinks(motion))
+    kinks, jumps = kinks_of(part, motion)
     return np.concatenate([kinks, jumps])[None], np.arange(kinks.size + jumps.size) >= kinks.size, 0.0
 
 

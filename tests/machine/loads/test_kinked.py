@@ -55,7 +55,7 @@ def test_what_declares_kinks_is_found_and_nothing_else():
 
 
 def test_of_what_declares_kinks_alone_all_bend_and_nothing_besides():
-    angle, jumps, rest = bends_of(Pulse(), None, 1e-5)
+    angle, jumps, rest = bends_of(Pulse(), ks.solve(PUMP, 0.0, crank_speed=30.0), 1e-5)
     assert angle.tolist() == [[1.0, 1.0 + 2e-5]]
     assert jumps.tolist() == [True, True]
     assert rest == 0.0
@@ -88,3 +88,17 @@ def test_extremes_know_a_pulse_that_is_declared():
     s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=[LOADS["value"]])
     middle = s.at(np.array([1.0 + 1e-5]))
     assert ks.extremes(s, "B").largest == pytest.approx(float(np.hypot(*middle.reaction("B"))[0]), rel=1e-4)
+
+
+def test_kinks_may_be_told_in_any_turn():
+    class Later(Pulse):
+        def kinks(self, motion):
+            return np.empty(0), np.array([1.0 - 2 * np.pi, 1.0 + 2e-5 + 2 * np.pi])
+
+    def swept(pulse):
+        scene = ks.Scene(PUMP, 30.0, loads=[ks.ProcessForce(pulse)])
+        return sweep(scene, pd.DataFrame({"slider.mass": [1.0, 2.0]}), ["largest B", "mean balancing_torque"])
+
+    pd.testing.assert_frame_equal(swept(Later()), swept(Pulse()), rtol=1e-9)
+    turns = (ks.solve(PUMP, 0.0, crank_speed=30.0, loads=ks.ProcessForce(own)) for own in (Later(), Pulse()))
+    assert ks.extremes(next(turns), "B").largest == pytest.approx(ks.extremes(next(turns), "B").largest, rel=1e-9)
