@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NONE
-from ..machine.loads import TURN, is_given, kinked, kinks_of, period_on, value_of
+from ..machine.loads import TURN, Table, is_given, kinked, kinks_of, period_on, value_of
 from ..mechanics.pushes import title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -85,7 +85,7 @@ class Driven:
     @cached_property
     def loads_by_speed(self):
         """Whether the torque of the loads depends on the speed."""
-        functions = (item for item in self.scene.loads if not is_given(item) and not hasattr(value_of(item), "kinks"))
+        functions = (item for item in self.scene.loads if not is_given(item) and not isinstance(value_of(item), Table))
         return self.program.depends_on("crank_speed") or any(
             title_of(one) in self.program.unrecorded for one in functions
         )
