@@ -13,7 +13,7 @@ from ..numbers import checks
 from ..numbers.units import to_si
 from ..results.bends import bent
 from ..solution.compile import compile as compiled
-from ..solution.parted import Parted, solution_of
+from ..solution.parted import PARTED, Parted, solution_of
 from . import measures
 from .derived import Derived, scene_of
 from .parted_curves import PartedCurve
@@ -21,8 +21,6 @@ from .progress import no_bar
 
 SHARED = ("crank_speed", "crank_acceleration")
 """Numbers that a reference takes from the design."""
-PARTED = 192
-"""Crank angles a turn that are enough to begin with where the turn is parted."""
 REMEMBERED = 8
 """Designs whose curves are remembered."""
 

@@ -16,12 +16,12 @@ from ..numbers import checks
 from ..results.bends import bent
 from ..results.means import NODES
 from ..solution.compile import compile as compiled
-from ..solution.parted import Parted, solution_of
+from ..solution.parted import PARTED, Parted, solution_of
 from . import measures
 from .demands import wanted
 from .derived import Derived, scene_of
 from .parted_curves import PartedCurve
-from .problem import PARTED, chosen, own, turns_of
+from .problem import chosen, own, turns_of
 from .spread import deviations, harrell_davis, not_spread, samples_problem
 
 ANGLES, TOGETHER = 180, 16

@@ -118,6 +118,8 @@ def restored(problem, limits, values):
         if not KEPT < off < NEAR:
             break
         excess, slopes = _held(problem, limits, values)
+        if not np.isfinite(slopes).all():
+            break
         free = np.ones(values.size, dtype=bool)
         for _ in values:  # those that would leave their bounds stay
             step = np.where(free, -np.linalg.pinv(slopes * free * reach) @ excess * reach, 0.0)

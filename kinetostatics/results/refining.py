@@ -18,7 +18,7 @@ GOAL = 1e-8
 FEW = 8
 """Pieces, about, that are doubtful and take part in an integral."""
 MOST = 720
-"""Pieces a turn beyond which a design is not parted any more."""
+"""Pieces a turn that halving adds to a design at most."""
 
 
 def refined(pieces, values, outputs, evaluate, goal=GOAL):
@@ -35,7 +35,8 @@ def refined(pieces, values, outputs, evaluate, goal=GOAL):
     goal : float
         Share of the largest value of a quantity by which an output may be wrong.
     """
-    designs = np.arange(len(pieces.start))
+    designs, first = np.arange(len(pieces.start)), (pieces.width > 0.0).sum(axis=1)
+    most = first + MOST * round(pieces.period / TURN)
     values = {name: found.reshape(*pieces.start.shape, NODES.size) for name, found in values.items()}
     asked = _asked(outputs)
     while designs.size:
@@ -44,7 +45,7 @@ def refined(pieces, values, outputs, evaluate, goal=GOAL):
             halved |= own.unresolved(pieces, values[name], goal)
         halved &= pieces.width >= NARROWEST
         count = (pieces.width > 0.0).sum(axis=1) + halved.sum(axis=1)
-        going = halved.any(axis=1) & (count <= MOST * round(pieces.period / TURN))
+        going = halved.any(axis=1) & (count <= most[designs])
         if not going.all():
             yield designs[~going], pieces.some(~going), {name: found[~going] for name, found in values.items()}
         designs, pieces, halved = designs[going], pieces.some(going), halved[going]
@@ -86,7 +87,7 @@ def _halved(pieces, values, halved, evaluate):
     """Pieces with some of them halved, and values, those of the halves evaluated; each design has some."""
     design, piece = np.nonzero(pieces.width > 0.0)
     parts = 1 + halved[design, piece]
-    second = np.concatenate([np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)]) == 1
+    second = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts) == 1
     design, piece, parts = (np.repeat(part, parts) for part in (design, piece, parts))
     width = pieces.width[design, piece] / parts
     start = pieces.start[design, piece] + second * width

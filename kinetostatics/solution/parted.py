@@ -17,6 +17,8 @@ from ..results.pieces import Pieces
 from ..results.refining import GOAL, refined
 from .scene import unchecked
 
+PARTED = 192
+"""Crank angles a turn to begin with that tell most outputs of a turn that is parted."""
 VALUES = 100_000
 """Values over designs and angles that NumPy computes at a time: about what the cache holds."""
 
@@ -64,12 +66,15 @@ class Parted(NamedTuple):
 
     def values(self, names, designs, angle):
         """Values of quantities, of vectors magnitudes, of some designs (D,) at crank angles (D, N)."""
-        own, values = self._of(designs), {name: np.empty(angle.shape) for name in names}
-        step = max(1, VALUES // len(angle))
+        scene, count, own = self._of(designs)
+        values, everywhere = {name: np.empty(angle.shape) for name in names}, np.repeat(angle[:1], count, axis=0)
+        everywhere[own] = angle
+        step = max(1, VALUES // count)
         for start in range(0, angle.shape[1], step):
             some = slice(start, start + step)
-            for name, found in zip(names, _sizes(solution_of(own, angle[:, some]), names, self.engine), strict=True):
-                values[name][:, some] = found
+            found = _sizes(solution_of(scene, everywhere[:, some]), names, self.engine)
+            for name, part in zip(names, found, strict=True):
+                values[name][:, some] = np.broadcast_to(part, everywhere[:, some].shape)[own]
         return values
 
     def refined(self, outputs):
@@ -100,13 +105,17 @@ class Parted(NamedTuple):
         return found
 
     def _of(self, designs):
-        """The scene of some of its designs."""
-        if len(designs) == self.designs:
-            return self.scene
+        """A scene that has some of its designs, how many it has, and which of these they are.
+
+        All, where something in it, as a function does, may hold numbers of designs that nobody can take apart.
+        """
         leaves = Leaves()
         structure = taken_apart(self.scene, leaves)
+        if len(designs) == self.designs or not leaves.lasting:
+            return self.scene, self.designs, designs
         numbers = (part[designs] if np.shape(part)[:1] == (self.designs,) else part for part in leaves.numbers)
-        return put_together(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
+        scene = put_together(structure, numbers.__next__, iter(leaves.tables).__next__, iter(leaves.parts).__next__)
+        return scene, len(designs), np.arange(len(designs))
 
 
 def _sizes(solution, names, engine):

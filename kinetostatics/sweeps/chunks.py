@@ -22,7 +22,7 @@ NEGLIGIBLE = 1e-12
 MOST = 5760
 """Crank angles up to which their number is doubled for designs of which fewer do not tell the outputs."""
 SETTLED = 1e-3
-"""Relative change of an output, when the crank angles are doubled, that is none."""
+"""Relative change of an output of even crank angles, when these are doubled, that is none."""
 CLOSER = 16
 """By how much closer tables are followed when the crank angles are doubled."""
 FAILED = "failed"
@@ -119,15 +119,15 @@ def _alone(make, job, given, outputs, earlier, wrong):
 
 def _settled(make, job, given, outputs, found, earlier):
     """Numbers and reasons, those of designs that so many crank angles do not tell from twice as many."""
-    numbers, reasons, rough, nearest = found
+    numbers, reasons, rough, nearest, parted = found
     numbers, reasons, rough = np.array(numbers), np.array(reasons), np.array(rough)
     near = np.flatnonzero(~np.isnan(nearest) & (reasons == ""))
     narrow = np.zeros(len(given), dtype=bool)
     if near.size:
         reasons[near], narrow[near] = _near_limits(make, job, given[near], nearest[near], outputs)
-    if earlier is not None:
+    if earlier is not None:  # pieces end up the same from twice as many, so that these agree says nothing
         with np.errstate(invalid="ignore"):
-            rough &= abs(numbers - earlier) > SETTLED * abs(numbers)
+            rough &= parted[:, None] | (abs(numbers - earlier) > SETTLED * abs(numbers))
     rough &= (reasons == "") & ~narrow
     if rough.any():
         rough &= ~_noise(make, job, given, outputs, rough)

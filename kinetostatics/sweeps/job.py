@@ -14,6 +14,7 @@ from ..numbers import checks
 from ..results.bends import bent
 from ..results.reductions import Output
 from ..results.turn import repeating_problem
+from ..solution.parted import PARTED
 from ..solution.scene import Scene, odd
 from . import together
 
@@ -23,8 +24,6 @@ FEWEST = 12
 """Crank angles below which a sweep is refused."""
 LEAST = 180
 """Crank angles a turn that are taken at least: fewer may agree with twice as many, and both be wrong."""
-PARTED = 192
-"""The same where tables or friction act: so many tell most outputs of a turn that is parted."""
 
 
 @dataclass(frozen=True)

@@ -33,8 +33,8 @@ SHARES = 8
 def run(scene, job, count, outputs):
     """Numbers (outputs, designs), reasons (designs,) of those that do not close, and what must be looked at again.
 
-    That is which numbers so many crank angles do not tell (outputs, designs), and the crank angle at which a design is
-    nearest to a limit position (designs,), NaN if it is not near.
+    That is which numbers so many crank angles do not tell (outputs, designs); the crank angle at which a design is
+    nearest to a limit position (designs,), NaN if it is not near; and of which outputs the turn is parted (outputs,).
     """
     solution = solution_of(scene, job.angles)
     checks.require("solve", *refusals(solution), *contact.refusals(solution))
@@ -70,7 +70,7 @@ def run(scene, job, count, outputs):
         numbers, rough = found[0], found[1] > 0
     shape = len(outputs), count
     rough, nearest = np.broadcast_to(rough, shape), np.broadcast_to(nearest, count)
-    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest
+    return np.broadcast_to(numbers, shape), np.broadcast_to(reasons, count), rough, nearest, parted
 
 
 def _by_loop(solution, outputs, count, found, threads):

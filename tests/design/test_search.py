@@ -59,3 +59,13 @@ def test_what_is_made_good_stays_within_its_bounds():
     values = search.restored(Circle([0.6, 2.0]), [level], np.array([0.6, 0.8 - 1e-6]))
     assert_allclose(values, [0.6, 0.8], rtol=1e-12)
     assert values[0] <= 0.6
+
+
+def test_what_has_no_derivatives_is_not_made_good():
+    class Corner(Circle):
+        def output(self, output, values):
+            found, slopes = super().output(output, values)
+            return found, np.nan * slopes
+
+    missed = np.array([0.6, 0.8]) * (1.0 + 1e-6)
+    assert search.restored(Corner([2.0, 2.0]), [LIMIT], missed) is missed

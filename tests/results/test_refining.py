@@ -11,10 +11,10 @@ TURN = 2 * np.pi
 PLACE = np.array([[1.2345], [3.2109], [5.0]])
 
 
-def run(text, function, count=3, vector=False, goal=GOAL):
+def run(text, function, count=3, vector=False, goal=GOAL, angles=192):
     """Numbers of designs, whether they are rough, and how many pieces each has."""
     output = parsed(text)
-    pieces = Pieces.of(np.full((count, 1), np.nan), TURN, 192, output.order or 0)
+    pieces = Pieces.of(np.full((count, 1), np.nan), TURN, angles, output.order or 0)
     values = {output.quantity: function(pieces.angle, np.arange(count))}
     evaluate = lambda designs, angle: {output.quantity: function(angle, designs)}  # noqa: E731
     numbers, rough, pieces_of = np.full(count, np.nan), np.zeros(count, bool), np.zeros(count, int)
@@ -84,7 +84,15 @@ def test_where_everything_bends_it_is_said():
     _, peak, _ = run("largest O", rough_one)
     assert rough.all()
     assert peak.all()
-    assert pieces.max() <= MOST
+    assert pieces.max() <= 24 + MOST
+
+
+def test_many_crank_angles_tell_no_less_than_few():
+    """Pieces that there are to begin with do not count against those that halving may add."""
+    numbers, rough, pieces = run("smallest O", hyperbola(1e-6), angles=8 * MOST)
+    assert not rough.any()
+    np.testing.assert_allclose(numbers, 1.0 + 1e-6, rtol=0, atol=1e-8)
+    assert pieces.min() > MOST
 
 
 def test_the_goal_is_kept():

@@ -43,6 +43,20 @@ def test_some_designs_are_taken_out_of_many():
         np.testing.assert_allclose(row, np.hypot(*own), rtol=1e-9)
 
 
+def test_functions_may_hold_numbers_of_all_designs():
+    """They cannot be taken apart, so some designs are computed among all."""
+
+    def rubbed(crank, size):
+        push = ks.ProcessForce(lambda motion: size * np.cos(3.0 * motion.crank_angle))
+        return ks.Scene(pump(crank).mechanism, 30.0, loads=push, friction={"O": ks.PinFriction(0.1, 0.02)})
+
+    crank = np.array([[0.03], [0.05], [0.06]])
+    size, angle = np.array([[10.0], [1e3], [-40.0]]), np.array([[0.3, 2.0], [1.0, 5.0]])
+    found = Parted.of(rubbed(crank, size), OUTPUTS, 192).values(["B"], np.array([1, 2]), angle)["B"]
+    for row, length, push, own in zip(found, (0.05, 0.06), (1e3, -40.0), angle, strict=True):
+        np.testing.assert_allclose(row, np.hypot(*rubbed(length, push).solve(own).reaction("B")), rtol=1e-9)
+
+
 def test_the_compiled_loop_gives_the_same(numba):
     plain, compiled = (
         Parted.of(pump(), OUTPUTS, 192, engine=engine).estimated(OUTPUTS)[0] for engine in ("numpy", "compiled")

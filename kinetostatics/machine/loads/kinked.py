@@ -2,11 +2,12 @@
 
 A load, or what gives its value (a `Table`, a function of the motion), declares them by
 
-    kinks(motion)               crank angles (K,) of kinks, and (J,) of jumps, in its period, whatever the motion's own
+    kinks(motion)               crank angles (K,) of kinks, and (J,) of jumps, rad, in one period of its own (`period`,
+                                one turn unless it has that), whatever crank angles the motion has
 
 and may by ``bends(motion, straight)`` and ``is_bent(straight)`` leave out those that bend by less than a share of its
-largest value, as `Table` does, for each of many designs its own. What declares none is sampled, and said not to be
-resolved where samples do not tell it.
+largest value, as `Table` does, for each of many designs its own. What declares none is sampled, and what it does within
+two degrees may pass unseen.
 """
 
 import numpy as np
