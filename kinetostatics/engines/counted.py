@@ -87,7 +87,7 @@ class Counted:
         if node.operation == "/":
             return self.as_divisor(node.arguments[1]).pivots
         is_one = node.operation in DIVIDING and not self.is_positive(node.arguments[0])
-        return self._relative[node].pivots if is_one else ()
+        return (self._relative[node] or EXACT).pivots if is_one else ()
 
     def relative(self, part):
         """Error of a part if it is relative, else None."""
