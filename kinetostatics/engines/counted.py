@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from ..numbers.elementary import UNIT
 from ..numbers.planar import plus
+from .behind import Behind
 from .bounds import SAFE, Bounds, Error, fused, is_scaling, is_zero
 from .functions import ULP, is_over_root, moved_apart
 from .trace import BY_ANGLE, INPUTS, Graph, Node, is_number, varies
@@ -49,6 +50,7 @@ class Counted:
 
     Attributes
     ----------
+    behind : Behind
     no_power : float
         Stands for the power 0 of a pivot; 0 where pivots are known not to vanish.
     """
@@ -68,6 +70,7 @@ class Counted:
         self._caps: dict[Node, Any] = {}
         self._depths: dict[Node, int] = {}
         self._positive: dict[Node, bool] = {}
+        self.behind = Behind(graph)
 
     def count(self, nodes):
         """Find what is relative among nodes in the order of computing."""
@@ -77,6 +80,14 @@ class Counted:
             self._tell_reciprocal(node)
         for node in nodes:
             self._relative[node] = self._counted(node)
+            self.behind.tell(node, self._vanishing(node))
+
+    def _vanishing(self, node):
+        """Pivots without which an operation has no result; what cannot be negative has a root."""
+        if node.operation == "/":
+            return self.as_divisor(node.arguments[1]).pivots
+        is_one = node.operation in DIVIDING and not self.is_positive(node.arguments[0])
+        return (self._relative[node] or EXACT).pivots if is_one else ()
 
     def _take_by_design(self, dust):
         """Bound what a design fixes, where so much may be lost."""

@@ -111,7 +111,15 @@ class RunningBounds(Counted):
         """Of what no product is, what is lost of the bound itself may be all of it."""
         bound, found = self._with_reserve(part), self.relative(part)
         is_product = found is None or found.dust is not None
-        return bound if bound is None or is_product else self.summed([(1.0, bound), (1.0, self._lost)])
+        if not (bound is None or is_product):
+            bound = self.summed([(1.0, bound), (1.0, self._lost)])
+        for pivot in self.unseen(part) if isinstance(part, Node) else ():
+            bound = self.fused(0.0, self.pivot(pivot), bound)
+        return bound
+
+    def unseen(self, output):
+        """Pivots that may vanish with an output, though its error does not grow with theirs."""
+        return self.behind.unseen(output)
 
     def overflow(self, node):
         """Term that is no number where a pivot may be too large for a double: one over it is zero, and truly not."""

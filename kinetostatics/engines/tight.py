@@ -138,6 +138,9 @@ class _Local(_OfBoth):
     def is_absolute(self, node):
         return super().is_absolute(node) or node in self.cut
 
+    def unseen(self, output):
+        return []
+
     def told(self, node):
         return self._inputs[node](self._stretched if node.operation in INPUTS else self)
 

@@ -55,6 +55,25 @@ def test_where_a_bound_is_wide_the_condition_is_large(family, seed):
         assert np.all(bound <= LOOSE * UNIT * condition)
 
 
+def without_bound(made):
+    """Condition of each force at the angles where it has a value and no bound."""
+    for quantity in made.mechanism.outputs:
+        with np.errstate(all="ignore"):
+            bound, condition = np.atleast_2d(made.error_bound(quantity)), made.condition_of(quantity)
+            values = size(components(made, quantity))
+        yield condition[np.isfinite(values) & ~np.isfinite(bound).all(axis=0)]
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+@every("family", FAMILIES)
+@every("seed", (1000, 1001))
+def test_no_bound_is_missing_but_where_half_of_the_digits_or_more_are_lost(family, seed):
+    made = solution(family, seed)
+    for condition in without_bound(made) if made is not None else ():
+        assert np.all(condition > HALF)
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("case", ks.shipped_cases())
@@ -63,6 +82,7 @@ def test_the_condition_of_no_shipped_case_claims_digits_that_a_bound_does_not_pr
         made = variant.scene.solve(np.linspace(0.01, 6.27, 40), on_gap="nan")
         for quantity, bound, condition in looked_at(made):
             assert np.all(bound <= LOOSE * UNIT * condition), quantity
+        assert all(np.all(condition > HALF) for condition in without_bound(made))
 
 
 @every("family", ("chain", "plain", "four-bar", "place"))

@@ -1,6 +1,6 @@
 """Bounds on rounding errors beside true errors, by the kernels on arb numbers of 200 bits, on random machines.
 
-    python tests/references/prove_bounds.py [values] [numpy, compiled, tight or tight-compiled]
+    python tests/references/prove_bounds.py [values] [numpy, compiled, tight or tight-compiled] [first seed]
 
 Each component of each quantity at each crank angle is a value. Every structure is recorded once and run with several
 sets of numbers at many angles; compiled, only so many structures that compiling does not take all the time. Prints by
@@ -33,10 +33,10 @@ NAMES = {
 """Quantities compared; None is all there are."""
 
 
-def solutions(family, kind):
-    """Solutions of a family without end, each structure with several sets of numbers."""
-    bases = (base for seed in count() if (base := solution(family, seed, ANGLES)) is not None)
-    numbers, few = count(), []
+def solutions(family, kind, first):
+    """Solutions of a family without end from a seed on, each structure with several sets of numbers."""
+    bases = (base for seed in count(first) if (base := solution(family, seed, ANGLES)) is not None)
+    numbers, few = count(first), []
     if "compiled" in kind and family not in AT_PLACES:  # places have few structures, and exact numbers
         few = list(islice(bases, COMPILED))
         yield from few
@@ -51,9 +51,9 @@ def solutions(family, kind):
             yield made
 
 
-def main(most=1_000_000, kind="numpy"):
+def main(most=1_000_000, kind="numpy", first=0):
     begun, totals = time.perf_counter(), {family: [0, 0, 0, 0.0] for family in FAMILIES}
-    every = {family: solutions(family, kind) for family in FAMILIES}
+    every = {family: solutions(family, kind, first) for family in FAMILIES}
     skipped, told = 0, most // 10
     while sum(values for values, *_ in totals.values()) < most:
         family = min(totals, key=lambda family: totals[family][0])
@@ -87,4 +87,4 @@ def show(totals, skipped, begun):
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:2]), *sys.argv[2:3])
+    main(*map(int, sys.argv[1:2]), *sys.argv[2:3], *map(int, sys.argv[3:4]))
