@@ -10,7 +10,7 @@ from support.pages import DOCS, RUN_AT_BUILD, code_cells, links, pages, shown_co
 PAGES = pages()
 LINES = 15
 """Of code, from a drawing to its forces."""
-RUN_BY_TESTS = {"gallery": "tests/docs/test_gallery.py"}
+RUN_BY_TESTS = {"gallery": "tests/docs/test_gallery.py", "api/loads": "tests/machine/loads/test_kinked.py"}
 """Pages that show code as the repository's own page does, and the test that runs it."""
 
 

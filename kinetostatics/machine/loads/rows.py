@@ -1,6 +1,7 @@
 """Rows of a table: what is wrong with them, how they are read, and what is wrong with what is read from them."""
 
 import math
+import re
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from .period import TURN
 
 BEYOND = 1e-9
 """Share of a table over travel by which a slider may go beyond it: rounding."""
+BACKWARDS = re.compile("back|return", re.IGNORECASE)
+"""What a heading has that is meant for a stroke back."""
 
 
 def order_problem(x, over):
@@ -32,6 +35,19 @@ def order_problem(x, over):
 def travel_problem(x):
     """What is wrong with coordinates of a table over travel in order, or None."""
     return None if x.size > 1 else "at least 2 rows are needed, got 1; a value that does not change is no table"
+
+
+def unread_problem(names, value, over):
+    """Why a column of a file whose heading looks like a stroke back, or a value beside it, is not read; or None."""
+    read = {f"{value}_back"} if over == "travel" else set()
+    read.update(f"{name}_back" for name in names if name != value)
+    beside = f"{value}_" if over == "travel" else f"{value}_back"
+    for name in names:
+        if (BACKWARDS.search(name) or name.startswith(beside)) and name not in read:
+            back = f"the stroke back is headed {value}_back"
+            wanted = back if over == "travel" else "a stroke back stands over travel"
+            return f"column {name!r} would not be read: {wanted}; rename it, or leave it out"
+    return None
 
 
 def looked_at(place, returning):

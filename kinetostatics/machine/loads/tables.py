@@ -1,6 +1,5 @@
 """Tables of values for loads: by crank angle, or by the travel of a slider."""
 
-import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,8 +21,6 @@ VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
 STEEP = 8.0
 """Roundings of the largest value that one of the travel makes, from which on a table counts as steep."""
-BACKWARDS = re.compile("back|return", re.IGNORECASE)
-"""What a heading has that is meant for a stroke back."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,19 +185,8 @@ class Table:
         of = unit.replace(" ", "*") if area is None else "Pa"
         value = VALUES[of]
         back = over == "travel" and f"{value}_back" in names
-        read = [f"{value}_back"] if back else []
-        others = [f"{name}_back" for name in names if name != value]
-        beside = f"{value}_" if over == "travel" else None
-        unread = [
-            name
-            for name in names
-            if (BACKWARDS.search(name) or (beside and name.startswith(beside))) and name not in (*read, *others)
-        ]
-        if unread:
-            wanted = (
-                f"the stroke back is headed {value}_back" if over == "travel" else "a stroke back stands over travel"
-            )
-            raise CaseError(path, [f"column {unread[0]!r} would not be read: {wanted}; rename it, or leave it out"])
+        if problem := rows.unread_problem(names, value, over):
+            raise CaseError(path, [problem])
         x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
         y, back, *_ = *(part if area is None else area * part for part in values), None
         try:

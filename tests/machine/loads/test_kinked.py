@@ -1,5 +1,8 @@
 """What loads declare of their kinks: tables, functions of the motion, loads of the user's own; others declare none."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -127,3 +130,11 @@ def test_what_are_no_crank_angles_of_kinks_is_refused_by_name(declared):
     s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=ks.ProcessForce(Declaring(declared)))
     with pytest.raises(ks.ParameterError, match=r"Declaring\.kinks must return two arrays of finite crank angles"):
         ks.extremes(s, "O")
+
+
+def test_the_load_on_the_page_of_loads_is_seen_however_narrow():
+    page = Path(__file__).parents[3] / "docs" / "api" / "loads.md"
+    names = {"ks": ks, "np": np}
+    exec(re.search("```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)[1], names)
+    s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=ks.ProcessForce(names["Knock"]()))
+    assert ks.extremes(s, "B").largest > 3e4
