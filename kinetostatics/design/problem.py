@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import KinetostaticsError, ParameterError
+from ..errors import DesignError, KinetostaticsError, ParameterError
 from ..machine.loads import TURN
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
@@ -206,11 +206,22 @@ def compared_value(output, scene, reference):
 
 
 def true_value(output, scene, angles=5760):
-    """Value of an output of a scene, so many samples that it is true to rounding where the scene is smooth."""
+    """Value of an output of a scene, so many samples that it is true to rounding where the scene is smooth.
+
+    Raises
+    ------
+    DesignError
+        No pieces of the turn tell it.
+    """
     plain, turns = own(output), turns_of(scene)
     if bent(solution_of(scene, 1), output.quantity):
-        found, _ = Parted.of(scene, (plain,), PARTED * turns).estimated((plain,))
-        return float(found[0, 0])
+        ((found,),), ((rough,),) = Parted.of(scene, (plain,), PARTED * turns).estimated((plain,))
+        if rough:
+            raise DesignError(
+                f"{plain} of {scene.mechanism.name} is not resolved, however fine the pieces of the turn; if a load "
+                "jumps, let it rise over a degree, or tell where by kinks(motion)"
+            )
+        return float(found)
     values = values_of(scene.solve(angles), output.quantity)
     found, _ = plain.estimated(np.broadcast_to(values, (angles,))[None], turns)
     return float(found[0])

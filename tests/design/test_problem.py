@@ -97,3 +97,15 @@ def test_a_search_keeps_a_limit_beside_a_kink():
         progress=False,
     )
     assert true_value(parsed("largest O"), found.scene) <= 1.02 * before * (1 + 1e-6)
+
+
+def test_an_output_that_no_pieces_tell_is_refused_not_reported():
+    """A pump with a rubbing guide, whose load ripples by 2e-4 sixteen thousand times a turn."""
+
+    def push(motion):
+        return -1e3 * (1.0 + 2e-4 * np.sin(1e5 * motion.crank_angle))
+
+    made = ks.crank_slider(0.05, 0.2, slider=ks.Link(2.0))
+    scene = ks.Scene(made, 30.0, loads=ks.ProcessForce(push), friction={"guide": ks.GuideFriction(0.1)})
+    with pytest.raises(ks.DesignError, match="largest B of crank-slider is not resolved, however fine the pieces"):
+        true_value(parsed("largest B"), scene)
