@@ -93,22 +93,19 @@ class PartedCurve(NamedTuple):
         sector = np.minimum((angle.ravel() / self.pieces.period * sectors).astype(int), sectors - 1)
         order, best = np.argsort(heights, axis=None, kind="stable"), np.zeros(sectors, dtype=int)
         best[sector[order]] = order
-        found, changes = np.empty(sectors), np.empty((len(self.slopes), sectors))
-        mean = np.sum(self.pieces.width[0, :, None] * WEIGHTS * values) / self.pieces.period
-        for part, (piece, place) in enumerate(zip(*np.divmod(best, PLACES.size), strict=True)):
-            series = side * (SERIES @ values[piece])
-            if energy:
-                series[0] -= side * mean
-                weights = self._gain(piece, _peak(np.polynomial.polynomial.polyint(series), PLACES[place]))
-                found[part] = side * np.sum(weights * values)
-                changes[:, part] = side * np.tensordot(slopes, weights, 2)
-                continue
-            at = _peak(series, PLACES[place])
-            weights = at**POWERS @ SERIES
-            found[part] = side * weights @ values[piece]
-            changes[:, part] = side * (slopes[:, piece] @ weights)
-            if abs(at) == 1.0:
-                changes[:, part] += side * self._moved(values, slopes, piece, at)
+        piece, place = np.divmod(best, PLACES.size)
+        series = side * (SERIES @ values[piece].T)
+        if energy:
+            series[0] -= side * np.sum(self.pieces.width[0, :, None] * WEIGHTS * values) / self.pieces.period
+            at = _peaks(np.polynomial.polynomial.polyint(series), PLACES[place])
+            weights = np.stack([self._gain(*pair) for pair in zip(piece, at, strict=True)])
+            return side * np.tensordot(weights, values, 2), side * np.tensordot(slopes, weights, ([1, 2], [1, 2]))
+        at = _peaks(series, PLACES[place])
+        weights = at[:, None] ** POWERS @ SERIES
+        found = side * np.sum(weights * values[piece], axis=1)
+        changes = side * np.einsum("npk,pk->np", slopes[:, piece], weights)
+        for part in np.flatnonzero(np.abs(at) == 1.0):
+            changes[:, part] += side * self._moved(values, slopes, piece[part], at[part])
         if square:
             height = np.sqrt(np.maximum(side * found, np.finfo(float).tiny))
             return side * height, changes / (2.0 * height)
@@ -155,18 +152,19 @@ def _grown(place):
     return (place ** (POWERS + 1) - (-1.0) ** (POWERS + 1)) / (POWERS + 1)
 
 
-def _peak(series, place):
-    """Where a polynomial is highest around one of the places."""
+def _peaks(series, places):
+    """Where polynomials (terms, parts) are highest around one of the places each."""
     step = PLACES[1] - PLACES[0]
     slope, bend = (np.polynomial.polynomial.polyder(series, order) for order in (1, 2))
-    low, high, at = max(place - step, -1.0), min(place + step, 1.0), place
+    low, high, at = np.maximum(places - step, -1.0), np.minimum(places + step, 1.0), places
     for _ in range(APPROACHES):
-        curved = np.polynomial.polynomial.polyval(at, bend)
-        if curved >= 0.0:
-            break
-        at = min(max(at - np.polynomial.polynomial.polyval(at, slope) / curved, low), high)
-    higher = np.polynomial.polynomial.polyval(at, series) >= np.polynomial.polynomial.polyval(place, series)
-    return at if higher else place
+        rise, curved = _at(slope, at), _at(bend, at)
+        at = np.clip(at - np.divide(rise, curved, out=np.zeros_like(at), where=curved < 0.0), low, high)
+    return np.where(_at(series, at) >= _at(series, places), at, places)
+
+
+def _at(series, places):
+    return np.polynomial.polynomial.polyval(places, series, tensor=False)
 
 
 def _signed(values):
