@@ -172,6 +172,7 @@ def test_a_slider_that_leaves_its_table_is_still_told():
     assert found[FAILED][1].startswith("table over travel: the slider goes from 0.07")
 
 
+@pytest.mark.slow
 @every("engine", ["numpy", "compiled"])
 def test_it_does_not_matter_which_designs_are_parted_together(engine, numba):
     scene = spikes.spiky(1)
