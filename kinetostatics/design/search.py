@@ -120,19 +120,24 @@ def restored(problem, limits, values):
         excess, slopes = _held(problem, limits, values)
         if not np.isfinite(slopes).all():
             break
-        free = np.ones(values.size, dtype=bool)
-        for _ in values:  # those that would leave their bounds stay
-            step = np.where(free, -np.linalg.pinv(slopes * free * reach) @ excess * reach, 0.0)
-            inside = (values + step >= problem.low) & (values + step <= problem.high)
-            if inside.all():
-                break
-            free &= inside
+        step = _step(excess, slopes, reach, problem.low - values, problem.high - values)
         moved = np.clip(values + step, problem.low, problem.high)
         left = missed(problem, limits, moved)
         if not left < off:
             break
         values, off = moved, left
     return values
+
+
+def _step(excess, slopes, reach, low, high):
+    """Change, least in units of the reach, that takes off what limits are missed by; what would leave bounds stays."""
+    free = np.ones(reach.size, dtype=bool)
+    while True:
+        step = np.where(free, -np.linalg.pinv(slopes * free * reach) @ excess * reach, 0.0)
+        inside = (step >= low) & (step <= high)
+        if inside.all():
+            return step
+        free &= inside
 
 
 def _held(problem, limits, values):

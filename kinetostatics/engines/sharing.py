@@ -34,9 +34,9 @@ def shared(program, numbers, angle, tables, count):
     count : int
         How many designs there are.
     """
-    varied = {place for place, number in enumerate(numbers) if np.ndim(number)}
     if count * angle.shape[1] < VALUES or len(angle) > 1 or tables.shape[1] > 1:
         return program.loop, tables
+    varied = {place for place, number in enumerate(numbers) if np.ndim(number)}
     common, rest = apart(program.outputs, varied, len(tables))
     if operations(common) < SHARE * operations(program.outputs):
         return program.loop, tables
@@ -89,8 +89,9 @@ def _is_common(node, own):
     return node.varies == BY_ANGLE and node not in own and node.operation not in INPUTS and not is_of_angle(node)
 
 
-def _fused(graph, parts: Any, copied):
-    one, rest = copied(parts.one), copied(parts.rest)
+def _fused(graph, found, copied):
+    """A sum of a product and the rest, as one operation that a graph writes as it is."""
+    one, rest = copied(found.one), copied(found.rest)
     return graph.node(
-        "fma", one if parts.sign > 0 else -one, copied(parts.other), rest if parts.rest_sign > 0 else -rest
+        "fma", one if found.sign > 0 else -one, copied(found.other), rest if found.rest_sign > 0 else -rest
     )

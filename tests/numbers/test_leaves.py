@@ -2,18 +2,8 @@
 
 import numpy as np
 
-import kinetostatics as ks
-from kinetostatics.numbers.leaves import Leaves, mapped, put_together, wider
-from kinetostatics.numbers.structures import taken_apart
-
-
-def parts(item):
-    leaves = Leaves()
-    return taken_apart(item, leaves), leaves
-
-
-def saw(mass=600.0, length=2.0, inertia=0.0):
-    return ks.crank_slider(0.3, length, slider=ks.Link(mass, inertia=inertia))
+from kinetostatics.numbers.leaves import mapped, put_together, wider
+from support.taken_apart import parts, saw
 
 
 def test_a_tree_put_together_again_has_the_numbers_given():

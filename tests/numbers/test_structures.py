@@ -3,18 +3,8 @@
 import numpy as np
 import pytest
 
-import kinetostatics as ks
-from kinetostatics.numbers.leaves import NUMBER, Axis, Kept, Leaves
-from kinetostatics.numbers.structures import taken_apart
-
-
-def parts(item):
-    leaves = Leaves()
-    return taken_apart(item, leaves), leaves
-
-
-def saw(mass=600.0, length=2.0, inertia=0.0):
-    return ks.crank_slider(0.3, length, slider=ks.Link(mass, inertia=inertia))
+from kinetostatics.numbers.leaves import NUMBER, Axis, Kept
+from support.taken_apart import parts, saw
 
 
 def test_other_numbers_have_the_same_structure_and_a_zero_has_another():
