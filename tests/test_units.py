@@ -171,10 +171,15 @@ DOORS = {
         {"speed": ([0.0, 8.0, 16.0], "rad/s"), "torque": ([4.0, 8.0, 0.0], "N*m")} | SHAFT,
         {},
     ),
-    "Scene": (ks.Scene, {"crank_speed": (8.0, "rad/s"), "crank_acceleration": (2.0, "rad/s**2")}, {"mechanism": PUMP}),
+    "Scene": (
+        ks.Scene,
+        {"crank_speed": (8.0, "rad/s"), "crank_acceleration": (2.0, "rad/s**2"), "sense": (1.0, "1")},
+        {"mechanism": PUMP},
+    ),
     "solve": (
         ks.solve,
-        {"crank_angle": (TURN, "rad"), "crank_speed": (8.0, "rad/s"), "crank_acceleration": (2.0, "rad/s**2")},
+        {"crank_angle": (TURN, "rad"), "crank_speed": (8.0, "rad/s"), "crank_acceleration": (2.0, "rad/s**2")}
+        | {"sense": (1.0, "1")},
         {"mechanism": PUMP},
     ),
     "Scene.solve": (SCENE.solve, {"angles": (TURN, "rad")}, {}),

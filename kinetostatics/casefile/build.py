@@ -60,7 +60,7 @@ def built(table, tabulated):
     mechanism = mechanism if balanced is None else balanced.mechanism
     loads = (*_loads(table, tabulated), *chain.loads(table, tabulated, mechanism))
     friction = friction_of(table.friction, mechanism)
-    return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads, friction), balanced
+    return Scene(mechanism, table.crank_speed, table.crank_acceleration, loads, friction, sense=table.sense), balanced
 
 
 def require_values(table, solution):

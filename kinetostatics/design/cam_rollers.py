@@ -65,8 +65,8 @@ class Roller:
 
     def driving_force(self, solution):
         """What the contact must give along the cam for the roller to roll, against its motion, N."""
-        speed, growth = self.speed(solution)
-        rubbing = np.abs(solution.friction_at("cam")) * np.where(speed < 0.0, -1.0, 1.0)
+        _, growth = self.speed(solution)
+        rubbing = np.abs(solution.friction_at("cam")) * solution.crank_sense
         return self.inertia * growth / self.radius**2 + rubbing
 
     def friction_coefficient(self, solution):

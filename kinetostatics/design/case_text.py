@@ -88,6 +88,8 @@ def variant(name, scene, stem="case") -> str:
     keys["crank_speed"] = _number(scene.crank_speed, "rad/s", "crank_speed")
     if np.any(scene.crank_acceleration):
         keys["crank_acceleration"] = _number(scene.crank_acceleration, "rad/s^2", "crank_acceleration")
+    if scene.sense is not None:
+        keys["sense"] = f"{scene.sense:.0f}"
     lines = ["", f"[{head}]", *(f"{key} = {value}" for key, value in keys.items())]
     gravity = [item for item in scene.loads if isinstance(item, Gravity)]
     others = [item for item in scene.loads if not isinstance(item, Gravity)]

@@ -13,7 +13,7 @@ from ..results.turn import require_single
 from ..solution.scene import Scene
 
 CREEPING = 1e-6
-"""Share of the crank speed at which friction acts as in starting, and inertia no more."""
+"""Share of the crank speed at which contact forces are those at rest, but for the sign of one that vanishes there."""
 QUADRATIC = 1e-9
 """How far forces may be from growing with the square of the speed, relative to the largest."""
 FASTEST = 1e3
@@ -187,7 +187,8 @@ def starting_torque(solution):
     Parameters
     ----------
     solution : Solution
-        Of one design; its crank angles do not matter, its speed only for its sense.
+        Of one design; its crank angles do not matter, its speed only for its sense of rotation, at rest that of its
+        `sense` or acceleration.
 
     Returns
     -------
@@ -208,8 +209,7 @@ def starting_torque(solution):
     11.312
     """
     _require(solution, "starting_torque", "balancing_torque")
-    creeping = CREEPING * _speed(solution) if solution.friction.acting else 0.0
-    return highest(lambda angle: np.abs(_at(solution, creeping, angle).balancing_torque), 0.0, solution.period)
+    return highest(lambda angle: np.abs(_at(solution, 0.0, angle).balancing_torque), 0.0, solution.period)
 
 
 def spring_surge(solution, spring_mass):
@@ -272,12 +272,14 @@ def _require(solution, owner, name):
 
 
 def _speed(solution):
-    """Mean crank speed over the crank angles given, with its sign; 1 rad/s of a machine that stands."""
-    return float(np.mean(solution.crank_speed)) or 1.0
+    """Mean crank speed over the crank angles given, with its sign; 1 rad/s, its way, of a machine that stands."""
+    return float(np.mean(solution.crank_speed)) or float(np.ravel(solution.crank_sense)[0])
 
 
 def _at(solution, speed, angle):
-    return replace(Scene.of(solution), crank_speed=speed, crank_acceleration=0.0).solve(angle)
+    """The solution at another speed of the same sense of rotation, or at rest, about to turn that way."""
+    drive = {"crank_speed": speed, "crank_acceleration": 0.0, "sense": np.copysign(1.0, _speed(solution))}
+    return replace(Scene.of(solution), **drive).solve(angle)
 
 
 def _force(solution, name, speed, angle):

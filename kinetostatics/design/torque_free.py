@@ -20,7 +20,6 @@ from ..errors import DesignError
 from ..machine.loads import Gravity
 from ..numbers import checks
 from ..results.reductions import Output
-from ..solution.scene import Scene
 from .cam_start import Options, begun
 from .demands import demands, wanted
 from .derived import scene_of
@@ -238,7 +237,7 @@ def _weighted(scene, gravity):
     if gravity:
         return scene
     loads = tuple(item for item in scene.loads if not isinstance(item, Gravity))
-    return Scene(scene.mechanism, scene.crank_speed, scene.crank_acceleration, loads, scene.friction or None)
+    return replace(scene, loads=loads)
 
 
 def _require_possible(problem, start):

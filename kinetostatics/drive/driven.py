@@ -5,6 +5,7 @@
 Functions as loads may depend on the crank angle and speed, not on the acceleration.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,8 +40,11 @@ class State(NamedTuple):
 class Driven:
     """What a scene is to its drive; `flywheel` holds all inertia on the crank besides the links.
 
-    The crank speed of the scene does not matter, but for its sign without a motor.
+    The crank speed of the scene does not matter, but for its sign without a motor. `direction` is that sense of
+    rotation, +1 or -1, and that of every motion unless another `sense` is given: a machine that coasts may turn back.
     """
+
+    by_friction = False
 
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
         flywheel, wrong = checks.single("flywheel", flywheel, "kg*m**2", low=0.0)
@@ -55,12 +59,13 @@ class Driven:
         self.motor = motor
         self.direction = motor.direction if motor is not None else direction or 1.0
         self.flywheel = flywheel + (motor.inertia_at_crank if motor is not None else 0.0)
-        self.scene = with_fields(scene, crank_speed=self.direction, crank_acceleration=0.0)
+        self.scene = with_fields(scene, crank_speed=self.direction, crank_acceleration=0.0, sense=self.direction)
         checks.require(owner, _batch_problem(self.scene))
         free = with_fields(self.scene, friction=NONE)
-        self.program = compiled(free, QUANTITIES, parameters=("crank_speed",), engine=engine or "numpy")
+        self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
+        self._compiled = engine == "compiled"
         self.torque_given = 0.0
-        self._kept: tuple[Any, State] | None = None
+        self._kept: tuple[Any, Any, State] | None = None
         self._require_no_acceleration(owner)
 
     @property
@@ -91,6 +96,11 @@ class Driven:
         )
 
     @cached_property
+    def loads_by_sense(self):
+        """Whether the torque of the loads depends on the sense of rotation, or on the speed."""
+        return self.loads_by_speed or self.program.depends_on("sense")
+
+    @cached_property
     def kinks(self):
         """Crank angles in (0, period) at which tables of loads have kinks, rad."""
         found, motion = [np.zeros(0)], self.scene.unsolved(np.zeros(1))
@@ -116,22 +126,36 @@ class Driven:
         """Crank angles in [0, period) at which the torque is known to jump, exactly."""
         return np.empty(0)
 
-    def unrubbed(self, angle, speed=None) -> State:
+    def unrubbed(self, angle, speed=None, sense=None) -> State:
         """State without friction; kept for the same angles where loads do not depend on the speed."""
-        if self._kept and self._kept[0] is angle and not self.loads_by_speed:
-            return self._kept[1]
-        found = self._checked(angle, State(*self._values(angle, speed)))
-        self._kept = angle, found
+        if self._kept and self._kept[0] is angle and self._kept[1] is sense and not self.loads_by_speed:
+            return self._kept[2]
+        found = self._checked(angle, State(*self._values(angle, speed, sense)))
+        self._kept = angle, sense, found
         return found
 
-    def here(self, angle, speed, direction=None):
-        """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats.
-
-        Friction is that of turning in the `direction` of the motor unless told.
-        """
-        found = self.program(angle, {"crank_speed": speed}) if self.loads_by_speed else self.program(angle)
+    def here(self, angle, speed, sense=None):
+        """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats."""
+        sense = sense or (math.copysign(1.0, speed) if speed else self.direction)
+        values = self._given(
+            sense * max(sense * speed, 0.0), sense
+        )  # a step may end beyond the standstill it looks for
+        found = self.program.unlooked(angle, values, self._compiled) if values else self.program(angle)
         inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
+
+    def senses_ahead(self, angle, sense):
+        """Senses of all motions just ahead of a crank angle in [0, period], and the next angle where one changes."""
+        return {"sense": sense}, sense * math.inf
+
+    def moving(self, angle, speed, senses):
+        """What `here` gives, and the friction torque, with the senses of `senses_ahead`."""
+        return *Driven.here(self, angle, speed, senses["sense"]), 0.0
+
+    @property
+    def forces_here(self):
+        """What `forces_on` gives, as `moving` met it last."""
+        return []
 
     def inertia_here(self, angle):
         """All inertia that the crank feels at one crank angle, kg m2, as a float."""
@@ -170,23 +194,34 @@ class Driven:
         turning = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
         return turning / (self.flywheel + state.inertia)
 
-    def acceleration_along(self, angle, speed):
-        """Crank acceleration at crank angles and speeds of a motion, which may go either way, rad/s2."""
-        return self.acceleration(self.at(angle, speed), speed)
+    def acceleration_along(self, angle, speed, sense):
+        """Crank acceleration at crank angles, speeds and senses of a motion, which may go either way, rad/s2."""
+        return self.acceleration(self.unrubbed(angle, speed, sense), speed)
 
-    def at_rest(self, angle, direction):
+    def at_rest(self, angle, sense):
         """Torque left over at the crank at rest, about to move one way, and friction in it, N m."""
-        return Driven.here(self, angle, 0.0)[2], 0.0
+        return Driven.here(self, angle, 0.0, sense)[2], 0.0
 
     def _any_speed(self, angle):
         return np.full(np.shape(angle), self.direction) if self.loads_by_speed else None
 
-    def _values(self, angle, speed):
+    def _given(self, speed, sense):
+        """Numbers of the program that differ from its scene's: another sense, and speeds if loads depend on them."""
+        if self.loads_by_speed:
+            return {"crank_speed": speed, "sense": sense}
+        if self.loads_by_sense and np.any(sense != self.direction):
+            return {"crank_speed": sense, "sense": sense}
+        return {}
+
+    def _values(self, angle, speed, sense=None):
         angle = np.asarray(angle, dtype=float)
-        if not self.loads_by_speed:
+        values = self._given(speed, self.direction if sense is None else sense)
+        if not values:
             found = self.program(angle)
             return tuple(found[name] for name in QUANTITIES)
-        found = self.program(angle.reshape(-1, 1), {"crank_speed": np.asarray(speed, dtype=float).reshape(-1, 1)})
+        columns = {name: np.broadcast_to(np.asarray(value, dtype=float), angle.shape) for name, value in values.items()}
+        columns = {name: value.reshape(-1, 1) for name, value in columns.items()}
+        found = self.program.unlooked(angle.reshape(-1, 1), columns, self._compiled)
         *scalars, closure = (np.reshape(found[name], (-1, *angle.shape)) for name in QUANTITIES)
         return *(part[0] for part in scalars), closure
 

@@ -53,6 +53,8 @@ class RubbingDriven(Driven):
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()
 
+    by_friction = True
+
     @property
     def by_speed(self):
         return True
@@ -95,7 +97,7 @@ class RubbingDriven(Driven):
         """Values of the program of friction at crank angles, speeds and accelerations, all of one shape."""
         shape = np.shape(angle)
         given = {"crank_speed": speed, "crank_acceleration": acceleration}
-        given |= {f"friction.{name}.sense": sense for name, sense in senses.items()}
+        given |= senses
         if not shape:
             found = self._program.unlooked(float(angle), given, self._single_by_loop)
             return {name: float(value) for name, value in found.items()}
@@ -116,13 +118,19 @@ class RubbingDriven(Driven):
         friction = np.concatenate([block[FRICTION] for block in blocks])
         return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
 
-    def here(self, angle, speed, direction=None):
-        senses = {name: float(sense) for name, sense in self.senses.at(angle, direction or self.direction).items()}
+    def here(self, angle, speed, sense=None):
+        senses = {name: float(sign) for name, sign in self.senses.at(angle, sense or self.direction).items()}
         return self.moving(angle, speed, senses)[:3]
 
+    def senses_ahead(self, angle, sense):
+        return self.senses.stretch(angle, sense)
+
+    @property
+    def forces_here(self):
+        return self.pressed
+
     def moving(self, angle, speed, senses):
-        """What `here` tells, and the friction torque, with which way joints move told."""
-        inertia, slope, spare = super().here(angle, speed)
+        inertia, slope, spare = super().here(angle, speed, senses["sense"])
         friction, *self._near = self._settled_here(
             lambda acceleration: self.rubbed(angle, speed, acceleration, senses),
             inertia,
@@ -131,10 +139,10 @@ class RubbingDriven(Driven):
         )
         return inertia, slope, spare - friction, friction
 
-    def at_rest(self, angle, direction):
-        senses, _ = self.senses.stretch(angle % self.period, direction)
+    def at_rest(self, angle, sense):
+        senses, _ = self.senses.stretch(angle % self.period, sense)
         friction = self.rubbed(angle, 0.0, 0.0, senses)[FRICTION]
-        return super().here(angle, 0.0)[2] - friction, friction
+        return super().here(angle, 0.0, sense)[2] - friction, friction
 
     def prepare(self, speed):
         """Take as many passes over friction as it takes around the period, from standstill to a speed."""
@@ -142,8 +150,8 @@ class RubbingDriven(Driven):
         for part in (0.0, 0.5, 1.0):
             self._looked_at(angle, np.full(ROUND, part * speed), 0.0)
 
-    def acceleration_along(self, angle, speed):
-        state, senses = self.unrubbed(angle, speed), self.senses.at(angle, np.copysign(1.0, speed))
+    def acceleration_along(self, angle, speed, sense):
+        state, senses = self.unrubbed(angle, speed, sense), self.senses.at(angle, sense)
         rest = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
         return self._settled(
             lambda acceleration: self._looked_at(angle, speed, acceleration, senses)[FRICTION],

@@ -70,10 +70,13 @@ class Senses:
         return np.unique(np.concatenate(list(self.edges.values())))
 
     def at(self, angle, direction):
-        """Signs of the motion by joint at crank angles, the crank turning forward (+1) or backward (-1)."""
+        """Signs of the motion at crank angles, the crank turning forward (+1) or backward (-1).
+
+        They are named as the program of a scene calls them: "sense" of the crank, "friction.JOINT.sense".
+        """
         inside = np.mod(angle, self.period)
         found = {
-            name: direction * self.signs[name][np.searchsorted(edges, inside, side="right")]
+            f"friction.{name}.sense": direction * self.signs[name][np.searchsorted(edges, inside, side="right")]
             for name, edges in self.edges.items()
         }
         own = np.append(self.all_edges, self.period)
@@ -82,14 +85,14 @@ class Senses:
         if np.any(close < SAME) and self.all_edges.size:
             for name, rate in zip(found, self.rates(angle), strict=False):
                 found[name] = np.where(close < SAME, direction * np.copysign(1.0, rate), found[name])
-        return found
+        return found | {"sense": np.broadcast_to(direction, inside.shape)}
 
     def stretch(self, angle, direction):
-        """Signs by joint just ahead of a crank angle in [0, period], and the next angle at which one changes."""
+        """The same signs just ahead of a crank angle in [0, period], and the next angle at which one changes."""
         own = self.all_edges
         if not own.size:
             ahead = angle + direction * self.period
-            return {name: direction * float(signs[0]) for name, signs in self.signs.items()}, ahead
+            return {name: float(sign) for name, sign in self.at(np.array(angle), direction).items()}, ahead
         around = np.concatenate([own - self.period, own, own + self.period])
         if direction > 0.0:
             end = float(around[np.searchsorted(around, angle + SAME, side="right")])

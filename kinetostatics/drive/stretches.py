@@ -1,14 +1,18 @@
-"""Motion over time with friction: stretch by stretch, in each of which everything is smooth.
+"""Motion over time, stretch by stretch: in each the crank and all joints keep their sense of motion.
 
-A stretch ends where a joint turns its motion, where a force that rubs changes its sign, and where the crank stands
-still. There the machine goes on, turns back, or sticks: it stays at rest if the torque left over moves it neither way.
+A stretch ends where a joint with friction reverses, where a force that presses such a joint changes its sign, and where
+the crank stands still. There the machine goes on, turns back, or sticks: it stays at rest if the torque left over moves
+it neither way.
 """
 
+import itertools
 import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from ..errors import DriveError
 
 RELATIVE = 3e-14
 """Tolerance of a step relative to the value, the smallest that the method takes."""
@@ -17,6 +21,8 @@ AHEAD = 1e-6
 """Crank angle ahead at which the sign of a force is looked at that is nothing at the start, rad."""
 MOST = 20_000
 """Stretches after which a motion is given up."""
+MOST_EVALUATIONS = 1_000_000
+"""Evaluations of the acceleration after which a motion is given up: some thousand turns."""
 
 
 class Stretch(NamedTuple):
@@ -30,7 +36,10 @@ class Stretch(NamedTuple):
 
 
 class Path:
-    """Motion over all stretches: rows of crank angle, speed, work of all torques, and work lost by friction."""
+    """Motion over all stretches: rows of crank angle, speed, work of all torques, work lost by friction, and sense.
+
+    Where the crank stands still the sense is that of the motion before.
+    """
 
     def __init__(self, stretches):
         self._stretches = stretches
@@ -38,15 +47,18 @@ class Path:
 
     def __call__(self, time):
         time = np.asarray(time, dtype=float)
-        place = np.clip(np.searchsorted(self._starts, time.ravel(), side="right") - 1, 0, None)
-        found = np.empty((4, place.size))
+        before, place = (
+            np.clip(np.searchsorted(self._starts, time.ravel(), side=side) - 1, 0, None) for side in ("left", "right")
+        )
+        found = np.empty((5, place.size))
+        found[4] = np.array([stretch.direction for stretch in self._stretches])[before]
         for number in np.unique(place):
             stretch, own = self._stretches[number], place == number
             rows = stretch.dense(np.clip(time.ravel()[own], stretch.start, stretch.end) - stretch.start)
             rows[0] += stretch.shift
             rows[1] = np.copysign(np.maximum(stretch.direction * rows[1], 0.0), stretch.direction)
-            found[:, own] = rows
-        return found.reshape(4, *time.shape)
+            found[:4, own] = rows
+        return found.reshape(5, *time.shape)
 
 
 class Followed(NamedTuple):
@@ -62,60 +74,79 @@ class Followed(NamedTuple):
     end: str
 
 
-def way_from_rest(driven, angle):
-    """Direction in which a machine starts from rest; 0 where it stays."""
-    if driven.at_rest(angle, 1.0)[0] > 0.0:
-        return 1.0
-    return -1.0 if driven.at_rest(angle, -1.0)[0] < 0.0 else 0.0
+def sense_from_rest(driven, angle):
+    """Sense in which a machine starts from rest, +1 or -1; 0 where it stays at rest."""
+    forward, backward = driven.at_rest(angle, 1.0)[0], driven.at_rest(angle, -1.0)[0]
+    if forward > 0.0 > backward:
+        raise DriveError(
+            f"{driven.scene.mechanism.name}: at rest at crank angle {math.degrees(angle):.6g} deg it may start either "
+            f"way: {forward:.6g} N m drive it on once it turns counter-clockwise, {backward:.6g} N m once it turns "
+            "clockwise; give from_speed, as small as you like, the sense that is meant",
+            crank_angle=angle,
+        )
+    return 1.0 if forward > 0.0 else -1.0 if backward < 0.0 else 0.0
 
 
-def followed(driven, angle, speed, end, target=None, to_standstill=False) -> Followed:
-    """Motion from a crank angle and speed until a time, a target speed, a standstill if asked for, or it sticks."""
+def followed(driven, angle, speed, end, target=None, to_standstill=False, sense=None) -> Followed:
+    """Motion from a crank angle and speed until a time, a target speed, a standstill if asked for, or it sticks.
+
+    `sense` is that of a start from rest, unless the torque left over decides it.
+    """
     state, time, shift = np.array([angle, speed, 0.0, 0.0]), 0.0, 0.0
-    direction = math.copysign(1.0, speed) if speed else way_from_rest(driven, angle)
-    times, rows, reversals = [0.0], [state.copy()], []
+    direction = math.copysign(1.0, speed) if speed else sense or sense_from_rest(driven, angle)
+    times, rows, reversals = [0.0], [np.append(state, direction)], []
     stretches: list[Stretch] = []
-    rows[0][1] = math.copysign(speed, direction)
-    what, crossed = "stuck", None
+    what, crossed, evaluations = "stuck", None, itertools.count()
+
+    def count(since, inside):
+        if next(evaluations) > MOST_EVALUATIONS:
+            raise DriveError(
+                f"{driven.scene.mechanism.name}: the motion is too long to follow: {time + since:.6g} s, to crank "
+                f"angle {math.degrees(inside + shift):.6g} deg, took {MOST_EVALUATIONS} evaluations; give an earlier "
+                "time as until",
+                crank_angle=inside + shift,
+            )
+
     while direction and len(stretches) < MOST:
         whole = math.floor(state[0] / driven.period) * driven.period
         shift, state[0] = shift + whole, state[0] - whole
-        found, what, crossed = _stretch(driven, state, direction, end - time, target, crossed)
+        found, what, crossed = _stretch(driven, state, direction, end - time, target, crossed, count)
         if what == "lost":
             break
         stretches.append(Stretch(time, time + found.t[-1], shift, direction, found.sol))
         inner = slice(1, -1 if what in ("edge", "bend") else None)
         times += (time + found.t[inner]).tolist()
-        rows += [np.array([row[0] + shift, *row[1:]]) for row in found.y.T[inner]]
+        rows += [np.array([row[0] + shift, *row[1:], direction]) for row in found.y.T[inner]]
         time, state = time + found.t[-1], found.y[:, -1].copy()
         if what == "still":
-            rows[-1][1], state[1] = math.copysign(0.0, direction), 0.0
-            turned = way_from_rest(driven, float(state[0]))
+            rows[-1][1] = state[1] = 0.0
+            turned = sense_from_rest(driven, float(state[0]))
             what = "standstill" if to_standstill else "still" if turned else "stuck"
             direction = turned
             if what == "still":
-                reversals.append((time, float(state[0] + shift)))
+                reversals.append((float(time), float(state[0] + shift)))
         if what in ("end", "ready", "standstill", "stuck"):
             break
     path = Path(stretches) if stretches else lambda time: np.multiply.outer(rows[0], np.ones(np.shape(time)))
     return Followed(np.array(times), np.array(rows).T, path, reversals, "lost" if what in ("edge", "bend") else what)
 
 
-def _stretch(driven, state, direction, time, target, crossed):
+def _stretch(driven, state, direction, time, target, crossed, count):
     """Motion while nothing turns, what ended it, and the sign behind it of a force that crossed zero there, by row."""
     from scipy.integrate import solve_ivp
 
-    senses, edge = driven.senses.stretch(float(state[0]), direction)
+    senses, edge = driven.senses_ahead(float(state[0]), direction)
 
     def change(time, state):
         angle, speed = float(state[0]), float(state[1])
+        count(time, angle)
         inertia, slope, spare, friction = driven.moving(angle, speed, senses)
         return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed, friction * speed
 
     @lru_cache(maxsize=1)
     def pressed(angle, speed):
         driven.moving(angle, speed, senses)
-        return driven.pressed
+        return driven.forces_here
 
     def bend(row, side):  # at the start that sign which it has just behind, so that no zero is met twice
         return lambda time, state: pressed(float(state[0]), float(state[1]))[row] if time > 0.0 else side

@@ -16,8 +16,8 @@ from .driven import Driven
 from .motor import Motor
 
 TIME = checks.Number("s", table=True)
-STANDING = 1e-150
-"""Crank speed that stands for none, with the sign of the motion, rad/s."""
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+"""Of the integral of power over a step of the integration."""
 
 
 class Event(NamedTuple):
@@ -62,8 +62,6 @@ class Trajectory:
         s, rad (not taken modulo a turn), rad/s, rad/s2: the steps of the integration, or times asked for by `at`.
     events : tuple of Event
         In order of time.
-    energy_drift : float
-        Largest difference of kinetic energy and work done, J: what the integration lost or gained.
 
     Examples
     --------
@@ -85,9 +83,9 @@ class Trajectory:
     speed: np.ndarray
     acceleration: np.ndarray
     events: tuple[Event, ...]
-    energy_drift: float
     _driven: Driven = field(repr=False)
     _dense: Any = field(repr=False)
+    _steps: tuple[np.ndarray, ...] = field(repr=False)
 
     def __repr__(self):
         last = self.events[-1]
@@ -110,24 +108,38 @@ class Trajectory:
             checks.require(
                 "at", f"time must lie between {low:.9g} and {high:.9g} s, got {time.min():.9g} to {time.max():.9g}"
             )
-        angle, speed = self._dense(time)[:2]
-        found = map(read_only, (time, angle, speed, self._driven.acceleration_along(angle, speed)))
+        angle, speed, sense = self._dense(time)[[0, 1, 4]]
+        found = map(read_only, (time, angle, speed, self._driven.acceleration_along(angle, speed, sense)))
         return with_fields(self, **dict(zip(("time", "crank_angle", "speed", "acceleration"), found, strict=True)))
 
     @cached_property
     def solution(self):
-        """`Solution` along the motion: every reaction and torque at its times."""
-        speed = self.speed
-        if self.scene.friction.acting:  # that at standstill is of the motion before it
-            speed = np.where(speed == 0.0, np.copysign(STANDING, speed), speed)
-        moving = with_fields(self.scene, crank_speed=speed, crank_acceleration=self.acceleration)
-        return moving.solve(self.crank_angle)
+        """`Solution` along the motion: every reaction and torque at its times; at standstill, of the motion before."""
+        sense = np.where(self.speed == 0.0, self._dense(self.time)[4], np.sign(self.speed))
+        moving = {"crank_speed": self.speed, "crank_acceleration": self.acceleration, "sense": sense}
+        return with_fields(self.scene, **moving).solve(self.crank_angle)
+
+    @cached_property
+    def energy_drift(self):
+        """Largest difference of kinetic energy and work done since the start, J: what the integration lost or gained.
+
+        The work is that of the torques which `solve` gives along the motion, by Gauss' rule in each step.
+        """
+        ends, angle, speed = self._steps
+        if ends.size < 2:
+            return 0.0
+        at_ends, half = self.at(ends), 0.5 * np.diff(ends)
+        inside = self.at(np.ravel(0.5 * (ends[:-1] + ends[1:])[:, None] + half[:, None] * NODES))
+        drive = 0.0 if self.motor is None else self.motor.torque_at_crank(inside.speed)
+        power = (drive - inside.solution.load_torque - inside.solution.friction_torque) * inside.speed
+        work = np.cumsum(half * (power.reshape(half.size, NODES.size) @ WEIGHTS))
+        energy = with_fields(at_ends, crank_angle=angle, speed=speed).kinetic_energy
+        return float(np.abs(energy[1:] - energy[0] - work).max())
 
     @property
     def friction_energy(self):
         """Energy that friction has taken since the start, J."""
-        rubs = bool(self.scene.friction.acting)
-        return read_only(self._dense(self.time)[3] if rubs else np.zeros(self.time.shape))
+        return read_only(self._dense(self.time)[3])
 
     @property
     def motor_torque(self):

@@ -1,11 +1,10 @@
 """Machines over time: starting from rest, and coasting from a speed, through standstill and reversal.
 
 The equation of motion (J + Jf) alpha = motor torque - load torque - J' omega^2 / 2 is integrated by the method DOP853
-of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), with the work
-of motor and loads beside it: what kinetic energy and work differ by at the end is the drift.
+of scipy (Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, 1993, II.5 and II.10), stretch by
+stretch (`stretches`).
 """
 
-import itertools
 import math
 import warnings
 
@@ -19,17 +18,15 @@ from ..numbers.elementary import read_only
 from .motor import Motor
 from .operating import require_known
 from .periodic import steady
-from .rubbing import RubbingDriven, driven_by
+from .rubbing import driven_by
 from .standstill import require_a_standstill
-from .stretches import ABSOLUTE, RELATIVE, followed
+from .stretches import followed
 from .trajectory import Event, Trajectory
 
 READY = 0.99
 """Share of the mean speed of steady running at which a machine has started."""
 LONGEST = 1e5
 """Turns after which a start is given up."""
-MOST_EVALUATIONS = 1_000_000
-"""Evaluations of the acceleration after which a motion is given up: some thousand turns."""
 FARTHEST = 1e6
 """Crank angle, rad, beyond which too many digits are lost to begin there."""
 SMALL = 1e-9
@@ -208,91 +205,26 @@ def _easiest(places, missing, direction):
 
 def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     """The motion from an angle and speed until a time, a standstill, or a target speed."""
-    if isinstance(driven, RubbingDriven):
-        return _rubbing(driven, scene, angle, speed, until, target, one_way)
+    if driven.by_friction:
+        driven.prepare(max(abs(speed), abs(target or 0.0)))
     end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
-    found = _integrated(driven, angle, speed, end, _ends(driven, until, target, one_way))
-    if found.status < 0 or not np.isfinite(found.y).all():
-        raise _lost(driven, found.t[-1], *found.y[:2, -1])
-    if found.status == 0 and not isinstance(until, float):
-        raise _never(driven, target, end)
-    time, (angles, speeds, work) = found.t, found.y
-    if driven.motor is not None:
-        require_known(driven, speeds)
-    return _trajectory(driven, scene, time, (angles, speeds, work), tuple(_events(found, until)), found.sol)
-
-
-def _integrated(driven, angle, speed, end, events):
-    """Angle, speed and work over the time, by an explicit method of order 8 that meets the events."""
-    from scipy.integrate import solve_ivp
-
-    evaluations = itertools.count()
-
-    def change(time, state):
-        if next(evaluations) > MOST_EVALUATIONS:
-            raise DriveError(
-                f"{driven.scene.mechanism.name}: the motion is too long to follow: {time:.6g} s, to crank angle "
-                f"{math.degrees(state[0]):.6g} deg, took {MOST_EVALUATIONS} evaluations; give an earlier time as until",
-                crank_angle=float(state[0]),
-            )
-        angle, speed = float(state[0]), float(state[1])
-        inertia, slope, spare = driven.here(angle, speed)
-        return speed, (spare - 0.5 * speed * speed * slope) / inertia, spare * speed
-
-    span, start = (0.0, end), (angle, speed, 0.0)
-    return solve_ivp(change, span, start, "DOP853", rtol=RELATIVE, atol=ABSOLUTE, dense_output=True, events=events)
-
-
-def _ends(driven, until, target, one_way):
-    """Events of a motion: standstill, which may end it, and the speed that does."""
-
-    def still(time, state):
-        return state[1]
-
-    def ready(time, state):
-        return (state[1] - target) * driven.direction
-
-    vars(still).update(terminal=until == "standstill" or one_way, direction=-driven.direction if one_way else 0)
-    vars(ready)["terminal"] = True
-    return [still] if target is None else [still, ready]
-
-
-def _trajectory(driven, scene, time, rows, events, path):
-    """What was found, with how much energy was lost or won by rounding on the way."""
-    angles, speeds, work = rows
-    energy = 0.5 * driven.inertia(angles) * speeds * speeds
-    drift = float(np.abs(energy - energy[0] - work).max())
-    time, angles, speeds = map(read_only, (time, angles, speeds))
-    alpha = read_only(driven.acceleration_along(angles, speeds))
-    return Trajectory(scene, driven.motor, driven.flywheel, time, angles, speeds, alpha, events, drift, driven, path)
-
-
-def _events(found, until):
-    """Start, reversals and end of a motion that was integrated."""
-    time, angles = found.t, found.y[0]
-    yield Event("start", 0.0, float(angles[0]))
-    for when, state in zip(found.t_events[0], found.y_events[0], strict=True):
-        if 0.0 < when < time[-1]:
-            yield Event("reversal", float(when), float(state[0]))
-    last = ("end", "standstill" if until == "standstill" else "reversal", "end")[_which(found)]
-    yield Event(last, float(time[-1]), float(angles[-1]))
-
-
-def _rubbing(driven, scene, angle, speed, until, target, one_way):
-    """The same with friction."""
-    driven.prepare(max(abs(speed), abs(target or 0.0)))
-    end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
-    found = followed(driven, angle, speed, end, target, until == "standstill" or one_way)
-    time, (angles, speeds, work, _) = found.time, found.rows
+    sense = driven.direction if one_way else None
+    found = followed(driven, angle, speed, end, target, until == "standstill" or one_way, sense)
+    time, rows = found.time, found.rows
     if found.end == "lost":
-        raise _lost(driven, time[-1], angles[-1], speeds[-1])
+        raise _lost(driven, time[-1], *rows[:2, -1])
     if found.end == "end" and not isinstance(until, float):
         raise _never(driven, target, end)
+    if driven.motor is not None:
+        require_known(driven, rows[1])
     stopped = "reversal" if one_way else "standstill"
     last = stopped if found.end in ("standstill", "stuck") else "end"
     turns = (Event("reversal", *turn) for turn in found.reversals)
-    named = Event("start", 0.0, angle), *turns, Event(last, float(time[-1]), float(angles[-1]))
-    return _trajectory(driven, scene, time, (angles, speeds, work), named, found.path)
+    events = Event("start", 0.0, angle), *turns, Event(last, float(time[-1]), float(rows[0, -1]))
+    time, angles, speeds, senses = map(read_only, (time, *rows[[0, 1, 4]]))
+    alpha = read_only(driven.acceleration_along(angles, speeds, senses))
+    steps = time, angles, speeds
+    return Trajectory(scene, driven.motor, driven.flywheel, *steps, alpha, events, driven, found.path, steps)
 
 
 def _lost(driven, time, angle, speed):
@@ -310,13 +242,6 @@ def _never(driven, target, end):
     return DriveError(
         f"{driven.scene.mechanism.name}: does not come to {what} within {end:.6g} s; give a time as until"
     )
-
-
-def _which(found):
-    """0: the time was up; 1: standstill; 2: the speed wanted."""
-    if found.status == 0:
-        return 0
-    return 1 if found.t_events[0].size and found.t_events[0][-1] == found.t[-1] else 2
 
 
 def _long(driven, speed):

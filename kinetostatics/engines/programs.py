@@ -319,13 +319,15 @@ def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Lea
 
 def numbered(state):
     """The scene of a `Dynamics` with the place of each number among its leaves, a `Numbered`, instead of it."""
-    mechanism, speed, acceleration, loads, *friction = state.kind.numbered
+    parts: list[Any] = list(state.kind.numbered)
+    mechanism, speed, acceleration, loads, friction, sense = parts + [None, None][len(parts) - 4 :]
     return SimpleNamespace(
         mechanism=mechanism,
         crank_speed=speed,
         crank_acceleration=acceleration,
         loads=loads,
-        friction=(*friction, None)[0],
+        friction=friction,
+        sense=sense,
     )
 
 

@@ -177,15 +177,14 @@ class Recorder:
         self.tables: list[Table] = []
         self.inputs: dict[Node, Callable[[Any], Error]] = {}
         self._rows = self._arrays = 0
-        mechanism, speed, acceleration, items, *friction = put_together(
-            structure, self._parameter, self._array, lambda: None
-        )
+        parts: list[Any] = list(put_together(structure, self._parameter, self._array, lambda: None))
+        mechanism, speed, acceleration, items, friction, sense = parts + [NONE, None][len(parts) - 4 :]
         self.angle = self._nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))
         for guide in mechanism.guides.values():
             self.inputs.update((part, _rounded_once) for part in guide.rounded if isinstance(part, Node))
-        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), next(iter(friction), NONE), way)
+        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), friction, sense, way)
         self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(items)))
 
     def _parameter(self):

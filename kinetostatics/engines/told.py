@@ -9,8 +9,9 @@ from ..machine.group import FRAME, Resolved
 from ..machine.links import Joint, Wrench, arm, first_at, load, second_at
 from ..machine.loads import value_of
 from ..mechanics.dynamics import Dynamics
-from ..mechanics.friction import Rubbing, driving
+from ..mechanics.friction import Rubbing
 from ..mechanics.friction_laws import size_of
+from ..mechanics.motion import sense_of
 from ..mechanics.pushes import pushed, settled, title_of
 from ..mechanics.quantities import magnitude
 from ..numbers.lazy import cached_property
@@ -240,7 +241,7 @@ class Told(Dynamics):
     @cached_property
     def rubbing(self):
         """What resolves each part, with friction or without."""
-        way = driving(self.crank_speed, None if self.runs else self.crank_acceleration)
+        way = sense_of(self.crank_speed, None) if self.runs and self.sense is None else self.crank_sense
         return _Telling(self.mechanism, self.friction, way, self.names)
 
 

@@ -17,7 +17,7 @@ from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
 from ..numbers.planar import added, minus, moment, number, plus, product
 from . import contact, energy, springs
-from .friction import Rubbing, driving
+from .friction import Rubbing
 from .friction_laws import larger, smaller
 from .gaps import places
 from .motion import Motion
@@ -80,7 +80,7 @@ class Dynamics(Motion):
         """What resolves parts with friction, and keeps what rubs; None without friction."""
         if not self.friction.rubs:
             return None
-        return Rubbing(self.mechanism, self.friction, driving(self.crank_speed, self.crank_acceleration))
+        return Rubbing(self.mechanism, self.friction, self.crank_sense)
 
     @cached_property
     def rubbed(self):

@@ -14,24 +14,13 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from ..machine.group import FRAME, Resolved
-from ..machine.links import Wrench, present
+from ..machine.links import Wrench
 from ..machine.pairs import Rolling, Turning
 from ..numbers.elementary import sign, sqrt
 from ..numbers.nothing import NOTHING
-from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
+from ..numbers.planar import added, length, minus, plus, product, quotient, stretched, vector
 from .friction_laws import Channel, Law, bends, rate_of
 from .friction_system import System
-
-FASTER = 2.0**600
-"""Factor by which a crank speed counts before the crank acceleration."""
-
-
-def driving(speed, acceleration):
-    """Sign of the motion: of the crank speed, of the crank acceleration where there is no speed."""
-    speed, acceleration = present(speed), present(acceleration)
-    if speed is None or acceleration is None:
-        return sign(number(acceleration if speed is None else speed))
-    return sign(speed * FASTER + acceleration)
 
 
 class Rubbed(NamedTuple):

@@ -15,12 +15,14 @@ CONVERGED = 1e-13
 
 def standing(solution):
     """What is wrong with a crank that neither moves nor begins to, as a sentence, or None."""
+    if solution.sense is not None:
+        return None
     still = [np.asarray(part) == 0.0 for part in (solution.crank_speed, solution.crank_acceleration)]
     if not np.any(np.logical_and(*still)):
         return None
     return (
-        "friction acts against motion, but crank_speed and crank_acceleration are both 0; give a crank_acceleration, "
-        "positive or negative, for the torque that begins a motion that way"
+        "friction acts against motion, but crank_speed and crank_acceleration are both 0; give sense=+1 or sense=-1, "
+        "the way the crank is about to turn, or a crank_acceleration, for the torque that begins a motion that way"
     )
 
 

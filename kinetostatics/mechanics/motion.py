@@ -14,13 +14,24 @@ from ..machine.loads import is_given
 from ..machine.loads.places import PLACE
 from ..machine.mechanism import Mechanism
 from ..numbers import checks, kinds
-from ..numbers.elementary import namespace, read_only, stack
+from ..numbers.elementary import namespace, read_only, sign, stack
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves, wider
 from ..numbers.planar import number, plus, product, stretched, vector
 from ..numbers.structures import taken_apart
 from .gaps import gap, groups_behind
 from .quantities import of_mechanism
+
+FASTER = 2.0**600
+"""Factor by which a crank speed counts before the crank acceleration."""
+
+
+def sense_of(speed, acceleration):
+    """Which way a crank turns: the sign of its speed, at rest of its acceleration."""
+    speed, acceleration = present(speed), present(acceleration)
+    if speed is None or acceleration is None:
+        return sign(number(acceleration if speed is None else speed))
+    return sign(speed * FASTER + acceleration)
 
 
 def _given(kind):
@@ -43,6 +54,8 @@ class Motion:
         rad/s, rad/s2.
     loads : tuple
     friction : mapping of joint to friction
+    sense : None, float or array
+        Which way the crank turns or is about to turn, +1 or -1; None: as its speed, at rest as its acceleration.
     """
 
     mechanism: Mechanism
@@ -51,13 +64,18 @@ class Motion:
     crank_acceleration: Any
     loads: tuple = ()
     friction: Frictions = NONE
+    sense: Any = None
 
     @cached_property
     def apart(self):
         """Structure of the scene, what is apart from its numbers, and its leaves."""
         leaves = Leaves()
-        scene = self.mechanism, self.crank_speed, self.crank_acceleration, self.loads
-        return taken_apart((*scene, self.friction) if self.friction.rubs else scene, leaves), leaves
+        scene: tuple[Any, ...] = self.mechanism, self.crank_speed, self.crank_acceleration, self.loads
+        if self.sense is not None:
+            scene = (*scene, self.friction, self.sense)
+        elif self.friction.rubs:
+            scene = (*scene, self.friction)
+        return taken_apart(scene, leaves), leaves
 
     @cached_property
     def kind(self):
@@ -89,6 +107,7 @@ class Motion:
             self.crank_acceleration,
             *self.loads,
             self.friction,
+            self.sense,
         )
 
     @cached_property
@@ -193,6 +212,11 @@ class Motion:
     def closure(self):
         """Margin of each group, a tuple of (..., N): negative where it cannot be assembled, 0 at a limit position."""
         return tuple(self._scalar(group.closure(self.placement)) for group in self.mechanism.groups)
+
+    @property
+    def crank_sense(self):
+        """Which way the crank turns or is about to turn: +1 counter-clockwise, -1 clockwise."""
+        return sense_of(self.crank_speed, self.crank_acceleration) if self.sense is None else self.sense
 
     @cached_property
     def accelerating(self) -> tuple[Any, Any]:

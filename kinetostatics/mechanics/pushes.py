@@ -9,10 +9,14 @@ from ..numbers.elementary import is_foreign_array
 from ..numbers.leaves import with_fields
 from .motion import Motion
 
+STANDING = 1e-150
+"""Crank speed, rad/s, that a function of the motion sees at rest, in the sense of the motion about to begin: it tells
+the sense of every velocity, and is nothing beside any other speed."""
 KNOWN = (
     "crank_angle",
     "crank_speed",
     "crank_acceleration",
+    "crank_sense",
     *(f"{name}(point)" for name in ("position", "velocity", "acceleration")),
     *(f"{name}(link)" for name in ("rate", "angular_acceleration")),
     *(f"{name}(slider)" for name in ("travel", "travel_velocity", "travel_acceleration")),
@@ -40,8 +44,8 @@ class UnknownForceError(ParameterError, AttributeError):
 
 def moving(motion):
     """The motion without its forces."""
-    drive = motion.crank_angle, motion.crank_speed, motion.crank_acceleration
-    made = Moving(motion.mechanism, *drive)
+    speed = motion.crank_speed if motion.sense is None else motion.crank_speed + STANDING * motion.sense
+    made = Moving(motion.mechanism, motion.crank_angle, speed, motion.crank_acceleration, sense=motion.sense)
     vars(made).update(shape=motion.shape, placement=motion.placement)
     return made
 

@@ -35,7 +35,8 @@ class Seeded:
         self._angle = _array(self._seed(plain.crank_angle))
         mechanism = self._geometry(plain.mechanism, self._seed, {Group: self._group})
         speed, acceleration = mapped((plain.crank_speed, plain.crank_acceleration), self._constant)
-        idle = Dynamics(mechanism, self._angle, speed, acceleration, (), mapped(plain.friction, self._constant))
+        friction, sense = mapped((plain.friction, plain.sense), self._constant)
+        idle = Dynamics(mechanism, self._angle, speed, acceleration, (), friction, sense)
         self.solution = replace(idle, loads=tuple(self._load(item, idle) for item in plain.loads))
         self.largest_pushes = {
             name: self._value(np.asarray(plain.largest(push))[..., None]) for name, push in plain.pushes.items()

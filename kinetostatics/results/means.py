@@ -142,7 +142,7 @@ def energy_per_turn(solution):
     at = turn.at.at(turn.angle[turn.usable])
     floor = ROUNDED * at.largest_torque_term
     (mean,), _ = means(lambda angle: turn.at.at(turn.clear(angle)).balancing_torque[None], turn, floor)
-    return TURN * float(mean) * (-1.0 if np.any(np.asarray(at.crank_speed) < 0) else 1.0)
+    return TURN * float(mean) * (-1.0 if np.any(np.asarray(at.crank_sense) < 0.0) else 1.0)
 
 
 def closed_turn(solution, owner):

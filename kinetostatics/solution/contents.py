@@ -16,6 +16,10 @@ crank_angle : array (..., N)
     phi, rad.
 crank_speed, crank_acceleration : float or array
     omega, rad/s, and alpha, rad/s2, counter-clockwise positive.
+sense : None, float or array
+    Which way a crank at rest is about to turn, as it was given: +1 counter-clockwise, -1 clockwise.
+crank_sense : float or array
+    The same of every crank: `sense`, else the sign of its speed, at rest of its acceleration.
 loads : tuple
 friction : mapping of joint to friction
 engine, silent

@@ -20,7 +20,8 @@ def in_a_line(item):
     loads = ", ".join(type(load).__name__ for load in item.loads) or "no loads"
     drive = f"crank_speed={_short(item.crank_speed)}, crank_acceleration={_short(item.crank_acceleration)}"
     rubbing = f", friction at {', '.join(item.friction)}" if item.friction else ""
-    return f"{drive}, {loads}{rubbing}"
+    sense = "" if item.sense is None else f", sense={_short(item.sense)}"
+    return f"{drive}{sense}, {loads}{rubbing}"
 
 
 def _short(value):

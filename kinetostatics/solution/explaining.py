@@ -103,7 +103,7 @@ def _alone(solution, angle, design):
         fits = index is not None and np.shape(leaf)[-1] == solution.shape[-1]
         return float(np.broadcast_to(leaf, solution.shape)[place][index]) if fits else leaf
 
-    given = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction")
+    given = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction", "sense")
     parts = {name: mapped(getattr(solution, name), number) for name in given}
     return checked(replace(solution, **parts, crank_angle=np.array(asked), engine=NUMPY))
 

@@ -12,6 +12,7 @@ from ..numbers.leaves import Axis, Kept, with_fields
 DRIVE = checks.Rules(
     "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)
 )
+SENSE = checks.Optional(checks.Number("1", table=True))
 
 
 class Parameters:
@@ -24,6 +25,7 @@ class Parameters:
         **DRIVE.rules,
         loads=checks.Own((), "loads"),
         friction=checks.Own((), "friction"),
+        sense=SENSE,
     )
 
     @cached_property

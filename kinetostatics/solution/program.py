@@ -11,7 +11,7 @@ from ..engines import programs
 from ..engines.trace import needed
 from ..errors import ParameterError
 from ..machine.friction import PASSES
-from ..machine.loads import may_refuse, refusals
+from ..machine.loads import by_sense, may_refuse, refusals
 from ..mechanics import jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.quantities import CHECKS
@@ -19,7 +19,7 @@ from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.leaves import made, with_fields
 from .angles import crank_angles, problems
-from .parameters import fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping, unknown
+from .parameters import DRIVE, fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping, unknown
 from .scene import unchecked
 from .slopes import slopes
 
@@ -56,7 +56,7 @@ class Program:
         if scene.friction.acting:
             scene = _with_enough_passes(scene)
         scene = keeping(scene, places, kept)
-        state = Dynamics(scene.mechanism, np.zeros(1), *_drive(scene))
+        state = scene.dynamics(np.zeros(1))
         self._fields, self._refuses = dict(vars(state)), any(map(may_refuse, scene.loads))
         self._program, self._leaves = programs.of(state, quantities)
         self._friction: Any = programs.of(state, CHECKS)[0] if scene.friction.acting else None
@@ -65,6 +65,8 @@ class Program:
         }
         self._absent = tuple(path for path in places if path not in self._numbers)
         self._doors = {path for path in self._numbers if is_judged_together(scene, places[path].steps)}
+        if scene.sense is not None:  # it must not contradict the speed
+            self._doors |= {"crank_speed", "sense"} & self._numbers.keys()
         self._passages = scene.mechanism.passages
         groups = scene.mechanism.groups
         self._lengths = shaping(places, scene.mechanism, [group for group in groups if group.through])
@@ -230,6 +232,8 @@ class Program:
         """Whether any of the quantities depends on a parameter, as far as is recorded; see `unrecorded`."""
         self._require_known((path,))
         place, _ = self._numbers[path]
+        if path == ("crank_speed" if self.scene.sense is None else "sense") and any(map(by_sense, self.scene.loads)):
+            return True
         return self._program.recording.parameters[place] in set(needed(self._program.outputs))
 
     def _at(self, angle, values):
@@ -247,8 +251,9 @@ class Program:
     def _state(self, angle, values, leaves):
         shape = _shape(angle, leaves)
         if self._refuses or self._program.recording.tables:
-            scene = self.scene.varied(values) if values else self.scene
-            state = Dynamics(scene.mechanism, angle, *_drive(scene))
+            drive = values.keys() <= DRIVE.rules.keys() | {"sense"}
+            scene = with_fields(self.scene, **values) if drive else self.scene.varied(values)
+            state = scene.dynamics(angle)
             checks.require("program", *refusals(state))
             return state, leaves
         return made(Dynamics, **{**self._fields, "crank_angle": angle, "shape": shape}), leaves
@@ -318,10 +323,6 @@ def _with_enough_passes(scene):
     with np.errstate(all="ignore"):
         found = jamming.settled(unchecked(scene, np.linspace(0.0, scene.period, FEW, endpoint=False), "numpy"))
     return with_fields(scene, friction=found.friction)
-
-
-def _drive(scene):
-    return scene.crank_speed, scene.crank_acceleration, scene.loads, scene.friction
 
 
 def _shape(angle, leaves):

@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,15 +15,17 @@ from ..machine import friction as rubbing
 from ..machine import hints
 from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
+from ..mechanics.dynamics import Dynamics
 from ..numbers import checks, paths
 from ..numbers.leaves import made
 from . import slips
 from .angles import crank_angles, problems
 from .checked import checked
 from .drive_and_loads import in_a_line
-from .parameters import DRIVE, Parameters, unknown
+from .parameters import DRIVE, SENSE, Parameters, unknown
 from .solution import Solution
 
+PARTS = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction", "sense")
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
@@ -43,6 +45,8 @@ class Scene(Parameters):
         `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them.
     friction : dict of str to friction, optional
         By joint, as for `solve`.
+    sense : +1, -1 or array, optional
+        Which way a crank at rest is about to turn, as for `solve`.
 
     Raises
     ------
@@ -65,6 +69,7 @@ class Scene(Parameters):
     crank_acceleration: Any = 0.0
     loads: Any = ()
     friction: Any = None
+    sense: Any = field(default=None, kw_only=True)
 
     def __post_init__(self):
         self._admit("scene")
@@ -74,6 +79,8 @@ class Scene(Parameters):
         if type(self.mechanism) is not Mechanism:
             checks.require(owner, _no_mechanism(self.mechanism))
         DRIVE.keep(values, owner)
+        if self.sense is not None:
+            values.update(sense=_sense(owner, self.sense, values["crank_speed"]))
         loads = tuple(self.loads) if isinstance(self.loads, list | tuple) else (self.loads,)
         wrong = [text for item in loads for text in _load_problems(self.mechanism, item)]
         if self.friction is not None and self.friction is not rubbing.NONE:
@@ -96,9 +103,7 @@ class Scene(Parameters):
         >>> ks.Scene.of(ks.solve(pump, 0.5, crank_speed=100.0)).crank_speed
         100.0
         """
-        return cls(
-            solution.mechanism, solution.crank_speed, solution.crank_acceleration, solution.loads, solution.friction
-        )
+        return cls(**{name: getattr(solution, name) for name in PARTS})
 
     @property
     def period(self):
@@ -145,7 +150,16 @@ class Scene(Parameters):
 
     def unsolved(self, angle):
         """Motion and forces at crank angles, an array, nothing checked."""
-        return Solution(self.mechanism, angle, self.crank_speed, self.crank_acceleration, self.loads, self.friction)
+        return Solution(crank_angle=angle, **self._parts)
+
+    def dynamics(self, angle):
+        """The same as engines take it."""
+        return Dynamics(crank_angle=angle, **self._parts)
+
+    @property
+    def _parts(self):
+        """All fields by name."""
+        return {name: getattr(self, name) for name in PARTS}
 
     def turn(self, angles):
         """Crank angles of so many over one period from 0, its end excluded; what is no whole number stays as it is."""
@@ -164,7 +178,16 @@ def scene_problem(value):
 
 
 def solve(
-    mechanism, crank_angle, *, crank_speed, crank_acceleration=0.0, loads=(), friction=None, on_gap="raise", engine=None
+    mechanism,
+    crank_angle,
+    *,
+    crank_speed,
+    crank_acceleration=0.0,
+    loads=(),
+    friction=None,
+    sense=None,
+    on_gap="raise",
+    engine=None,
 ):
     """Motion and forces of a mechanism at prescribed crank motion.
 
@@ -183,7 +206,10 @@ def solve(
     friction : dict of str to friction, optional
         By joint, named as its reaction ("O", "A", "guide"), "slot" or "cam", each with the label of its group: a
         `PinFriction`, `GuideFriction`, `SlotFriction` or `RollerFriction`. At crank speed 0 it acts against the motion
-        that the crank acceleration begins.
+        that is about to begin: that of `sense`, or of the crank acceleration.
+    sense : +1, -1 or array, optional
+        Which way a crank at rest is about to turn, counter-clockwise positive: friction, and tables with values for the
+        stroke back, depend on it. Unless given, the sign of the crank speed, at rest of the crank acceleration.
     on_gap : "raise" or "nan"
         What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
         give NaN there and exact values elsewhere (as needed under ``jax.jit``). Of several groups one may be open: NaN
@@ -242,6 +268,7 @@ def solve(
         crank_acceleration=crank_acceleration,
         loads=loads,
         friction=friction,
+        sense=sense,
     )
     scene._admit("solve")
     return checked(_begun(scene, crank_angle, on_gap, engine), on_gap)
@@ -275,6 +302,7 @@ def unchecked(scene, crank_angle, engine=None):
         crank_acceleration=scene.crank_acceleration,
         loads=scene.loads,
         friction=scene.friction,
+        sense=scene.sense,
     )
     wrong = None if 0.0 < solution.farthest < math.inf else problems(angle)
     checks.require("solve", wrong, None if engine is None else checks.choice("engine", engine, ENGINES))
@@ -303,6 +331,17 @@ def _engine(name, angle, solution):
     return NUMPY
 
 
+def _sense(owner, given, speed):
+    """The sense of rotation, checked: +1 or -1, and that of the speed where the crank turns."""
+    sense, problem = SENSE.taken(given, "sense")
+    if not problem and np.any(np.abs(sense) != 1.0):
+        problem = f"sense must be +1 or -1, the way the crank is about to turn, got {checks.shown(given)}"
+    if not problem and checks.known(speed) and np.any(np.asarray(speed) * sense < 0.0):
+        problem = f"sense is for a crank at rest: {checks.shown(given)} contradicts crank_speed {checks.shown(speed)}"
+    checks.require(owner, problem)
+    return sense
+
+
 def _no_mechanism(found):
     """What is wrong with what was given for a mechanism, or None."""
     if isinstance(found, Mechanism):
@@ -314,7 +353,7 @@ def _no_mechanism(found):
 
 def _shapes(scene, angle):
     """Shapes that must fit together, by what has them."""
-    arrays = {"crank_angle": angle, "crank_speed": scene.crank_speed, "crank_acceleration": scene.crank_acceleration}
+    arrays = {"crank_angle": angle} | {name: getattr(scene, name) for name in (*DRIVE.rules, "sense")}
     shapes = {name: value.shape for name, value in arrays.items() if hasattr(value, "shape")}
     if scene.mechanism.batch:
         shapes["mechanism"] = scene.mechanism.batch

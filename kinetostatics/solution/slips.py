@@ -10,7 +10,7 @@ from ..numbers.kinds import Numbered
 from ..numbers.leaves import made, put_together
 from .parameters import Parameters
 
-FIELDS = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction")
+FIELDS = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction", "sense")
 
 
 class Judged(NamedTuple):
@@ -50,4 +50,4 @@ def of_scene(solution):
 
 
 def _scene(parts):
-    return made(Parameters, **dict(zip(FIELDS, (*parts, None)[: len(FIELDS)], strict=True)))
+    return made(Parameters, **dict(zip(FIELDS, (*parts, None, None)[: len(FIELDS)], strict=True)))

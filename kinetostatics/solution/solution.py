@@ -284,6 +284,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
             crank_acceleration=self.crank_acceleration,
             loads=self.loads,
             friction=self.friction,
+            sense=self.sense,
             apart=self.apart,
             loads_are_given=self.loads_are_given,
             kind=self.kind,

@@ -27,10 +27,10 @@ def test_signs_are_those_of_the_motion_and_turn_with_the_crank(direction):
     angle = np.linspace(0.1, 12.0, 40)
     velocity = ks.solve(RUBBING.mechanism, angle, crank_speed=1.0).slider_velocity
     found = SAW.at(angle, direction)
-    guide = found["guide"] * np.sign(velocity)
+    guide = found["friction.guide.sense"] * np.sign(velocity)
     assert np.ptp(guide) == 0.0
     assert abs(guide[0]) == 1.0
-    assert guide[0] == direction * SAW.at(angle[:1], 1.0)["guide"][0] * np.sign(velocity[0])
+    assert guide[0] == direction * SAW.at(angle[:1], 1.0)["friction.guide.sense"][0] * np.sign(velocity[0])
 
 
 def test_a_stretch_goes_to_the_next_edge_and_from_an_edge_to_the_one_behind_it():
@@ -45,7 +45,7 @@ def test_a_stretch_goes_to_the_next_edge_and_from_an_edge_to_the_one_behind_it()
 def test_rollers_have_no_sense_that_changes():
     senses = Senses.of(ROLLING)
     assert senses.all_edges.size == 0
-    assert senses.stretch(0.5, -1.0) == ({"cam": -1.0}, 0.5 - senses.period)
+    assert senses.stretch(0.5, -1.0) == ({"friction.cam.sense": -1.0, "sense": -1.0}, 0.5 - senses.period)
 
 
 def test_signs_at_one_angle_that_is_an_edge_are_told():

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.rubbing import driven_by
-from kinetostatics.drive.stretches import followed, way_from_rest
+from kinetostatics.drive.stretches import followed, sense_from_rest
 from support.driven_rubbing import PUMP, REFERENCE, RUBBING, SMALL
 
 PENDULUM = ks.Scene(
@@ -110,7 +110,7 @@ def test_a_start_from_a_dead_centre_where_nothing_presses_yet_goes_on():
 def test_what_is_steep_enough_starts_the_way_it_falls_and_what_is_not_stays():
     """Gravity has an arm of 0.15 m on the crank of 2 kg, friction one of 0.1 times 0.05 m."""
     hung = driven_by("test", PENDULUM, None, 0.06)
-    assert [way_from_rest(hung, angle) for angle in (-1.0, -math.pi + 1.0, -math.pi / 2 + 0.01)] == [-1.0, 1.0, 0.0]
+    assert [sense_from_rest(hung, angle) for angle in (-1.0, -math.pi + 1.0, -math.pi / 2 + 0.01)] == [-1.0, 1.0, 0.0]
 
 
 def test_a_motion_ends_at_its_target_speed_in_the_stretch_where_that_is_met():

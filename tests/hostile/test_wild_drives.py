@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.drive import transient
+from kinetostatics.drive import stretches
 
 Motor, steady, start, coast = ks.drive.Motor, ks.drive.steady, ks.drive.start, ks.drive.coast
 PUMP = ks.crank_slider(0.05, 0.2, crank=ks.Link(1.0, 0.0, 0.1), slider=ks.Link(1.0))
@@ -207,7 +207,7 @@ def test_what_cannot_be_driven_says_why(call, kind, words):
 
 
 def test_a_motion_without_end_is_given_up_with_how_far_it_came(monkeypatch):
-    monkeypatch.setattr(transient, "MOST_EVALUATIONS", 2000)
+    monkeypatch.setattr(stretches, "MOST_EVALUATIONS", 2000)
     damped = scene(ks.TorsionDamper(1e-9, on="crank"))
     with pytest.raises(ks.DriveError, match=r"too long to follow: .* took 2000 evaluations; give an earlier time"):
         coast(damped, 1.0, 0.0, 10.0, 1e9)

@@ -90,6 +90,8 @@ class MechanismVariant(Table):
     """Counter-clockwise; negative turns clockwise."""
     crank_acceleration: AngularAcceleration = 0.0
     """Counter-clockwise."""
+    sense: Literal[1, -1] | None = None
+    """Which way a crank at rest is about to turn: 1 counter-clockwise, -1 clockwise."""
     crank: LinkTable = LinkTable()
     """Mass properties, from O along the crank."""
     gravity: GravityTable | None = None

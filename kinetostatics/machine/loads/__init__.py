@@ -15,7 +15,7 @@ from .bending import STRAIGHT
 from .crossings import in_rows
 from .gravity import Gravity
 from .kinked import bends_of, is_bent, kinked, kinks_of, period_on
-from .load import Load, is_given, may_refuse, refusals, value_of
+from .load import Load, by_sense, is_given, may_refuse, refusals, value_of
 from .period import MOST_TURNS, TURN, WholeTurns, period_of
 from .points import Force, PointDamper, PointForce, PointSpring
 from .slider import ProcessForce, Spring
@@ -55,6 +55,7 @@ __all__ = [
     "TorsionSpring",
     "WholeTurns",
     "bends_of",
+    "by_sense",
     "in_rows",
     "is_bent",
     "is_given",

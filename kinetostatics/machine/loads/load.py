@@ -140,6 +140,11 @@ def value_of(item):
     return item.value_now if isinstance(item, Load) else getattr(item, "force", None)
 
 
+def by_sense(item):
+    """Whether a load declares that it depends on which way the crank turns."""
+    return getattr(value_of(item), "by_sense", False)
+
+
 def refusals(motion):
     """Where loads have no value at the crank angles of a motion, as sentences."""
     return [text for item in motion.loads if may_refuse(item) for text in item.refusals(motion)]

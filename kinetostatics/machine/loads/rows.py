@@ -90,6 +90,20 @@ def require_inside(x, place, motion):
         )
 
 
+def require_sense(motion):
+    """Raise an error where a crank at rest begins to turn neither way, so that the stroke is not known."""
+    if motion.sense is not None:
+        return
+    still = np.logical_and(np.asarray(motion.crank_speed) == 0.0, np.asarray(motion.crank_acceleration) == 0.0)
+    if still.any():
+        raise ParameterError(
+            "table over travel: it has other values for the stroke back, but crank_speed and crank_acceleration are "
+            "both 0, so the stroke is not known; give sense=+1 or sense=-1, the way the crank is about to turn, or a "
+            "crank_acceleration",
+            still.any(axis=-1) if still.ndim > 1 else None,
+        )
+
+
 def closes(angle, period):
     """Whether the last row stands at the angle of the first, a period later, but for rounding."""
     return abs(angle[-1] - angle[0] - period) < min(0.1 * np.median(np.diff(angle)), 0.005)

@@ -7,7 +7,6 @@ import numpy as np
 
 from ...errors import CaseError, ParameterError
 from ...numbers import checks
-from ...numbers.elementary import namespace
 from ...numbers.leaves import with_fields
 from . import rows
 from .bending import bending, left_out
@@ -285,6 +284,8 @@ class Table:
         start, value, slope = rows.pieces(xp, x, strokes, piece, returning)
         if xp is np:
             rows.require_inside(self.x, place, motion)
+            if self.by_sense:
+                rows.require_sense(motion)
             return start, value, slope
         return start, xp.where(rows.outside(self.x, place), xp.nan, value), slope
 
@@ -292,10 +293,14 @@ class Table:
         """Rate of the slider along its guide by the crank angle, m."""
         return motion.placement.travels[self._slider(motion)].first
 
+    @property
+    def by_sense(self):
+        """Whether its values depend on which way the crank turns."""
+        return self.back is not None
+
     def returns(self, motion, rate=None):
-        """Whether the slider is on its stroke with negative velocity; standing still, as if the crank turned on."""
-        speed, rate = motion.crank_speed, self.rate(motion) if rate is None else rate
-        return namespace(speed).where(speed < 0, -1.0, 1.0) * rate < 0
+        """Whether the slider is on its stroke with negative velocity, or begins it where the crank stands."""
+        return motion.crank_sense * (self.rate(motion) if rate is None else rate) < 0
 
     def period_on(self, mechanism):
         """Crank angle after which it repeats on a mechanism, rad: over travel as the motion does."""

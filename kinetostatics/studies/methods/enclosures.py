@@ -155,7 +155,8 @@ def on_arb(arb, solution) -> Dynamics:
         for values in _attempted(what, partial(cam.polar, angle, ray(angle))):
             _require_exact(what, values, arb)
     speed, acceleration = _copied((solution.crank_speed, solution.crank_acceleration), arb)
-    idle = Dynamics(mechanism, angle, speed, acceleration, (), _copied(solution.friction, arb))
+    friction, sense = _copied((solution.friction, solution.sense), arb)
+    idle = Dynamics(mechanism, angle, speed, acceleration, (), friction, sense)
     named = ((item, f"load {place}, {title_of(item)},") for place, item in enumerate(solution.loads, 1))
     return replace(idle, loads=tuple(_load_on_arb(arb, item, what, idle, solution) for item, what in named))
 

@@ -1,0 +1,223 @@
+"""The sense of rotation, at and around standstill: a value of its own, which every load and joint is read by."""
+
+import numpy as np
+import pytest
+
+import kinetostatics as ks
+
+PRESS = ks.crank_slider(0.1, 0.35, crank=ks.Link(2.0, 0.03, 0.02), slider=ks.Link(4.0))
+INDICATOR = ks.Table([0.2, 0.5], [-100.0, -100.0], over="travel", back=[0.0, 0.0])
+"""A force against the outward stroke alone; the mirrored machine has the same."""
+FAINT = ks.TorsionDamper(1e-12, on="crank")
+STROKES = {
+    "table": ks.Table([0.2, 0.5], [-1600.0, -1600.0], over="travel", back=[0.0, 0.0]),
+    "comparison": lambda q: -1600.0 * (q.slider_velocity > 0.0),
+    "sign": lambda q: -800.0 * (1.0 + np.sign(q.slider_velocity)),
+    "sense": lambda q: -800.0 * (1.0 + np.sign(q.crank_sense * -np.sin(q.crank_angle))),
+}
+"""Laws of one force: 1600 N against the outward stroke of `PRESS`; the last knows its stroke by the crank's sense."""
+
+
+def press(loads, speed=1.0):
+    return ks.Scene(PRESS, speed, loads=loads)
+
+
+def motor(transmission):
+    return ks.drive.Motor.kloss(5000.0, 99.0, synchronous_speed=104.7, overload=2.5, transmission=transmission)
+
+
+# Coasting
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("others", [(), (FAINT,)])
+def test_coasting_reads_the_stroke_in_the_sense_of_the_motion(sense, others):
+    scene = press([ks.ProcessForce(INDICATOR), *others])
+    motion = ks.drive.coast(scene, 1.0, from_angle=-sense * 0.7, from_speed=sense * 8.0, until=1.0)
+    assert motion.crank_angle[-1] == pytest.approx(sense * 6.20897, abs=1e-4)
+    assert motion.energy_drift < 1e-11
+
+
+def test_energy_drift_compares_with_the_loads_that_solve_gives():
+    """It shares nothing with the integration but the motion: a motion under another load does not balance."""
+    scene = press(ks.ProcessForce(INDICATOR))
+    motion = ks.drive.coast(scene, 1.0, from_angle=0.7, from_speed=-8.0, until=1.0)
+    power = motion.at(4001)
+    torque = power.solution.load_torque
+    work = np.sum(0.5 * (torque[1:] + torque[:-1]) * np.diff(power.crank_angle))
+    lost = power.kinetic_energy[0] - power.kinetic_energy[-1]
+    assert lost == pytest.approx(work, abs=0.01)
+    assert lost > 10.0
+
+
+def test_rocking_back_reads_the_other_stroke():
+    """Thrown up against gravity, the machine comes back; the force takes energy on outward strokes alone."""
+    hung = ks.crank_slider(0.1, 0.35, crank=ks.Link(6.0, 0.09, 0.02), slider=ks.Link(1.0))
+    weak = ks.Table([0.2, 0.5], [-5.0, -5.0], over="travel", back=[0.0, 0.0])
+    scene = ks.Scene(hung, 1.0, loads=[ks.Gravity(), ks.ProcessForce(weak)])
+    motion = ks.drive.coast(scene, 0.05, from_angle=-np.pi / 2, from_speed=5.0, until=3.0)
+    assert sum(event.name == "reversal" for event in motion.events) >= 3
+    fine = motion.at(20001)
+    outward = fine.solution.slider_velocity > 0.0
+    moving = np.abs(fine.speed) > 1e-3
+    torque = fine.solution.load_torque - ks.Scene(hung, 1.0, loads=ks.Gravity()).solve(fine.crank_angle).load_torque
+    assert np.all(np.abs(torque[moving & ~outward]) < 1e-9)
+    assert np.max(np.abs(torque[moving & outward])) > 0.4
+    assert motion.energy_drift < 1e-10
+
+
+@pytest.mark.parametrize("law", STROKES)
+def test_a_force_against_motion_lets_a_machine_stick(law):
+    """Coulomb's law as a table, or as functions: 1600 N either way hold a slider against 200 N."""
+    both = {
+        "table": ks.Table([0.2, 0.5], [-1600.0, -1600.0], over="travel", back=[1600.0, 1600.0]),
+        "comparison": lambda q: -1600.0 * (q.slider_velocity > 0.0) + 1600.0 * (q.slider_velocity < 0.0),
+        "sign": lambda q: -1600.0 * np.sign(q.slider_velocity),
+        "sense": lambda q: -1600.0 * np.sign(q.crank_sense * -np.sin(q.crank_angle)),
+    }[law]
+    scene = press([ks.ProcessForce(both), ks.ProcessForce(200.0)])
+    motion = ks.drive.coast(scene, 0.1, from_angle=1.0, from_speed=10.0, until=5.0)
+    assert motion.events[-1].name == "standstill"
+    table = ks.ProcessForce(ks.Table([0.2, 0.5], [-1600.0] * 2, over="travel", back=[1600.0] * 2))
+    loads = [table, ks.ProcessForce(200.0)]
+    expected = ks.drive.coast(press(loads), 0.1, from_angle=1.0, from_speed=10.0, until=5.0)
+    assert motion.crank_angle[-1] == pytest.approx(expected.crank_angle[-1], abs=1e-7)
+
+
+def test_a_machine_that_may_start_either_way_asks_which():
+    pushing = ks.Table([0.2, 0.5], [100.0, 100.0], over="travel", back=[-100.0, -100.0])
+    with pytest.raises(
+        ks.DriveError, match=r"at rest at crank angle 57\.2958 deg it may start either way: .* from_speed"
+    ):
+        ks.drive.coast(press(ks.ProcessForce(pushing)), 1.0, from_angle=1.0, until=1.0)
+
+
+# Starting
+
+
+@pytest.mark.parametrize("law", STROKES)
+@pytest.mark.parametrize("ratio", [10.0, -10.0])
+@pytest.mark.parametrize("others", [(), (ks.TorsionDamper(1e-3, on="crank"),)])
+def test_starts_ask_for_the_stroke_that_begins(law, ratio, others):
+    """At 1 rad the crank that turns counter-clockwise draws the slider in: no force; the other way it must push."""
+    scene = press([ks.ProcessForce(STROKES[law]), *others])
+    motion = ks.drive.start(scene, motor(ratio), 1.0, from_angle=1.0, until=0.004)
+    free = ks.drive.start(press(others), motor(ratio), 1.0, from_angle=1.0, until=0.004)
+    slower = abs(free.speed[-1]) - abs(motion.speed[-1])
+    assert slower == pytest.approx(0.0, abs=1e-12) if ratio > 0.0 else slower > 0.3
+
+
+@pytest.mark.parametrize("law", STROKES)
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_motor_that_is_too_weak_is_told_the_same_torque_for_each_law(law, sense):
+    scene = press(ks.ProcessForce(STROKES[law]))
+    weak = ks.drive.Motor.constant(20.0, transmission=sense)
+    with pytest.raises(ks.DriveError, match=r"the loads ask 166\.426 N m at rest, the motor gives 20 N m") as told:
+        ks.drive.start(scene, weak, 1.0, from_angle=-sense * 1.3, until=0.02)
+    assert told.value.missing == pytest.approx(torque_of_1600_newton(1.3) - 20.0, rel=1e-9)
+
+
+def torque_of_1600_newton(angle):
+    """Torque of 1600 N on the slider of `PRESS` by virtual work, N m."""
+    height, rod = 0.1 * np.sin(angle), 0.35
+    return 1600.0 * height * (1.0 + 0.1 * np.cos(angle) / np.sqrt(rod**2 - height**2))
+
+
+# Design
+
+
+@pytest.mark.parametrize("speed", [-10.0, 10.0])
+def test_starting_torque_is_that_of_the_sense_of_rotation(speed):
+    machine = ks.crank_slider(0.1, 0.35, guide_offset=np.copysign(0.03, -speed), slider=ks.Link(4.0))
+    table = ks.Table([0.2, 0.34, 0.46], [-100.0, -100.0, -3000.0], over="travel", back=[-50.0, -2000.0, -50.0])
+    loads = [ks.ProcessForce(table), ks.Gravity(direction=np.pi)]
+    found = ks.design.starting_torque(ks.solve(machine, 0.5, crank_speed=speed, loads=loads))
+    assert found.value == pytest.approx(213.54, abs=0.005)
+    assert np.cos(found.angle) == pytest.approx(np.cos(4.859), abs=1e-3)
+    assert np.sin(found.angle) == pytest.approx(np.copysign(np.sin(4.859), speed), abs=1e-3)
+
+
+@pytest.mark.parametrize("law", ["comparison", "sign", "sense"])
+@pytest.mark.parametrize("speed", [-10.0, 10.0])
+def test_starting_torque_of_a_function_is_that_of_the_table(law, speed):
+    expected = ks.design.starting_torque(
+        ks.solve(PRESS, 0.5, crank_speed=speed, loads=ks.ProcessForce(STROKES["table"]))
+    )
+    found = ks.design.starting_torque(ks.solve(PRESS, 0.5, crank_speed=speed, loads=ks.ProcessForce(STROKES[law])))
+    assert found.value == pytest.approx(expected.value, rel=1e-12)
+
+
+def test_a_resting_solution_gives_its_sense_to_starting_torque_and_lift_off():
+    at_rest = ks.solve(PRESS, 0.5, crank_speed=0.0, sense=-1, loads=ks.ProcessForce(STROKES["table"]))
+    turning = ks.solve(PRESS, 0.5, crank_speed=-1.0, loads=ks.ProcessForce(STROKES["table"]))
+    assert ks.design.starting_torque(at_rest) == ks.design.starting_torque(turning)
+
+
+# The scene at rest
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_at_rest_the_sense_is_given_or_that_of_the_acceleration(sense):
+    drive = {"friction": {"O": ks.PinFriction(0.1, 0.02)}, "loads": ks.ProcessForce(STROKES["table"])}
+    angle = np.linspace(0.1, 6.2, 9)
+    given = ks.solve(PRESS, angle, crank_speed=0.0, sense=sense, **drive)
+    begun = ks.solve(PRESS, angle, crank_speed=0.0, crank_acceleration=sense * 1e-12, **drive)
+    creeping = ks.solve(PRESS, angle, crank_speed=sense * 1e-12, **drive)
+    assert given.balancing_torque == pytest.approx(begun.balancing_torque, abs=1e-9)
+    assert given.balancing_torque == pytest.approx(creeping.balancing_torque, abs=1e-9)
+    program = ks.compile(ks.Scene(PRESS, 0.0, sense=sense, **drive), "balancing_torque")
+    assert program(angle)["balancing_torque"] == pytest.approx(given.balancing_torque, abs=1e-12)
+    other = program(angle, {"sense": -float(sense)})["balancing_torque"]
+    opposite = ks.solve(PRESS, angle, crank_speed=0.0, sense=-sense, **drive)
+    assert other == pytest.approx(opposite.balancing_torque, abs=1e-12)
+
+
+REFUSED = {
+    "neither way": ({"crank_speed": 0.0}, r"values for the stroke back, .* both 0, .* give sense=\+1 or sense=-1"),
+    "no sign": ({"crank_speed": 0.0, "sense": 0}, r"sense must be \+1 or -1, .*, got 0"),
+    "a speed": ({"crank_speed": 0.0, "sense": -8.0}, r"sense must be \+1 or -1, .*, got -8"),
+    "a word": ({"crank_speed": 0.0, "sense": "clockwise"}, "sense must be a number"),
+    "against the speed": ({"crank_speed": 3.0, "sense": -1}, "sense is for a crank at rest: -1 contradicts .* 3"),
+}
+
+
+@pytest.mark.parametrize(("drive", "words"), REFUSED.values(), ids=REFUSED)
+def test_a_sense_that_cannot_be_is_refused(drive, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        _ = ks.solve(PRESS, 0.5, loads=ks.ProcessForce(INDICATOR), **drive).balancing_torque
+
+
+def test_a_case_file_tells_the_sense_of_a_crank_at_rest(tmp_path):
+    path = tmp_path / "rest.toml"
+    path.write_text(
+        """
+title = "A crank at rest"
+reference = "forward"
+
+[variants.forward]
+mechanism = "crank-slider"
+crank_length = "100 mm"
+coupler_length = "350 mm"
+crank_speed = "0 rpm"
+sense = 1
+friction.guide = { mu = 0.1 }
+slider = { mass = "4 kg" }
+gravity = {}
+
+[variants.backward]
+mechanism = "crank-slider"
+crank_length = "100 mm"
+coupler_length = "350 mm"
+crank_speed = "0 rpm"
+sense = -1
+friction.guide = { mu = 0.1 }
+slider = { mass = "4 kg" }
+gravity = {}
+""",
+        encoding="utf-8",
+    )
+    case = ks.load_case(path)
+    for name, sense in {"forward": 1, "backward": -1}.items():
+        scene = case.variants[name].scene
+        moving = ks.solve(scene.mechanism, 1.0, crank_speed=sense * 1e-9, loads=scene.loads, friction=scene.friction)
+        assert scene.solve(1.0).balancing_torque == pytest.approx(moving.balancing_torque, rel=1e-9)
