@@ -38,10 +38,30 @@ class UnknownForceError(ParameterError, AttributeError):
     """A load asks for what is computed from it."""
 
 
-def moving(motion):
+class Watched(Moving):
+    """A motion that notes in `asked` whether its crank speed or acceleration is read, by a velocity as well."""
+
+    def __getattribute__(self, name):
+        if name in ("crank_speed", "crank_acceleration"):
+            vars(self).setdefault("asked", set()).add(name)
+        return super().__getattribute__(name)
+
+
+def drive_asked_for(item, motion):
+    """Names among crank_speed and crank_acceleration that code of the user's for a load reads at the crank angles.
+
+    Code that reads neither cannot depend on them; whether it does where it reads them, values could not tell for sure.
+    """
+    watched = moving(motion, Watched)
+    vars(watched)["asked"] = set()
+    (item.value_now if isinstance(item, Load) else item.push)(watched)
+    return vars(watched)["asked"]
+
+
+def moving(motion, kind=Moving):
     """The motion without its forces."""
     drive = motion.crank_angle, motion.crank_speed, motion.crank_acceleration
-    made = Moving(motion.mechanism, *drive)
+    made = kind(motion.mechanism, *drive)
     vars(made).update(shape=motion.shape, placement=motion.placement)
     return made
 
