@@ -223,7 +223,9 @@ class Driven:
             with_fields(self.scene, crank_acceleration=alpha).solve(angle, on_gap="nan").load_torque
             for alpha in (0.0, 1e3)
         )
-        if any("crank_acceleration" in asked for _, asked in self._asked) or not np.array_equal(calm, hasty, equal_nan=True):
+        if any("crank_acceleration" in asked for _, asked in self._asked) or not np.array_equal(
+            calm, hasty, equal_nan=True
+        ):
             checks.require(
                 owner,
                 "a load is a function that depends on the crank acceleration, which follows from the loads; let it "

@@ -2,8 +2,8 @@
 
     (J + Jf) alpha + J' omega^2 / 2 + load torque(phi, omega) + friction torque(phi, omega, alpha) = motor torque
 
-is solved for alpha at each crank angle by the secant rule, friction by the scene's own program at the true alpha. Which
-way each joint moves is told beforehand (`senses`), so all is smooth between the angles at which that changes.
+is solved for alpha at each crank angle by the secant rule, and between two bounds where a kink of friction keeps that
+from converging; friction comes from the scene's own program at the true alpha. Which way each joint moves is told beforehand (`senses`), so all is smooth between the angles at which that changes.
 """
 
 import math
@@ -160,9 +160,7 @@ class RubbingDriven(Driven):
         """Friction torque and crank acceleration at crank angles and speeds, from the state without friction."""
         rest = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
         guess = self._guess[1:] if self._guess[0] is angle else ()
-        friction, acceleration, slope = self._settled(
-            angle, speed, None, self.flywheel + state.inertia, rest, *guess
-        )
+        friction, acceleration, slope = self._settled(angle, speed, None, self.flywheel + state.inertia, rest, *guess)
         self._guess = angle, acceleration, slope
         return friction, acceleration
 
@@ -284,7 +282,9 @@ class RubbingDriven(Driven):
         def left(share, place):
             return friction_at(start[place] + share * reach[place], place) + inertia[place] * share * reach[place]
 
-        share = elementwise.find_root(left, (0.0 * rest, 0.0 * rest + 1.0), args=(every,), tolerances={"xatol": SHARE}).x
+        share = elementwise.find_root(
+            left, (0.0 * rest, 0.0 * rest + 1.0), args=(every,), tolerances={"xatol": SHARE}
+        ).x
         acceleration = start + share * reach
         friction = friction_at(acceleration, every)
         with np.errstate(invalid="ignore"):
@@ -296,8 +296,8 @@ class RubbingDriven(Driven):
         worst = int(np.argmax(growth - inertia))
         degrees = math.degrees(angle[worst] % self.period)
         raise DriveError(
-            f"{self.scene.mechanism.name}: friction jams at crank angle {degrees:.6g} deg and {speed[worst]:.6g} rad/s: "
-            f"each rad/s2 of deceleration adds {growth[worst]:.6g} N m of friction torque, but frees only "
+            f"{self.scene.mechanism.name}: friction jams at crank angle {degrees:.6g} deg and "
+            f"{speed[worst]:.6g} rad/s: each rad/s2 of deceleration adds {growth[worst]:.6g} N m of friction torque, but frees only "
             f"{inertia[worst]:.6g} N m of inertia torque, so no acceleration balances them; give a flywheel of "
             f"{growth[worst] - inertia[worst]:.3g} kg m2 or more in addition, or lower coefficients of friction",
             crank_angle=float(angle[worst]),

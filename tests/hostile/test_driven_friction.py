@@ -209,7 +209,11 @@ def test_running_and_start_under_a_motor_obey_newtons_equations(way):
 def test_a_rubbing_roller_loses_what_energy_is_missing(speed):
     cam = ks.cams.Circle(0.1, (0.02, 0.0))
     mechanism = ks.cam_crank_slider(cam, 0.4, slider=ks.Link(10.0), coupler=ks.Link(2.0, 0.2, 0.03))
-    friction = {"cam": ks.RollerFriction(0.05, 0.02, 0.04), "slot": ks.SlotFriction(0.1), "guide": ks.GuideFriction(0.1)}
+    friction = {
+        "cam": ks.RollerFriction(0.05, 0.02, 0.04),
+        "slot": ks.SlotFriction(0.1),
+        "guide": ks.GuideFriction(0.1),
+    }
     scene = ks.Scene(mechanism, 1.0, loads=ks.Gravity(), friction=friction)
     motion = ks.drive.coast(scene, 1.0, 0.3, speed, until=0.3)
     spent = motion.kinetic_energy + motion.solution.potential_energy + motion.friction_energy

@@ -38,6 +38,7 @@ class Series(NamedTuple):
         return -1.0 * self + other
 
     def power(self, exponent):
+        """The same to a constant exponent."""
         v, n = self.value, exponent
         slope, bend = n * v ** (n - 1.0), n * (n - 1.0) * v ** (n - 2.0)
         return Series(v**n, slope * self.first, bend * self.first**2 + slope * self.second)
@@ -244,4 +245,6 @@ def slotted_lever(radius, pivot, crank, lever, friction, torque=0.0, flywheel=0.
 
 def _body(link, start, direction):
     mass, along, inertia = link
-    return Body(mass, inertia, tuple(point + along * part for point, part in zip(start, direction, strict=True)), direction)
+    return Body(
+        mass, inertia, tuple(point + along * part for point, part in zip(start, direction, strict=True)), direction
+    )
