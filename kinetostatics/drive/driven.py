@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import AssemblyError, DriveError, NotGivenError
 from ..machine.friction import NONE
 from ..machine.loads import TURN, Table, is_given, kinked, kinks_of, period_on, value_of
-from ..mechanics.pushes import title_of
+from ..mechanics.pushes import drive_asked_for, title_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import with_fields
@@ -24,6 +24,8 @@ from .motor import Motor
 INERTIA, SLOPE, TORQUE, CLOSURE = QUANTITIES = ("reduced_inertia", "reduced_inertia_slope", "load_torque", "closure")
 SAME = 1e-12
 """Crank angles this near, rad, are the same."""
+LOOKED_AT = 720
+"""Crank angles over the period at which it is looked at what functions read."""
 STEP = 1e-6
 """Relative step of speed by which functions that cannot be recorded are differentiated, for the iteration alone."""
 
@@ -90,15 +92,23 @@ class Driven:
     @cached_property
     def loads_by_speed(self):
         """Whether the torque of the loads depends on the speed."""
-        functions = (item for item in self.scene.loads if not is_given(item) and not isinstance(value_of(item), Table))
         return self.program.depends_on("crank_speed") or any(
-            title_of(one) in self.program.unrecorded for one in functions
+            title_of(one) in self.program.unrecorded and "crank_speed" in asked for one, asked in self._asked
         )
 
     @cached_property
     def loads_by_sense(self):
         """Whether the torque of the loads depends on the sense of rotation, or on the speed."""
-        return self.loads_by_speed or self.program.depends_on("sense")
+        asked = any("sense" in asked for _, asked in self._asked)
+        return asked or self.loads_by_speed or self.program.depends_on("sense")
+
+    @cached_property
+    def _asked(self):
+        """Loads that are functions, each with what of the crank's drive it reads somewhere in the period."""
+        motion = self.scene.unsolved(np.linspace(0.0, self.period, LOOKED_AT, endpoint=False))
+        functions = [item for item in self.scene.loads if not is_given(item) and not isinstance(value_of(item), Table)]
+        with np.errstate(all="ignore"):
+            return [(item, drive_asked_for(item, motion)) for item in functions]
 
     @cached_property
     def kinks(self):
@@ -249,7 +259,9 @@ class Driven:
             with_fields(self.scene, crank_acceleration=alpha).solve(angle, on_gap="nan").load_torque
             for alpha in (0.0, 1e3)
         )
-        if not np.array_equal(calm, hasty, equal_nan=True):
+        if any("crank_acceleration" in asked for _, asked in self._asked) or not np.array_equal(
+            calm, hasty, equal_nan=True
+        ):
             checks.require(
                 owner,
                 "a load is a function that depends on the crank acceleration, which follows from the loads; let it "

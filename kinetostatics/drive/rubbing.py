@@ -2,10 +2,11 @@
 
     (J + Jf) alpha + J' omega^2 / 2 + load torque(phi, omega) + friction torque(phi, omega, alpha) = motor torque
 
-is solved for alpha at each crank angle by the secant rule, friction by the scene's own program at the true alpha. Which
-way each joint moves is told beforehand (`senses`), so all is smooth between the angles at which that changes.
+is solved for alpha at each crank angle by the secant rule, and between two bounds where a kink of friction keeps that
+from converging; friction comes from the scene's own program at the true alpha. Which way each joint moves is told beforehand (`senses`), so all is smooth between the angles at which that changes.
 """
 
+import math
 from functools import cached_property
 from typing import Any
 
@@ -27,8 +28,14 @@ SOLVES = 30
 """Solves for the acceleration, at most; three or four are enough unless friction nearly jams."""
 SETTLED = 2e-16
 """Change of the friction torque, relative to all torques, that is rounding."""
+DOUBLINGS = 50
+"""Times that the interval in which an acceleration is looked for doubles before friction counts as jamming."""
+SHARE = 1e-16
+"""Error of an acceleration between two, relative to their distance."""
 NOISE = 1e-9
 """Change of the friction torque, relative, that tells how it hangs on the acceleration."""
+ROUNDING = 1e-14
+"""Torque left over, relative to all torques, that is rounding where the friction torque changes by less than that."""
 ROUND = 180
 """Crank angles around the period at which friction is looked at beforehand."""
 AT_ONCE = 4096
@@ -133,6 +140,8 @@ class RubbingDriven(Driven):
         inertia, slope, spare = super().here(angle, speed, senses["sense"])
         friction, *self._near = self._settled_here(
             lambda acceleration: self.rubbed(angle, speed, acceleration, senses),
+            angle,
+            speed,
             inertia,
             spare - 0.5 * speed * speed * slope,
             *self._near,
@@ -153,22 +162,13 @@ class RubbingDriven(Driven):
     def acceleration_along(self, angle, speed, sense):
         state, senses = self.unrubbed(angle, speed, sense), self.senses.at(angle, sense)
         rest = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
-        return self._settled(
-            lambda acceleration: self._looked_at(angle, speed, acceleration, senses)[FRICTION],
-            self.flywheel + state.inertia,
-            rest,
-        )[1]
+        return self._settled(angle, speed, senses, self.flywheel + state.inertia, rest)[1]
 
     def accelerated(self, angle, speed, state):
         """Friction torque and crank acceleration at crank angles and speeds, from the state without friction."""
         rest = self.motor_torque(speed) - state.torque - 0.5 * speed * speed * state.slope
         guess = self._guess[1:] if self._guess[0] is angle else ()
-        friction, acceleration, slope = self._settled(
-            lambda acceleration: self._looked_at(angle, speed, acceleration)[FRICTION],
-            self.flywheel + state.inertia,
-            rest,
-            *guess,
-        )
+        friction, acceleration, slope = self._settled(angle, speed, None, self.flywheel + state.inertia, rest, *guess)
         self._guess = angle, acceleration, slope
         return friction, acceleration
 
@@ -206,8 +206,13 @@ class RubbingDriven(Driven):
             return self._looked_at(angle, speed, acceleration, senses)
         return found
 
-    def _settled(self, friction_at, inertia, rest, acceleration=None, slope=0.0):
+    def _settled(self, angle, speed, senses, inertia, rest, acceleration=None, slope=0.0):
         """Friction torque, acceleration, and derivative of the one by the other: their sum with inertia is `rest`."""
+
+        def friction_at(acceleration, place=...):
+            own = None if senses is None else {name: _at(sense, place) for name, sense in senses.items()}
+            return self._looked_at(_at(angle, place), _at(speed, place), acceleration, own)[FRICTION]
+
         acceleration = rest / inertia if acceleration is None else acceleration
         friction = friction_at(acceleration)
         for _ in range(SOLVES):
@@ -216,15 +221,24 @@ class RubbingDriven(Driven):
             new = acceleration + step
             found = friction_at(new)
             change = found - friction
+            known = np.abs(change) > NOISE * size
             with np.errstate(divide="ignore", invalid="ignore"):
-                slope = np.where(np.abs(change) > NOISE * size, change / step, slope)
+                slope = np.where(known, change / step, slope)
             acceleration, friction = new, found
             left = (rest - friction - inertia * acceleration) / (inertia + slope)
-            if np.max(np.abs(slope * left)) <= SETTLED * size:
+            doubt = np.where(known, np.abs(slope * left) / SETTLED, np.abs(inertia * left) / ROUNDING)
+            converged = (doubt <= size) & (inertia + slope > 0.0)
+            if converged.all():
                 return friction + slope * left, acceleration + left, slope
-        raise self._lost()
+        place = np.nonzero(~converged)
+        friction, acceleration, slope = friction + slope * left, acceleration + left, slope + 0.0 * left
+        friction[place], acceleration[place], slope[place] = self._bracketed(
+            lambda acceleration, some: friction_at(acceleration, tuple(row[some] for row in place)),
+            *(_at(part, place) for part in (angle, speed, inertia, rest)),
+        )
+        return friction, acceleration, slope
 
-    def _settled_here(self, values_at, inertia, rest, acceleration=None, slope=0.0):
+    def _settled_here(self, values_at, angle, speed, inertia, rest, acceleration=None, slope=0.0):
         """The same for floats, `values_at` giving all values of the program."""
         acceleration = rest / inertia if acceleration is None else acceleration
         friction = values_at(acceleration)[FRICTION]
@@ -234,18 +248,67 @@ class RubbingDriven(Driven):
             acceleration += step
             found = values_at(acceleration)
             change, friction = found[FRICTION] - friction, found[FRICTION]
-            if abs(change) > NOISE * size:
+            known = abs(change) > NOISE * size
+            if known:
                 slope = change / step
             left = (rest - friction - inertia * acceleration) / (inertia + slope)
-            if not abs(slope * left) > SETTLED * size:  # also where friction jams
+            doubt = abs(slope * left) / SETTLED if known else abs(inertia * left) / ROUNDING
+            if not (doubt > size or inertia + slope <= 0.0):  # also where friction is NaN
                 self.pressed = self._pressing(found)
                 return friction + slope * left, acceleration + left, slope
-        raise self._lost()
 
-    def _lost(self):
-        return DriveError(
-            f"{self.scene.mechanism.name}: no acceleration was found with friction; friction that grows with the "
-            "acceleration faster than inertia does jams: give a flywheel or lower coefficients"
+        def friction_at(accelerations, _):
+            return np.array([values_at(float(one))[FRICTION] for one in accelerations])
+
+        rows = self._bracketed(friction_at, *(np.array([part]) for part in (angle, speed, inertia, rest)))
+        friction, acceleration, slope = (float(row[0]) for row in rows)
+        self.pressed = self._pressing(values_at(acceleration))
+        return friction, acceleration, slope
+
+    def _bracketed(self, friction_at, angle, speed, inertia, rest):
+        """What `_settled` returns, found between two accelerations, which no kink of friction keeps from converging.
+
+        `friction_at(acceleration, place)` is the friction torque at those of the crank angles, each one-dimensional.
+        Friction torque always resists the motion, so the root lies beyond that without friction, `rest / inertia`, on
+        the side to which friction points there.
+        """
+        from scipy.optimize import elementwise
+
+        every = np.arange(rest.size)
+        start = rest / inertia
+        first = friction_at(start, every)
+        reach, jams = -0.5 * first / inertia, first != 0.0
+        for _ in range(DOUBLINGS):
+            reach = np.where(jams, 2.0 * reach, reach)
+            friction = friction_at(start + reach, every)
+            jams = np.sign(friction + inertia * reach) * np.sign(first) > 0.0
+            if not jams.any():
+                break
+        else:
+            self._refuse_jam(angle, speed, inertia, np.divide(first - friction, reach, where=jams, out=0.0 * reach))
+
+        def left(share, place):
+            return friction_at(start[place] + share * reach[place], place) + inertia[place] * share * reach[place]
+
+        share = elementwise.find_root(
+            left, (0.0 * rest, 0.0 * rest + 1.0), args=(every,), tolerances={"xatol": SHARE}
+        ).x
+        acceleration = start + share * reach
+        friction = friction_at(acceleration, every)
+        with np.errstate(invalid="ignore"):
+            slope = np.where(share * reach != 0.0, (friction - first) / (share * reach), 0.0)
+        return friction, acceleration, slope
+
+    def _refuse_jam(self, angle, speed, inertia, growth):
+        """Say where friction grows with the deceleration faster than the torque of inertia."""
+        worst = int(np.argmax(growth - inertia))
+        degrees = math.degrees(angle[worst] % self.period)
+        raise DriveError(
+            f"{self.scene.mechanism.name}: friction jams at crank angle {degrees:.6g} deg and "
+            f"{speed[worst]:.6g} rad/s: each rad/s2 of deceleration adds {growth[worst]:.6g} N m of friction torque, but frees only "
+            f"{inertia[worst]:.6g} N m of inertia torque, so no acceleration balances them; give a flywheel of "
+            f"{growth[worst] - inertia[worst]:.3g} kg m2 or more in addition, or lower coefficients of friction",
+            crank_angle=float(angle[worst]),
         )
 
     def _pressing(self, found):
@@ -255,6 +318,11 @@ class RubbingDriven(Driven):
             for force, couple, half in self._pressed
             for row in bends("size" if half is None else "larger", _parts(found, force, couple, half))
         ]
+
+
+def _at(values, place):
+    """Values at some of the places, of arrays; a number is the same at all of them."""
+    return values[place] if np.ndim(values) else values
 
 
 def _parts(found, force, couple, half):

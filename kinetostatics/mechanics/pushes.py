@@ -42,10 +42,30 @@ class UnknownForceError(ParameterError, AttributeError):
     """A load asks for what is computed from it."""
 
 
-def moving(motion):
+class Watched(Moving):
+    """A motion that notes in `asked` what of its crank's drive is read, by a velocity as well."""
+
+    def __getattribute__(self, name):
+        if name in ("crank_speed", "crank_acceleration", "sense"):
+            vars(self).setdefault("asked", set()).add(name)
+        return super().__getattribute__(name)
+
+
+def drive_asked_for(item, motion):
+    """Names among crank_speed, crank_acceleration and sense that code of the user's for a load reads at the crank angles.
+
+    Code that does not read one cannot depend on it; whether it does where it reads them, values could not tell for sure.
+    """
+    watched = moving(motion, Watched)
+    vars(watched)["asked"] = set()
+    (item.value_now if isinstance(item, Load) else item.push)(watched)
+    return vars(watched)["asked"]
+
+
+def moving(motion, kind=Moving):
     """The motion without its forces."""
     speed = motion.crank_speed if motion.sense is None else motion.crank_speed + STANDING * motion.sense
-    made = Moving(motion.mechanism, motion.crank_angle, speed, motion.crank_acceleration, sense=motion.sense)
+    made = kind(motion.mechanism, motion.crank_angle, speed, motion.crank_acceleration, sense=motion.sense)
     vars(made).update(shape=motion.shape, placement=motion.placement)
     return made
 
