@@ -179,20 +179,28 @@ RUNNING = (
 
 def running(one, other):
     """Periodic running of a machine, at crank angles, and of its mirror image, at the negative angles."""
-    power = max(abs(one.peak_power), abs(one.mean_power))
+    power, pull = max(abs(one.peak_power), abs(one.mean_power)), 0.0
+    if one.motor is not None:  # what a motor gives is a steep function of the speed: rounding is that of its peak
+        most = float(np.max(np.abs(one.motor.torque(np.linspace(0.0, 1.05 * np.max(np.abs(one.motor_speed)), 99)))))
+        power, pull = most * abs(one.motor_speed).max(), most * abs(one.motor.transmission) / one.flywheel
     scales = {"mean_power": power, "rms_power": power, "peak_power": power}
     scales |= {"energy_per_turn": power * one.duration, "mean_friction_loss": power}
+    if one.motor is not None:
+        scales |= dict.fromkeys(("motor_torque", "rms_motor_torque", "peak_motor_torque"), most)
+    scales |= {"fluctuation": 1.0, "fluctuation_arithmetic": 1.0}  # a difference of speeds, beside the mean speed
     found = {name: relative(getattr(other, name), getattr(one, name), scales.get(name)) for name in RUNNING}
     found["mean_speed"] = relative(other.mean_speed, -one.mean_speed)
     found["speed_range"] = relative(other.speed_range, one.speed_range)
     found["speed"] = relative(other.speed, -one.speed)
-    found["acceleration"] = relative(other.acceleration, -one.acceleration, np.max(np.abs(one.acceleration)) or 1.0)
-    found["motor_torque"] = relative(other.motor_torque, one.motor_torque)
+    found["acceleration"] = relative(
+        other.acceleration, -one.acceleration, max(np.max(np.abs(one.acceleration)), pull) or 1.0
+    )
+    found["motor_torque"] = relative(other.motor_torque, one.motor_torque, scales.get("motor_torque"))
     found["time"] = relative(other.time, one.time, one.duration)
     before, after = one.energy_flow, other.energy_flow
-    size = max(max(abs(part.energy), 0.0 if math.isnan(part.swing) else part.swing) for part in before.parts)
+    size = max(power * one.duration, *(0.0 if math.isnan(part.swing) else part.swing for part in before.parts))
     for here, there in zip(before.parts, after.parts, strict=True):
-        assert (here.name, here.kind) == (there.name, there.kind)
+        assert here.kind == there.kind  # names tell places of loads, which the mirror moves
         found[f"energy of {here.name}"] = relative(there.energy, here.energy, size)
         found[f"swing of {here.name}"] = relative(there.swing, here.swing, size)
     return found

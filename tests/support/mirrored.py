@@ -83,6 +83,13 @@ def with_mirrored_links(group, **changes):
     return replace(group, **links, **changes)
 
 
+def other_branch(group):
+    """Assembly of a group that passes one change point a turn: in the half turn before it is on the other branch."""
+    if group.turns == 1 or not isinstance(group.assembly, str):
+        return group.assembly
+    return {"open": "crossed", "crossed": "open"}[group.assembly]
+
+
 def other_side(assembly):
     """An assembly that is named by the side on which something lies: left is right in the mirror."""
     return assembly if isinstance(assembly, str) else -assembly
@@ -110,7 +117,8 @@ def _(group):
 
 @mirrored.register(ks.LeverGroup)
 def _(group):
-    return with_mirrored_links(group, pivot=across(group.pivot), offset=negated(group.offset))
+    pivot, offset = across(group.pivot), negated(group.offset)
+    return with_mirrored_links(group, pivot=pivot, offset=offset, assembly=other_branch(group))
 
 
 @mirrored.register(ks.CylinderGroup)
@@ -184,9 +192,11 @@ class ReversedLaw:
 
     @property
     def knots(self):
+        """Crank angles at which the jerk may jump, rad."""
         return tuple(np.mod(-np.array(getattr(self.law, "knots", ()), dtype=float), TURN).tolist())
 
     def __call__(self, phi):
+        """Position and three derivatives, as a law gives them."""
         found = self.law(-np.asarray(phi, dtype=float))
         return tuple(sign * part for sign, part in zip((1.0, -1.0, 1.0, -1.0), found, strict=True))
 
@@ -200,7 +210,7 @@ def reversed_law(law):
 
 
 @dataclass(frozen=True)
-class Reflection:
+class _Reflection:
     """A motion as it is seen in the mirror, for functions that loads have as values."""
 
     motion: Any
@@ -238,7 +248,8 @@ class ReflectedFunction:
     sign: float
 
     def __call__(self, motion):
-        return self.sign * self.function(Reflection(motion))
+        """Value of the load in the mirror."""
+        return self.sign * self.function(_Reflection(motion))
 
 
 def reflected_value(value, sign=1.0):

@@ -46,6 +46,7 @@ class Wave:
     phase: float
 
     def __call__(self, motion):
+        """Force or torque, N or N m."""
         angle = self.order * motion.crank_angle
         return self.mean + self.amplitude * (
             math.cos(self.phase) * np.cos(angle) + math.sin(self.phase) * np.sin(angle)
@@ -61,11 +62,12 @@ class Drag:
     square: float
 
     def __call__(self, motion):
+        """Force along the guide, N."""
         velocity = motion.travel_velocity(self.slider)
         return -self.linear * velocity - self.square * velocity * velocity
 
 
-class Draw:
+class _Draw:
     """Random numbers of one machine; `machine()` draws a scene."""
 
     def __init__(self, *seed):
@@ -361,7 +363,7 @@ def turning_scene(kind, seed, *, loads=None, friction=False, speed=None, acceler
     speed, acceleration : float, optional
         Drawn unless told.
     """
-    draw = Draw(KINDS.index(kind), seed)
+    draw = _Draw(KINDS.index(kind), seed)
     try:
         mechanism = draw.machine(kind)
         still = ks.Scene(mechanism, 1.0).solve(ANGLES)
