@@ -50,8 +50,8 @@ class Surge(NamedTuple):
     @property
     def excitation(self):
         """Amplitude of the end's motion at the order nearest to the natural frequency, m."""
-        nearest = round(self.order)
-        return float(self.amplitudes[nearest]) if 0 < nearest < len(self.amplitudes) else 0.0
+        known = 0.5 < self.order < len(self.amplitudes) - 0.5
+        return float(self.amplitudes[round(self.order)]) if known else 0.0
 
     def speeds(self, orders=range(1, 13)):
         """Crank speeds at which a harmonic of each order meets the natural frequency, rad/s."""
@@ -260,7 +260,8 @@ def spring_surge(solution, spring_mass):
     series = np.abs(np.fft.rfft(end))[::turns] / at.crank_angle.size
     series[1:] *= 2.0
     natural = float(np.pi * np.sqrt(rate / mass))
-    return Surge(natural, natural / abs(_speed(solution)), series[: SAMPLES // 4])
+    speed = abs(float(np.mean(solution.crank_speed)))
+    return Surge(natural, natural / speed if speed else np.inf, series[: SAMPLES // 4])
 
 
 def _require(solution, owner, name):

@@ -120,8 +120,8 @@ class Running(Powers):
 
     @cached_property
     def time(self):
-        """Time since crank angle 0, of which crank angles are taken modulo the period, (..., N), s."""
-        return read_only(self._time_at(np.mod(self.crank_angle, self.period)))
+        """Time since the crank passed angle 0, up to the duration of the period, (..., N), s."""
+        return read_only(self._time_after(np.mod(self.direction * self.crank_angle, self.period)))
 
     @cached_property
     def motor_torque(self):
@@ -290,6 +290,10 @@ class Running(Powers):
     def _powers(self):
         return self._transmission * self._motor_torque(self._speed) * self._speed
 
-    def _time_at(self, angle):
+    def _time_after(self, turned):
+        """Time in which the crank turns by so much from angle 0, less than a period, in its own direction, s."""
         slowness = 1.0 / np.abs(self._speed)
-        return self._pieces.evaluate(self._pieces.series(self._pieces.integrated(slowness)), angle)
+        series = self._pieces.series(self._pieces.integrated(slowness))
+        if self.direction > 0:
+            return self._pieces.evaluate(series, turned)
+        return np.where(turned == 0.0, 0.0, self.duration - self._pieces.evaluate(series, self.period - turned))

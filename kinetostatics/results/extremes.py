@@ -14,7 +14,7 @@ from ..numbers.elementary import UNIT
 from ..numbers.lazy import cached_property
 from .rounding import FLOOR, told
 from .turn import require_single
-from .turning_points import Path, in_order, open_paths, turning_points
+from .turning_points import Path, at_jumps, in_order, open_paths, turning_points
 
 CALM = 1e6
 """Condition up to which values are of ordinary size, and rounding is small beside them."""
@@ -189,6 +189,7 @@ def extrema(solution, quantity):
         samples = _sampled(turn, function, quantity)
         good = np.isfinite(samples) & (position | turn.usable)
         size, floor = _sizes(turn, quantity, samples, good, position)
+        samples, jumps = at_jumps(turn, samples, size)
         paths = [Path(turn.angle, samples, floor, turn.period)]
         if not good.all():
             paths = list(open_paths(turn, function, samples, good, floor, size))
@@ -198,7 +199,7 @@ def extrema(solution, quantity):
             nothing = np.empty(0)
             return Extremes(called, nothing, nothing, nothing.astype(bool), constant, left_out, own)
         joined = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
-        angle, value, maximum = in_order(turn, function, size, *joined)
+        angle, value, maximum = in_order(turn, function, size, jumps, *joined)
     return Extremes(called, angle, value, maximum, np.nan, left_out, own)
 
 

@@ -64,6 +64,8 @@ class Turn:
         Crank angles at which friction, a load or the law of a cam has a kink, or may jump.
     passed : array
         Those of `limits` that are change points passed, where forces grow; empty where no forces are asked for.
+    jumps : array
+        Those of `kinks` at which something may jump: samples stand on both sides, `BESIDE` them.
     """
 
     at: Any
@@ -72,6 +74,7 @@ class Turn:
     limits: np.ndarray
     kinks: np.ndarray
     passed: np.ndarray = field(default_factory=lambda: np.empty(0))
+    jumps: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     @classmethod
     def of(cls, solution, forces=False):
@@ -104,12 +107,12 @@ class Turn:
         passed = np.ravel(passed + TURN * np.arange(turns)[:, None])
         limits = np.sort(np.concatenate([limits[~_beside(limits, passed)], passed]))
         if not limits.size:
-            return cls(first, solution.period, (), limits, kinks)
+            return cls(first, solution.period, (), limits, kinks, jumps=jumps)
         dense = limits[:, None] + np.concatenate([-LADDER, [0.0], LADDER])
         angle = np.unique(np.concatenate([grid, np.mod(dense.ravel(), solution.period)]))
         starts = own * np.arange(round(solution.period / own))
         repeated = tuple((a + start, b + start) for start in starts.tolist() for a, b in gaps)
-        return cls(solution.at(angle), solution.period, repeated, limits, kinks, passed)
+        return cls(solution.at(angle), solution.period, repeated, limits, kinks, passed, jumps)
 
     @property
     def angle(self):

@@ -4,10 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .turn import SAME, runs
+from .turn import BESIDE, SAME, runs
 
 CONTINUED = 1e-4
 """Difference of what a quantity tends to from both sides of a limit position, relative to its size, that is none."""
+JUMP = 1e-9
+"""Difference of the values on both sides of a jump, relative to the size of the quantity, that is none."""
+LEVEL = 0.05
+"""Crank angle, rad, over which values that differ by rounding alone are a level stretch, as in a dwell."""
+HALVINGS = 48
+"""Bisections that find an end of a level stretch."""
 
 
 class Path(NamedTuple):
@@ -17,6 +23,42 @@ class Path(NamedTuple):
     value: np.ndarray
     floor: np.ndarray
     period: float
+
+
+class Jumps(NamedTuple):
+    """Jumps of a quantity: the crank angles of the last sample before each and of the first one after it, rad."""
+
+    before: np.ndarray
+    after: np.ndarray
+
+    def cut(self, brackets, period):
+        """Brackets that end at each jump; what stands between the two samples is moved to the one before."""
+        start, middle, end = brackets
+        shifts = period * np.array([-1.0, 0.0, 1.0])[:, None]
+        for before, after in zip(*((side + shifts).ravel() for side in self), strict=True):
+            middle = np.where((before < middle) & (middle < after), before, middle)
+            start = np.where((start < after) & (after <= middle), after, start)
+            end = np.where((middle <= before) & (before < end), before, end)
+        return np.array([start, middle, end])
+
+
+def at_jumps(turn, samples, size):
+    """Samples that have the value just before each jump at the jump itself, and the jumps, as `Jumps`.
+
+    At the crank angle of a jump, to the last bit, there may be any value: of two parts that jump there one may have
+    jumped and the other not yet.
+    """
+    distance = np.mod(turn.angle[:, None] - turn.jumps + turn.period / 2, turn.period) - turn.period / 2
+    on = np.any(np.abs(distance) < BESIDE[1] / 2, axis=1) if turn.jumps.size else np.zeros(samples.shape, dtype=bool)
+    before, after = [], []
+    samples = samples.copy()
+    for run in runs(on):
+        low, high = run[0] - 1, (run[-1] + 1) % samples.size
+        if abs(samples[high] - samples[low]) > JUMP * size:
+            samples[run] = samples[low]
+            before.append(turn.angle[low])
+            after.append(turn.angle[high] + (turn.period if turn.angle[high] < turn.angle[low] else 0.0))
+    return samples, Jumps(np.array(before), np.array(after))
 
 
 def open_paths(turn, function, samples, good, floor, size):
@@ -73,11 +115,36 @@ def turning_points(path):
             maximum[end] = ~maximum[end]
         kept = np.delete(np.arange(maximum.size), pair)
         places, maximum = places[:, kept], maximum[kept]
+    places = _over_level(path, places)
     middle = places[1] % count
     return angle[places % count] + period * (places // count), value[middle], floor[middle], maximum
 
 
-def in_order(turn, function, size, brackets, value, floor, maximum):
+def _over_level(path, places):
+    """Brackets of extrema, those in a level stretch from the sample before the stretch to the one after it."""
+    angle, value, floor, period = path
+    count = value.size
+
+    def end(middle, step):
+        """Place of the first sample, from one on, that is not level with it."""
+        place, last = middle, middle + step * (count - 1)
+        while place != last and abs(value[place % count] - value[middle % count]) <= floor[middle % count]:
+            place += step
+            if not (period or 0 <= place < count):
+                return middle
+        return place
+
+    found = places.copy()
+    for number, (start, middle, stop) in enumerate(places.T):
+        low, high = (end(middle, step) for step in (-1, 1)) if start < stop else (middle, middle)
+        if low < middle < high < low + count:
+            outer = [angle[place % count] + period * (place // count) for place in (low, high)]
+            if outer[1] - outer[0] > LEVEL:
+                found[:, number] = low, middle, high
+    return found
+
+
+def in_order(turn, function, size, jumps, brackets, value, floor, maximum):
     """Angle, value and kind of turning points in order of angle, those between two samples closed in upon.
 
     Parameters
@@ -87,11 +154,15 @@ def in_order(turn, function, size, brackets, value, floor, maximum):
         Of a solution; its values over crank angles.
     size : float
         Of the quantity.
+    jumps : Jumps
     brackets, value, floor, maximum : arrays (3, K) and (K,)
         As of `turning_points`; of an end of a path all three angles are one.
     """
+    end = brackets[0] == brackets[2]
+    brackets = jumps.cut(brackets, turn.period)
     angle, sign = brackets[1], np.where(maximum, -1.0, 1.0)
-    inner = brackets[0] < brackets[2]
+    inner = (brackets[0] < angle) & (angle < brackets[2])
+    level = inner & (brackets[2] - brackets[0] > LEVEL)
 
     def evaluate(angle):
         return turn.evaluate(function, angle)
@@ -103,18 +174,37 @@ def in_order(turn, function, size, brackets, value, floor, maximum):
         def beside(start, end):
             return sign[inner] * (evaluate(start) - evaluate(end)) > floor[inner]
 
+        if level.any():
+            angle[level] = _middle_of_level(evaluate, brackets[:, level], floor[level])
         angle[inner] = turn.from_zero(angle[inner], beside)
         value[inner] = evaluate(angle[inner])
     angle = np.where(inner, angle, np.mod(angle, turn.period))
     order = np.argsort(angle, kind="stable")
-    angle, value, maximum, inner = angle[order], value[order], maximum[order], inner[order]
-    kept = _kept(angle, value, maximum, inner, CONTINUED * size)
+    angle, value, maximum = angle[order], value[order], maximum[order]
+    kept = _kept(angle, value, maximum, end[order], CONTINUED * size)
     return angle[kept], value[kept], maximum[kept]
 
 
-def _kept(angle, value, maximum, inner, near):
-    """Which extrema, in order of angle, stay: what goes on smoothly through a limit position has none there."""
-    same = (np.abs(angle - np.roll(angle, -1)) <= SAME) & ~inner & ~np.roll(inner, -1)
+def _middle_of_level(evaluate, brackets, floor):
+    """Middle of each level stretch, whose ends lie between the middle and the outer angles of its bracket."""
+    start, middle, end = brackets
+    value, ends = evaluate(middle), []
+    for outside in (start, end):
+        inside = middle
+        for _ in range(HALVINGS):
+            half = 0.5 * (inside + outside)
+            is_level = np.abs(evaluate(half) - value) <= floor
+            inside, outside = np.where(is_level, half, inside), np.where(is_level, outside, half)
+        ends.append(inside)
+    return 0.5 * (ends[0] + ends[1])
+
+
+def _kept(angle, value, maximum, end, near):
+    """Which extrema, in order of angle, stay: what goes on smoothly through a limit position has none there.
+
+    `end` marks those at ends of paths, as at limit positions.
+    """
+    same = (np.abs(angle - np.roll(angle, -1)) <= SAME) & end & np.roll(end, -1)
     level = (value == np.roll(value, -1)) | (np.abs(value - np.roll(value, -1)) <= near)
     pair = same & level & (np.arange(angle.size) < angle.size - 1)
     through = pair & (maximum != np.roll(maximum, -1))
@@ -146,7 +236,9 @@ def _polished(evaluate, angle, sign, floor, half_width=0.01, degree=8):
     for _ in range(3):
         place -= _series(place, slope) / _series(place, bend)
     refined = np.where(np.abs(place) < 1e-3, angle + half_width * place, angle)
-    return np.where(sign * evaluate(refined) <= sign * evaluate(angle) + 0.1 * floor, refined, angle)
+    smooth = np.max(np.abs(series[-2:]), axis=0) <= floor
+    allowed = np.where(smooth, 1.0, 0.1) * floor
+    return np.where(sign * evaluate(refined) <= sign * evaluate(angle) + allowed, refined, angle)
 
 
 def _series(place, coefficients):
