@@ -96,6 +96,7 @@ class Scene(Parameters):
         >>> ks.Scene.of(ks.solve(pump, 0.5, crank_speed=100.0)).crank_speed
         100.0
         """
+        checks.require("scene", checks.solution("solution", solution))
         return cls(
             solution.mechanism, solution.crank_speed, solution.crank_acceleration, solution.loads, solution.friction
         )
@@ -128,6 +129,7 @@ class Scene(Parameters):
             There is no such path, or no machine has such a value.
         """
         known = self.places
+        checks.require("scene", checks.mapping("values", values))
         checks.require("scene", *(unknown(self, path) for path in values if path not in known))
         return paths.with_values(self, {known[path].steps: value for path, value in values.items()})
 
