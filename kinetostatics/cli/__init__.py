@@ -42,7 +42,7 @@ def main(arguments=None):
     """
     status, message = 0, ""
     try:
-        with _ending_in_order(), _warning_in_plain_words():
+        with _ending_in_order(), _warning_in_plain_words(), _drawing_to_files():
             _require_output()
             options = parser().parse_args(arguments)
             machine.require(options)
@@ -107,6 +107,20 @@ def _ending_in_order():
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
+def _drawing_to_files():
+    """Figures are files, so no backend for a screen is loaded, whatever MPLBACKEND names."""
+    before = os.environ.get("MPLBACKEND")
+    if before is None or "matplotlib" in sys.modules:
+        yield
+        return
+    os.environ["MPLBACKEND"] = "agg"
+    try:
+        yield
+    finally:
+        os.environ["MPLBACKEND"] = before
 
 
 WRITTEN = ("csv", "name", "out", "pdf", "plot")

@@ -18,7 +18,7 @@ from ..machine.mechanism import Mechanism
 from ..numbers import checks, paths
 from ..numbers.leaves import made
 from . import slips
-from .angles import crank_angles, problems
+from .angles import BYTES, crank_angles, problems
 from .checked import checked
 from .drive_and_loads import in_a_line
 from .parameters import DRIVE, Parameters, unknown
@@ -289,6 +289,8 @@ def unchecked(scene, crank_angle, engine=None):
     _, leaves = solution.apart
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
+        values = math.prod(solution.shape)
+        checks.require("solve", values and checks.count("designs times crank angles", values, size=BYTES))
     vars(solution)["engine"] = _engine(engine, angle, solution)
     return solution
 

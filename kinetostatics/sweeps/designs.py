@@ -203,6 +203,8 @@ def sample(spreads, uniform) -> pd.DataFrame:
     """
     found = distributions(spreads)
     given = uniform(len(found)) if callable(uniform) else uniform
+    if isinstance(given, np.ndarray) and given.size:
+        _require_room(given.size, 1)
     try:
         numbers = np.asarray(given, dtype=float)
     except (TypeError, ValueError):

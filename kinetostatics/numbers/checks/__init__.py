@@ -28,6 +28,7 @@ from .meant import nearest
 from .measured import DimensionError, converted, is_quantity, plain
 from .problems import (
     ANGLE,
+    MEMORY,
     Problem,
     case,
     choice,
@@ -65,6 +66,7 @@ __all__ = [
     "UNSURE",
     "Checked",
     "DimensionError",
+    "MEMORY",
     "Made",
     "Name",
     "Number",
