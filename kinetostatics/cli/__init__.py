@@ -38,7 +38,8 @@ class _Terminated(BaseException):
 def main(arguments=None):
     """Run the command line; returns the exit status.
 
-    0, or 2 for input that cannot be used (also when every design of a sweep fails), 130 if it was interrupted (Ctrl-C), 143 if it was told to end (SIGTERM).
+    0, or 2 for input that cannot be used, or where every design of a sweep fails, 130 if it was interrupted (Ctrl-C),
+    143 if it was told to end (SIGTERM).
     """
     status, message = 0, ""
     try:

@@ -271,7 +271,8 @@ def _obstacle(problem, goal, values):
         if callable(goal.output):
             goal.output.outputs(values)
     except KinetostaticsError as error:
-        return f"with {own}, of which a machine within the spread of {', '.join(goal.output.spread.spreads)} fails: {error}"
+        spreads = ", ".join(goal.output.spread.spreads)
+        return f"with {own}, of which a machine within the spread of {spreads} fails: {error}"
     return f"the one with {own} runs, but outputs asked for have no value"
 
 

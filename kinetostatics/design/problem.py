@@ -58,7 +58,7 @@ class Problem:
         limits = table_limits(scene)
         positions = tuple(dict.fromkeys(limit.output.quantity for limit in limits))
         self._motion: Any = compiled(scene, positions, self._zeros(scene), "numpy") if positions else None
-        is_moved = positions and any(map(self._motion.depends_on, self.derived.paths))
+        is_moved = self._motion is not None and any(map(self._motion.depends_on, self.derived.paths))
         self.table_limits = limits if is_moved else ()
         self.quantities = tuple(dict.fromkeys([*quantities, *(positions if is_moved else ())]))
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)

@@ -118,7 +118,7 @@ def _round(problem, goal, limits, start, change=FIRST):
 
 
 def within_tables(problem, limits, start):
-    """The design nearest to a start whose sliders leave tables that keeps them within; the start where none is found."""
+    """The design nearest to a start that keeps sliders within the limits of tables; the start where none is found."""
     from scipy.optimize import minimize
 
     reach, scales = problem.high - problem.low, np.array([limit.scale for limit in limits])

@@ -142,7 +142,7 @@ def margin(group, placement, shape):
     if group.trusted:
         return found
     words = "one value, not several" if isinstance(found, list | tuple) else checks.unfit(found)
-    if getattr(found, "dtype", None) == bool:
+    if getattr(found, "dtype", np.dtype(float)) == np.dtype(bool):
         words = "truth values; give numbers"
     if words is None and not _fits(np.shape(found), shape):
         words = f"of shape {np.shape(found)}"

@@ -176,8 +176,7 @@ def _open(mechanism, group, placement, where, gaps):
     text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in gaps)
     why = group.requirement(placement) or f"the closure of {type(group).__name__} is negative there"
     return AssemblyError(
-        f"{mechanism.name} cannot be assembled {where}: {why}. It does not close for crank "
-        f"angles {text}",
+        f"{mechanism.name} cannot be assembled {where}: {why}. It does not close for crank angles {text}",
         gaps,
     )
 

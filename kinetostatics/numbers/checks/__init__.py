@@ -63,10 +63,10 @@ from .values import kept, known, unfit
 
 __all__ = [
     "ANGLE",
+    "MEMORY",
     "UNSURE",
     "Checked",
     "DimensionError",
-    "MEMORY",
     "Made",
     "Name",
     "Number",
