@@ -506,6 +506,20 @@ def test_whether_a_bar_is_shown_is_a_truth_value(progress):
         ks.sweep(SCENE, pd.DataFrame({"slider.mass [kg]": [1.0]}), ["largest O"], progress=progress)
 
 
+@pytest.mark.parametrize("name", [[], {}, ["plain"], {"plain"}, np.array([1.0, 2.0]), None, 1.5])
+def test_variants_are_asked_for_by_name(name):
+    case = ks.load_case("compressor")
+    for call in (case.variant, case.solve, lambda given: case.compare(given, "loaded"), case.comparison_table):
+        with pytest.raises(ks.errors.CaseError, match="variant is"):
+            call(name)
+
+
+@pytest.mark.parametrize("given", [None, SCENE, "saw", [], 1.5])
+def test_two_masses_replace_couplers_of_mechanisms_only(given):
+    with pytest.raises(ks.ParameterError, match="mechanism must be a Mechanism"):
+        ks.two_mass_coupler(given)
+
+
 # more numbers than any memory holds
 
 
