@@ -23,6 +23,8 @@ from .parameters import fixed, is_judged_together, is_zero, keeping, leaves_of, 
 from .scene import unchecked
 from .slopes import slopes
 
+MAPPINGS = (dict, MappingProxyType)
+"""Types that are mappings for sure: asking for the protocol takes longer."""
 FEW = 180
 """Crank angles around the turn at which friction is looked at."""
 
@@ -239,7 +241,7 @@ class Program:
         wrong = problems(angle)
         if wrong:
             checks.require("program", wrong)
-        if not isinstance(values, Mapping):
+        if type(values) not in MAPPINGS and not isinstance(values, Mapping):
             checks.require("program", checks.mapping("values", values))
         return self._state(
             angle, values, self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
