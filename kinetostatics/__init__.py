@@ -294,6 +294,10 @@ def __getattr__(name):
     place = next((place for place, names in _WHERE.items() if name in names), None)
     if place is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if place.startswith("views"):
+        from .numbers.lazy import pyplot
+
+        pyplot()  # an error that says what is wrong with its backend, before views load it
     path = f"{__name__}.{place}".rstrip(".")
     found = (getattr(import_module(path), name, None) if place else None) or import_module(f"{path}.{name}")
     globals()[name] = found

@@ -5,7 +5,7 @@ import os
 import sys
 from functools import cache
 from importlib.machinery import ModuleSpec
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import pytest
 
@@ -43,6 +43,7 @@ def interpreted(monkeypatch):
     numba = ModuleType("numba")
     numba.njit = lambda *signature, **options: lambda function: function
     numba.types = None
+    numba.config = SimpleNamespace(DISABLE_JIT=0)
     numba.__spec__ = ModuleSpec("numba", None)
     numba.extending = ModuleType("numba.extending")
     numba.extending.intrinsic = lambda function: lambda one, other, more: one * other + more  # there is one: fma

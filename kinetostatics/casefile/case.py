@@ -107,7 +107,7 @@ class Case:
         >>> table.loc["mean |balancing torque|", "published"]
         '6.77 (ratio)'
         """
-        return self.with_published(self.compare(reference or self.reference, balanced).frame())
+        return self.with_published(self.compare(self.reference if reference is None else reference, balanced).frame())
 
     def with_published(self, table):
         """A table of `Comparison.frame`, the published figures in a column behind it if there are any.

@@ -19,6 +19,9 @@ class Named(dict):
         super().__init__(items)
         self.kind, self.path = kind, path
 
+    def __getitem__(self, name):
+        return super().__getitem__(name) if isinstance(name, str) else self.__missing__(name)
+
     def __missing__(self, name):
         raise NoSuchNameError(self.path, [checks.choice(self.kind, name, tuple(self))])
 

@@ -126,6 +126,7 @@ class Variant:
         values : dict of path to float or array (designs, 1)
         """
         known = self._places
+        checks.require("parameters", checks.mapping("values", values))
         checks.require("parameters", *(checks.choice("parameter", path, tuple(known)) for path in values))
         varied = parameters.with_values(self.table, {known[path].steps: value for path, value in values.items()})
         return made(varied, self.folder, self.tabulated)

@@ -38,11 +38,12 @@ class _Terminated(BaseException):
 def main(arguments=None):
     """Run the command line; returns the exit status.
 
-    0, or 2 for input that cannot be used, 130 if it was interrupted (Ctrl-C), 143 if it was told to end (SIGTERM).
+    0, or 2 for input that cannot be used, or where every design of a sweep fails, 130 if it was interrupted (Ctrl-C),
+    143 if it was told to end (SIGTERM).
     """
     status, message = 0, ""
     try:
-        with _ending_in_order(), _warning_in_plain_words():
+        with _ending_in_order(), _warning_in_plain_words(), _drawing_to_files():
             _require_output()
             options = parser().parse_args(arguments)
             machine.require(options)
@@ -107,6 +108,20 @@ def _ending_in_order():
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
+def _drawing_to_files():
+    """Figures are files, so no backend for a screen is loaded, whatever MPLBACKEND names."""
+    before = os.environ.get("MPLBACKEND")
+    if before is None or "matplotlib" in sys.modules:
+        yield
+        return
+    os.environ["MPLBACKEND"] = "agg"
+    try:
+        yield
+    finally:
+        os.environ["MPLBACKEND"] = before
 
 
 WRITTEN = ("csv", "name", "out", "pdf", "plot")

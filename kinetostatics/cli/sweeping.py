@@ -66,6 +66,8 @@ def sweep(options):
             print(line)
     if options.csv:
         machine.give_csv(options, found)
+    reasons = found[sweeps.FAILED]
+    checks.require("sweep", None if (reasons == "").any() else f"all {len(found)} designs failed: {reasons.iloc[0]}")
 
 
 def _labels(wanted, varied):

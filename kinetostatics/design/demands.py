@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from ..errors import ParameterError
+from ..machine.loads import Table, value_of
 from ..numbers import checks
 from ..numbers.units import NUMBER, to_si
 from ..results.reductions import Output, parsed
@@ -23,11 +24,19 @@ class Demand:
     relation : "<=", ">=" or "="
     value : float
         SI.
+    span : float, optional
+        Of a limit that a table over travel sets, the length of the table, m, by which its misses are counted.
     """
 
     output: Output
     relation: str
     value: float
+    span: float | None = None
+
+    @property
+    def scale(self):
+        """Size by which misses of the limit are counted."""
+        return self.span or abs(self.value) or 1.0
 
     def __str__(self):
         unit = self.output.unit if not self.output.ratio and self.output.unit != "1" else ""
@@ -88,3 +97,18 @@ def demands(texts, known):
             problems.append(str(error))
     checks.require("design", *problems)
     return tuple(found)
+
+
+def table_limits(scene):
+    """Limits that keep each slider within the tables over travel that loads read by it."""
+    found = {}
+    for table in map(value_of, scene.loads):
+        if isinstance(table, Table) and table.over == "travel":
+            position, span = (
+                f"{table.slider or next(iter(scene.mechanism.guides))}_position",
+                float(table.x[-1] - table.x[0]),
+            )
+            for reduction, relation, end in (("smallest", ">=", table.x[0]), ("largest", "<=", table.x[-1])):
+                limit = Demand(wanted(f"{reduction} {position}", scene), relation, float(end), span)
+                found[str(limit)] = limit
+    return tuple(found.values())

@@ -177,7 +177,7 @@ def prices(problem, goal, limits, values):
     names, columns, free = [], [], []
     for limit in limits:
         excess, changes = side_of(problem, limit, values)
-        for place in np.flatnonzero(np.abs(excess) <= BINDS * (abs(limit.value) or 1.0)):
+        for place in np.flatnonzero(np.abs(excess) <= BINDS * limit.scale):
             names.append(str(limit))
             columns.append(changes[:, place])
             free.append(limit.relation == "=")

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..drive.sizing import flywheel
 from ..errors import DesignError, KinetostaticsError, ParameterError
+from ..mechanics.quantities import values as values_of
 from ..numbers import checks
 from ..results.extremes import extrema
 from .demands import Demand, demands, wanted
@@ -15,7 +16,7 @@ from .found import found_of
 from .problem import SHARED, Problem, chosen, own, true_value
 from .progress import moving_bar
 from .robust import Sampled
-from .search import KEPT, Goal, Reached, better, missed, scale, searched
+from .search import KEPT, Goal, Reached, better, missed, searched, side_of
 from .spread import not_spread
 
 ANGLES = 720
@@ -110,14 +111,13 @@ def optimise(
     goal, plain = without_ratios(problem, aimed(problem, output, sign, robust), limits)
     begins = starting(problem, starts, seed, begin)
     with moving_bar(problem, progress):
-        best, ends = multiple(problem, goal, plain, begins, limits)
-        best = held(problem, goal, plain, best)
+        best, kept, ends = best_of(problem, goal, plain, begins, limits)
     return found_of(
         problem,
         goal if robust is not None else Goal(output, sign),
-        limits,
+        kept,
         best,
-        dict.fromkeys(asked),
+        dict.fromkeys([*asked, *(limit.output for limit in problem.table_limits)]),
         label(sign, text, robust),
         evaluations=problem.evaluations,
         starts=as_asked(problem, output, goal, ends),
@@ -211,6 +211,17 @@ def starting(problem, count, seed, begin=None):
     return [first, *(problem.low + spread[: count - 1] * (problem.high - problem.low))]
 
 
+def best_of(problem, goal, limits, starts, asked):
+    """Best end of several searches, kept to limits by true extremes; all limits as asked for; the goal of each end.
+
+    Limits that tables over travel set are among them; of a robust goal they hold for each machine of the spread.
+    """
+    robust = goal.output.within_tables() if callable(goal.output) else ()
+    own = *problem.table_limits, *robust
+    best, ends = multiple(problem, goal, (*limits, *own), starts, (*asked, *own))
+    return held(problem, goal, (*limits, *own), best), (*asked, *own), ends
+
+
 def multiple(problem, goal, limits, starts, told=None):
     """Best end of several searches, and the goal that each came to; limits may be told of in other words.
 
@@ -223,16 +234,16 @@ def multiple(problem, goal, limits, starts, told=None):
     best = better(ends)
     if best.missed > 1e3 * KEPT:
         nearest = dict(zip(problem.names, map(float, best.values), strict=True))
-        raise DesignError(_why(problem, told or limits, best, len(ends)), nearest)
+        raise DesignError(_why(problem, goal, told or limits, best, len(ends)), nearest)
     return best, [goal.sign * end.goal if end.missed <= 1e3 * KEPT else np.inf for end in ends]
 
 
-def _why(problem, limits, best, count):
+def _why(problem, goal, limits, best, count):
     tries = "the search" if count == 1 else f"any of {count} searches"
     if not np.isfinite(best.missed):
         return (
-            f"no design that can be built was found by {tries} ({_obstacle(problem, best.values)}); change the bounds, "
-            "or begin with a machine that runs"
+            f"no design that can be built was found by {tries} ({_obstacle(problem, goal, best.values)}); change the "
+            f"bounds of {', '.join(problem.names)}, or begin with a machine that runs"
         )
     reached = []
     for limit in limits:
@@ -247,40 +258,72 @@ def _why(problem, limits, best, count):
     return f"no design that keeps all limits was found by {tries}; the nearest misses {'; '.join(reached)}{bounds}"
 
 
-def _obstacle(problem, values):
+def _obstacle(problem, goal, values):
     """Why a design cannot be built, as a sentence."""
+    own = _listed(problem, values)
     try:
-        scene_of(problem.scene(values)).solve(problem.angles)
+        solution = scene_of(problem.scene(values)).solve(problem.angles)
+        for name in problem.quantities:
+            values_of(solution, name)
     except KinetostaticsError as error:
-        return str(error)
-    return "this one runs, but outputs asked for, or machines within its spread, have no value"
+        return f"with {own}: {error}"
+    try:
+        if callable(goal.output):
+            goal.output.outputs(values)
+    except KinetostaticsError as error:
+        spreads = ", ".join(goal.output.spread.spreads)
+        return f"with {own}, of which a machine within the spread of {spreads} fails: {error}"
+    return f"the one with {own} runs, but outputs asked for have no value"
+
+
+def _listed(problem, values):
+    """Numbers of a design by their paths, as a text."""
+    return ", ".join(f"{name} = {value:.9g}" for name, value in zip(problem.names, values, strict=True))
 
 
 def held(problem, goal, limits, best) -> Reached:
     """The design with its limits kept at true extremes: they are drawn in by what the samples did not tell."""
     drawn = list(limits)
     for _ in range(TIGHTER):
-        scene = scene_of(problem.scene(best.values))
-        over = [true_excess(limit, scene) for limit in limits]
-        if all(part <= KEPT * scale(limit) / 2 for part, limit in zip(over, limits, strict=True)):
+        over, failure = _true_excesses(problem, limits, best.values)
+        if failure is None and all(part <= KEPT * limit.scale / 2 for part, limit in zip(over, limits, strict=True)):
             return best
+        if not any(part > 0 for part in over):
+            break
         drawn = [
-            limit if part <= 0 else replace(limit, value=limit.value - _outward(limit, scene) * 1.01 * part)
+            limit if part <= 0 else replace(limit, value=limit.value - _outward(limit, problem, best) * 1.01 * part)
             for limit, part in zip(drawn, over, strict=True)
         ]
         best = searched(problem, goal, drawn, best.values, rounds=2)
-    worst = max(part / scale(limit) for part, limit in zip(over, limits, strict=True))
-    if worst > KEPT:
-        raise DesignError(
-            f"limits hold at {problem.angles} crank angles, but are missed by {worst:.2g} of their size between; give "
-            "more angles"
-        )
-    return best
+    worst = max((part / limit.scale for part, limit in zip(over, limits, strict=True)), default=0.0)
+    if failure is None and worst <= KEPT:
+        return best
+    why = f"limits hold there, but are missed by {worst:.2g} of their size between; give more angles"
+    raise DesignError(
+        f"the best design so far, {_listed(problem, best.values)}, was found at {problem.angles} crank angles: "
+        f"{why if failure is None else failure}",
+        dict(zip(problem.names, map(float, best.values), strict=True)),
+    )
 
 
-def _outward(limit, scene):
+def _true_excesses(problem, limits, values):
+    """By how much a design exceeds limits, by its true extremes, and the error where some have no value, or None."""
+    scene, over, failure = scene_of(problem.scene(values)), [], None
+    for limit in limits:
+        try:
+            is_own = callable(limit.output)
+            over.append(side_of(problem, limit, values)[0][0] if is_own else true_excess(limit, scene))
+        except KinetostaticsError as error:
+            over.append(0.0)
+            failure = error
+    return over, failure
+
+
+def _outward(limit, problem, best):
     """+1 where a design exceeds a limit upwards, -1 downwards."""
-    return np.sign(true_extreme(limit.output, scene) - limit.value)
+    if limit.relation != "=":
+        return 1.0 if limit.relation == "<=" else -1.0
+    return np.sign(true_extreme(limit.output, scene_of(problem.scene(best.values))) - limit.value)
 
 
 def true_excess(limit, scene):

@@ -15,6 +15,7 @@ from ..results.bends import bent
 from ..solution.compile import compile as compiled
 from ..solution.parted import PARTED, Parted, solution_of
 from . import measures
+from .demands import table_limits
 from .derived import Derived, scene_of
 from .parted_curves import PartedCurve
 from .progress import no_bar
@@ -39,6 +40,11 @@ class Problem:
     angles : int
         Crank angles evenly over the period.
     engine : "numpy" or "compiled"
+
+    Attributes
+    ----------
+    table_limits : tuple of Demand
+        Those that keep sliders, whose motion varies, within the tables over travel of the loads.
     """
 
     def __init__(self, source, vary, quantities, reference=None, angles=720, engine="numpy"):
@@ -49,7 +55,12 @@ class Problem:
         self.angle = np.linspace(0.0, scene.period, angles, endpoint=False)
         self.turns = turns_of(scene)
         self.derived = Derived(source, self.names)
-        self.quantities = tuple(dict.fromkeys(quantities))
+        limits = table_limits(scene)
+        positions = tuple(dict.fromkeys(limit.output.quantity for limit in limits))
+        self._motion: Any = compiled(scene, positions, self._zeros(scene), "numpy") if positions else None
+        is_moved = self._motion is not None and any(map(self._motion.depends_on, self.derived.paths))
+        self.table_limits = limits if is_moved else ()
+        self.quantities = tuple(dict.fromkeys([*quantities, *(positions if is_moved else ())]))
         self.program = compiled(scene, self.quantities, self._zeros(scene), engine)
         self.evaluations = 0
         self.stepped = no_bar
@@ -109,7 +120,9 @@ class Problem:
         return PartedCurve(found.values.reshape(shape), found.slopes.reshape(-1, *shape), pieces, vector)
 
     def output(self, output, values):
-        """Value of an output of a design, and its derivatives."""
+        """Value of an output of a design, or of a function of designs, and its derivatives."""
+        if callable(output):
+            return output(values)
         found, slopes = self.curve(output, values).reduced(output.reduction, self.turns)
         if not output.ratio:
             return found, slopes
@@ -118,15 +131,21 @@ class Problem:
 
     def _computed(self, values):
         self.evaluations += 1
-        try:
-            numbers, changes = self.derived(values)
-            found = self.program(self.angle, numbers)
-            slopes = self.program.derivatives(self.angle, self.derived.paths, numbers)
-        except KinetostaticsError:
-            nothing = np.full(self.angle.size, np.nan)
-            empty = measures.Curve(nothing, np.full((len(self.names), self.angle.size), np.nan))
-            return dict.fromkeys(self.quantities, empty)
-        return {name: _curve(found[name], slopes[name], changes, self.angle) for name in self.quantities}
+        nothing = np.full(self.angle.size, np.nan)
+        empty = measures.Curve(nothing, np.full((len(self.names), self.angle.size), np.nan))
+        found = dict.fromkeys(self.quantities, empty)
+        for program in (self.program, self._motion) if self.table_limits else (self.program,):
+            try:  # the motion is known where a slider leaves its table
+                return found | self._curves_of(program, values)
+            except KinetostaticsError:
+                continue
+        return found
+
+    def _curves_of(self, program, values):
+        numbers, changes = self.derived(values)
+        found = program(self.angle, numbers)
+        slopes = program.derivatives(self.angle, self.derived.paths, numbers)
+        return {name: _curve(found[name], slopes[name], changes, self.angle) for name in program.quantities}
 
     def _zeros(self, scene):
         own = scene.parameters

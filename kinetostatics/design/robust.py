@@ -4,6 +4,7 @@ Each sample is the design with its own deviations, the same whatever the design,
 quantile is Harrell and Davis's mean of ordered samples, which changes smoothly with the design, by exact derivatives.
 """
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -18,7 +19,7 @@ from ..results.means import NODES
 from ..solution.compile import compile as compiled
 from ..solution.parted import PARTED, Parted, solution_of
 from . import measures
-from .demands import wanted
+from .demands import table_limits, wanted
 from .derived import Derived, scene_of
 from .parted_curves import PartedCurve
 from .problem import chosen, own, turns_of
@@ -53,6 +54,30 @@ class Sampled:
         self.weights = harrell_davis(spread.quantile, self.count)
         if spread.trim:
             self._require_trim()
+
+    def __str__(self):
+        return f"{self.output} within the spread"
+
+    @property
+    def unit(self):
+        return self.output.unit
+
+    @property
+    def ratio(self):
+        return self.output.ratio
+
+    def within_tables(self):
+        """Limits that keep all samples within the tables over travel of the loads, where the spread moves sliders."""
+        limits = table_limits(scene_of(self.problem.source))
+        found = [replace(limit, output=self._nearest(limit)) for limit in limits]
+        return tuple(limit for limit in found if any(map(limit.output.program.depends_on, self.spread.spreads)))
+
+    def _nearest(self, limit):
+        """The output of a limit, of the sample that comes nearest to it or exceeds it most."""
+        found = Sampled(self.problem, limit.output, self.spread, self.sign)
+        found.weights = np.zeros(self.count)
+        found.weights[-1 if limit.relation == "<=" else 0] = 1.0
+        return found
 
     def __call__(self, values):
         """The quantile, and its derivatives by the numbers that vary."""

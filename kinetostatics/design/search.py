@@ -24,6 +24,8 @@ KEPT = 1e-9
 """By how much, relative to its size, a limit may be missed."""
 STEPS_BACK, NEAR = 5, 1e-4
 """Newton's steps back to limits that are missed, and by how much less than that, relative to their sizes."""
+LEAST_SHARE = 1e-9
+"""Share of the way from a start to a design that cannot be built down to which one that can be built is looked for."""
 FAR = 1e6
 """What a design that cannot be built counts as, in units of the first one's."""
 
@@ -58,7 +60,9 @@ class Reached(NamedTuple):
 
 def searched(problem, goal, limits, start, rounds=ROUNDS) -> Reached:
     """Local optimum from a start."""
-    best = _round(problem, goal, limits, np.clip(start, problem.low, problem.high))
+    start = np.clip(start, problem.low, problem.high)
+    start = within_tables(problem, [limit for limit in limits if limit.span is not None], start)
+    best = _round(problem, goal, limits, start)
     for _ in range(rounds - 1):
         found = _round(problem, goal, limits, best.values, AGAIN)
         before, best = best, _better(best, found)
@@ -104,7 +108,42 @@ def _round(problem, goal, limits, start, change=FIRST):
         options={"maxiter": STEPS, "ftol": change},
     )
     values = restored(problem, limits, np.clip(turned.values(found.x), problem.low, problem.high))
-    return Reached(values, turned.reached(values), missed(problem, limits, values), found.message)
+    reached, share = turned.reached(values), 1.0
+    while not np.isfinite(reached) and share > LEAST_SHARE:  # back towards the start, which can be built
+        share *= 0.5
+        reached = turned.reached(start + share * (values - start))
+    values = start + share * (values - start) if share < 1.0 else values
+    off = missed(problem, limits, values) if np.isfinite(reached) else np.inf
+    return Reached(values, reached, off, found.message)
+
+
+def within_tables(problem, limits, start):
+    """The design nearest to a start that keeps sliders within the limits of tables; the start where none is found."""
+    from scipy.optimize import minimize
+
+    reach, scales = problem.high - problem.low, np.array([limit.scale for limit in limits])
+
+    def sides(steps):
+        """How far within the limits, in units of their sizes, and derivatives by the steps."""
+        found = [problem.output(limit.output, start + steps * reach) for limit in limits]
+        signs = [1.0 if limit.relation == ">=" else -1.0 for limit in limits]
+        room = [sign * (value - limit.value) for sign, (value, _), limit in zip(signs, found, limits, strict=True)]
+        slopes = [sign * slope * reach for sign, (_, slope) in zip(signs, found, strict=True)]
+        return np.nan_to_num(room / scales, nan=-FAR), np.nan_to_num(slopes / scales[:, None])
+
+    still = np.zeros(start.size)
+    if not limits or sides(still)[0].min() >= -KEPT:
+        return start
+    found = minimize(
+        lambda steps: (steps @ steps, 2.0 * steps),
+        still,
+        jac=True,
+        method="SLSQP",
+        bounds=np.transpose([problem.low - start, problem.high - start] / reach),
+        constraints={"type": "ineq", "fun": lambda steps: sides(steps)[0], "jac": lambda steps: sides(steps)[1]},
+    )
+    moved = np.clip(start + found.x * reach, problem.low, problem.high)
+    return moved if sides((moved - start) / reach)[0].min() >= -KEPT else start
 
 
 def restored(problem, limits, values):
@@ -143,7 +182,7 @@ def _step(excess, slopes, reach, low, high):
 def _held(problem, limits, values):
     """By how much limits are missed, or just kept, in units of their sizes (parts,), and derivatives (parts, n)."""
     excess, slopes = zip(*(side_of(problem, limit, values) for limit in limits), strict=True)
-    sizes = [np.full(part.size, scale(limit)) for part, limit in zip(excess, limits, strict=True)]
+    sizes = [np.full(part.size, limit.scale) for part, limit in zip(excess, limits, strict=True)]
     equal = [np.full(part.size, limit.relation == "=") for part, limit in zip(excess, limits, strict=True)]
     found = np.concatenate(excess) / np.concatenate(sizes)
     held = (found > -KEPT) | np.concatenate(equal)
@@ -155,20 +194,15 @@ def missed(problem, limits, values):
     worst = 0.0
     for limit in limits:
         excess, _ = side_of(problem, limit, values)
-        worst = max(worst, np.max(np.abs(excess) if limit.relation == "=" else excess) / scale(limit))
+        worst = max(worst, np.max(np.abs(excess) if limit.relation == "=" else excess) / limit.scale)
     return worst if np.isfinite(worst) else np.inf
-
-
-def scale(limit):
-    """Size that a limit is counted in."""
-    return abs(limit.value) or 1.0
 
 
 def side_of(problem, limit, values):
     """By how much a design exceeds a limit (parts,), not positive where it is kept, and derivatives (n, parts)."""
     output, relation = limit.output, limit.relation
     sign = -1.0 if relation == ">=" else 1.0
-    bounded = output.reduction in measures.SIDES and not output.ratio and relation != "="
+    bounded = not callable(output) and output.reduction in measures.SIDES and not output.ratio and relation != "="
     if bounded and (relation == "<=") == (output.reduction != "smallest"):
         found, slopes = problem.curve(output, values).bounded(output.reduction, problem.turns)
         return found - sign * limit.value, slopes
@@ -209,18 +243,17 @@ class _Turned:
     def _rows(self):
         """Derivatives of goal and limits along the period, in units of their sizes."""
         curves = self.problem.curves(self.start)
-        outputs = [(item.output, scale(item)) for item in self.limits]
-        if not callable(self.goal_of.output):
-            outputs.append((self.goal_of.output, self.unit))
+        outputs = [*((item.output, item.scale) for item in self.limits), (self.goal_of.output, self.unit)]
         for output, unit in outputs:
+            if callable(output):
+                yield output(self.start)[1][None] / unit
+                continue
             slopes = curves[output.quantity].slopes
             if output.ratio:
                 value = np.sqrt(np.mean(curves[output.quantity].values ** 2)) or 1.0
                 yield slopes.T / (value * np.sqrt(slopes.shape[1]))
             else:
                 yield slopes.T / (unit * np.sqrt(slopes.shape[1]))
-        if callable(self.goal_of.output):
-            yield self.goal_of.output(self.start)[1][None] / self.unit
 
     def values(self, unknowns):
         values = self.start + self.matrix @ unknowns[: self.start.size]
@@ -233,7 +266,7 @@ class _Turned:
 
     def _goal(self, values):
         output, sign = self.goal_of
-        found, slopes = output(values) if callable(output) else self.problem.output(output, values)
+        found, slopes = self.problem.output(output, values)
         return sign * found, sign * slopes
 
     def goal(self, unknowns):
@@ -278,8 +311,8 @@ class _Turned:
         for limit in self.limits:
             if (limit.relation == "=") == equal:
                 excess, changes = side_of(self.problem, limit, values)
-                parts.append(-excess / scale(limit))
-                slopes.append(-changes / scale(limit))
+                parts.append(-excess / limit.scale)
+                slopes.append(-changes / limit.scale)
         found, changes = np.nan_to_num(np.concatenate(parts), nan=-FAR), np.hstack(slopes)
         rows = np.nan_to_num(self.matrix.T @ changes).T
         if not self.raised:

@@ -28,9 +28,8 @@ from .optimisation import (
     aim,
     aimed,
     as_asked,
-    held,
+    best_of,
     label,
-    multiple,
     require_reference,
     require_resolved,
     searches,
@@ -158,12 +157,11 @@ def torque_free_cam(
     _require_within_bound(start, problem, aims.limits, compared, begins[0])
     goal, plain = without_ratios(problem, aimed(problem, aims.output, aims.sign, robust), aims.limits)
     with _advised(start, problem, compared, aims.limits, begins[0]), moving_bar(problem, progress):
-        best, came_to = multiple(problem, goal, plain, begins, aims.limits)
-        best = held(problem, goal, plain, best)
+        best, kept, came_to = best_of(problem, goal, plain, begins, aims.limits)
     found = found_of(
         problem,
         goal if robust is not None else Goal(aims.output, aims.sign),
-        aims.limits,
+        kept,
         best,
         _shown(start.scene, compared, aims.outputs),
         label(aims.sign, aims.text, robust),

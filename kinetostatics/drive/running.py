@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..numbers.elementary import read_only
-from ..numbers.lazy import cached_property
+from ..numbers.lazy import cached_property, pyplot
 from ..numbers.leaves import with_fields
 from ..solution.scene import Scene
 from .driven import Driven
@@ -197,9 +197,7 @@ class Running(Powers):
 
         Returns both axes.
         """
-        import matplotlib.pyplot as plt
-
-        ax = ax if ax is not None else plt.subplots()[1]
+        ax = ax if ax is not None else pyplot().subplots()[1]
         angle = np.linspace(0.0, self.period, 721)
         speed, acceleration = self.motion(angle)
         drive = self._transmission * self._motor_torque(speed)

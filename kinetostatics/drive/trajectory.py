@@ -9,7 +9,7 @@ import numpy as np
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.elementary import read_only
-from ..numbers.lazy import cached_property
+from ..numbers.lazy import cached_property, pyplot
 from ..numbers.leaves import with_fields
 from ..solution.scene import Scene
 from .driven import Driven
@@ -172,9 +172,7 @@ class Trajectory:
 
     def plot(self, ax=None):
         """Crank speed over time, reversals and standstill marked; returns the axes."""
-        import matplotlib.pyplot as plt
-
-        ax = ax if ax is not None else plt.subplots()[1]
+        ax = ax if ax is not None else pyplot().subplots()[1]
         smooth = self.at(max(400, self.time.size)) if self.time.size > 1 else self
         ax.plot(smooth.time, smooth.speed)
         stops = [event.time for event in self.events if event.name in ("reversal", "standstill")]

@@ -14,28 +14,25 @@ def cores():
 
 
 def _problem():
-    """Why numba cannot be used, or None."""
-    if sys.modules.get("numba") is not None:
-        return None
+    """Why numba cannot be used and how to mend it, or None."""
+    numba = sys.modules.get("numba")
     try:
-        importlib.import_module("numba")
+        numba = numba or importlib.import_module("numba")
     except ImportError as error:  # not there, or installed beside a NumPy that it does not know, for instance
-        return "is not installed" if error.name == "numba" else f"cannot be imported: {error}"
-    return None
+        why = "is not installed" if error.name == "numba" else f"cannot be imported: {error}"
+        return f'{why}: pip install "kinetostatics[fast]"'
+    return "compiles nothing while NUMBA_DISABLE_JIT is set: unset it" if numba.config.DISABLE_JIT else None
 
 
 def available():
-    """Whether numba is installed, and can be imported."""
+    """Whether numba is installed, can be imported, and compiles."""
     return _problem() is None
 
 
 def require():
     """Raise `MissingLibraryError` unless numba is available."""
-    if not available():
-        raise MissingLibraryError(
-            f'the compiled engine needs numba, which {_problem()}: pip install "kinetostatics[fast]"; engine="numpy" '
-            "works without"
-        )
+    if problem := _problem():
+        raise MissingLibraryError(f'the compiled engine needs numba, which {problem}; engine="numpy" works without')
 
 
 @cache

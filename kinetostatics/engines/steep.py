@@ -192,7 +192,10 @@ def of_pieces(pieces, within, travel, rate):
     def of_value(bounds):
         bounds.of((travel, rate))
         jumps = plus(jump / UNIT, 0.0 / bounds.above(near, bounds.total(rate)))
-        off = 2.0 * bounds.total(travel)  # of the computed one by which a piece is chosen too
+        total = bounds.total(travel)
+        if total is None:  # the law of a follower gives it: the piece is the right one
+            return Error(0.0, jumps + lost)
+        off = 2.0 * total  # of the computed one by which a piece is chosen too
         jumps = plus(jumps, 0.0 / bounds.above(near, off))
         return Error(0.0, bounds.fused(change, bounds.above(off, None, distance / UNIT), jumps) + lost)
 

@@ -8,6 +8,7 @@ from typing import Any
 from ..machine.group import FRAME, Resolved
 from ..machine.links import Joint, Wrench, arm, first_at, load, second_at
 from ..machine.loads import value_of
+from ..machine.placement import place as placed
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.friction import Rubbing
 from ..mechanics.friction_laws import size_of
@@ -94,7 +95,7 @@ class Told(Dynamics):
                 for slider, guide in group.guides.items():
                     symbol = Symbol("u", "", f"guide{group.label}")
                     names.vector(guide.direction, symbol, f"unit vector of the guide of the {slider}", "1")
-                group.place(placement)
+                placed(group, placement)
                 self._placed(placement, group)
         for name, link in self.mechanism.links.items():
             with names.under(f"Mass centre of the {name}"):

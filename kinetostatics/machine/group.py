@@ -23,7 +23,8 @@ frozen dataclass derived from `Group`. It declares, by name,
 (those that it has none of are left out: `Group` says so), and computes, by kernels without branches on values,
 
     place(placement)                  its joints and links, from the joints it hangs on
-    closure(placement)                margin: negative where it cannot be assembled, small near a limit position
+    closure(placement)                margin, a number for each crank angle: negative where it cannot be assembled (and
+                                      `place` finds no position), small near a limit position
     requirement(placement)            what must hold for it to be assembled, with its numbers, for the error message
     resolve(placement, loads, along)  the forces on its links, and what they demand of other links: a `Resolved`
     follow(placement, joints)         its links where the joints it adds are known: for methods under study

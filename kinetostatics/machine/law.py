@@ -107,6 +107,8 @@ def bends_of(law):
 def angles(phi):
     """Crank angles as an array, one for a single number."""
     phi = checks.converted("law", "crank angle", phi, "rad")
+    if isinstance(phi, np.ndarray) and phi.size:
+        checks.require("law", checks.count("the number of crank angles", phi.size, size=phi.itemsize))
     try:
         return np.asarray(phi, dtype=float)
     except (TypeError, ValueError):

@@ -19,6 +19,7 @@ from .group import FRAME, Resolved
 from .links import Wrench, arm, present
 from .names import name_problems
 from .pairs import Turning
+from .placement import margin, place
 
 NAME = checks.Name()
 _NAMED_WELL: set = set()
@@ -243,8 +244,12 @@ class Mechanism(Batched):
         placement = self.crank.place(angle)
         with np.errstate(divide="ignore", invalid="ignore"):
             for group in self.groups:
-                group.place(placement)
+                place(group, placement)
         return placement
+
+    def margins(self, placement, shape):
+        """Closure margin of each group at the crank angles, of a shape with that of designs."""
+        return [margin(group, placement, shape) for group in self.groups]
 
     def resolve(self, placement, loads, along, of_part=None):
         """All forces, from the last group inwards, for given loads on links and forces along guides; a `Resolved`.
@@ -255,7 +260,7 @@ class Mechanism(Batched):
         for part in (*reversed(self.groups), self.crank):
             resolved = of_part(part, placement, loads, along) if of_part else part.resolve(placement, loads, along)
             if not part.trusted:
-                checks.require(self.name, *_output_problems(part, resolved))
+                checks.require(self.name, *output_problems(part, resolved))
             found.reactions.update(resolved.reactions)
             found.scalars.update(resolved.scalars)
             for name, demand in resolved.demands.items():
@@ -274,9 +279,12 @@ class Mechanism(Batched):
         return point.link, Wrench(demand.force, plus(moment(lever, demand.force), demand.moment))
 
 
-def _output_problems(part, resolved):
+def output_problems(part, resolved):
     """What a group found and does not declare, which could overwrite what another finds, and what it lacks."""
     kind = type(part).__name__
+    if not isinstance(resolved, Resolved):
+        yield f"{kind}: its resolve must return a Resolved(reactions, scalars, demands), got {checks.shown(resolved)}"
+        return
     for vector, found in ((True, resolved.reactions), (False, resolved.scalars)):
         declared = {name for name, output in part.outputs.items() if output.vector == vector}
         what = "reaction" if vector else "quantity"

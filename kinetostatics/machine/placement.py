@@ -3,6 +3,10 @@
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from ..errors import ParameterError
+from ..numbers import checks
 from ..numbers.planar import length, length_and_rest
 from .links import Joint, LinkMotion
 
@@ -95,3 +99,78 @@ class Placement:
     def course(self, joint) -> Course:
         """What is known of how a joint moves."""
         return self.courses.get(joint, UNKNOWN)
+
+
+def place(group, placement):
+    """Place a group; one of the user's own must add all that it declares."""
+    if group.trusted:
+        group.place(placement)
+        return
+    owner = type(group).__name__
+    try:
+        group.place(placement)
+    except KeyError as error:
+        hung = ", ".join(map(repr, group.hangs_on)) or "no joint"
+        raise ParameterError(
+            f"{owner} hangs on {hung}, but its place asks for {error}; it finds there what earlier parts of the chain "
+            "place, and what it adds itself"
+        ) from error
+    declared = (
+        ("joint", "joints", group.joints, Joint),
+        ("link", "links", group.links, LinkMotion),
+        ("travel of", "travels", group.guides, Joint),
+    )
+    checks.require(
+        owner,
+        *(
+            f"its place must put a {kind.__name__} for the {what} {name!r} into placement.{table}, as its "
+            f"{'guides' if table == 'travels' else table} declare, but puts {_shown(getattr(placement, table), name)}"
+            for what, table, names, kind in declared
+            for name in names
+            if not isinstance(getattr(placement, table).get(name), kind)
+        ),
+    )
+
+
+def _shown(table, name):
+    return checks.shown(table[name]) if name in table else "none"
+
+
+def margin(group, placement, shape):
+    """Closure margin of a group; of one of the user's own it must be of the shape of the crank angles, or fit it."""
+    found = group.closure(placement)
+    if group.trusted:
+        return found
+    words = "one value, not several" if isinstance(found, list | tuple) else checks.unfit(found)
+    if getattr(found, "dtype", np.dtype(float)) == np.dtype(bool):
+        words = "truth values; give numbers"
+    if words is None and not _fits(np.shape(found), shape):
+        words = f"of shape {np.shape(found)}"
+    text = "a number, or an array with a value for each crank angle"
+    checks.require(
+        type(group).__name__,
+        words and f"its closure must return its margin, {text}, got {checks.shown(found)}, {words}",
+    )
+    return found
+
+
+def _fits(shape, wanted):
+    try:
+        return np.broadcast_shapes(shape, wanted) == tuple(wanted)
+    except ValueError:
+        return False
+
+
+def require_positions(group, placement, margins):
+    """Refuse a group of the user's own whose margins say that it closes where it has no position."""
+    joints = (part for name in group.joints for part in placement.joints[name].position)
+    directions = (part for name in group.links for part in placement.links[name].direction)
+    known = np.isfinite(sum(np.asarray(part, dtype=float) for part in (*joints, *directions)))
+    wrong, value, angle = np.broadcast_arrays(~known & ~(margins < 0.0) | np.isnan(margins), margins, placement.angle)
+    checks.require(
+        type(group).__name__,
+        f"its closure must be a number, negative where its place finds no position, but is {value[wrong][0]:.6g} at "
+        f"{wrong.sum()} such crank angles, the first {np.degrees(angle[wrong][0]):.6g} deg"
+        if wrong.any()
+        else None,
+    )

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import AssemblyError, ConditionWarning, ParameterError
 from ..machine.loads import TURN
+from ..machine.placement import require_positions
 from ..numbers.elementary import ROUNDING
 from . import quantities
 
@@ -24,11 +25,13 @@ WORST = 100.0
 def check(solution):
     """Raise `AssemblyError` if the mechanism does not close at some angle; warn where half of the digits are lost."""
     placement, margins, least = solution.placement, [], 1.0
-    for group in solution.mechanism.groups:
-        margin = _looked_at(group.closure(placement))
+    found = solution.mechanism.margins(placement, solution.shape)
+    for group, margin in zip(solution.mechanism.groups, map(_looked_at, found), strict=True):
         if margin is None:
             continue
         margins.append(margin)
+        if not group.trusted and _in_double_precision(solution):
+            require_positions(group, placement, margin)
         smallest = margin.min()
         least *= min(smallest, 1.0)
         if smallest >= 0.0:
@@ -49,8 +52,11 @@ def warn_of_lost_digits(solution):
 
 
 def surely_well(solution, margins):
-    """Whether the margins of closure alone tell that no crank angle loses half of its digits."""
-    least = 1.0
+    """Whether the margins of closure alone tell that no crank angle loses half of its digits.
+
+    Those of a group of the user's own may be wrong.
+    """
+    least = 1.0 if solution.mechanism.trusted else 0.0
     for margin in margins:
         least *= min(margin.min(), 1.0)
     if not least > 0.0:
@@ -168,9 +174,9 @@ def _error(mechanism, group, placement, margin):
 
 def _open(mechanism, group, placement, where, gaps):
     text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in gaps)
+    why = group.requirement(placement) or f"the closure of {type(group).__name__} is negative there"
     return AssemblyError(
-        f"{mechanism.name} cannot be assembled {where}: {group.requirement(placement)}. It does not close for crank "
-        f"angles {text}",
+        f"{mechanism.name} cannot be assembled {where}: {why}. It does not close for crank angles {text}",
         gaps,
     )
 

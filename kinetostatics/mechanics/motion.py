@@ -177,12 +177,23 @@ class Motion:
 
     def elongation(self, free_position, slider=None):
         """Coordinate of a slider's pin along its guide less a free position (m), free of cancellation, (..., N), m."""
+        checks.require("elongation", self._number_problem("free_position", free_position))
         slider = self._slider(slider)
         travel = self._travel(slider)
         group = next(group for group in self.mechanism.groups if slider in group.links)
         if not hasattr(group, "elongation"):
             return self._scalar(travel.position - free_position)
         return self._scalar(group.elongation(self.placement, free_position))
+
+    def _number_problem(self, name, value):
+        """What is wrong with what must be a number, m, or one for each crank angle; or None."""
+        words = checks.unfit(value)
+        if words is None and isinstance(value, list | tuple):
+            words = "several; give an array"
+        if words is None and isinstance(value, np.ndarray):
+            words = f"of {value.dtype}" if value.dtype.kind not in "iufO" else None
+            words = words or checks.fitting(**{name: value.shape, "crank angles": self.shape})
+        return words and f"{name} must be a number, m, got {checks.shown(value)}, {words}"
 
     @property
     def slider_position(self):
@@ -202,7 +213,7 @@ class Motion:
     def measure(self, name):
         """A quantity of motion that a group declares, such as "pressure_angle", (..., N)."""
         for group in self.mechanism.groups:
-            if name in group.motions:
+            if isinstance(name, str) and name in group.motions:
                 return self._scalar(group.motion(name, self.placement))
         raise QuantityError(
             checks.choice(f"{self.mechanism.name}: quantity", name, tuple(of_mechanism(self.mechanism)))
@@ -211,7 +222,7 @@ class Motion:
     @property
     def closure(self):
         """Margin of each group, a tuple of (..., N): negative where it cannot be assembled, 0 at a limit position."""
-        return tuple(self._scalar(group.closure(self.placement)) for group in self.mechanism.groups)
+        return tuple(map(self._scalar, self.mechanism.margins(self.placement, self.shape)))
 
     @property
     def crank_sense(self):
@@ -262,8 +273,9 @@ class Motion:
         return Spot(link.joint, arm(link.direction, *map(present, place[1:])), link)
 
     def _look_up(self, kind, name, table):
-        if name not in table:
-            raise QuantityError(checks.choice(f"{self.mechanism.name}: {kind}", name, table))
+        if not isinstance(name, str) or name not in table:
+            several = "; ask for one at a time" if isinstance(name, list | tuple | set | np.ndarray) else ""
+            raise QuantityError(f"{checks.choice(f'{self.mechanism.name}: {kind}', name, table)}{several}")
         return table[name]
 
     def as_vector(self, parts):

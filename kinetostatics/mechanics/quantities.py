@@ -132,7 +132,7 @@ def quantity(solution, name) -> Quantity:
         The mechanism has no such quantity; the message lists those it has.
     """
     known = of_scene(solution)
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", name, tuple(known)))
     return known[name]
 

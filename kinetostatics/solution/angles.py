@@ -9,16 +9,22 @@ from ..numbers.elementary import read_only
 
 ANGLE = checks.Number("rad", "crank_angle", table=True)
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
+BYTES = 8
+"""Of a crank angle, and of one value there."""
+MOST = checks.MEMORY // BYTES
+"""Crank angles, from which on not even these have room in memory."""
 
 
 def crank_angles(given, owner="solve"):
     """Crank angles of any kind: a locked copy of plain ones, those of another array library as they are."""
-    if type(given) is np.ndarray and given.dtype in PRECISIONS:
+    if type(given) is np.ndarray and given.dtype in PRECISIONS and given.size <= MOST:
         return read_only(given.copy())
     if ANGLE.quick(given) is not checks.UNSURE:
         return read_only(np.array(float(given)))
     if isinstance(given, list | tuple) and not given:
         checks.require(owner, "there are no crank angles")
+    if isinstance(given, np.ndarray) and given.size:
+        checks.require(owner, checks.count("the number of crank angles", given.size, size=BYTES))
     angle, problem = ANGLE.taken(given)
     checks.require(owner, problem)
     return angle if hasattr(angle, "shape") else read_only(np.array(angle))

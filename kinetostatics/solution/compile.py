@@ -56,6 +56,7 @@ def compile(  # noqa: A001 - the contract's name
     >>> ks.compile(program.scene, "balancing_torque", engine="numpy", precision="single")(0.5)["balancing_torque"].dtype
     dtype('float32')
     """
+    checks.require("compile", checks.names("quantities", quantities), checks.names("parameters", parameters))
     names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     checks.require(
         "compile",

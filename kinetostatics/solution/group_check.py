@@ -14,7 +14,8 @@ from ..errors import ParameterError
 from ..machine.crank import ORIGIN, ray
 from ..machine.group import FRAME, MEMBERS
 from ..machine.links import Joint, LinkMotion, Wrench, load, virtual_work
-from ..machine.placement import Course, Placement
+from ..machine.mechanism import output_problems
+from ..machine.placement import Course, Placement, margin, place, require_positions
 from ..numbers import checks
 from ..numbers.planar import added, length, number, product, stretched, subtracted, turned, vector, work
 
@@ -83,7 +84,8 @@ def check(group):
     Raises
     ------
     ParameterError
-        A member is missing, or the group closes nowhere near its own size.
+        A member is missing, `place` adds less than the group declares, `closure` is no number for each crank angle or
+        not negative where `place` finds no position, or the group closes nowhere near its own size.
 
     Examples
     --------
@@ -135,11 +137,7 @@ class _Stage(NamedTuple):
             departure = added(joints[name].second, joints[name].position)
             placement.courses[name] = Course(departure=departure)
         with np.errstate(all="ignore"):
-            try:
-                self.group.place(placement)
-            except KeyError as error:
-                name, hung = type(self.group).__name__, ", ".join(map(repr, self.hung or ["O"]))
-                raise ParameterError(f"check: {name} hangs on {hung}, but its place asks for {error}") from error
+            place(self.group, placement)
         return placement
 
     def _joint(self, order, turn, way):
@@ -161,16 +159,19 @@ def _stage(group):
     reach, direction = np.meshgrid(np.geomspace(0.02 * size, farthest, 40), 2 * np.pi * (np.arange(30) + 0.3) / 30)
     x, y = (reach * np.cos(direction)).ravel(), (reach * np.sin(direction)).ravel()
     whole = _Stage(group, size, (x, y), 2.4 * np.arange(x.size) % (2 * np.pi))
-    with np.errstate(all="ignore"):
-        margin = np.asarray(group.closure(whole.placed()), dtype=float)
-    if margin.ndim > 1:
+    if any(np.ndim(length) > 1 for length in group.lengths):
         raise ParameterError("check: give a group of one design, not a batch")
-    margin = np.broadcast_to(margin, x.shape)
-    closing = np.flatnonzero(margin > 0.1) if np.any(margin > 0.1) else np.flatnonzero(margin > 1e-3)
+    with np.errstate(all="ignore"):
+        placement = whole.placed()
+        margins = margin(group, placement, whole.angle.shape)
+    margins = np.broadcast_to(np.asarray(margins, dtype=float), x.shape)
+    if not group.trusted:
+        require_positions(group, placement, margins)
+    closing = np.flatnonzero(margins > 0.1) if np.any(margins > 0.1) else np.flatnonzero(margins > 1e-3)
     if not closing.size:
         name = type(group).__name__
         raise ParameterError(
-            f"check: {name} closes nowhere within {farthest:g} m of O, closure is at most {margin.max()}"
+            f"check: {name} closes nowhere within {farthest:g} m of O, closure is at most {margins.max()}"
         )
     chosen = closing[np.linspace(0, closing.size - 1, min(PLACES, closing.size)).astype(int)]
     return whole._replace(position=(x[chosen], y[chosen]), angle=whole.angle[chosen])
@@ -289,6 +290,8 @@ def _of_forces(stage):
 def _work_missing(stage, placement, wrenches, pushes):
     """Work that is left over, relative to the largest part of it."""
     resolved = stage.group.resolve(placement, wrenches, pushes)
+    if not stage.group.trusted:
+        checks.require("check", *output_problems(stage.group, resolved))
     parts = [virtual_work(placement.links[name], wrench) for name, wrench in wrenches.items()]
     parts += [product(push, placement.travels[name].first) for name, push in pushes.items()]
     for name, demand in resolved.demands.items():

@@ -37,7 +37,8 @@ class Parameters:
 def unknown(scene, path, known=None):
     """What is wrong with a path that is none of the known ones of a scene, all unless told; or None."""
     problem = checks.choice("parameter", path, tuple(scene.places if known is None else known))
-    place = paths.places(scene, absent=True).get(path) if problem and path not in scene.places else None
+    is_other = problem and isinstance(path, str) and path not in scene.places
+    place = paths.places(scene, absent=True).get(path) if is_other else None
     if place is None:
         return problem
     within = place.steps[:-1]

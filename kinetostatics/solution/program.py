@@ -23,6 +23,8 @@ from .parameters import DRIVE, fixed, is_judged_together, is_zero, keeping, leav
 from .scene import unchecked
 from .slopes import slopes
 
+MAPPINGS = (dict, MappingProxyType)
+"""Types that are mappings for sure: asking for the protocol takes longer."""
 FEW = 180
 """Crank angles around the turn at which friction is looked at."""
 
@@ -209,6 +211,7 @@ class Program:
             A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
         by, values = _parted(by, values)
+        checks.require("program", None if by is None else checks.names("by", by))
         every = tuple(path for path in self.parameters if path not in self._fixed)
         names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
         checks.require("program", None if names else "by names no parameter to derive by")
@@ -242,8 +245,8 @@ class Program:
         wrong = problems(angle)
         if wrong:
             checks.require("program", wrong)
-        if values and not isinstance(values, Mapping):
-            checks.require("program", f"values must be a dict of parameter to number, got {checks.shown(values)}")
+        if type(values) not in MAPPINGS and not isinstance(values, Mapping):
+            checks.require("program", checks.mapping("values", values))
         return self._state(
             angle, values, self._leaves.with_numbers(self._numbers_with(values)) if values else self._leaves
         )
@@ -288,10 +291,10 @@ class Program:
             )
 
     def _require_known(self, names):
-        if all(path in self._numbers for path in names):
+        if all(isinstance(path, str) and path in self._numbers for path in names):
             return
         for path in names:
-            if path in self._absent:
+            if isinstance(path, str) and path in self._absent:
                 why = "zero in the scene" if is_zero(self.scene.places[path].value(self.scene)) else "of an axis"
                 raise ParameterError(
                     f'program: {path} is {why} and so left out; keep it by compile(..., parameters=("{path}",))'

@@ -19,7 +19,7 @@ from ..mechanics.dynamics import Dynamics
 from ..numbers import checks, paths
 from ..numbers.leaves import made
 from . import slips
-from .angles import crank_angles, problems
+from .angles import BYTES, crank_angles, problems
 from .checked import checked
 from .drive_and_loads import in_a_line
 from .parameters import DRIVE, SENSE, Parameters, unknown
@@ -103,6 +103,7 @@ class Scene(Parameters):
         >>> ks.Scene.of(ks.solve(pump, 0.5, crank_speed=100.0)).crank_speed
         100.0
         """
+        checks.require("scene", checks.solution("solution", solution))
         return cls(**{name: getattr(solution, name) for name in PARTS})
 
     @property
@@ -133,6 +134,7 @@ class Scene(Parameters):
             There is no such path, or no machine has such a value.
         """
         known = self.places
+        checks.require("scene", checks.mapping("values", values))
         checks.require("scene", *(unknown(self, path) for path in values if path not in known))
         return paths.with_values(self, {known[path].steps: value for path, value in values.items()})
 
@@ -315,6 +317,8 @@ def unchecked(scene, crank_angle, engine=None):
     _, leaves = solution.apart
     if not leaves.are_plain:
         checks.require("solve", checks.fitting(**_shapes(scene, angle)))
+        values = math.prod(solution.shape)
+        checks.require("solve", values and checks.count("designs times crank angles", values, size=BYTES))
     vars(solution)["engine"] = _engine(engine, angle, solution)
     return solution
 

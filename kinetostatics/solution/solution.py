@@ -324,7 +324,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
 
     def _force(self, kind, name, vector):
         """A force by name; all are computed together if they are not too many."""
-        if name in self._values:
+        if isinstance(name, str) and name in self._values:
             return self._values[name]
         self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
         return self._found(name)

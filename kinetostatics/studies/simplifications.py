@@ -15,6 +15,7 @@ from ..machine.group import FRAME
 from ..machine.guide import Guide
 from ..machine.links import Link
 from ..machine.loads import KINDS
+from ..numbers import checks
 from ..numbers.leaves import mapped
 from ..solution.solution import Solution
 
@@ -60,6 +61,7 @@ def two_mass_coupler(mechanism, only=None):
     >>> simpler.links["crank"].mass, simpler.links["slider"].mass, simpler.links["coupler"].mass
     (75.0, 675.0, 0.0)
     """
+    checks.require("two_mass_coupler", checks.mechanism("mechanism", mechanism))
     made = mechanism
     for bar in reversed(mechanism.couplers):
         coupler = made.links[bar.link]

@@ -13,6 +13,7 @@ from functools import cache
 import numpy as np
 import pandas as pd
 
+from ..errors import ParameterError
 from ..machine.builders import crank_slider, four_bar, slotted_lever
 from ..machine.loads import Gravity, Spring, TorsionDamper, TorsionSpring
 from ..numbers import checks
@@ -95,7 +96,7 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     from scipy.stats import qmc
 
     require_mapping(spreads)
-    _require_room(count, len(spreads))
+    _require_room(count, len(spreads), checks.seed("seed", seed))
     return sample(spreads, lambda size: qmc.LatinHypercube(size, rng=seed).random(count))
 
 
@@ -132,7 +133,7 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
     from scipy.stats import qmc
 
     require_mapping(spreads)
-    _require_room(count, len(spreads))
+    _require_room(count, len(spreads), checks.seed("seed", seed))
     return sample(spreads, lambda size: qmc.Sobol(size, rng=seed).random(count))
 
 
@@ -167,7 +168,7 @@ def random(spreads, count, seed=0) -> pd.DataFrame:
     True
     """
     require_mapping(spreads)
-    _require_room(count, len(spreads))
+    _require_room(count, len(spreads), checks.seed("seed", seed))
     return sample(spreads, lambda size: np.random.default_rng(seed).random((count, size)))
 
 
@@ -201,15 +202,23 @@ def sample(spreads, uniform) -> pd.DataFrame:
     [[550.0, 712.0], [650.0, 712.0]]
     """
     found = distributions(spreads)
-    numbers = np.asarray(uniform(len(found)) if callable(uniform) else uniform)
+    given = uniform(len(found)) if callable(uniform) else uniform
+    if isinstance(given, np.ndarray) and given.size:
+        _require_room(given.size, 1)
+    try:
+        numbers = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(
+            f"designs: uniform must be numbers from 0 to 1, an array (designs, {len(found)}), got {checks.shown(given)}"
+        ) from None
     fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
     checks.require("designs", None if fits else f"{len(found)} parameters need as many columns, got {numbers.shape}")
     values = [distribution.ppf(column) for (distribution, _), column in zip(found.values(), numbers.T, strict=True)]
     return _table(np.transpose(values), found)
 
 
-def _require_room(count, parameters):
-    """Raise an error unless a table of so many designs can be held."""
+def _require_room(count, parameters, *problems):
+    """Raise an error unless a table of so many designs can be held, with what else is wrong."""
     whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
     checks.require(
         "designs",
@@ -218,6 +227,7 @@ def _require_room(count, parameters):
         "them in parts"
         if whole and count * parameters > LARGEST
         else None,
+        *problems,
     )
 
 

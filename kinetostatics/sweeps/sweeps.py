@@ -117,7 +117,11 @@ def sweep(
     [3.9, 7.6, 50.6]
     """
     path = folder is None or isinstance(folder, str | PathLike)
-    checks.require("sweep", None if path else f"folder must be a path, got {checks.shown(folder)}")
+    checks.require(
+        "sweep",
+        None if path else f"folder must be a path, got {checks.shown(folder)}",
+        checks.truth("progress", progress),
+    )
     job, engines, compared = job_of(
         source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
     )

@@ -120,7 +120,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     checks.require(
         "tolerances",
         None
-        if spreads
+        if not isinstance(spreads, Mapping | None) or spreads
         else 'no spreads are given, nor has the case file any for this variant, in "tolerances"'
         if is_case(case)
         else 'no spreads are given, such as {"slider.mass": "normal 25 kg +- 1 kg"}',

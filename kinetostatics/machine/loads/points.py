@@ -312,18 +312,23 @@ class PointDamper(PointLoad):
     RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=Between())
 
     def pull(self, motion):
-        """Force on the first point, N."""
-        d, slope = self._directed(motion)
+        """Force on the first point, N; None where neither point moves, and without a coefficient."""
+        directed = self._directed(motion)
+        if directed is None or present(self.coefficient) is None:
+            return None
+        d, slope = directed
         shortening = dot(d, slope) / divisor(dot(d, d), TINY)
         return stretched(-self.coefficient * motion.crank_speed * shortening, d)
 
     def _directed(self, motion):
-        """Vector from the second point to the first, and its derivative by crank angle.
+        """Vector from the second point to the first, and its derivative by crank angle; None where neither moves.
 
         Where the points meet, and rounding is all that is left of the vector, it is moved along its derivative: that is
         the direction in which they pass each other. The move fades with the fourth power of the distance.
         """
         first, second = (motion.spot(place) for place in self.between)
+        if first.first is None and second.first is None:
+            return None
         positions = [vector(spot.position) for spot in (first, second)]
         slope, d = vector(subtracted(first.first, second.first)), vector(subtracted(*positions))
         square = dot(slope, slope)

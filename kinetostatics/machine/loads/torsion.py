@@ -256,4 +256,4 @@ class TorsionDamper(Couple):
         """Couple on the link, N m."""
         links = motion.placement.links
         ratio = minus(links[self.on].ratio, None if self._other is None else links[self._other].ratio)
-        return number(product(-self.coefficient * motion.crank_speed, ratio))
+        return number(product(product(present(self.coefficient), -motion.crank_speed), ratio))

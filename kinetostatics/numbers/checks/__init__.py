@@ -28,13 +28,16 @@ from .meant import nearest
 from .measured import DimensionError, converted, is_quantity, plain
 from .problems import (
     ANGLE,
+    MEMORY,
     Problem,
     case,
     choice,
     count,
     fitting,
     hint,
+    mapping,
     mechanism,
+    names,
     quantity,
     require,
     seed,
@@ -60,6 +63,7 @@ from .values import kept, known, unfit
 
 __all__ = [
     "ANGLE",
+    "MEMORY",
     "UNSURE",
     "Checked",
     "DimensionError",
@@ -85,7 +89,9 @@ __all__ = [
     "is_quantity",
     "kept",
     "known",
+    "mapping",
     "mechanism",
+    "names",
     "nearest",
     "plain",
     "quantity",

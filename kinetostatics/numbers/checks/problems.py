@@ -1,6 +1,7 @@
 """What is wrong with values, as sentences, and the one error that lists all of them."""
 
 import numbers
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -69,6 +70,18 @@ def count(name, value, *, size=None):
 def truth(name, value):
     """What is wrong with a yes or no, as a sentence, or None."""
     return None if isinstance(value, bool | np.bool_) else f"{name} must be True or False, got {shown(value)}"
+
+
+def mapping(name, value):
+    """What is wrong with what must give numbers by path, or None."""
+    found = isinstance(value, Mapping)
+    return None if found else f'{name} must be a dict of path to number, as {{"crank_length": 0.3}}, got {shown(value)}'
+
+
+def names(name, value):
+    """What is wrong with what must be a name, or several, or None."""
+    several = isinstance(value, Iterable) and not isinstance(value, bytes | Mapping)
+    return None if several else f"{name} must be a name, or several in a list, got {shown(value)}"
 
 
 def seed(name, value):

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from .measured import plain
+from .problems import MEMORY
 
 PLAIN = (int, float, np.integer, np.floating, Fraction, Decimal)
 
@@ -103,6 +104,8 @@ def _locked(array):
     """A copy of an array as floats that nobody writes to; of objects if they are numbers of another kind."""
     if array.dtype == float and array.flags.owndata and not array.flags.writeable:
         return array
+    if array.size * 8 > MEMORY:
+        raise UnfitError(f"of {array.size} numbers, which would take {array.size * 8 // 10**9} GB of memory")
     kind: type = float
     if array.dtype == object:
         kinds = set(map(type, array.flat))
