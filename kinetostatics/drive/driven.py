@@ -129,7 +129,7 @@ class Driven:
 
         Friction is that of turning in the `direction` of the motor unless told.
         """
-        found = self.program(angle, {"crank_speed": speed}) if self.loads_by_speed else self.program(angle)
+        found = self.program.evaluated(angle, {"crank_speed": speed} if self.loads_by_speed else {})
         inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
 
@@ -184,9 +184,10 @@ class Driven:
     def _values(self, angle, speed):
         angle = np.asarray(angle, dtype=float)
         if not self.loads_by_speed:
-            found = self.program(angle)
+            found = self.program.evaluated(angle)
             return tuple(found[name] for name in QUANTITIES)
-        found = self.program(angle.reshape(-1, 1), {"crank_speed": np.asarray(speed, dtype=float).reshape(-1, 1)})
+        speeds = np.asarray(speed, dtype=float).reshape(-1, 1)
+        found = self.program.evaluated(angle.reshape(-1, 1), {"crank_speed": speeds})
         *scalars, closure = (np.reshape(found[name], (-1, *angle.shape)) for name in QUANTITIES)
         return *(part[0] for part in scalars), closure
 

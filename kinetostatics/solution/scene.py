@@ -251,7 +251,7 @@ def _begun(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
-    for text in (*odd(solution), *(hints.of_count(crank_angle) or hints.of_angles(solution.crank_angle))):
+    for text in (*odd(solution), *hints.of_given_angles(crank_angle, solution.crank_angle)):
         warnings.warn(HintWarning(scene.mechanism.name, text), stacklevel=3)
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded

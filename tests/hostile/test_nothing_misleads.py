@@ -1,5 +1,6 @@
 """What looks right and is wrong is refused, warned of or mended: states of groups, hints, designs, sweeps, loads."""
 
+import warnings
 from dataclasses import fields
 
 import numpy as np
@@ -116,3 +117,81 @@ def test_check_refuses_a_group_that_places_its_links_elsewhere_when_asked_again(
         placement.joints["B"] = joint._replace(position=(x + 1e-3 * next(count), y))
 
     assert any("place called twice" in problem for problem in ks.check(own(GROUPS["slider"], place=place)).problems)
+
+
+# Hints: what looks like degrees, or like another unit
+
+SCENE = ks.Scene(
+    ks.crank_slider(0.1, 0.4, coupler=ks.Link(2.0, 0.2, 0.03), slider=ks.Link(3.0)), 5.0, 0.0, ks.Gravity()
+)
+DEGREES = np.arange(0.0, 360.0, 10.0)
+
+
+def program():
+    return ks.compile(SCENE, ("balancing_torque", "O"), engine="numpy")
+
+
+def running():
+    return ks.drive.steady(SCENE, None, flywheel=50.0).solution
+
+
+def with_inertia(times):
+    """A solution with a coupler of so many times mass times length squared."""
+    rod = ks.Link(2.0, 0.2, times * 2.0 * 0.4**2)
+    return ks.solve(ks.crank_slider(0.1, 0.4, coupler=rod, slider=ks.Link(3.0)), 0.5, crank_speed=5.0)
+
+
+HINTS = {
+    "solution at degrees": (lambda: SCENE.solve(36).at(DEGREES), "from 0 to 350 by 10 look like degrees"),
+    "solution at a list": (lambda: SCENE.solve(36).at([0, 90, 180, 270]), "from 0 to 270 by 90 look like degrees"),
+    "solution at 90.0": (lambda: SCENE.solve(36).at(90.0), "the crank angle 90 looks like degrees"),
+    "solution at a count": (lambda: SCENE.solve(36).at(360), "360 is taken as one crank angle"),
+    "running at degrees": (lambda: running().at(DEGREES), "from 0 to 350 by 10 look like degrees"),
+    "running at a count": (lambda: running().at(360), "360 is taken as one crank angle"),
+    "program at degrees": (lambda: program()(DEGREES), "from 0 to 350 by 10 look like degrees"),
+    "program at 90.0": (lambda: program()(90.0), "the crank angle 90 looks like degrees"),
+    "program at a count": (lambda: program()(360), "360 is taken as one crank angle"),
+    "derivatives at degrees": (lambda: program().derivatives(DEGREES), "look like degrees"),
+    "bounds at degrees": (lambda: program().error_bound(DEGREES), "look like degrees"),
+    "explained at 39": (lambda: SCENE.solve(36).explain("O", 39), "39 looks like degrees.*39 rad.*np.radians"),
+    "explained at 39.0": (lambda: SCENE.solve(36).explain("O", 39.0), "39 looks like degrees"),
+    "explained at -45": (lambda: SCENE.solve(36).explain("O", [-45]), "-45 looks like degrees"),
+    "coast from 39": (
+        lambda: ks.drive.coast(SCENE, 1.0, from_angle=39, from_speed=3.0, until=0.01),
+        "coast: the crank angle 39 looks like degrees",
+    ),
+    "cam profile": (lambda: ks.cams.Circle(0.3, (0.05, 0.1)).profile(0.02, DEGREES), "look like degrees"),
+    "inertia in kg cm2": (lambda: with_inertia(1e4 / 12), r"inertia of the coupler.*1e\+04 times.*kg cm2.*0.02667 kg"),
+    "inertia in kg mm2": (lambda: with_inertia(1e6 / 12), r"inertia of the coupler.*1e\+06 times.*kg mm2.*0.02667 kg"),
+    "inertia of 3.5 m l2": (lambda: with_inertia(3.5), "inertia of the coupler.*42 times.*about the mass centre"),
+    "batch of inertias": (lambda: with_inertia(np.array([[1 / 12], [1e4 / 12]])), "kg cm2.*0.02667 kg m2"),
+}
+
+
+@pytest.mark.parametrize("name", HINTS)
+def test_a_slip_is_hinted_at_once_where_the_user_made_it(name):
+    ask, words = HINTS[name]
+    with pytest.warns(ks.HintWarning, match=words) as caught:
+        ask()
+    assert [item.filename for item in caught if item.category is ks.HintWarning] == [__file__]
+
+
+@pytest.mark.parametrize(("area", "hinted"), [(-78.5, True), (7850.0, True), (-78.5e-4, False), (0.785, False)])
+def test_an_area_in_square_centimetres_is_hinted_at_whatever_its_sign(tmp_path, area, hinted):
+    path = tmp_path / "pressure.csv"
+    path.write_text("crank_angle [deg],pressure [bar]\n0,1\n90,5\n180,2\n270,1\n", encoding="utf-8")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        ks.Table.from_csv(path, area=area)
+    assert [str(item.message) for item in caught] == [f"table: area is {area:g} m2; is it in cm2, or in mm2?"] * hinted
+
+
+def test_angles_of_several_turns_in_radians_are_not_hinted_at():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        solution, made = SCENE.solve(36), program()
+        for angles in (40.5, 39.0, np.linspace(0.0, 40.0 * np.pi, 721), np.linspace(-30.0, 30.0, 11)):
+            solution.at(angles)
+            made(angles)
+        solution.explain("O", 40.5)
+        with_inertia(2.9)
