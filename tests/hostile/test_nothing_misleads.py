@@ -121,9 +121,8 @@ def test_check_refuses_a_group_that_places_its_links_elsewhere_when_asked_again(
 
 # Hints: what looks like degrees, or like another unit
 
-SCENE = ks.Scene(
-    ks.crank_slider(0.1, 0.4, coupler=ks.Link(2.0, 0.2, 0.03), slider=ks.Link(3.0)), 5.0, 0.0, ks.Gravity()
-)
+MACHINE = ks.crank_slider(0.1, 0.4, coupler=ks.Link(2.0, 0.2, 0.03), slider=ks.Link(3.0))
+SCENE = ks.Scene(MACHINE, 5.0, loads=ks.Gravity())
 DEGREES = np.arange(0.0, 360.0, 10.0)
 
 
@@ -195,3 +194,165 @@ def test_angles_of_several_turns_in_radians_are_not_hinted_at():
             made(angles)
         solution.explain("O", 40.5)
         with_inertia(2.9)
+
+
+# Balancing: gaps, ratios, springs of no stiffness
+
+WEIGHT = ks.Counterweight(arm=0.05)
+OPEN = {
+    "crank-slider": ks.crank_slider(0.3, 0.25, crank=ks.Link(1.0, 0.1), coupler=ROD, slider=BODY),
+    "four-bar": ks.four_bar(0.4, 0.3, 0.4, rocker_pivot=(0.5, 0.0), crank=ks.Link(1.0, 0.1), coupler=ROD, rocker=BODY),
+}
+INTERVALS = {"crank-slider": [(56.4427, 123.557), (236.443, 303.557)], "four-bar": [(101.537, 258.463)]}
+
+
+@pytest.mark.parametrize("norm", ["largest", "mean", "weighted"])
+@pytest.mark.parametrize("name", OPEN)
+def test_a_mechanism_with_gaps_has_no_optimal_counterweight(name, norm):
+    with pytest.raises(ks.AssemblyError, match="so that the crank turns all round") as caught:
+        ks.balancing.optimal(OPEN[name], norm, crank=WEIGHT)
+    assert np.degrees(caught.value.intervals) == pytest.approx(np.array(INTERVALS[name]), rel=1e-5)
+
+
+@pytest.mark.parametrize("name", OPEN)
+def test_machines_with_gaps_have_no_quantile(name):
+    spread = ks.design.Spread(0.9, {"coupler.mass": "normal 0 % +- 1 %"})
+    with pytest.raises(ks.AssemblyError, match="so that the crank turns all round"):
+        ks.design.over_spread(ks.Scene(OPEN[name], 5.0), "largest O", spread, samples=16)
+
+
+def test_a_spread_that_reaches_machines_with_gaps_is_refused():
+    spread = ks.design.Spread(0.9, {"coupler_length": "normal 0 % +- 5 %"})
+    scene = ks.Scene(ks.crank_slider(0.3, 0.31, coupler=ROD, slider=BODY), 5.0)
+    with pytest.raises(ks.ParameterError, match=r"over_spread: \d+ of 64 machines .* do not close .*; narrow the spr"):
+        ks.design.over_spread(scene, "mean_absolute balancing_torque", spread, samples=64)
+
+
+@pytest.mark.parametrize("ratio", [-5, -0.1, 1.1, 5.0])
+def test_a_ratio_that_makes_the_force_larger_both_ways_is_refused(ratio):
+    with pytest.raises(ks.ParameterError, match=f"ratio must be from 0 .* to 1 .*, got {ratio:g}: beyond an end"):
+        ks.balancing.partial(MACHINE, ratio, crank=ks.Counterweight(arm=-0.05))
+
+
+MOWER = """
+title = "Mower"
+[variants.mower]
+mechanism = "crank-slider"
+crank_speed = "600 rpm"
+crank_length = "38 mm"
+coupler_length = "300 mm"
+coupler = { mass = "2 kg", centre = "100 mm" }
+slider.mass = "5 kg"
+balancing = { method = "partial", ratio = RATIO, crank = { arm = "-20 mm" } }
+"""
+SAW = """
+title = "Saw"
+[variants.saw]
+mechanism = "cam-crank-slider"
+crank_speed = "SPEED"
+coupler_length = "2.0219 m"
+slider.mass = "MASS"
+cam = { kind = "circle", radius = "0.3 m", centre = ["-0.0219 m", "0 m"] }
+spring = { stiffness = "balance the slider", free_position = "2 m" }
+"""
+CASES = {
+    "ratio of -5": (MOWER, {"RATIO": "-5"}, r"mower\.balancing\.ratio must be from 0 .* got -5"),
+    "ratio of 1.5": (MOWER, {"RATIO": "1.5"}, r"mower\.balancing\.ratio must be from 0 .* got 1\.5"),
+    "no speed": (
+        SAW,
+        {"SPEED": "0 rpm", "MASS": "600 kg"},
+        r"saw\.spring\.stiffness: .*the crank speed is 0, so .* the stiffness would be 0; give",
+    ),
+    "no mass": (SAW, {"SPEED": "320 rpm", "MASS": "0 kg"}, r"saw\.spring\.stiffness: .*the mass is 0, so"),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_case_that_balances_nothing_is_refused_with_its_key(tmp_path, name):
+    text, values, words = CASES[name]
+    path = tmp_path / "case.toml"
+    for word, value in values.items():
+        text = text.replace(word, value)
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ks.CaseError, match=words):
+        ks.load_case(path)
+
+
+@pytest.mark.parametrize(
+    ("mass", "speed", "words"),
+    [
+        (600.0, 0.0, "the crank speed is 0, so"),
+        (0.0, 33.5, "the mass is 0, so"),
+        (0.0, 0.0, "the mass is 0 and the crank speed is 0"),
+        (np.array([[600.0], [0.0]]), 33.5, "the mass is 0, so"),
+    ],
+)
+def test_a_spring_that_balances_nothing_is_refused(mass, speed, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.Spring.balancing(mass, speed, free_position=2.0)
+
+
+# Designs and sweeps
+
+SPREADS = {"slider.mass": "500..700 kg", "spring.stiffness": "normal 712 kN/m +- 5 kN/m"}
+
+
+@pytest.mark.parametrize(
+    ("uniform", "words"),
+    [
+        ([[2.0, 0.5]], "must be from 0 to 1, .* but 1 of 2 are not, 2 for instance"),
+        ([[0.5, -0.1], [0.5, 0.5]], "but 1 of 4 are not, -0.1 for instance"),
+        ([[np.nan, 0.5]], "but 1 of 2 are not, nan for instance"),
+        (lambda size: np.full((3, size), 600.0), "but 6 of 6 are not, 600 for instance"),
+        ([[0.5, 0.0]], "spring.stiffness is infinite where its number is 0 or 1"),
+        ([[0.5, 1.0]], "spring.stiffness is infinite where its number is 0 or 1"),
+    ],
+)
+def test_a_sample_of_numbers_that_are_no_shares_is_refused(uniform, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.designs.sample(SPREADS, uniform)
+
+
+def test_the_ends_of_a_uniform_spread_are_in_it():
+    table = ks.designs.sample({"slider.mass": "500..700 kg"}, [[0.0], [1.0]])
+    assert table["slider.mass [kg]"].tolist() == [500.0, 700.0]
+
+
+def made_of(mass):
+    return ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(mass)), 33.5)
+
+
+DESIGNS = {"slider.mass": "500..700 kg:3"}
+ASKED = {
+    "variant, function": (lambda: (made_of, {"mass": "5..7 kg:3"}), {"variant": "x"}, "a function has none, got 'x'"),
+    "variant, scene": (lambda: (made_of(600.0), DESIGNS), {"variant": "x"}, "a Scene has none, got 'x'"),
+    "reference, function": (
+        lambda: (made_of, {"mass": "5..7 kg:3"}),
+        {"reference": "cam"},
+        "reference must be a Scene, as the source is a function, got 'cam'",
+    ),
+    "reference, scene": (
+        lambda: (made_of(600.0), DESIGNS),
+        {"reference": "cam"},
+        "as the source is a Scene, got 'cam'",
+    ),
+    "no folder": (
+        lambda: (made_of(600.0), DESIGNS),
+        {"folder": ""},
+        "folder must name a place for the results, got ''",
+    ),
+    "number": (lambda: (made_of(600.0), DESIGNS), {"folder": 3}, "folder must be a path, got 3"),
+}
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_what_a_sweep_would_ignore_or_write_anywhere_is_refused(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked, options, words = ASKED[name]
+    source, spreads = asked()
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.sweep(source, ks.designs.grid(spreads), ["largest O"], progress=False, **options)
+    given = {key: text.removesuffix(":3") for key, text in spreads.items()}
+    with pytest.raises(ks.ParameterError, match=words):
+        ks.tolerances(source, ["largest O"], given, count=8, progress=False, **options)
+    assert not list(tmp_path.iterdir())
