@@ -356,3 +356,52 @@ def test_what_a_sweep_would_ignore_or_write_anywhere_is_refused(name, tmp_path, 
     with pytest.raises(ks.ParameterError, match=words):
         ks.tolerances(source, ["largest O"], given, count=8, progress=False, **options)
     assert not list(tmp_path.iterdir())
+
+
+# Angles of links that turn fully
+
+DOUBLE_CRANK = ks.four_bar(0.5, 0.45, 0.4, rocker_pivot=(0.2, 0.0), coupler=ROD, rocker=BODY)
+KITE = ks.four_bar(0.2, 0.5, 0.5, rocker_pivot=(0.2, 0.0), coupler=ROD, rocker=BODY, assembly="open")
+
+
+@pytest.mark.parametrize(("mechanism", "turns"), [(DOUBLE_CRANK, 1), (KITE, 2)])
+def test_the_angle_of_a_rocker_that_turns_fully_is_continuous(mechanism, turns):
+    s = ks.solve(mechanism, np.linspace(-7.0, 40.0, 4001), crank_speed=3.0)
+    angle, rate = ks.linkage.rocker_angle(s), -s.rate("rocker") / 3.0
+    assert np.max(np.abs(np.gradient(angle, s.crank_angle) - rate)[2:-2]) < 1e-3
+    later = ks.linkage.rocker_angle(s.at(s.crank_angle + 2 * np.pi * turns))
+    assert np.allclose(np.abs(later - angle), 2 * np.pi, rtol=0.0, atol=1e-9)
+    assert ks.linkage.rocker_angle(s.at(8.0)) == pytest.approx(np.interp(8.0, s.crank_angle, angle), abs=1e-3)
+
+
+def test_the_rocker_angle_of_a_batch_is_that_of_each_design():
+    lengths = np.array([[0.5], [0.52]])
+    rows = ks.linkage.rocker_angle(
+        ks.solve(ks.four_bar(lengths, 0.45, 0.4, rocker_pivot=(0.2, 0.0)), np.linspace(-9.0, 9.0, 41), crank_speed=3.0)
+    )
+    for row, length in zip(rows, lengths[:, 0], strict=True):
+        one = ks.solve(
+            ks.four_bar(float(length), 0.45, 0.4, rocker_pivot=(0.2, 0.0)), np.linspace(-9.0, 9.0, 41), crank_speed=3.0
+        )
+        assert np.allclose(row, ks.linkage.rocker_angle(one), rtol=0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "function", "growth"),
+    [
+        (DOUBLE_CRANK, ks.linkage.rocker_angle, "-6.28319 in each period of 6.28319 rad"),
+        (KITE, ks.linkage.rocker_angle, "-6.28319 in each period of 12.5664 rad"),
+        (MACHINE, lambda s: s.crank_angle, "6.28319 in each period of 6.28319 rad"),
+    ],
+)
+def test_what_grows_each_turn_has_no_extremes(mechanism, function, growth):
+    s = ks.solve(mechanism, 0.5, crank_speed=3.0)
+    with pytest.raises(ks.ParameterError, match=f"grows by {growth}, as the angle of a link that turns fully"):
+        ks.extremes(s, function)
+
+
+def test_what_repeats_has_extremes_whatever_it_asks_of_the_crank_angle():
+    s = ks.solve(MACHINE, 0.5, crank_speed=3.0)
+    assert ks.extremes(s, lambda s: np.where(s.crank_angle < np.pi, 1.0, 2.0) * s.slider_velocity).range[1] > 0.0
+    swings = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), 0.0, crank_speed=1.0)
+    assert np.degrees(ks.extremes(swings, ks.linkage.rocker_angle).range) == pytest.approx([-10.957, 12.117], abs=1e-3)
