@@ -1,5 +1,7 @@
 """What looks right and is wrong is refused, warned of or mended: states of groups, hints, designs, sweeps, loads."""
 
+import itertools
+import time
 import warnings
 from dataclasses import fields
 
@@ -206,6 +208,7 @@ OPEN = {
 INTERVALS = {"crank-slider": [(56.4427, 123.557), (236.443, 303.557)], "four-bar": [(101.537, 258.463)]}
 
 
+@pytest.mark.slow_start
 @pytest.mark.parametrize("norm", ["largest", "mean", "weighted"])
 @pytest.mark.parametrize("name", OPEN)
 def test_a_mechanism_with_gaps_has_no_optimal_counterweight(name, norm):
@@ -214,6 +217,7 @@ def test_a_mechanism_with_gaps_has_no_optimal_counterweight(name, norm):
     assert np.degrees(caught.value.intervals) == pytest.approx(np.array(INTERVALS[name]), rel=1e-5)
 
 
+@pytest.mark.slow_start
 @pytest.mark.parametrize("name", OPEN)
 def test_machines_with_gaps_have_no_quantile(name):
     spread = ks.design.Spread(0.9, {"coupler.mass": "normal 0 % +- 1 %"})
@@ -221,6 +225,7 @@ def test_machines_with_gaps_have_no_quantile(name):
         ks.design.over_spread(ks.Scene(OPEN[name], 5.0), "largest O", spread, samples=16)
 
 
+@pytest.mark.slow_start
 def test_a_spread_that_reaches_machines_with_gaps_is_refused():
     spread = ks.design.Spread(0.9, {"coupler_length": "normal 0 % +- 5 %"})
     scene = ks.Scene(ks.crank_slider(0.3, 0.31, coupler=ROD, slider=BODY), 5.0)
@@ -267,6 +272,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow_start
 @pytest.mark.parametrize("name", CASES)
 def test_a_case_that_balances_nothing_is_refused_with_its_key(tmp_path, name):
     text, values, words = CASES[name]
@@ -345,6 +351,7 @@ ASKED = {
 }
 
 
+@pytest.mark.slow_start
 @pytest.mark.parametrize("name", ASKED)
 def test_what_a_sweep_would_ignore_or_write_anywhere_is_refused(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -405,3 +412,61 @@ def test_what_repeats_has_extremes_whatever_it_asks_of_the_crank_angle():
     assert ks.extremes(s, lambda s: np.where(s.crank_angle < np.pi, 1.0, 2.0) * s.slider_velocity).range[1] > 0.0
     swings = ks.solve(ks.linkage.chain_unit(0.1, 1.0, 0.5), 0.0, crank_speed=1.0)
     assert np.degrees(ks.extremes(swings, ks.linkage.rocker_angle).range) == pytest.approx([-10.957, 12.117], abs=1e-3)
+
+
+# Functions of loads must be pure
+
+
+class Counting:
+    """A load of the user's own that is larger each time."""
+
+    on = "slider"
+
+    def __init__(self):
+        self.count = itertools.count(1)
+
+    def push(self, motion):
+        """The count, N."""
+        return next(self.count) + 0.0 * motion.slider_velocity
+
+    __call__ = push
+
+
+def counting():
+    count = itertools.count(1)
+    return lambda motion: next(count) + 0.0 * motion.crank_angle
+
+
+GENERATOR = np.random.default_rng(0)
+IMPURE = {
+    "counter": (lambda: ks.ProcessForce(counting()), "ProcessForce on 'slider': its function gives 1 N and then 2 N"),
+    "counter of a torque": (lambda: ks.Torque(counting(), on="crank"), "gives 1 N m and then 2 N m"),
+    "counter at a point": (lambda: ks.Force(counting(), at="B"), "gives 1 N and then 2 N"),
+    "counter of an object": (lambda: ks.ProcessForce(Counting()), "gives 1 N and then 2 N"),
+    "load of one's own": (Counting, "Counting on 'slider': its function gives 1 N and then 2 N"),
+    "random numbers": (
+        lambda: ks.ProcessForce(lambda q: GENERATOR.normal(size=np.shape(q.crank_angle))),
+        "keep no counter, random number or clock in it",
+    ),
+    "clock": (
+        lambda: ks.ProcessForce(lambda q: time.perf_counter()),
+        "it must be pure, a function of the motion alone",
+    ),
+}
+WAYS = {
+    "solve": lambda load: ks.solve(MACHINE, DEGREES / 60, crank_speed=5.0, loads=load),
+    "one angle": lambda load: ks.solve(MACHINE, 0.5, crank_speed=5.0, loads=load),
+    "scene": lambda load: ks.Scene(MACHINE, 5.0, loads=load).solve(12),
+    "speeds": lambda load: ks.solve(MACHINE, DEGREES / 60, crank_speed=DEGREES / 60 + 1.0, loads=load),
+    "program": lambda load: ks.compile(ks.Scene(MACHINE, 5.0, loads=load), "O", engine="numpy"),
+    "steady": lambda load: ks.drive.steady(ks.Scene(MACHINE, 5.0, loads=load), None, flywheel=50.0),
+    "coast": lambda load: ks.drive.coast(ks.Scene(MACHINE, 5.0, loads=load), 9.0, from_speed=5.0, until=0.1),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("name", IMPURE)
+def test_a_function_of_a_load_that_is_not_pure_is_refused(name, way):
+    make, words = IMPURE[name]
+    with pytest.raises(ks.ParameterError, match=words):
+        WAYS[way](make())
