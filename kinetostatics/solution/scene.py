@@ -180,6 +180,7 @@ def solve(
     loads : sequence
         `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them; what is left out costs
         nothing. Loads of your own, as all arrays, are taken as they are now: what is changed of them later is not seen.
+        A function must be pure: engines call it as often as they need.
     friction : dict of str to friction, optional
         By joint, named as its reaction ("O", "A", "guide"), "slot" or "cam", each with the label of its group: a
         `PinFriction`, `GuideFriction`, `SlotFriction` or `RollerFriction`. At crank speed 0 it acts against the motion
@@ -205,7 +206,7 @@ def solve(
         The mechanism does not close at some of the angles and ``on_gap="raise"``.
     ParameterError
         A value is not finite, a load acts on a link or joint that is not there, or has no value at a crank angle, as a
-        force between points that meet.
+        force between points that meet, or its function is not pure.
     MissingLibraryError
         ``engine="compiled"`` without numba.
     NotGivenError

@@ -163,7 +163,8 @@ class ProcessForce(OnSlider):
         N; an array has one value for each crank angle; a `Table` is read by crank angle or travel; a function
         takes the `Motion` and returns such values, so the force may depend on crank angle, position or velocity, at
         each crank angle by itself. The compiled engine takes its constants into the program, so a function with other
-        constants is compiled anew.
+        constants is compiled anew. It must be pure: the motion alone decides what it returns, without counters, random
+        numbers or clocks, because engines call it as often as they need.
     on : str
         The slider it acts on.
     period : float
