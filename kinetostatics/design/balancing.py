@@ -10,6 +10,7 @@ Full balancing makes all static moments vanish; partial balancing, with one coun
 import numpy as np
 
 from ..errors import ParameterError
+from ..mechanics import assembly
 from ..mechanics.principal_points import principal_points
 from ..numbers import checks
 from .counterweights import Balanced, Counterweight, counterweight, guide_direction
@@ -72,7 +73,7 @@ def partial(mechanism, ratio="overall", *, crank):
     mechanism : Mechanism
         Crank-slider.
     ratio : "across", "along", "overall" or float
-        (h1 / L_OA) / (h2 / L_AB): 1, 0 or 1/2 by name.
+        (h1 / L_OA) / (h2 / L_AB), from 0 to 1: 1, 0 or 1/2 by name.
     crank : Counterweight
 
     Returns
@@ -82,8 +83,8 @@ def partial(mechanism, ratio="overall", *, crank):
     Raises
     ------
     ParameterError
-        The mechanism is no crank-slider or has no mass, the ratio is unknown, the condition cannot be reached by a
-        counterweight on the crank, or the counterweight breaks its limits.
+        The mechanism is no crank-slider or has no mass, the ratio is unknown or not from 0 to 1, the condition cannot
+        be reached by a counterweight on the crank, or the counterweight breaks its limits.
 
     Examples
     --------
@@ -146,6 +147,8 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     ParameterError
         An unknown norm, a link that does not exist, no counterweight at all, limits that cannot be kept, or forces
         along and across guides that are not parallel.
+    AssemblyError
+        The mechanism does not close all round the turn, with the crank angles.
 
     Examples
     --------
@@ -169,6 +172,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     )
     if norm in ("along", "across"):
         guide_direction(mechanism)
+    assembly.require_turn(mechanism)
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
     return least(Search.of(mechanism, norm, tuple(found.values()), counterweights, 2 if phase else 1, turn))
 
@@ -219,7 +223,19 @@ def _ratio(ratio):
     if isinstance(ratio, str):
         checks.require("partial balancing", checks.choice("ratio", ratio, tuple(RATIOS)))
         return RATIOS[ratio]
-    return checks.singles("partial balancing", ratio=(ratio, "1", {}))["ratio"]
+    value = checks.singles("partial balancing", ratio=(ratio, "1", {}))["ratio"]
+    checks.require("partial balancing", ratio_problem(value))
+    return value
+
+
+def ratio_problem(ratio):
+    """What is wrong with a ratio of partial balancing that is a number, as a sentence, or None."""
+    if 0.0 <= ratio <= 1.0:
+        return None
+    return (
+        f"ratio must be from 0 (nearly no force along the guide) to 1 (none across it), got {ratio:g}: beyond an end "
+        "the force is larger along the guide and across it than at that end"
+    )
 
 
 def _refuse(mechanism):

@@ -36,7 +36,8 @@ CHAIN_UNIT = {
     "pivot_x": checks.Optional(checks.Number("m")),
 }
 ANGLE, START = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
-QUARTER, WHOLE = pi / 2, ((0.0, 2 * pi),)
+QUARTER, TURN, WHOLE = pi / 2, 2 * pi, ((0.0, 2 * pi),)
+STEPS = 720  # crank angles a turn on which a rocker is followed around
 
 
 def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **links):
@@ -123,7 +124,7 @@ def rocker_angle(solution, start=QUARTER):
     Returns
     -------
     array (..., N)
-        rad.
+        rad; continuous, so that each turn of the rocker counts 2 pi.
 
     Raises
     ------
@@ -137,9 +138,22 @@ def rocker_angle(solution, start=QUARTER):
     >>> round(float(ks.linkage.rocker_angle(s)), 4)
     0.2115
     """
-    link = _bars_of(solution).rocker.link
+    link, turns = _bars_of(solution).rocker.link, solution.mechanism.turns
     start = checks.examined("rocker_angle", START, {"start": start})["start"]
-    here, before = (at.placement.links[link].direction for at in (solution, solution.at(start)))
+    grid, beginning = np.linspace(0.0, TURN * turns, STEPS * turns + 1), solution.at(start)
+    here, around = (_clockwise(at, link, beginning) for at in (solution, solution.at(start + grid)))
+    course = np.unwrap(np.nan_to_num(around))
+    periods, rest = np.divmod(solution.crank_angle - start, grid[-1])
+    *designs, count = np.shape(np.atleast_1d(here))
+    nearest = np.broadcast_to(np.rint(rest / grid[1]).astype(int), (*designs, count))
+    nearby = np.take_along_axis(np.broadcast_to(course, (*designs, grid.size)), nearest, axis=-1)
+    nearby = (nearby + periods * (course[..., -1:] - course[..., :1])).reshape(np.shape(here))
+    return here + TURN * np.rint((nearby - here) / TURN)
+
+
+def _clockwise(solution, link, beginning):
+    """Angle of a link, clockwise from where another solution has it, from -pi to pi."""
+    here, before = (at.placement.links[link].direction for at in (solution, beginning))
     return np.arctan2(cross(here, before), dot(here, before))
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import KinetostaticsError
+from ..mechanics import assembly
 from ..mechanics.quantities import of_scene
 from ..mechanics.quantities import values as values_of
 from ..numbers import checks
@@ -256,7 +257,9 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     Raises
     ------
     ParameterError
-        What is asked for cannot be read, or names what the machine has not.
+        What is asked for cannot be read, or names what the machine has not; machines within the spread have no value.
+    AssemblyError
+        The machine itself does not close all round the turn.
 
     Examples
     --------
@@ -273,7 +276,17 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     checks.require("over_spread", not_spread("spread", spread), samples_problem(samples))
     item, compared = chosen(source, variant, reference)
     text = wanted(output, scene_of(item))
-    return _fixed(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+    assembly.require_turn(scene_of(item).mechanism)
+    found = _fixed(item, compared, text, spread, -1.0 if text.ratio else 1.0, samples).outputs(np.empty(0))
+    without = np.count_nonzero(np.isnan(found))
+    checks.require(
+        "over_spread",
+        f"{without} of {found.size} machines within the spread have no {output!r}: they do not close all round the "
+        "turn, or have no value there; narrow the spreads"
+        if without
+        else None,
+    )
+    return found
 
 
 def quantile(scene, reference, output, spread, sign):

@@ -145,12 +145,13 @@ class Driven:
         return found
 
     def here(self, angle, speed, sense=None):
-        """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats."""
+        """Inertia with the flywheel, slope of it, and torque left over, at one crank angle and speed, as floats.
+
+        A step may end beyond the standstill that it looks for: loads see no speed there.
+        """
         sense = sense or (math.copysign(1.0, speed) if speed else self.direction)
-        values = self._given(
-            sense * max(sense * speed, 0.0), sense
-        )  # a step may end beyond the standstill it looks for
-        found = self.program.unlooked(angle, values, self._compiled) if values else self.program(angle)
+        values = self._given(sense * max(sense * speed, 0.0), sense)
+        found = self.program.unlooked(angle, values, self._compiled) if values else self.program.evaluated(angle)
         inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
 
@@ -227,7 +228,7 @@ class Driven:
         angle = np.asarray(angle, dtype=float)
         values = self._given(speed, self.direction if sense is None else sense)
         if not values:
-            found = self.program(angle)
+            found = self.program.evaluated(angle)
             return tuple(found[name] for name in QUANTITIES)
         columns = {name: np.broadcast_to(np.asarray(value, dtype=float), angle.shape) for name, value in values.items()}
         columns = {name: value.reshape(-1, 1) for name, value in columns.items()}

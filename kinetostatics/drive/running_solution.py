@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..numbers.leaves import with_fields
-from ..solution.angles import crank_angles
+from ..solution.angles import crank_angles, hint_at
 from ..solution.solution import Solution
 from .saving import DrivenComparison
 
@@ -37,6 +37,7 @@ class RunningSolution(Solution):
     def at(self, crank_angle):
         """The same machine in the same running at other crank angles."""
         angle = crank_angles(crank_angle)
+        hint_at(self.mechanism.name, crank_angle)
         motion = self.running.motion(angle)
         speed, acceleration = (float(part[0]) if part.shape == (1,) else np.asarray(part) for part in motion)
         return replace(self, crank_angle=angle, crank_speed=speed, crank_acceleration=acceleration)

@@ -9,14 +9,18 @@ from .links import present
 
 THIN = 1000.0
 """How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
-THICK = 1000.0
-"""How many times mass times length squared it may be, 12 times as many of a uniform rod's; kg mm2 make it a million."""
+THICK = 3.0
+"""How many times mass times length squared it may be: a uniform rod's is 1/12, in kg cm2 833, in kg mm2 83 333."""
+OTHER_UNITS = {8333.0: ("kg mm2", 1e-6), 30.0: ("kg cm2", 1e-4)}
+"""Units that make a uniform rod's inertia more like itself from that many times mass times length squared on."""
 LONGEST = 100.0
 """Length, m, that no link has."""
 SLENDER = 2000.0
 """How many times the longest link may be as long as the shortest: millimetres beside metres make more."""
 FASTEST = 60.0
 """Speed of a crank's pin, m/s, that no machine has: stresses by inertia go by its square, racing engines end at 50."""
+TWO_TURNS = 4.0 * np.pi
+"""Size, rad, from which on crank angles may look like degrees."""
 TURN_TWICE = 2.0 * np.pi * np.pi / 180.0
 """A turn in radians that was taken for degrees."""
 
@@ -140,17 +144,42 @@ def _inertia(bar, link, crank):
     if _any((inertia > 0) & (THIN * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
     elif _is_moved(bar, crank) and _any((inertia > THICK * unit) & (unit > 0)):
-        odd = np.max(inertia)
-        beside, advice = "more than ten thousand times", f"is it in kg mm2? That makes {1e-6 * odd:.4g} kg m2"
+        times = inertia / np.where(unit > 0, unit, np.inf)
+        worst = np.argmax(times)
+        odd, most = np.ravel(np.broadcast_to(inertia, np.shape(times)))[worst], np.ravel(times)[worst]
+        beside, advice = f"{12.0 * most:.4g} times", _unit_of_inertia(odd, most)
     else:
         return None
     rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
     return f"the inertia of the {bar.link}, {odd:.4g} kg m2, is {beside} that of {rod}; {advice}"
 
 
+def _unit_of_inertia(inertia, times):
+    """What to ask about an inertia that is so many times mass times length squared."""
+    for least, (unit, factor) in OTHER_UNITS.items():
+        if times > least:
+            return f"is it in {unit}? That makes {factor * inertia:.4g} kg m2"
+    return "is it in kg m2, about the mass centre?"
+
+
+def of_given_angles(given, angle):
+    """Say if crank angles look like degrees or a count of them, by what was given and as they are taken."""
+    return of_count(given) or of_angles(angle)
+
+
+def of_one(angle):
+    """Say if a single crank angle looks like degrees: whole, from two turns in radians to three in degrees."""
+    if not TWO_TURNS <= abs(angle) <= 1080.0 or not _whole(angle):
+        return ()
+    return (
+        f"the crank angle {angle:g} looks like degrees; it is taken as {angle:g} rad, and {angle:g} deg are "
+        f"np.radians({angle:g})",
+    )
+
+
 def of_count(given):
     """Say if a crank angle looks like a count of them: a whole number of more than two turns."""
-    if not isinstance(given, int | np.integer) or given < 4 * np.pi:
+    if not isinstance(given, int | np.integer) or given < TWO_TURNS:
         return ()
     return (
         f"{given} is taken as one crank angle, {given} rad; for {given} of them over the turn give "
@@ -163,7 +192,7 @@ def of_angles(angle):
     if not isinstance(angle, np.ndarray) or angle.dtype == object or not angle.size:
         return ()
     first, last = angle.item(0), angle.item(-1)
-    if -4 * np.pi < first < 4 * np.pi and -4 * np.pi < last < 4 * np.pi:
+    if abs(first) < TWO_TURNS and abs(last) < TWO_TURNS:
         return _converted_twice(angle) if angle.size > 2 and _is_small(last - first) else ()
     if angle.size < 3:
         return _few(np.ravel(angle))

@@ -6,15 +6,17 @@ positive where the surface is convex to the roller. The roller would cut the dis
 where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
 """
 
+import warnings
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import ParameterError
+from ..errors import HintWarning, ParameterError
 from ..numbers import checks
 from ..numbers.lazy import cached_property
 from ..numbers.planar import polar_curvature
+from . import hints
 from .crank import ray as ray_at
 from .law import TURN
 
@@ -236,7 +238,10 @@ def _angles(angle):
         checks.require("cam profile", checks.count("angle", angle, size=checks.ANGLE))
         return np.linspace(0.0, TURN, int(angle), endpoint=False)
     found = checks.examined("cam profile", {"angle": checks.Number("rad", table=True)}, {"angle": angle})
-    return np.atleast_1d(np.asarray(found["angle"], dtype=float))
+    angles = np.atleast_1d(np.asarray(found["angle"], dtype=float))
+    for text in hints.of_angles(angles):
+        warnings.warn(HintWarning("cam profile", text), stacklevel=4)
+    return angles
 
 
 def _cut_away(cam, radius, side):

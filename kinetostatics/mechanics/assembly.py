@@ -172,12 +172,13 @@ def _error(mechanism, group, placement, margin):
     return _open(mechanism, group, placement, f"at {count} of {margin.size} crank angles{design}", gaps)
 
 
-def _open(mechanism, group, placement, where, gaps):
+def _open(mechanism, group, placement, where, gaps, *remedy):
     text = ", ".join(f"{np.degrees(start):.6g} .. {np.degrees(stop):.6g} deg" for start, stop in gaps)
     why = group.requirement(placement) or f"the closure of {type(group).__name__} is negative there"
     return AssemblyError(
         f"{mechanism.name} cannot be assembled {where}: {why}. It does not close for crank angles {text}",
         gaps,
+        *remedy,
     )
 
 
@@ -237,7 +238,7 @@ def require_turn(mechanism):
         angle = _dense(mechanism, group)
         if _is_open(mechanism, group, angle):
             placement, where = mechanism.place(angle), intervals(mechanism, group)
-            raise _open(mechanism, group, placement, "all round the turn", where)
+            raise _open(mechanism, group, placement, "all round the turn", where, " so that the crank turns all round")
 
 
 def _dense(mechanism, group):

@@ -52,9 +52,9 @@ class Watched(Moving):
 
 
 def drive_asked_for(item, motion):
-    """Names among crank_speed, crank_acceleration and sense that code of the user's for a load reads at the crank angles.
+    """Names among crank_speed, crank_acceleration and sense that a user's code for a load reads at the crank angles.
 
-    Code that does not read one cannot depend on it; whether it does where it reads them, values could not tell for sure.
+    Code cannot depend on what it does not read; whether it depends on what it reads, values could not tell for sure.
     """
     watched = moving(motion, Watched)
     vars(watched)["asked"] = set()

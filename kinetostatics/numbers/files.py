@@ -242,6 +242,15 @@ def unwritable(path, *, inputs=(), endings=()):
         return f"{str(path)!r} is no name of a file here: {getattr(error, 'strerror', None) or error}"
 
 
+def folder_problem(path):
+    """What is wrong with what is given as a folder for results, as a sentence, or None."""
+    if not isinstance(path, str | os.PathLike):
+        return f"folder must be a path, got {checks.shown(path)}"
+    if not os.fspath(path):
+        return "folder must name a place for the results, got ''; \".\" is the folder you are in, None writes nothing"
+    return None
+
+
 def unwritable_folder(path):
     """Why results cannot be written into this folder, as a sentence, or None; it need not exist."""
     path = Path(path)

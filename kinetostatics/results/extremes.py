@@ -16,6 +16,10 @@ from .rounding import FLOOR, told
 from .turn import require_single
 from .turning_points import Path, at_jumps, in_order, open_paths, turning_points
 
+APART = np.array([0.07, 0.23, 0.41, 0.66, 0.89])
+"""Parts of the period at which functions are compared with themselves a period later."""
+DRIFT = 1e-6
+"""Growth in a period, relative to the largest value, from which on a function does not repeat."""
 CALM = 1e6
 """Condition up to which values are of ordinary size, and rounding is small beside them."""
 
@@ -124,7 +128,7 @@ def extremes(solution, quantity):
         The solution has no such quantity.
     ParameterError
         The solution is a batch of designs, or depends on a table over its own crank angles, or a load that is a
-        function does not repeat after its period.
+        function does not repeat after its period, or the quantity is a function that grows in each period.
 
     Warns
     -----
@@ -187,6 +191,8 @@ def extrema(solution, quantity):
     left_out = np.empty(0) if position else turn.lost
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         samples = _sampled(turn, function, quantity)
+        if callable(quantity):
+            _require_repeating(turn, function, float(np.max(np.abs(samples), initial=0.0)))
         good = np.isfinite(samples) & (position | turn.usable)
         size, floor = _sizes(turn, quantity, samples, good, position)
         samples, jumps = at_jumps(turn, samples, size)
@@ -211,6 +217,17 @@ def _sampled(turn, function, quantity):
             "angles"
         )
     return samples
+
+
+def _require_repeating(turn, function, size):
+    """Refuse a function that grows by the same amount in each period, as the angle of a link that turns fully."""
+    first, second = (np.asarray(function(turn.at.at(turn.period * (APART + turns)))) for turns in (0.0, 1.0))
+    growth = float(np.mean(second - first))
+    if abs(growth) > DRIFT * size and np.all(np.abs(second - first - growth) < DRIFT * abs(growth)):
+        raise ParameterError(
+            f"extremes: the function of the solution grows by {growth:.6g} in each period of {turn.period:.6g} rad, as "
+            "the angle of a link that turns fully does, so it has no extremes; take its rate, or what repeats"
+        )
 
 
 def _sizes(turn, quantity, samples, good, position):

@@ -1,9 +1,12 @@
 """Crank angles as solutions keep them."""
 
 import math
+import warnings
 
 import numpy as np
 
+from ..errors import HintWarning
+from ..machine import hints
 from ..numbers import checks
 from ..numbers.elementary import read_only
 
@@ -28,6 +31,15 @@ def crank_angles(given, owner="solve"):
     angle, problem = ANGLE.taken(given)
     checks.require(owner, problem)
     return angle if hasattr(angle, "shape") else read_only(np.array(angle))
+
+
+def hint_at(owner, given):
+    """Warn whoever called the caller of valid crank angles that look like degrees, or like a count of them."""
+    if type(given) is float and abs(given) < hints.TWO_TURNS:
+        return
+    angle = np.asarray(given) if isinstance(given, int | float | list | tuple) else given
+    for text in hints.of_given_angles(given, angle):
+        warnings.warn(HintWarning(owner, text), stacklevel=3)
 
 
 def problems(angle):

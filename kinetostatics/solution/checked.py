@@ -2,6 +2,7 @@
 
 from ..machine.loads import refusals
 from ..mechanics import contact, jamming
+from ..mechanics.pure import require_pure
 from ..numbers import checks
 
 
@@ -12,5 +13,7 @@ def checked(solution, on_gap="raise"):
         checks.require("solve", jamming.standing(solution))
         solution = jamming.settled(solution)
         jamming.check(solution, on_gap)
+    if not solution.loads_are_given:
+        require_pure(solution)
     checks.require("solve", *refusals(solution), *(contact.refusals(solution) if on_gap == "raise" else ()))
     return solution

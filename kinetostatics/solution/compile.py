@@ -1,11 +1,18 @@
 """`compile`: what a scene computes made ready once, and called with other numbers as often as one likes."""
 
+import numpy as np
+
 from ..engines.arithmetic import OF as PRECISIONS
 from ..engines.backends import Backend
 from ..engines.compiled import available, require
+from ..machine.loads import is_given
+from ..mechanics.pure import require_pure
 from ..numbers import checks
 from .program import Program
-from .scene import scene_problem
+from .scene import scene_problem, unchecked
+
+ANGLES = np.array([0.3, 2.0])
+"""Crank angles at which functions of loads are called before they are recorded."""
 
 
 def compile(  # noqa: A001 - the contract's name
@@ -36,7 +43,7 @@ def compile(  # noqa: A001 - the contract's name
     Raises
     ------
     ParameterError
-        The scene has no such parameter, or JAX no such device.
+        The scene has no such parameter, JAX no such device, or a function of a load is not pure.
     QuantityError
         The mechanism has no such quantity; the message lists those it has.
     NotGivenError
@@ -69,6 +76,8 @@ def compile(  # noqa: A001 - the contract's name
     )
     if engine == "compiled":
         require()
+    if not all(map(is_given, scene.loads)) and np.size(scene.crank_speed) == np.size(scene.crank_acceleration) == 1:
+        require_pure(unchecked(scene, ANGLES))
     kept = (parameters,) if isinstance(parameters, str) else tuple(parameters)
     backend = Backend(engine or ("compiled" if available() else "numpy"), precision, device)
     backend.device  # noqa: B018  refuses one that is not there

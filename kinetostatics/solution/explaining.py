@@ -88,9 +88,9 @@ def _alone(solution, angle, design):
     """The solution of one design at one crank angle, checked as `solve` does."""
     asked = crank_angles(angle, "explain")
     checks.require("explain", None if asked.size == 1 else f"one crank angle is told at a time, got {asked.size}")
-    for hint in hints.of_angles(asked):
-        warnings.warn(HintWarning(solution.mechanism.name, hint), stacklevel=4)
     asked = float(asked.reshape(()))
+    for hint in hints.of_one(asked):
+        warnings.warn(HintWarning(solution.mechanism.name, hint), stacklevel=4)
     batch = solution.shape[:-1]
     place = _design(batch, design)
     index = _index(solution, asked, place)

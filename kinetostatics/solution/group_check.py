@@ -18,6 +18,7 @@ from ..machine.mechanism import output_problems
 from ..machine.placement import Course, Placement, margin, place, require_positions
 from ..numbers import checks
 from ..numbers.planar import added, length, number, product, stretched, subtracted, turned, vector, work
+from . import link_states
 
 TOLERANCE = 1e-6
 """Largest relative error that passes; right groups reach 1e-10, a wrong term is of the order of 1."""
@@ -99,7 +100,7 @@ def check(group):
     if getattr(group, "passes", False):
         group = replace(group)  # its joint is moved by hand, and on no crank it has no change points
     stage = _stage(group)
-    errors = _of_shape(stage) | _of_derivatives(stage) | _of_forces(stage)
+    errors = _of_shape(stage) | _of_links(stage) | _of_derivatives(stage) | _of_forces(stage)
     return GroupReport(type(group).__name__, errors)
 
 
@@ -213,12 +214,22 @@ def _of_shape(stage):
     return errors
 
 
+def _of_links(stage):
+    """Errors of states of links against those of joints, guides and slots."""
+    compared = link_states.pairs(stage.group, stage.placed(), stage.size)
+    return {
+        what: max(_error(*both, unit) for both in zip(_parts(found), _parts(expected), strict=False))
+        for what, (found, expected, unit) in compared.items()
+    }
+
+
 def _of_derivatives(stage):
     """Errors of derivatives by crank angle against differences of what they are derivatives of."""
     steps = range(1, len(WEIGHTS) + 1)
     beside = {k: _rates(stage.placed(k * STEP), stage) for step in steps for k in (step, -step)}
-    errors = {}
-    for what, (_, claimed, unit) in _rates(stage.placed(), stage).items():
+    here, again = (_rates(stage.placed(), stage) for _ in range(2))
+    errors = {"place called twice": max(_error(again[what][0], values[0], values[2]) for what, values in here.items())}
+    for what, (_, claimed, unit) in here.items():
         slope = sum(
             weight * (beside[step][what][0] - beside[-step][what][0]) / STEP
             for step, weight in zip(steps, WEIGHTS, strict=True)
@@ -242,6 +253,7 @@ def _rates(placement, stage):
         add(f"travel of {name}", travel)
     for name in stage.group.links:
         motion = placement.links[name]
+        add(f"reference joint of {name}", motion.joint)
         x, y = motion.direction
         ratio, slope = number(motion.ratio), number(motion.ratio_slope)
         found[f"ratio of {name}"] = (x, y), (-ratio * y, ratio * x), 1.0

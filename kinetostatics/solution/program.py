@@ -18,7 +18,7 @@ from ..mechanics.quantities import CHECKS
 from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.leaves import made, with_fields
-from .angles import crank_angles, problems
+from .angles import crank_angles, hint_at, problems
 from .parameters import DRIVE, fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping, unknown
 from .scene import unchecked
 from .slopes import slopes
@@ -107,9 +107,17 @@ class Program:
 
         Warns
         -----
+        HintWarning
+            The crank angles look like degrees, or like a count of them.
         ConditionWarning
             With these values friction is not found to rounding: compile a scene that has them.
         """
+        found = self.evaluated(angle, values)
+        hint_at(self.scene.mechanism.name, angle)
+        return found
+
+    def evaluated(self, angle, values=MappingProxyType({})):
+        """The values of a call, without hints at what its crank angles look like."""
         state, leaves = self._at(angle, values)
         if values and self._friction is not None:
             self._look_at_friction(state, leaves, values)
@@ -174,6 +182,7 @@ class Program:
                 f"by {self.engine} in {self.precision} precision, so leave tight out, or compile one of those"
             )
         state, leaves = self._at(angle, values)
+        hint_at(self.scene.mechanism.name, angle)
         return self._program.recording.named(read_only(self._backend.bounds(self._program, state, leaves, tight)))
 
     def unlooked(self, angle, values, compiled):
@@ -218,6 +227,7 @@ class Program:
         self._require_known(names)
         require_free("program", self.scene.mechanism, names, self._fixed)
         state, leaves = self._at(angle, values)
+        hint_at(self.scene.mechanism.name, angle)
         return slopes(self._program, {path: self._numbers[path][0] for path in names}, state, leaves, self._backend)
 
     def _look_at_friction(self, state, leaves, values):

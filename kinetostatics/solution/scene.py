@@ -205,6 +205,7 @@ def solve(
     loads : sequence
         `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them; what is left out costs
         nothing. Loads of your own, as all arrays, are taken as they are now: what is changed of them later is not seen.
+        A function must be pure: engines call it as often as they need.
     friction : dict of str to friction, optional
         By joint, named as its reaction ("O", "A", "guide"), "slot" or "cam", each with the label of its group: a
         `PinFriction`, `GuideFriction`, `SlotFriction` or `RollerFriction`. At crank speed 0 it acts against the motion
@@ -233,7 +234,7 @@ def solve(
         The mechanism does not close at some of the angles and ``on_gap="raise"``.
     ParameterError
         A value is not finite, a load acts on a link or joint that is not there, or has no value at a crank angle, as a
-        force between points that meet.
+        force between points that meet, or its function is not pure.
     MissingLibraryError
         ``engine="compiled"`` without numba.
     NotGivenError
@@ -280,7 +281,7 @@ def _begun(scene, crank_angle, on_gap, engine):
     if on_gap is not GAPS[0]:
         checks.require("solve", checks.choice("on_gap", on_gap, GAPS))
     solution = unchecked(scene, crank_angle, engine)
-    for text in (*odd(solution), *(hints.of_count(crank_angle) or hints.of_angles(solution.crank_angle))):
+    for text in (*odd(solution), *hints.of_given_angles(crank_angle, solution.crank_angle)):
         warnings.warn(HintWarning(scene.mechanism.name, text), stacklevel=3)
     if engine == "compiled" and not solution.is_given:
         programs.of(solution.dynamics)  # refuses what cannot be recorded

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..engines.engines import NUMPY
-from ..errors import ConditionWarning, HintWarning, ParameterError
-from ..machine import hints
+from ..errors import ConditionWarning, ParameterError
 from ..machine.loads import period_of
 from ..machine.pairs import Turning
 from ..mechanics import assembly
@@ -21,7 +20,7 @@ from ..numbers.lazy import cached_property
 from ..numbers.leaves import made
 from ..results.turn import Turn
 from . import contents, slips
-from .angles import crank_angles
+from .angles import crank_angles, hint_at
 from .certainty import Certainty
 from .contacts import Contacts
 from .drive_and_loads import in_a_line, over_the_angles
@@ -85,8 +84,7 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
                 "(or, for a load, a Table or a function of the motion) to evaluate at other angles"
             )
         angle = crank_angles(crank_angle)
-        for hint in hints.of_count(crank_angle):
-            warnings.warn(HintWarning(self.mechanism.name, hint), stacklevel=2)
+        hint_at(self.mechanism.name, crank_angle)
         return replace(self, crank_angle=angle)
 
     @property

@@ -23,6 +23,8 @@ from .job import LEAST, Job
 def job_of(source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk):
     """The job, the engines to try, and what is compared: what is varied, or a function, and what ratios refer to."""
     _require_kinds(source, designs)
+    if not is_case(source):
+        checks.require("sweep", *_only_of_cases(source, variant, reference))
     compared = chosen(source, variant, reference) if is_case(source) else (source, reference)
     known = compared[0].units if is_varied(compared[0]) else None
     wanted, problems = _outputs(outputs)
@@ -66,6 +68,18 @@ def _require_kinds(source, designs):
             "sweep: source must be a Case, as of ks.load_case, a Scene or a function that makes a Scene, got "
             f"{checks.shown(source)}"
         )
+
+
+def _only_of_cases(source, variant, reference):
+    """What is wrong with names of variants where the source has none."""
+    kind = "a Scene" if is_varied(source) else "a function"
+    if variant is not None:
+        yield (
+            f"variant names one of a case's variants, and {kind} has none, got {checks.shown(variant)}; leave it out, "
+            "or give a Case"
+        )
+    if reference is not None and not _is_scene(reference):
+        yield f"reference must be a Scene, as the source is {kind}, got {checks.shown(reference)}"
 
 
 def _engines(engine, values):

@@ -191,7 +191,8 @@ def sample(spreads, uniform) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, or its unit not known or of another dimension than machines have by that name.
+        A spread is of another form, or its unit not known or of another dimension than machines have by that name; a
+        number is not from 0 to 1, or 0 or 1 where a normal distribution has no end.
 
     Examples
     --------
@@ -213,8 +214,22 @@ def sample(spreads, uniform) -> pd.DataFrame:
         ) from None
     fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
     checks.require("designs", None if fits else f"{len(found)} parameters need as many columns, got {numbers.shape}")
+    inside = (numbers >= 0.0) & (numbers <= 1.0)
+    checks.require("designs", None if inside.all() else _outside(numbers[~inside], numbers.size))
     values = [distribution.ppf(column) for (distribution, _), column in zip(found.values(), numbers.T, strict=True)]
+    unbounded = [name for name, column in zip(found, values, strict=True) if not np.isfinite(column).all()]
+    checks.require(
+        "designs", *(f"{name} is infinite where its number is 0 or 1; keep the numbers between" for name in unbounded)
+    )
     return _table(np.transpose(values), found)
+
+
+def _outside(wrong, count):
+    """What is said of numbers that are no shares."""
+    return (
+        f"the numbers must be from 0 to 1, the share of a parameter's values below each, but {wrong.size} of {count} "
+        f"are not, {wrong[0]:g} for instance; give them as (values - low) / (high - low)"
+    )
 
 
 def _require_room(count, parameters, *problems):

@@ -7,9 +7,9 @@ through any `concurrent.futures.Executor` (`workers`); with a folder the results
 
 import warnings
 from contextlib import closing
-from os import PathLike
 
 from ..numbers import checks
+from ..numbers.files import folder_problem
 from .asked import job_of
 from .chunks import FAILED
 from .dataset import Dataset, Parts
@@ -116,12 +116,7 @@ def sweep(
     >>> table.iloc[:, 1].round(1).tolist()
     [3.9, 7.6, 50.6]
     """
-    path = folder is None or isinstance(folder, str | PathLike)
-    checks.require(
-        "sweep",
-        None if path else f"folder must be a path, got {checks.shown(folder)}",
-        checks.truth("progress", progress),
-    )
+    checks.require("sweep", None if folder is None else folder_problem(folder), checks.truth("progress", progress))
     job, engines, compared = job_of(
         source, designs, outputs, variant, reference, angles, engine, executor, workers, chunk
     )

@@ -11,6 +11,7 @@ import pandas as pd
 
 from ..errors import ParameterError
 from ..numbers import checks
+from ..numbers.files import folder_problem
 from ..numbers.headings import parted
 from ..results.reductions import parsed
 from . import designs
@@ -128,6 +129,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         if spreads is None or isinstance(spreads, Mapping)
         else f"spreads must be a dict of parameter to text or quantities, got {checks.shown(spreads)}",
         None if power else f"count must be a power of two, got {count!r}",
+        None if folder is None else folder_problem(folder),
     )
     found = designs.distributions(spreads)
     wanted = tuple(dict.fromkeys(map(parsed, listed(outputs))))

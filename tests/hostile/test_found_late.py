@@ -107,7 +107,8 @@ def test_a_mechanism_with_change_points_is_as_good_as_itself(lengths):
 
 
 def test_a_change_point_beside_a_gap_is_no_gap():
-    mechanism = ks.four_bar(0.4, 0.3, 0.4, rocker_pivot=(0.5, 0), **BODIES)
+    bodies = {"coupler": ks.Link(3.0, 1.5, 0.2), "rocker": ks.Link(2.0, 1.0, 0.1)}
+    mechanism = ks.four_bar(0.4, 0.3, 0.4, rocker_pivot=(0.5, 0), **bodies)
     gaps = assembly.gaps(mechanism)
     assert np.degrees(gaps) == pytest.approx(np.array([[101.536959, 258.463041]]))
     solution = ks.solve(mechanism, np.linspace(0.5, 1.0, 20), crank_speed=5.0, loads=[ks.Gravity()])

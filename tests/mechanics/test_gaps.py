@@ -10,7 +10,7 @@ from kinetostatics.engines.engines import KERNELS
 from kinetostatics.mechanics.quantities import of_scene
 from support.every import every
 
-BODY, NONE = ks.Link(1.0, 0.02, 0.05), ks.Link()
+BODY, NONE = ks.Link(1.0, 0.02, 0.004), ks.Link()
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 
 

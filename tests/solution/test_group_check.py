@@ -36,7 +36,7 @@ PLACES = {
     "force": lambda x: solve(loads=ks.ProcessForce(x)),
     "mass": lambda x: solve(mechanism(slider=ks.Link(x))),
     "centre": lambda x: solve(mechanism(slider=ks.Link(2.0, (0.1, x), 0.1), crank=ks.Link(1.0, x))),
-    "inertia": lambda x: solve(mechanism(coupler=ks.Link(2.0, 0.1, x))),
+    "inertia": lambda x: solve(mechanism(coupler=ks.Link(2.0, 0.1, x / 10))),
     "crank length": lambda x: solve(mechanism(crank_length=x / 100)),
     "coupler length": lambda x: solve(mechanism(coupler_length=x)),
     "guide offset": lambda x: solve(mechanism(guide_offset=x / 100)),

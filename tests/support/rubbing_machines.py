@@ -61,7 +61,8 @@ class Drawn:
 
     def link(self, name, point, direction):
         """Mass properties, also for the system."""
-        mass, inertia = self.real(0.1, 9), self.real(0.001, 0.1)
+        mass, gyration = self.real(0.1, 9), self.real(0.03, 0.3)
+        inertia = mass * gyration**2
         centre = self.real(-0.1, 0.2), self.real(-0.05, 0.05)
         self.bodies[name] = Body(point, direction, mass, mp.mpc(*centre), inertia)
         return ks.Link(mass, centre, inertia)

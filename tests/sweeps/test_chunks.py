@@ -79,7 +79,7 @@ def test_when_all_designs_fail_all_say_why():
 def test_the_hundredth_design_impossible_among_many():
     designs = ks.designs.random({"coupler_length": "1.8..2.2 m", "slider.mass": "500..700 kg"}, 5000)
     designs.loc[::100, "slider.mass [kg]"] = -1.0
-    designs.loc[1::100, "coupler_length [m]"] = 0.2
+    designs.loc[1::100, "coupler_length [m]"] = 0.25
     found = sweep(SAW, designs, OUTPUTS, variant="plain", angles=12)
     assert found[FAILED].ne("").sum() == 100
     assert found.loc[::100, FAILED].str.startswith("Link: mass").all()

@@ -108,7 +108,12 @@ def test_a_reference_takes_the_parameters_that_it_has_too():
 WRONG = [
     (six_bar(), {"slider.mass": [1.0]}, {}, "did you mean 'slider2.mass'"),
     (six_bar(), {"slider2.mass [m]": [1.0]}, {}, '"m" does not measure the same as "kg"'),
-    (six_bar(), {"slider2.mass": [1.0]}, {"reference": "plain"}, "ratios need a reference: a Scene, got 'plain'"),
+    (
+        six_bar(),
+        {"slider2.mass": [1.0]},
+        {"reference": "plain"},
+        "reference must be a Scene, as the source is a Scene, got 'plain'",
+    ),
     (six_bar(), {"slider2.mass": [1.0]}, {}, "ratios need a reference: a Scene, got None"),
     (3, {"slider2.mass": [1.0]}, {}, "source must be a Case, as of ks.load_case, a Scene or a function"),
     (six_bar().mechanism, {"slider2.mass": [1.0]}, {}, "source must be a Case"),

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
-from ...design.balancing import RATIOS
+from ...design.balancing import RATIOS, ratio_problem
 from ...machine.cams import Harmonic
 from ...machine.roller import LARGEST_RATIO
 from ...numbers.checks import choice, nearest
@@ -192,6 +192,8 @@ def _ratio(value):
     problem = None if number else choice("ratio", value, tuple(RATIOS))
     if problem:
         raise ValueError(f"must be a number or a name: {problem}")
+    if number and (problem := ratio_problem(value)):
+        raise ValueError(problem.removeprefix("ratio "))
     return value
 
 

@@ -3,6 +3,9 @@
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
+from ...errors import ParameterError
 from ...numbers import checks
 from ..links import present
 from .load import Load, Sign, valued
@@ -94,7 +97,7 @@ class Spring(OnSlider):
         Raises
         ------
         ParameterError
-            The mass is negative, or a value not finite.
+            The mass is negative, a value not finite, or mass or speed 0: a spring of no stiffness balances nothing.
 
         Examples
         --------
@@ -106,6 +109,14 @@ class Spring(OnSlider):
         given = {"mass": mass, "crank_speed": crank_speed}
         rules = {"mass": checks.Number("kg", low=0.0), "crank_speed": checks.Number("rad/s")}
         mass, crank_speed = checks.examined("balancing spring", rules, given).values()
+        still = (
+            f"the {name} is 0" for name, value in (("mass", mass), ("crank speed", crank_speed)) if _is_zero(value)
+        )
+        if problem := " and ".join(still):
+            raise ParameterError(
+                f"balancing spring: {problem}, so there is no inertia force to balance and the stiffness would be 0; "
+                "give the values that it is to balance, or the stiffness itself"
+            )
         return cls(mass * crank_speed * crank_speed, free_position, on)
 
     def push(self, motion):
@@ -152,7 +163,8 @@ class ProcessForce(OnSlider):
         N; an array has one value for each crank angle; a `Table` is read by crank angle or travel; a function
         takes the `Motion` and returns such values, so the force may depend on crank angle, position or velocity, at
         each crank angle by itself. The compiled engine takes its constants into the program, so a function with other
-        constants is compiled anew.
+        constants is compiled anew. It must be pure: the motion alone decides what it returns, without counters, random
+        numbers or clocks, because engines call it as often as they need.
     on : str
         The slider it acts on.
     period : float
@@ -208,3 +220,8 @@ class ProcessForce(OnSlider):
         mechanism = motion.mechanism
         along = motion.as_vector(mechanism.guides[self.on].direction)
         yield Sign("force", motion.position(mechanism.references[self.on]), direction=along, sense=self.sense(motion))
+
+
+def _is_zero(value):
+    """Whether a number, or one of an array, is plainly 0."""
+    return checks.known(value) and bool(np.any(np.equal(value, 0.0)))

@@ -15,7 +15,8 @@ from .period import TURN, WholeTurns
 
 OVER = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 """By what a table may be over: the heading of such a column, and its unit."""
-AREA = {"area": checks.Optional(checks.Number("m**2"))}
+LARGEST_AREA = checks.Usual(5.0, "is it in cm2, or in mm2?")
+"""Area, m2, beyond which no piston goes: one of 2.5 m in diameter."""
 VALUES = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
 STEEP = 8.0
@@ -168,14 +169,13 @@ class Table:
         """
         from ...numbers.files import headings, read_columns
 
-        area = checks.examined(
-            "table",
-            AREA,
-            {"area": area},
+        problems = (
             checks.choice("unit", unit, ("N", "N*m", "N m")),
             None if over is None else checks.choice("over", over, tuple(OVER)),
             "area makes forces of pressures, but this load is a torque" if area is not None and unit != "N" else None,
-        )["area"]
+        )
+        number = {} if area is None else {"area": (area, "m**2", {"usual": LARGEST_AREA})}
+        area = checks.singles("table", *problems, **number).get("area")
         names = [name for name, _ in headings(path)]
         if area is None and "pressure" in names and VALUES[unit] not in names:
             raise CaseError(path, ["no column 'force', but pressures; give the area that they act on, as area"])
