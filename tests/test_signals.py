@@ -24,12 +24,17 @@ def test_a_signal_takes_effect_when_the_block_ends(number):
         signal.signal(number, before)
 
 
+def interrupted():
+    with deferred():
+        signal.raise_signal(signal.SIGINT)
+        raise ValueError
+
+
 def test_an_interruption_takes_the_place_of_an_error_of_the_block():
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        with pytest.raises(KeyboardInterrupt), deferred():
-            signal.raise_signal(signal.SIGINT)
-            raise ValueError
+        with pytest.raises(KeyboardInterrupt):
+            interrupted()
     finally:
         signal.signal(signal.SIGINT, before)
 

@@ -12,6 +12,8 @@ from ..machine.guide import Guide
 from ..machine.harmonic_cam import Harmonic
 from ..machine.loads import Gravity, Spring, TorsionSpring
 from ..numbers import checks
+from ..numbers.elementary import ROUNDING
+from ..numbers.planar import cross
 from ..results.extremes import extrema
 from ..solution.scene import Scene
 
@@ -243,9 +245,9 @@ def _mean_torque(crank_length, coupler_length, coupler, slider, speed):
 
 def _across(loads, guide):
     """Acceleration of gravity along the guide's left normal."""
-    return sum(
-        item.acceleration * np.sin(item.direction - guide.guide_angle) for item in loads if isinstance(item, Gravity)
-    )
+    pulls = [item.vector for item in loads if isinstance(item, Gravity)]
+    across = sum(float(cross(guide.direction, pull)) for pull in pulls)
+    return 0.0 if abs(across) <= ROUNDING * sum(map(np.hypot, *zip(*pulls, strict=True))) else across
 
 
 def _carrying(moment, free_angle):

@@ -274,8 +274,9 @@ def _advice(start, problem, reference, values):
     if helped or not np.isfinite(limit):
         return ""
     return (
-        f"; under weight a symmetric cam reaches a ratio of mean torques of {limit:.4g} at most: give sine terms, "
-        "coupler_spring or counterweight"
+        f"; under weight a symmetric cam reaches a ratio of mean torques of about {limit:.3g} at most (that of the cam "
+        "nearest to the limits; it changes by some per cent with the cam): give sine terms, coupler_spring or "
+        "counterweight"
     )
 
 

@@ -185,8 +185,13 @@ class Motion:
         for group in self.mechanism.groups:
             if name in group.motions:
                 return self._scalar(group.motion(name, self.placement))
+        known = of_mechanism(self.mechanism)
+        other = isinstance(name, str) and name in known
+        motions = tuple(name for name, found in known.items() if found.kind == "motion")
         raise QuantityError(
-            checks.choice(f"{self.mechanism.name}: quantity", name, tuple(of_mechanism(self.mechanism)))
+            f"{self.mechanism.name}: {name!r} is no quantity of motion; read it by solution{known[name].reading}"
+            if other
+            else checks.choice(f"{self.mechanism.name}: quantity of motion", name, motions)
         )
 
     @property
