@@ -25,6 +25,7 @@ OWN: dict[str, tuple[str, dict]] = {
     "guide_offset": ("m", {}),
     "counterweight": ("kg", {"low": 0.0, "strict": True}),
     "coupler_spring": ("rad", {}),
+    "shaft_radius": ("m", {"low": 0.0, "strict": True}),
 }
 """Units and limits of what the machine may have of its own."""
 REACH = 0.5
@@ -116,6 +117,7 @@ class Options:
     coupler_spring: float | None = None
     counterweight: float | None = None
     cubic: Any = None
+    shaft_radius: float | None = None
 
     @classmethod
     def checked(cls, *problems, **given):
