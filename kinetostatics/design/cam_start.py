@@ -249,7 +249,7 @@ def _across(loads, guide):
     """Acceleration of gravity along the guide's left normal."""
     pulls = [item.vector for item in loads if isinstance(item, Gravity)]
     across = sum(float(cross(guide.direction, pull)) for pull in pulls)
-    return 0.0 if abs(across) <= ROUNDING * sum(map(np.hypot, *zip(*pulls, strict=True))) else across
+    return 0.0 if abs(across) <= ROUNDING * sum(np.hypot(*pull) for pull in pulls) else across
 
 
 def _carrying(moment, free_angle):

@@ -186,13 +186,10 @@ class Motion:
             if name in group.motions:
                 return self._scalar(group.motion(name, self.placement))
         known = of_mechanism(self.mechanism)
-        other = isinstance(name, str) and name in known
-        motions = tuple(name for name, found in known.items() if found.kind == "motion")
-        raise QuantityError(
-            f"{self.mechanism.name}: {name!r} is no quantity of motion; read it by solution{known[name].reading}"
-            if other
-            else checks.choice(f"{self.mechanism.name}: quantity of motion", name, motions)
-        )
+        if isinstance(name, str) and name in known:
+            reading = f"solution{known[name].reading}"
+            raise QuantityError(f"{self.mechanism.name}: {name!r} is no quantity of motion; read it by {reading}")
+        raise QuantityError(checks.choice(f"{self.mechanism.name}: quantity", name, tuple(known)))
 
     @property
     def closure(self):
