@@ -293,7 +293,7 @@ _WHERE = {
 def __getattr__(name):
     place = next((place for place, names in _WHERE.items() if name in names), None)
     if place is None:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_instead(name)}")
     if place.startswith("views"):
         from .numbers.lazy import pyplot
 
@@ -302,6 +302,18 @@ def __getattr__(name):
     found = (getattr(import_module(path), name, None) if place else None) or import_module(f"{path}.{name}")
     globals()[name] = found
     return found
+
+
+def _instead(name):
+    """What to write for a name that is not there: the nearest one, else the machines that there are."""
+    if name.startswith("_"):  # Python itself asks for these
+        return ""
+    from .numbers.checks import hint
+
+    machines = ", ".join(_WHERE["machine.builders"])
+    groups = ", ".join(each for each in __all__ if each.endswith("Group") or each in ("CamRoller", "Dyad", "Pin"))
+    there = f"; machines are {machines}, and a Mechanism of {groups}; dir({__name__}) lists all names"
+    return hint(name, __all__) or there
 
 
 def __dir__():

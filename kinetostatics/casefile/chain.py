@@ -2,7 +2,7 @@
 
 from ..machine.crank import Crank
 from ..machine.guide import Guide
-from ..machine.loads import ProcessForce, Spring, Table
+from ..machine.loads import Spring
 from ..machine.mechanism import Mechanism
 from ..numbers.leaves import with_fields
 from . import schema
@@ -66,8 +66,6 @@ def _load(table, number, tabulated, mechanism, crank_speed):
     kind = schema.MADE_OF[type(table)]
     names = [name for name in type(table).model_fields if name != "kind"]
     values = {name: tabulated.get(("loads", number, name), getattr(table, name)) for name in names}
-    if kind is ProcessForce and isinstance(values["force"], Table):
-        values["period"] = values["force"].period
     if kind is Spring and isinstance(values["stiffness"], str):
         slider = mechanism.links.get(table.on)
         if slider is None:

@@ -2,10 +2,11 @@
 
 from ..errors import CaseError
 from ..numbers import checks
+from ..numbers.texts import normal
 
 
 class Named(dict):
-    """Items of a case by name.
+    """Items of a case by name, whatever Unicode form that is written in.
 
     Attributes
     ----------
@@ -22,7 +23,12 @@ class Named(dict):
     def __getitem__(self, name):
         return super().__getitem__(name) if isinstance(name, str) else self.__missing__(name)
 
+    def __contains__(self, name):
+        return super().__contains__(normal(name))
+
     def __missing__(self, name):
+        if normal(name) != name:
+            return self[normal(name)]
         raise NoSuchNameError(self.path, [checks.choice(self.kind, name, tuple(self))])
 
 

@@ -12,6 +12,7 @@ import pydantic
 from ..errors import CaseError, ParameterError
 from ..numbers import checks
 from ..numbers.files import read_text
+from ..numbers.texts import normal, on_disk
 from ..numbers.units import quoted
 from . import schema
 
@@ -60,6 +61,7 @@ def read(path):
     """The path and what its file holds."""
     shipped = shipped_cases()
     try:
+        path = on_disk(path)
         missing = not path.exists()
     except (OSError, ValueError):  # no path at all: reading it says why
         missing = False
@@ -68,7 +70,7 @@ def read(path):
         raise CaseError(path, [f"no such file, and no shipped case of that name ({names})"])
     text = read_text(path, LARGEST_CASE)
     try:
-        raw = None if _LONG_KEY.search(text) else tomllib.loads(text)
+        raw = None if _LONG_KEY.search(text) else tomllib.loads(normal(text))
     except ValueError as error:
         raise CaseError(path, [f"is not TOML: {error}"]) from None
     except RecursionError:

@@ -10,6 +10,7 @@ from ..design import balancing
 from ..drive.motor import Motor
 from ..numbers import checks
 from ..numbers.lazy import cached_property
+from ..numbers.texts import on_disk
 from ..solution.scene import Scene
 from ..solution.solution import Solution
 from . import build, parameters, schema
@@ -134,7 +135,7 @@ class Variant:
     @property
     def files(self):
         """Files that it is made from besides the case file, a list of paths."""
-        return [self.folder / name for _, _, name in parameters.files(self.table)]
+        return [on_disk(self.folder / name) for _, _, name in parameters.files(self.table)]
 
     def solve(self, angles=720) -> Solution:
         """Solution at so many crank angles, evenly over the period of the loads from 0, one turn unless they take more.

@@ -55,7 +55,7 @@ def main(arguments=None):
     except KinetostaticsError as error:
         status, message = 2, str(error)
     except OSError as error:
-        status, message = 2, files.told(error)
+        status, message = 2, files.told(error, "standard output")
     except MemoryError as error:
         status, message = 2, f"there is not enough memory; take fewer crank angles or designs ({error})"
     except KeyboardInterrupt:

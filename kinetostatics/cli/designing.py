@@ -148,6 +148,6 @@ def _told(found):
     if found.prices:
         lines.append("gain: by how much the goal would be better if what binds gave way by one of its unit")
     if np.isfinite(found.bound):
-        lines.append(f"under weight a symmetric cam reaches a ratio of mean torques of {found.bound:.6g} at most")
+        lines.append(f"under weight a symmetric cam reaches a ratio of mean torques of about {found.bound:.3g} at most")
     lines.append(f"power balance of what was found: {found.scene.solve(720).power_residual:.1e} of the largest power")
     return "\n".join(lines)

@@ -3,6 +3,7 @@
 import argparse
 
 from ..numbers import checks
+from ..numbers.texts import normal
 from ..numbers.units import to_si
 from ..version import __version__
 from . import commands
@@ -50,12 +51,12 @@ def _new(group):
 
 def _run(group):
     command = _command(group, "run", commands.run, "extremes of every force, with the power check")
-    command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
+    command.add_argument("--variant", type=_name, metavar="NAME", help="only this variant")
     command.add_argument("--angles", type=_angles, default=720, metavar="N", help="crank angles over the turn (720)")
     command.add_argument(
         "--uncertain",
         action="append",
-        type=_text,
+        type=_name,
         metavar="PATH=SIZE",
         help='also how sure the largest values are: standard uncertainty of a number, "crank_length=0.01 mm", or '
         '"tolerances" for those of the case file; several, each with --uncertain before it',
@@ -65,7 +66,7 @@ def _run(group):
 
 def _compare(group):
     command = _command(group, "compare", commands.compare, "dynamic coefficients against the reference variant")
-    command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant against the reference")
+    command.add_argument("--variant", type=_name, metavar="NAME", help="only this variant against the reference")
     _for_machines(command, "the coefficients, a row for each")
 
 
@@ -74,18 +75,18 @@ def _explain(group):
     command.add_argument("--angle", type=_angle, required=True, metavar="ANGLE", help='crank angle, "39.3 deg"')
     command.add_argument(
         "--quantity",
-        type=_text,
+        type=_name,
         default="balancing_torque",
         metavar="NAME",
         help='or a joint\'s reaction, "O", its magnitude "|O|" (%(default)s)',
     )
-    command.add_argument("--variant", type=_text, metavar="NAME", help="of this variant (the reference)")
+    command.add_argument("--variant", type=_name, metavar="NAME", help="of this variant (the reference)")
     command.add_argument("--out", type=_text, metavar="FILE", help="write it, as .html, .tex or .txt")
 
 
 def _drive(group):
     command = _command(group, "drive", commands.drive, "speed, power and start-up under the motor of the case")
-    command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant")
+    command.add_argument("--variant", type=_name, metavar="NAME", help="only this variant")
     command.add_argument(
         "--start", type=_angle, default=0.0, metavar="ANGLE", help='crank angle to start from, "90 deg" (0 deg)'
     )
@@ -97,14 +98,14 @@ def _plot(group):
     command = _command(group, "plot", commands.plot, "draw the figures of the case")
     command.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the figures")
     command.add_argument("--format", choices=("png", "svg"), default="png", help="file format (png)")
-    command.add_argument("--only", type=_text, metavar="FIGURE", help="draw this figure only")
+    command.add_argument("--only", type=_name, metavar="FIGURE", help="draw this figure only")
     _for_machines(command)
 
 
 def _report(group):
     command = _command(group, "report", commands.report, "one page with the moving mechanism, figures and tables")
     command.add_argument("--out", required=True, type=_text, metavar="FILE", help="page to write, .html")
-    command.add_argument("--variant", type=_text, metavar="NAME", help="only this variant beside the reference")
+    command.add_argument("--variant", type=_name, metavar="NAME", help="only this variant beside the reference")
     command.add_argument("--pdf", type=_text, metavar="FILE", help="print it to a PDF too, by a browser that is there")
 
 
@@ -113,8 +114,8 @@ def _precision(group):
         group, "precision", commands.precision, "every method's time and error against a certified reference"
     )
     command.add_argument("--out", required=True, type=_text, metavar="DIR", help="folder for the CSV and the chart")
-    command.add_argument("--variant", action="append", type=_text, metavar="NAME", help="only these (one of each kind)")
-    command.add_argument("--quantity", action="append", type=_text, metavar="NAME", help="of these (balancing_torque)")
+    command.add_argument("--variant", action="append", type=_name, metavar="NAME", help="only these (one of each kind)")
+    command.add_argument("--quantity", action="append", type=_name, metavar="NAME", help="of these (balancing_torque)")
     command.add_argument("--angles", type=_angles, default=360, metavar="N", help="crank angles over the turn (360)")
     _for_machines(command)
 
@@ -125,20 +126,21 @@ def _sweep(group):
         "--vary",
         action="append",
         required=True,
+        type=_name,
         metavar="PATH=SPREAD",
         help='a parameter and its spread, "spring.stiffness=600..900 kN/m:40"; with --sample also '
         '"spring.stiffness=normal 712 kN/m +- 5 kN/m"',
     )
     command.add_argument(
-        "--output", action="append", type=_text, metavar="OUTPUT", help='"largest O", "ratio mean_absolute ..."'
+        "--output", action="append", type=_name, metavar="OUTPUT", help='"largest O", "ratio mean_absolute ..."'
     )
     command.add_argument(
         "--variant",
-        type=_text,
+        type=_name,
         metavar="NAME",
         help="whose parameters vary (the first besides the reference, which is what ratios refer to)",
     )
-    command.add_argument("--reference", type=_text, metavar="NAME", help="what ratios refer to (the reference)")
+    command.add_argument("--reference", type=_name, metavar="NAME", help="what ratios refer to (the reference)")
     command.add_argument(
         "--sample", type=_designs, metavar="N", help="N designs of a Latin hypercube in place of a grid"
     )
@@ -157,7 +159,7 @@ def _design(group):
     command = _command(
         group, "design", commands.design, "find the machines that the case asks for: its [design] tables"
     )
-    command.add_argument("--design", action="append", type=_text, metavar="NAME", help="only these (all)")
+    command.add_argument("--design", action="append", type=_name, metavar="NAME", help="only these (all)")
     command.add_argument("--starts", type=_count, metavar="N", help="searches for each (as the case says)")
     command.add_argument("--out", type=_text, metavar="FILE", help="case file to write with what is found, .toml")
     command.add_argument("--plot", type=_text, metavar="DIR", help="folder for the figures")
@@ -201,6 +203,11 @@ def _text(text):
     if not text.strip():
         raise argparse.ArgumentTypeError("must not be empty")
     return text
+
+
+def _name(text):
+    """A name of something in a case file, in the form in which that is read."""
+    return normal(_text(text))
 
 
 def _count(text, size=None):

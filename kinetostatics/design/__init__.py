@@ -99,7 +99,10 @@ _WHERE = {
 
 def __getattr__(name):
     if name not in _WHERE:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from ..numbers.checks import hint
+
+        near = "" if name.startswith("_") else hint(name, __all__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{near}")
     found = globals()[name] = getattr(import_module(f"{__name__}.{_WHERE[name]}"), name)
     return found
 

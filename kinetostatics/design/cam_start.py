@@ -12,6 +12,8 @@ from ..machine.guide import Guide
 from ..machine.harmonic_cam import Harmonic
 from ..machine.loads import Gravity, Spring, TorsionSpring
 from ..numbers import checks
+from ..numbers.elementary import ROUNDING
+from ..numbers.planar import cross
 from ..results.extremes import extrema
 from ..solution.scene import Scene
 
@@ -23,6 +25,7 @@ OWN: dict[str, tuple[str, dict]] = {
     "guide_offset": ("m", {}),
     "counterweight": ("kg", {"low": 0.0, "strict": True}),
     "coupler_spring": ("rad", {}),
+    "shaft_radius": ("m", {"low": 0.0, "strict": True}),
 }
 """Units and limits of what the machine may have of its own."""
 REACH = 0.5
@@ -114,6 +117,7 @@ class Options:
     coupler_spring: float | None = None
     counterweight: float | None = None
     cubic: Any = None
+    shaft_radius: float | None = None
 
     @classmethod
     def checked(cls, *problems, **given):
@@ -243,9 +247,9 @@ def _mean_torque(crank_length, coupler_length, coupler, slider, speed):
 
 def _across(loads, guide):
     """Acceleration of gravity along the guide's left normal."""
-    return sum(
-        item.acceleration * np.sin(item.direction - guide.guide_angle) for item in loads if isinstance(item, Gravity)
-    )
+    pulls = [item.vector for item in loads if isinstance(item, Gravity)]
+    across = sum(float(cross(guide.direction, pull)) for pull in pulls)
+    return 0.0 if abs(across) <= ROUNDING * sum(np.hypot(*pull) for pull in pulls) else across
 
 
 def _carrying(moment, free_angle):

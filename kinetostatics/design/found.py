@@ -1,19 +1,25 @@
 """What a search found: the better machine, what binds it, and what each limit and each bound costs."""
 
+import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..errors import HintWarning
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
-from .demands import Demand
+from .demands import Demand, wanted
 from .derived import scene_of
 from .problem import compared_value
 from .robust import quantile
 from .search import is_raised, side_of
 
+NEARLY = 1e-9
+"""How much nearer to the shaft, relative to the distance, counts as rounding."""
+CAM_RADIUS = "cam_radius"
+"""Quantity of a mechanism with a cam that leads A: distance of the roller centre from O."""
 TAKEN = ("reference", "before")
 """Variants of the case file beside the design's own."""
 BINDS = 1e-6
@@ -48,6 +54,8 @@ class Found:
         Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
     spread : (Output, Spread, float) or None
         Of a robust design what a quantile of was made least, or greatest (sign -1), and over what.
+    shaft_radius : float or None
+        Of the shaft at O, m, where it is known.
 
     Examples
     --------
@@ -76,6 +84,7 @@ class Found:
     starts: list[float] = field(default_factory=list)
     bound: float = np.inf
     spread: tuple | None = field(default=None, repr=False)
+    shaft_radius: float | None = None
 
     def __repr__(self):
         numbers = f"{len(self.values)} numbers of {self.scene.mechanism.name} varied"
@@ -83,9 +92,18 @@ class Found:
         return f"<Found: {self.goal}; {numbers}, {binds}; {self.evaluations} evaluations>"
 
     def report(self):
-        """Outputs before and after, with their limits and what these cost; a pandas DataFrame."""
+        """Outputs before and after, with their limits and what these cost; a pandas DataFrame.
+
+        Warns
+        -----
+        HintWarning
+            The cam cuts into the shaft, if the shaft's radius is known.
+        """
         import pandas as pd
 
+        hint = self._shaft_hint()
+        if hint:
+            warnings.warn(HintWarning(self.scene.mechanism.name, hint), stacklevel=2)
         limits: dict[str, list[Demand]] = {}
         for limit in self.limits:
             limits.setdefault(str(limit.output), []).append(limit)
@@ -108,6 +126,14 @@ class Found:
                 "price": next((self.prices[str(limit)] for limit in own if str(limit) in self.prices), np.nan),
             }
         return pd.DataFrame.from_dict(rows, orient="index").rename_axis("output")
+
+    def _shaft_hint(self):
+        """What is wrong with a cam too near to O for the shaft, as a sentence, or None."""
+        roller = self.scene.mechanism.rollers.get("A")
+        if self.shaft_radius is None or CAM_RADIUS not in known(self.scene):
+            return None
+        nearest = compared_value(wanted(f"smallest {CAM_RADIUS}", self.scene), self.scene, None)
+        return shaft_hint(nearest, roller, self.shaft_radius)
 
     def numbers(self):
         """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame.
@@ -158,6 +184,18 @@ class Found:
         if output.quantity not in known(scene):
             return np.nan
         return compared_value(output, scene, self.reference)
+
+
+def shaft_hint(nearest, roller_radius, shaft_radius):
+    """What is wrong with a cam whose roller centre comes so near to O, as a sentence, or None; all in m."""
+    reach = shaft_radius + (roller_radius or 0.0)
+    if nearest >= reach * (1.0 - NEARLY):
+        return None
+    roller = f" with a roller of {roller_radius * 1e3:.4g} mm" if roller_radius else ""
+    return (
+        f"the cam cuts into the shaft: the roller centre comes to {nearest * 1e3:.4g} mm from O, the shaft's radius is "
+        f"{shaft_radius * 1e3:.4g} mm{roller}; ask for at least {reach * 1e3:.4g} mm"
+    )
 
 
 def known(scene):

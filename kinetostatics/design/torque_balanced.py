@@ -10,6 +10,7 @@ from ..machine.profile import Peak, highest, lowest
 from ..numbers.lazy import cached_property
 from ..solution.scene import Scene
 from .followers import lifted
+from .found import shaft_hint
 
 COUNT = 4096
 ANGLES = (np.arange(COUNT) + 0.382) * 2 * np.pi / COUNT
@@ -38,6 +39,8 @@ class TorqueBalancing:
         Of the spring, least and largest, m; weight of the follower counted in.
     reserve : float
         Times the force with which the spring must pull for contact, 2 omega sqrt(m E''), at least; above 1.
+    shaft_radius, roller_radius : float or None
+        m, as given.
 
     Examples
     --------
@@ -56,6 +59,8 @@ class TorqueBalancing:
     energy: float
     stretch: tuple[float, float]
     reserve: float
+    shaft_radius: float | None = None
+    roller_radius: float | None = None
 
     @property
     def travel(self):
@@ -112,6 +117,12 @@ class TorqueBalancing:
         sharpest = highest(lambda angle: 1.0 / self.follower.disk.curvature_radius(angle))
         return Peak(1.0 / sharpest.value, sharpest.angle)
 
+    @cached_property
+    def cam_radius(self) -> Peak:
+        """Smallest distance of the roller centre from O, m, and the crank angle."""
+        name = "cam_radius" + self.follower.label
+        return lowest(lambda angle: self._solution.at(angle).measure(name))
+
     def table(self):
         """Torque and bearing force before and after, as a DataFrame."""
         import pandas as pd
@@ -129,7 +140,9 @@ class TorqueBalancing:
         return pd.DataFrame(rows)
 
     def report(self):
-        """What it is and what it costs, as text."""
+        """What it is and what it costs, as text; with a warning where the cam cuts into the shaft."""
+        nearest, roller, shaft = self.cam_radius, self.follower.rollers[self.follower.pin], self.shaft_radius
+        hint = None if shaft is None else shaft_hint(nearest.value, self.roller_radius or roller, shaft)
         low, high = self.stretch
         before, after = self.uneven
         mean = self.mean_torque if abs(self.mean_torque) > ZERO * before else 0.0
@@ -149,7 +162,9 @@ class TorqueBalancing:
                 f"{forces[1].value:.4g} N at {np.degrees(forces[1].angle):.4g}; "
                 + (f"lifts off from {lost}" if lost else "positive all the way"),
                 f"  pressure angle      {np.degrees(self.pressure_angle.value):.4g} deg at most",
-                f"  pitch curve         smallest radius of curvature {self.curvature_radius.value * 1e3:.4g} mm",
+                f"  pitch curve         smallest radius of curvature {self.curvature_radius.value * 1e3:.4g} mm; "
+                f"smallest distance from O {nearest.value * 1e3:.4g} mm at {np.degrees(nearest.angle):.4g} deg",
+                *([f"  warning             {hint}"] if hint else []),
             ]
         )
 

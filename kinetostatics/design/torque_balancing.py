@@ -31,7 +31,7 @@ CORNER = 1e-6
 """Jump of the torque across its mean, relative to the largest, that counts as one."""
 BESIDE = 1e-9
 SWITCHES = {"switches": checks.Number("rad", table=True)}
-OPTIONAL = ("stiffness", "base_radius", "roller_radius")
+OPTIONAL = ("stiffness", "base_radius", "roller_radius", "shaft_radius")
 STEEP, STEEPEST = np.radians(30.0), np.radians(85.0)
 
 
@@ -46,6 +46,7 @@ def torque_balancing_cam(
     base_radius=None,
     pressure_angle=STEEP,
     roller_radius=None,
+    shaft_radius=None,
     pin="R",
     label="_cam",
     switches=(),
@@ -71,6 +72,8 @@ def torque_balancing_cam(
         Largest, rad; a limit where `base_radius` is given too.
     roller_radius : float, optional
         m; refused where it would undercut the cam.
+    shaft_radius : float, optional
+        m. The least base radius keeps the cam off the shaft too; with a smaller one given the report warns.
     pin, label : str
         Of the `RollerFollower`.
     switches : sequence of float
@@ -96,7 +99,7 @@ def torque_balancing_cam(
     (True, ())
     """
     given = {"stiffness": stiffness, "base_radius": base_radius, "roller_radius": roller_radius, "mass": mass}
-    given |= {"travel": travel, "pressure_angle": pressure_angle}
+    given |= {"shaft_radius": shaft_radius, "travel": travel, "pressure_angle": pressure_angle}
     values = _checked(scene, given | {"guide_angle": guide_angle, "guide_offset": guide_offset})
     if np.size(switches):
         switches = np.atleast_1d(checks.examined(OWNER, SWITCHES, {"switches": switches})["switches"])
@@ -119,12 +122,13 @@ def torque_balancing_cam(
     spring = Spring(stiffness, shift - values["mass"] * weight / stiffness, on="follower" + label)
     loaded = replace(scene, mechanism=mechanism, loads=(*scene.loads, spring))
     ends = least, least + values["travel"]
-    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve)
+    radii = values.get("shaft_radius"), values.get("roller_radius")
+    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve, *radii)
 
 
 def _checked(scene, given):
     """Values of what is given, by name."""
-    rules = dict.fromkeys(("base_radius", "roller_radius", "travel"), ("m", POSITIVE))
+    rules = dict.fromkeys(("base_radius", "roller_radius", "shaft_radius", "travel"), ("m", POSITIVE))
     rules |= {"stiffness": ("N/m", POSITIVE), "mass": ("kg", POSITIVE)}
     rules |= {"pressure_angle": ("rad", POSITIVE | {"high": STEEPEST}), "guide_angle": ("rad", {})}
     rules |= {"guide_offset": ("m", {})}
@@ -220,12 +224,14 @@ def _no_contact(values, low, reserve):
 
 
 def _base(stretch, least, values):
-    """Least coordinate of the roller centre; that which keeps to the pressure angle, unless given."""
+    """Least coordinate of the roller centre; unless given that which keeps to the pressure angle and off the shaft."""
     angle = np.linspace(0.0, TURN, COUNT)
     x, rate = stretch.at(angle, 1)
     steep = np.tan(values["pressure_angle"])
     needed = float(np.max(np.abs(rate + values["guide_offset"]) / steep - (x - least)))
-    base = values.get("base_radius", needed)
+    clear = values.get("shaft_radius", 0.0) + (values.get("roller_radius", 0.0) if "shaft_radius" in values else 0.0)
+    off_shaft = float(np.sqrt(max(clear * clear - values["guide_offset"] ** 2, 0.0)))
+    base = values.get("base_radius", max(needed, off_shaft))
     if base < needed * (1.0 - 1e-9):
         raise ParameterError(
             f"{OWNER}: with a base radius of {base:.6g} m the pressure angle exceeds "

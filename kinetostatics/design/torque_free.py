@@ -55,6 +55,7 @@ SHOWN = (
     "largest_absolute pressure_angle",
     "largest slider_position",
     "smallest slider_position",
+    "smallest cam_radius",
 )
 """Outputs that a report shows."""
 
@@ -74,6 +75,7 @@ def torque_free_cam(
     counterweight=None,
     cubic=None,
     vary=None,
+    shaft_radius=None,
     robust=None,
     variant=None,
     reference=None,
@@ -95,7 +97,7 @@ def torque_free_cam(
         Output to be made least or greatest, as for `optimise`; the mean magnitude of the torque is made least unless
         told. "rms balancing_torque" is the least squares.
     limits : sequence of str
-        As for `optimise`.
+        As for `optimise`; "smallest cam_radius >= 40 mm" keeps the roller centre off the shaft.
     ends : (low, high), optional
         Extreme positions of the slider, m; those of the source unless told.
     gravity : bool
@@ -111,13 +113,16 @@ def torque_free_cam(
         Bounds of the spring's cubic term, N/m3; without it the spring is linear.
     vary : dict of path to (low, high), optional
         Further numbers that vary, or other bounds.
+    shaft_radius : float, optional
+        m, of the shaft at O, for the report; that of the source's friction at O unless told.
     robust, variant, reference, starts, seed, engine, progress
         As for `optimise`. Further starts have harmonics anywhere within a tenth of the cam's radius.
 
     Returns
     -------
     Found
-        Its `bound` is the greatest ratio of mean torques that a symmetric cam reaches under weight.
+        Its report warns where the cam cuts into the shaft. Its `bound` is the greatest ratio of mean torques that a
+        symmetric cam reaches under weight.
 
     Raises
     ------
@@ -145,6 +150,7 @@ def torque_free_cam(
         coupler_spring=coupler_spring,
         counterweight=counterweight,
         cubic=cubic,
+        shaft_radius=shaft_radius,
     )
     given = _weighted(scene_of(source), gravity)
     compared = None if reference is None else _weighted(scene_of(reference), gravity)
@@ -168,7 +174,9 @@ def torque_free_cam(
         evaluations=problem.evaluations,
         starts=as_asked(problem, aims.output, goal, came_to),
     )
-    return replace(found, before=given, bound=bound(start, found.scene, compared))
+    rubbing = scene_of(source).friction.get("O")
+    shaft = getattr(rubbing, "radius", None) if shaft_radius is None else options.shaft_radius
+    return replace(found, before=given, bound=bound(start, found.scene, compared), shaft_radius=shaft)
 
 
 class _Aims(NamedTuple):
@@ -271,8 +279,9 @@ def _advice(start, problem, reference, values):
     if helped or not np.isfinite(limit):
         return ""
     return (
-        f"; under weight a symmetric cam reaches a ratio of mean torques of {limit:.4g} at most: give sine terms, "
-        "coupler_spring or counterweight"
+        f"; under weight a symmetric cam reaches a ratio of mean torques of about {limit:.3g} at most (that of the cam "
+        "nearest to the limits; it changes by some per cent with the cam): give sine terms, coupler_spring or "
+        "counterweight"
     )
 
 

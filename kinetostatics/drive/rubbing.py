@@ -158,7 +158,7 @@ class RubbingDriven(Driven):
         """Take as many passes over friction as it takes around the period, from standstill to a speed."""
         angle = np.linspace(0.0, self.period, ROUND, endpoint=False) + 0.5 * self.period / ROUND
         for part in (0.0, 0.5, 1.0):
-            self._looked_at(angle, np.full(ROUND, part * speed), 0.0)
+            self._looked_at(angle, np.full(ROUND, self.direction * part * speed), 0.0)
 
     def acceleration_along(self, angle, speed, sense):
         state, senses = self.unrubbed(angle, speed, sense), self.senses.at(angle, sense)
@@ -307,8 +307,9 @@ class RubbingDriven(Driven):
         raise DriveError(
             f"{self.scene.mechanism.name}: friction jams at crank angle {degrees:.6g} deg and "
             f"{speed[worst]:.6g} rad/s: each rad/s2 of deceleration adds {growth[worst]:.6g} N m of friction torque, "
-            f"but frees only {inertia[worst]:.6g} N m of inertia torque, so no acceleration balances them; give a flywheel of "
-            f"{growth[worst] - inertia[worst]:.3g} kg m2 or more in addition, or lower coefficients of friction",
+            f"but frees only {inertia[worst]:.6g} N m of inertia torque, so no acceleration balances them; give a "
+            f"flywheel of {growth[worst] - inertia[worst]:.3g} kg m2 or more in addition, or lower "
+            "coefficients of friction",
             crank_angle=float(angle[worst]),
         )
 

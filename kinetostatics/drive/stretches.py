@@ -62,7 +62,7 @@ class Path:
 
 
 class Followed(NamedTuple):
-    """A motion that was followed: times, rows as of `Path`, the path, reversals as (time, angle), and what ended it.
+    """A motion: times, rows as of `Path`, the path, reversals as (time, angle), what ended it, starts of its stretches.
 
     `end` is "end", "ready", "standstill" where that was asked for, "stuck", or "lost" where it cannot be followed.
     """
@@ -72,6 +72,7 @@ class Followed(NamedTuple):
     path: Any
     reversals: list
     end: str
+    starts: list
 
 
 def sense_from_rest(driven, angle):
@@ -128,7 +129,9 @@ def followed(driven, angle, speed, end, target=None, to_standstill=False, sense=
         if what in ("end", "ready", "standstill", "stuck"):
             break
     path = Path(stretches) if stretches else lambda time: np.multiply.outer(rows[0], np.ones(np.shape(time)))
-    return Followed(np.array(times), np.array(rows).T, path, reversals, "lost" if what in ("edge", "bend") else what)
+    ended = "lost" if what in ("edge", "bend") else what
+    starts = [stretch.start for stretch in stretches]
+    return Followed(np.array(times), np.array(rows).T, path, reversals, ended, starts)
 
 
 def _stretch(driven, state, direction, time, target, crossed, count):

@@ -85,7 +85,7 @@ class Trajectory:
     events: tuple[Event, ...]
     _driven: Driven = field(repr=False)
     _dense: Any = field(repr=False)
-    _steps: tuple[np.ndarray, ...] = field(repr=False)
+    _ends: np.ndarray = field(repr=False)
 
     def __repr__(self):
         last = self.events[-1]
@@ -125,15 +125,14 @@ class Trajectory:
 
         The work is that of the torques which `solve` gives along the motion, by Gauss' rule in each step.
         """
-        ends, angle, speed = self._steps
+        ends = self._ends
         if ends.size < 2:
             return 0.0
-        at_ends, half = self.at(ends), 0.5 * np.diff(ends)
+        half, energy = 0.5 * np.diff(ends), self.at(ends).kinetic_energy
         inside = self.at(np.ravel(0.5 * (ends[:-1] + ends[1:])[:, None] + half[:, None] * NODES))
         drive = 0.0 if self.motor is None else self.motor.torque_at_crank(inside.speed)
         power = (drive - inside.solution.load_torque - inside.solution.friction_torque) * inside.speed
         work = np.cumsum(half * (power.reshape(half.size, NODES.size) @ WEIGHTS))
-        energy = with_fields(at_ends, crank_angle=angle, speed=speed).kinetic_energy
         return float(np.abs(energy[1:] - energy[0] - work).max())
 
     @property

@@ -222,9 +222,9 @@ def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     turns = (Event("reversal", *turn) for turn in found.reversals)
     events = Event("start", 0.0, angle), *turns, Event(last, float(time[-1]), float(rows[0, -1]))
     time, angles, speeds, senses = map(read_only, (time, *rows[[0, 1, 4]]))
-    alpha = read_only(driven.acceleration_along(angles, speeds, senses))
-    steps = time, angles, speeds
-    return Trajectory(scene, driven.motor, driven.flywheel, *steps, alpha, events, driven, found.path, steps)
+    moving = time, angles, speeds, read_only(driven.acceleration_along(angles, speeds, senses))
+    ends = np.union1d(time, found.starts)  # between them the power is smooth
+    return Trajectory(scene, driven.motor, driven.flywheel, *moving, events, driven, found.path, ends)
 
 
 def _lost(driven, time, angle, speed):

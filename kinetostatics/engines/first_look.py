@@ -32,6 +32,7 @@ def first_look(kind, judged=()):
     if present(scene.crank_speed) is not None and scene.mechanism.crank.length is not None:
         odd += [f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {hints.FASTEST}"]
     odd += [f"0.0 < {noted(inertia)} < thin * {noted(mass)}" for inertia, mass in bodies]
+    odd += ["True" for _ in hints.beside_rods(scene.mechanism, scene.loads)]
     odd += [f"abs({noted(gap)}) <= 1e-9 * {noted(length)}" for length, gap in arms]
     source = f"""def line(numbers):
     v = sizes(0.0, 0.0, 1.0, numbers, ())

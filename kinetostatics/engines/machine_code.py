@@ -14,6 +14,7 @@ from functools import cache
 from types import ModuleType
 
 from ..errors import CacheWarning
+from ..signals import deferred
 from .programs_folder import new_entry, programs_folder, sealed
 
 
@@ -30,13 +31,14 @@ def load(text, keep=False) -> ModuleType:
         Whether machine code is looked for on disk, and left there. When that cannot be, the module is the same, with a
         `CacheWarning` once.
     """
-    if keep:
-        try:
-            return _kept(text)
-        except OSError as error:
-            _tell(f"machine code is not kept on disk but made anew in each session: {error}")
-    name = _name(text)
-    return _executed(text, name, f"<{name}>", keep=False)
+    with deferred():  # LLVM calls back into Python, where an interruption is lost
+        if keep:
+            try:
+                return _kept(text)
+            except OSError as error:
+                _tell(f"machine code is not kept on disk but made anew in each session: {error}")
+        name = _name(text)
+        return _executed(text, name, f"<{name}>", keep=False)
 
 
 def _kept(text):

@@ -35,7 +35,10 @@ PAIRS = {
     "slot": Sliding("block", "A", "crank", "slot_force", "slot_moment"),
     "cam": Rolling("block", "A", "cam_force"),
 }
-MOTIONS = {"pressure_angle": Output("rad", False, "of the cam pair, atan(r'/r), positive where the radius grows")}
+MOTIONS = {
+    "pressure_angle": Output("rad", False, "of the cam pair, atan(r'/r), positive where the radius grows"),
+    "cam_radius": Output("m", False, "of the pitch curve, from O to the roller centre"),
+}
 TERMS = {
     "place.radius": ("r", "radius of the pitch curve"),
     "place.slope": ("r'", "its first derivative by phi"),
@@ -209,7 +212,7 @@ class CamRoller(checks.Checked, Group):
 
     def motion(self, name, placement):
         radius, slope, _ = placement.details["cam"]
-        return atan(slope / radius)
+        return radius if name == "cam_radius" else atan(slope / radius)
 
     def place(self, placement):
         orbit = None

@@ -21,7 +21,8 @@ from .pairs import Slide, Sliding, Turning
 class CylinderGroup(checks.Checked, Group):
     """Rod on joint `on`, sliding in a cylinder about the fixed joint `pivot_name`: swinging cylinder.
 
-    The pin must not meet the pivot. A fluid's pressure is a force between both joints.
+    The pin must not meet the pivot. A fluid's pressure is a `PointForce` between places on rod and cylinder, as
+    ``between=(("rod", along, 0.0), "O2")``; the joint `on` itself belongs to what the rod hangs on.
 
     Parameters
     ----------

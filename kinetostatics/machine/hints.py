@@ -6,6 +6,7 @@ from ..numbers import checks
 from ..numbers.elementary import sqrt
 from .group import FRAME
 from .links import present
+from .loads.places import carrier
 
 THIN = 1000.0
 """How many times less than that of a uniform rod of its mass and length, m l^2 / 12, the inertia of a link may be."""
@@ -69,6 +70,28 @@ def _fast(length, crank_speed, longest):
             f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than in any racing engine; is crank_speed, "
             f"{speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
         )
+
+
+def of_loads(mechanism, loads):
+    """Say which loads between two points act along a cylinder, but not on both its rod and itself."""
+    for load, slot, other in beside_rods(mechanism, loads):
+        place = f"({', '.join(map(repr, other))})" if isinstance(other, tuple) else repr(other)
+        yield (
+            f"{load.title}: it acts along the {slot.link} on {slot.joint!r}, a joint of the "
+            f"{mechanism.joints[slot.joint].link}, so the {slot.rod} does not carry it; for the pressure in the "
+            f'{slot.link} give a place on the {slot.rod}, between=(("{slot.rod}", 0.0, 0.0), {place})'
+        )
+
+
+def beside_rods(mechanism, loads):
+    """Loads between a cylinder and the joint of its rod that another link owns, with the slot and the other point."""
+    for slot in mechanism.slots:
+        for load in loads:
+            ends = getattr(load, "between", ())
+            if slot.rod and len(ends) == 2 and slot.joint in ends:
+                carriers = {carrier(mechanism, end).link for end in ends}
+                if slot.link in carriers and slot.rod not in carriers:
+                    yield load, slot, ends[ends[0] == slot.joint]
 
 
 def sizes(mechanism):

@@ -74,7 +74,8 @@ class RollerFollower(GuidedFollower):
     -----
     "contact_force" (N), of the cam on the roller along the common normal, positive outward: where it is negative the
     follower would lift off. "guide_force" (N), ground on follower along the guide's left normal, and "guide_moment"
-    (N m) about `pin`; "guide", the same force as a vector. "pressure_angle" (rad), of the contact force from the guide.
+    (N m) about `pin`; "guide", the same force as a vector. "pressure_angle" (rad), of the contact force from the guide;
+    "cam_radius" (m), of the roller centre from O.
     With a roller "contact_pressure" (Pa), where the force is negative on a ring around the pitch curve.
 
     Examples
@@ -108,9 +109,15 @@ class RollerFollower(GuidedFollower):
     @property
     def motions(self):
         text = "of the contact force from the guide, positive with growing crank angle"
-        return {"pressure_angle" + self.label: Output("rad", False, text)}
+        return {
+            "pressure_angle" + self.label: Output("rad", False, text),
+            "cam_radius" + self.label: Output("m", False, "of the pitch curve, from O to the roller centre"),
+        }
 
     def motion(self, name, placement):
+        if name == "cam_radius" + self.label:
+            position, offset = placement.travels[self.moved].position, number(self.guide.line.offset)
+            return sqrt(position * position + offset * offset)
         reach, climb = self._across(placement)
         return atan(climb / reach)
 

@@ -215,9 +215,11 @@ class Motion:
         for group in self.mechanism.groups:
             if isinstance(name, str) and name in group.motions:
                 return self._scalar(group.motion(name, self.placement))
-        raise QuantityError(
-            checks.choice(f"{self.mechanism.name}: quantity", name, tuple(of_mechanism(self.mechanism)))
-        )
+        known = of_mechanism(self.mechanism)
+        if isinstance(name, str) and name in known:
+            reading = f"solution{known[name].reading}"
+            raise QuantityError(f"{self.mechanism.name}: {name!r} is no quantity of motion; read it by {reading}")
+        raise QuantityError(checks.choice(f"{self.mechanism.name}: quantity", name, tuple(known)))
 
     @property
     def closure(self):

@@ -3,6 +3,7 @@
 One list serves extremes, tables, plots, sweeps and the command line.
 """
 
+import json
 from collections.abc import Callable
 from operator import attrgetter, methodcaller
 from typing import Any, NamedTuple
@@ -40,6 +41,12 @@ class Quantity(NamedTuple):
     vector: bool = False
     kind: str = "force"
     owner: str = ""
+
+    @property
+    def reading(self):
+        """What `read` does, as code behind a solution: ``.shaking_force``, ``.reaction("O")``."""
+        kind, (name, *given) = self.read.__reduce__()[:2]
+        return f".{name}" if kind is attrgetter else f".{name}({json.dumps(given)[1:-1]})"
 
 
 CHECKS = ("friction_margin", "friction_residual")

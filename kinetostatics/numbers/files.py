@@ -13,7 +13,8 @@ import numpy as np
 
 from ..errors import CaseError, FileError
 from . import checks
-from .headings import parted
+from .headings import heading, tolerant
+from .texts import on_disk
 from .units import NUMBER, factor, quoted
 
 LARGEST_TABLE = 10_000_000
@@ -30,11 +31,12 @@ def read_text(path, largest):
         It is none of these, or no text.
     """
     try:
-        found = Path(path).stat()
+        path = on_disk(path)
+        found = path.stat()
         if not stat.S_ISREG(found.st_mode):
             kind = "folder" if stat.S_ISDIR(found.st_mode) else "pipe or device"
             raise CaseError(path, [f"cannot be read: it is a {kind}, not a file"])
-        with Path(path).open("rb") as file:
+        with path.open("rb") as file:
             content = file.read(largest + 1)
     except (OSError, ValueError) as error:
         if isinstance(error, CaseError):
@@ -60,7 +62,7 @@ def read_columns(path, wanted):
     path : path
         Its first line names each column with its unit: ``angle [deg], radius [mm]``. Commas stand between the columns,
         numbers have a decimal point, and every row has as many fields as the heading; empty lines are left out. Before
-        the heading there may be comments, lines that begin with ``#``.
+        the heading there may be comments, lines that begin with ``#``. Names are read as `headings.tolerant` has it.
     wanted : dict
         Column name to SI unit.
 
@@ -92,35 +94,40 @@ def read_columns(path, wanted):
 
 def headings(path):
     """Name and unit of each column of a CSV file, from its first line that is no comment."""
-    return list(map(_parted, _rows(path)[0]))
-
-
-def _parted(heading):
-    """Name and unit of a heading, blanks in the name as underscores: "crank angle [deg]" heads crank_angle."""
-    name, unit = parted(heading)
-    return "_".join(name.split()), unit
+    return list(map(tolerant, _rows(path)[0]))
 
 
 def _column(headings, rows, name, wanted):
     """Values of a column in the SI unit wanted; `ValueError` says what is wrong with it."""
-    names, units = zip(*map(_parted, headings), strict=True)
+    names, units = zip(*map(tolerant, headings), strict=True)
     places = [place for place, found in enumerate(names) if found == name]
     if len(places) != 1:
         there = ", ".join(map(repr, headings[:20]))
         twice = f"{len(places)} columns are {name!r}, of {there}; keep one"
-        raise ValueError(twice if places else f"no column {name!r}; it has {there}{checks.hint(name, names)}")
+        raise ValueError(
+            twice if places else f"no column {name!r}; it has {there}{_renamed(name, wanted, names, units)}"
+        )
     (place,) = places
-    heading, unit = headings[place], units[place]
+    own, unit = headings[place], units[place]
     if not unit:
-        raise ValueError(f'column {heading!r}: has no unit; head it for example "{name} [{wanted}]"')
+        raise ValueError(f'column {own!r}: has no unit; head it for example "{heading(name, wanted)}"')
     try:
         scale = factor(unit, wanted)
     except ValueError as error:
-        raise ValueError(f"column {heading!r}: {error}") from None
+        raise ValueError(f"column {own!r}: {error}") from None
     for line, cells in rows:
         if not _is_number(cells[place]):
-            raise ValueError(f"column {heading!r}, line {line}: not a number: {quoted(cells[place])}")
+            raise ValueError(f"column {own!r}, line {line}: not a number: {quoted(cells[place])}")
     return np.array([cells[place] for _, cells in rows], dtype=float) * scale
+
+
+def _renamed(name, wanted, names, units):
+    """Advice on how to head the column that is meant by a name, empty if none is like it."""
+    near = checks.nearest(name, names)
+    if near is None:
+        return ""
+    unit = units[names.index(near)]
+    return f"; if {near!r} is meant, head it {heading(name, unit or wanted)!r}"
 
 
 def _is_number(cell):
@@ -171,19 +178,32 @@ def written_whole(path):
         raise FileError(problem)
     path = Path(path)
     if path.exists() and not path.is_file():  # a pipe or a device takes what is written as it comes
-        yield path
+        with _naming(path):
+            yield path
         return
     path = Path(os.path.realpath(path))
     before = path.stat() if path.exists() else None
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
     try:
         _create(temporary, 0o600 if before else 0o666, path)
-        yield str(temporary)
+        with _naming(path):
+            yield str(temporary)
         if before is not None:
             _resembling(temporary, before)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def _naming(path):
+    """Errors of the system in writing, which name no file or a temporary one, name the file that is written."""
+    try:
+        yield
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(f"{path} cannot be written: {error.strerror or error}") from error
 
 
 def _create(temporary, mode, path):
@@ -195,9 +215,9 @@ def _create(temporary, mode, path):
         raise FileError(f"{path} cannot be written: {error.strerror}; give another place") from None
 
 
-def told(error):
-    """What the system says of an error, without its number."""
-    return ": ".join(map(str, filter(None, (error.filename, error.strerror)))) or str(error)
+def told(error, elsewhere):
+    """What the system says of an error, without its number, behind the file that it names or `elsewhere`."""
+    return f"{error.filename or elsewhere}: {error.strerror or error}"
 
 
 def _resembling(path, before):

@@ -3,6 +3,7 @@
 import re
 
 from . import checks
+from .texts import normal
 from .units import factor
 
 _HEADING = re.compile(r"([^\[\]]*)(?:\[([^\[\]]*)\])?")
@@ -19,6 +20,18 @@ def parted(text):
     """Name and unit of a heading; the unit is empty where there is none."""
     found = _HEADING.fullmatch(str(text).strip())
     return (found[1].strip(), (found[2] or "").strip()) if found else (str(text).strip(), "")
+
+
+def tolerant(text):
+    """Name and unit of a heading of a user's file, as the library writes them.
+
+    Capital letters, blanks and hyphens in the name are no difference, and the unit may stand in round brackets:
+    "Crank angle (deg)" heads crank_angle.
+    """
+    name, unit = parted(text)
+    rounded = None if unit else _ROUND.fullmatch(name)
+    name, unit = rounded.groups() if rounded else (name, unit)
+    return "_".join(normal(name).lower().replace("-", " ").split()), unit.strip()
 
 
 def si_columns(columns, known=None, unknown=None):

@@ -46,7 +46,8 @@ def of_scene(solution):
     """Sentences on what looks like a slip in the scene of a solution."""
     values = solution.apart[1].numbers
     numbers = [(path, values[leaf], usual) for path, leaf, usual, _ in solution.kind.answer(judged)]
-    return hints.of_scene(solution.mechanism, solution.crank_speed, numbers)
+    mechanism = solution.mechanism
+    return (*hints.of_scene(mechanism, solution.crank_speed, numbers), *hints.of_loads(mechanism, solution.loads))
 
 
 def _scene(parts):

@@ -53,7 +53,7 @@ def test_a_full_disk_is_told_in_a_line(saw):
         command = [*COMMAND, "run", saw, "--variant", "plain", "--angles", "8"]
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr == "kinetostatics: No space left on device\n"
+    assert done.stderr == "kinetostatics: standard output: No space left on device\n"
 
 
 @pytest.mark.slow

@@ -64,7 +64,7 @@ BAD_TABLES = {
     "open bracket": (GOOD.replace("[N]", "[N"), "no column 'force'"),
     "other unit": (GOOD.replace("[N]", "[kg]"), "does not measure the same"),
     "unit of a hang": (GOOD.replace("[N]", "[N*10**10**10]"), "is not known"),
-    "other name": (GOOD.replace("force", "forces"), "no column 'force'; .* did you mean 'forces'"),
+    "other name": (GOOD.replace("force", "forces"), "no column 'force'; .* head it 'force \\[N\\]'"),
     "words": (GOOD.replace("1060", "high"), "line 8: not a number: 'high'"),
     "nan": (GOOD.replace("1030", "nan"), "line 5: not a number: 'nan'"),
     "infinite": (GOOD.replace("1030", "1e999"), "line 5: not a number: '1e999'"),

@@ -1,5 +1,6 @@
 """Loads at points of links: forces, springs and dampers, fixed in direction, turning with a link, or between points."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -30,6 +31,17 @@ TERMS = {
     "shortening": ("z", "rate at which the points part, over their distance"),
 }
 """What hand calculations call lines of the kernels, and what they are."""
+
+
+class Size(checks.OrFunction):
+    """Rule of a force's value; two components in place of it are told what to write."""
+
+    def taken(self, value, field=""):
+        if isinstance(value, list | tuple) and len(value) == 2 and all(type(part) in (int, float) for part in value):
+            x, y = value
+            write = f"Force({math.hypot(x, y):.6g}, direction={math.atan2(y, x):.6g}, ...)"
+            return value, f"{field} is a number, its direction another; for the components {value!r} write {write}"
+        return super().taken(value, field)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +83,7 @@ class Force(Load):
     PATH, VALUE, OVER_ANGLES, LENGTHS = "force", "value", ("value",), ("at",)
     RULES = checks.Rules(
         "force",
-        value=valued("N"),
+        value=Size(checks.Number("N", table=True)),
         at=Place(),
         direction=checks.Number("rad"),
         along=checks.Optional(checks.Name()),

@@ -167,8 +167,9 @@ class ProcessForce(OnSlider):
         numbers or clocks, because engines call it as often as they need.
     on : str
         The slider it acts on.
-    period : float
-        Crank angle after which the force repeats, rad: 2 pi unless told, 4 pi for a four-stroke engine.
+    period : float, optional
+        Crank angle after which the force repeats, rad, 4 pi for a four-stroke engine; that of its `Table` unless told,
+        2 pi without one.
 
     Raises
     ------
@@ -188,15 +189,20 @@ class ProcessForce(OnSlider):
 
     force: Any
     on: str = "slider"
-    period: float = field(default=TURN, kw_only=True, metadata={"structural": True})
+    period: Any = field(default=None, kw_only=True, metadata={"structural": True})
 
     PATH, VALUE, OVER_ANGLES = "process_force", "force", ("force",)
+
+    def __post_init__(self):
+        if self.period is None:
+            object.__setattr__(self, "period", getattr(self.force, "period", TURN))
+        super().__post_init__()
 
     def _periods(self):
         """Say where the force has a period of its own."""
         known = getattr(self.force, "period", self.period)
         if known != self.period:
-            yield f"the period is {self.period!r}, but that of its force {known!r}"
+            yield f"the period is {self.period!r}, but that of its force {known!r}; leave it out"
 
     RULES = checks.Rules(
         "process force",

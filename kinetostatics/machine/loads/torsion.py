@@ -197,11 +197,12 @@ class TorsionSpring(Couple):
         step = np.diff(angle, axis=-1)
         with np.errstate(invalid="ignore"):
             passing = np.abs(step) > np.pi
-            turns = np.round(np.sum(step - TURN * np.round(step / TURN), axis=-1) / TURN)
-        passing[..., -1] |= (np.abs(turns) > 0) & ~passing.any(axis=-1)  # at the very end of the period
+            turns = np.round(np.sum(step - TURN * np.round(step / TURN), axis=-1) / TURN)  # NaN where it cannot close
+        turning = np.abs(turns) > 0
+        passing[..., -1] |= turning & ~passing.any(axis=-1)  # at the very end of the period
         if not passing.any():
             return
-        full = "it makes full turns" if np.any(turns) else "give a free angle nearer to it"
+        full = "it makes full turns" if turning.any() else self._advice(angle, passing)
         places = np.unique(np.nonzero(passing)[-1])
         many = ", ".join(f"{np.degrees(grid[place] + grid[place + 1]) / 2:.4g}" for place in places[:4])
         yield checks.Problem(
@@ -209,6 +210,24 @@ class TorsionSpring(Couple):
             f"{many}{' ...' if places.size > 4 else ''} deg, where the couple would jump; {full}",
             passing,
         )
+
+    def _advice(self, angle, passing):
+        """A free angle that keeps clear of half a turn wherever the mechanism closes, in words, for the first design.
+
+        `angle` is that of the link from the present free angle.
+        """
+        design = np.argmax(passing.any(axis=-1).ravel())
+        here = angle.reshape(-1, angle.shape[-1])[design]
+        present = np.broadcast_to(self.free_angle, (*angle.shape[:-1], 1)).ravel()[design]
+        shifts = np.radians(np.arange(-180.0, 180.0, 5.0))
+        moved = here - shifts[:, None]
+        moved -= TURN * np.round(moved / TURN)
+        clear = ~(np.abs(np.diff(moved)) > np.pi).any(axis=-1)
+        if not clear.any():
+            return "its angles, on all arcs where the mechanism closes, leave no free angle clear of that"
+        reach = np.where(clear, np.nanmax(np.abs(moved), axis=-1), np.inf)
+        free = present + shifts[np.argmin(reach)]
+        return f"give a free angle nearer to it, such as {free - TURN * np.round(free / TURN):.3g} rad"
 
 
 _LOOKED_AT: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()

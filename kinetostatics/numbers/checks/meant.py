@@ -3,6 +3,11 @@
 import re
 
 SYNONYMS = {
+    # machines
+    "four_bar": ("fourbar", "crank_rocker", "double_crank", "double_rocker"),
+    "crank_slider": ("slider_crank",),
+    "slotted_lever": ("quick_return", "whitworth"),
+    "scotch_yoke": ("yoke",),
     # engines
     "compiled": ("numba", "jit", "njit", "fast"),
     "numpy": ("np", "python"),

@@ -14,7 +14,7 @@ from .values import known
 def single(name, value, unit, *, high=None, unequal=None, **rule):
     """One number in a unit as a float, and what is wrong with it, as a sentence, or None; `rule` as for `Number`."""
     found, problem = Number(unit, name, **rule).taken(value)
-    if problem is None and (not known(found) or np.ndim(found)):
+    if isinstance(value, list | tuple) or (problem is None and (not known(found) or np.ndim(found))):
         problem = f"{name} must be one number, got {shown(value)}"
     if problem is None and high is not None and not found < high:
         problem = f"{name} must be less than {high:.9g}, got {found:.9g}"

@@ -75,7 +75,7 @@ def number(value, table, unit=""):
             raise UnfitError("too large") from None
     if isinstance(value, list | tuple):
         if not table:
-            raise UnfitError("")
+            raise UnfitError(_as_designs(value))
         value = _array(value)
     elif isinstance(value, np.ndarray):
         value = np.asarray(value)
@@ -87,6 +87,13 @@ def number(value, table, unit=""):
     if shape == () or (shape == (1,) and not table):
         return number(value.ravel()[0], table) if isinstance(value, np.ndarray) else value
     return _locked(value) if isinstance(value, np.ndarray) else value
+
+
+def _as_designs(values):
+    """What to write for a list or tuple where an array of designs may stand."""
+    short = repr(values) if len(repr(values)) <= 60 else "..."
+    kind, axis = type(values).__name__, "" if values and isinstance(values[0], list | tuple) else "[:, None]"
+    return f"a {kind}; for a batch of designs write np.array({short}){axis}"
 
 
 def _array(values):

@@ -14,7 +14,7 @@ QUANTITIES = ("balancing_torque", "guide_force", "load_torque", "slider_position
 
 def test_synonyms_are_of_words_that_the_library_has():
     made = SCENE.mechanism, FOUR_BAR
-    known = {"compiled", "numpy", "jax", *FOUND, *SCENE.parameters, *QUANTITIES, "slider_velocity"}
+    known = {"compiled", "numpy", "jax", *FOUND, *SCENE.parameters, *QUANTITIES, *ks.__all__, "slider_velocity"}
     known |= {"slider_acceleration"}.union(*(mechanism.links for mechanism in made))
     assert SYNONYMS.keys() <= known
 
