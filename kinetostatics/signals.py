@@ -16,12 +16,12 @@ def deferred():
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    pending: dict[int, None] = {}
+    pending: dict[signal.Signals, None] = {}
     handlers = {
         number: handler for number in (signal.SIGINT, signal.SIGTERM) if callable(handler := signal.getsignal(number))
     }
     for number in handlers:
-        signal.signal(number, lambda number, _: pending.setdefault(number))
+        signal.signal(number, lambda number, _: pending.setdefault(signal.Signals(number)))
     try:
         yield
     finally:

@@ -1,5 +1,7 @@
 """What looks like a slip, though a machine could have it: a warning, and computed all the same."""
 
+from typing import Any
+
 import numpy as np
 
 from ..numbers import checks
@@ -87,7 +89,7 @@ def beside_rods(mechanism, loads):
     """Loads between a cylinder and the joint of its rod that another link owns, with the slot and the other point."""
     for slot in mechanism.slots:
         for load in loads:
-            ends = getattr(load, "between", ())
+            ends: Any = getattr(load, "between", ())
             if slot.rod and len(ends) == 2 and slot.joint in ends:
                 carriers = {carrier(mechanism, end).link for end in ends}
                 if slot.link in carriers and slot.rod not in carriers:

@@ -45,7 +45,8 @@ class Quantity(NamedTuple):
     @property
     def reading(self):
         """What `read` does, as code behind a solution: ``.shaking_force``, ``.reaction("O")``."""
-        kind, (name, *given) = self.read.__reduce__()[:2]
+        how: Any = self.read.__reduce__()
+        kind, (name, *given) = how[:2]
         return f".{name}" if kind is attrgetter else f".{name}({json.dumps(given)[1:-1]})"
 
 
