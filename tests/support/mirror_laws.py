@@ -9,6 +9,8 @@ import kinetostatics as ks
 from .mirrored import TURN, differences, mirrored, sign_of, values_of
 
 ANGLES = np.array([-6.1, -2.9, -0.3, 0.4, 1.7, 2.6, 4.4, 5.9])
+TIE = 1e-12
+"""Share of a value by which two peaks of one height differ."""
 REDUCTIONS = ("mean", "mean_absolute", "rms", "range", "largest_absolute", "swing", "harmonic_2")
 
 
@@ -152,12 +154,23 @@ def swept(scene, path="crank_speed", quantities=("balancing_torque", "O"), engin
         twin = opposite.get(reduction, reduction) if odd else reduction
         before, after = one[column[f"{reduction} {name}"]].to_numpy(), other[column[f"{twin} {name}"]].to_numpy()
         if reduction.endswith("_at"):
-            found[f"{reduction} {name}"] = apart(after, -before, scene.period)
+            pairs = zip(values, after, before, strict=True)
+            places = [
+                0.0 if alike(scene.varied({path: at}), name, -one, other) else one + other for at, one, other in pairs
+            ]
+            found[f"{reduction} {name}"] = apart(np.array(places), np.zeros(len(places)), scene.period)
         else:
             turned = -1.0 if odd and reduction in ("mean", "largest", "smallest") else 1.0
             scale = np.max(np.abs(one[column[f"largest_absolute {name}"]]))
             found[f"{reduction} {name}"] = relative(after, turned * before, scale)
     return found
+
+
+def alike(scene, name, *places):
+    """Whether a quantity is the same at crank angles, so that either is the place of its largest value."""
+    at = scene.solve(np.array(places))
+    one, other = at.balancing_torque if name == "balancing_torque" else np.hypot(*at.reaction(name))
+    return abs(one - other) <= TIE * abs(one)
 
 
 # Drives
