@@ -97,7 +97,6 @@ def test_a_machine_at_rest_that_begins_to_move(kind, acceleration, friction):
     assert_mirrored(laws.solved(scene), kind)
 
 
-@pytest.mark.xfail(strict=False, reason="at rest the stroke of a table is read as if the crank turned by +1")
 @pytest.mark.parametrize("acceleration", [40.0, -40.0])
 def test_a_machine_at_rest_with_a_table_of_two_strokes(acceleration):
     scene = drawn("crank slider", 5, loads=("table with back",), speed=0.0, acceleration=acceleration)
@@ -174,12 +173,14 @@ def test_programs(kind):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("law", [laws.extremes, laws.means, laws.swept, laws.compiled], ids=lambda law: law.__name__)
 @pytest.mark.parametrize("friction", [False, True])
-def test_many_machines(request, kind, law, friction):
-    """Means of machines with friction, reductions of sweeps with it or of a flat follower are not mirrored so far."""
-    if (law in (laws.means, laws.swept) and friction) or (law is laws.swept and kind == "flat follower"):
-        request.applymarker(pytest.mark.xfail(strict=False, reason="means and reductions differ by up to 1e-10"))
+def test_many_machines(kind, law, friction):
+    """Sweeps, and means with friction, resolve a turn with kinks to 1e-8 of the largest value: no better than that."""
+    resolved = (law in (laws.means, laws.swept) and friction) or (law is laws.swept and kind == "flat follower")
     for seed in (10, 20):
-        assert_mirrored(agreed(law, drawn(kind, seed, friction=friction)), kind)
+        errors = agreed(law, drawn(kind, seed, friction=friction))
+        if resolved:  # a place in a level stretch is as uncertain as the root of the value
+            errors = {name: error for name, error in errors.items() if "_at " not in name}
+        assert_mirrored(errors, kind, 1e-9 if resolved else CLOSE)
 
 
 # Drives
@@ -236,7 +237,6 @@ def test_coasting(name):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=False, reason="coasting reads the stroke of a table by the direction of the motor or +1")
 @pytest.mark.parametrize("speed", [8.0, -8.0, 0.4])
 def test_coasting_with_a_table_of_two_strokes(speed):
     scene = drawn("crank slider", 4, loads=("table with back",))
@@ -256,7 +256,6 @@ def test_starting(motor):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=False, reason="starting reads the stroke of a table with the wrong sense against +1")
 def test_starting_with_a_table_of_two_strokes_and_a_load_by_speed():
     scene = drawn("crank slider", 4, loads=("table with back", "torsion damper"))
     motor = MOTORS["kloss"]
@@ -465,7 +464,6 @@ def test_springs_of_a_machine_that_stands_swing_without_end_a_turn():
     assert surge.excitation == 0.0
 
 
-@pytest.mark.xfail(strict=False, reason="at rest the sense is taken as +1, whatever the acceleration")
 @pytest.mark.parametrize("acceleration", [5.0, -5.0])
 def test_starting_torque_at_rest_is_of_the_motion_that_begins(acceleration):
     moving = ks.design.starting_torque(pump(np.sign(acceleration), friction=ROUND).solve(4))
