@@ -23,7 +23,7 @@ CASES = [
     ("toggle_press", "coining"),
 ]
 MOST = {"numpy": 4.0, "compiled": 2.5}
-"""What is asked. Reached: by NumPy 2.4 to 3.7, compiled 1.2 to 2.4; where vectors are of 4 numbers 1.2 to 2.6, more on
+"""What is asked. Reached: by NumPy 2.4 to 4.0, compiled 1.2 to 2.5; where vectors are of 4 numbers 1.2 to 2.6, more on
 a busy machine.
 """
 TIGHT = 5.0

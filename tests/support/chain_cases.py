@@ -76,7 +76,7 @@ def oscillating_engine():
     group = ks.CylinderGroup(
         (0.0, -0.4), rod=ks.Link(1.0, 0.1, 0.01), cylinder=ks.Link(5.0, (0.05, 0.01), 0.1), pivot_name="P"
     )
-    loads = ks.PointForce(3000.0, between=("A", "P"))
+    loads = ks.PointForce(3000.0, between=(("rod", 0.0, 0.0), "P"))
     return ks.Scene(ks.Mechanism("chain", ks.Crank(0.1), (group,)), rpm(120), loads=loads)
 
 

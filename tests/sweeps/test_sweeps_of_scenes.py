@@ -49,7 +49,7 @@ def engine(mass=2.0, force=500.0):
     cylinder = ks.CylinderGroup((0.1, -0.4), rod=ks.Link(mass, 0.1, 0.02), cylinder=ks.Link(3.0, 0.1, 0.03))
     yoke = ks.YokeGroup(ks.Guide.at(0.0), 1.2, label="2", slider=ks.Link(2.0))
     loads = (
-        ks.PointForce(force, between=("A", "O2")),
+        ks.PointForce(force, between=(("rod", 0.0, 0.0), "O2")),
         ks.Torque(3.0, on="cylinder"),
         ks.PointDamper(9.0, between=("B", (1, 1))),
     )
