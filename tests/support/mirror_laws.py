@@ -62,7 +62,7 @@ def solved(scene, angles=ANGLES):
 
 
 def compiled(scene, angles=ANGLES, engine="numpy"):
-    """Programs of all quantities, and their derivatives by some numbers."""
+    """Programs of all quantities."""
     before = scene.solve(angles)
     values = values_of(before)
     names = [name for name in values if name in PROGRAMMED or name.endswith("_rate")]
