@@ -145,8 +145,10 @@ def _loads(table, tabulated):
     if spring is not None:
         stiffness = spring.stiffness
         if isinstance(stiffness, str):
-            given, keys = (table.slider.mass, table.crank_speed, spring.free_position), ("spring", "stiffness")
-            stiffness = all_of([(keys, lambda: Spring.balancing(*given))])[keys].stiffness
+            try:
+                stiffness = Spring.balancing(table.slider.mass, table.crank_speed, spring.free_position).stiffness
+            except ParameterError as error:
+                raise ParameterError(f"spring.stiffness: {error}") from None
         yield Spring(stiffness, spring.free_position, cubic=spring.cubic)
     if force is not None:
         read = tabulated.get(("process_force",)) or tabulated.get(("process_force", "force"))

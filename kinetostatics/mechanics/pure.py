@@ -76,4 +76,5 @@ def _require_same_twice(item, function, motion):
 
 
 def _twice(function, motion):
-    return [function(moving(motion)) for _ in range(2)]
+    with np.errstate(all="ignore"):
+        return [function(moving(motion)) for _ in range(2)]

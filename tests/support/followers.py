@@ -6,7 +6,7 @@ import kinetostatics as ks
 
 LAW = ks.laws.cosine(0.02, 0.08, 0.3)
 SWING = ks.laws.cosine(0.15, 0.6, 0.3)
-BODY = ks.Link(2.0, (0.01, 0.02), 0.1)
+BODY = ks.Link(2.0, (0.01, 0.02), 0.04)
 ANGLES = np.array([-2.0, 0.1, 0.7, 2.4, 4.0])
 KINDS = {
     "roller": lambda law=LAW: ks.RollerFollower(law, ks.Guide.at(0.7), BODY),
