@@ -26,6 +26,8 @@ TWO_TURNS = 4.0 * np.pi
 """Size, rad, from which on crank angles may look like degrees."""
 TURN_TWICE = 2.0 * np.pi * np.pi / 180.0
 """A turn in radians that was taken for degrees."""
+SMALL = 0.9 * TURN_TWICE, 1.01 * TURN_TWICE
+"""Sizes, rad, between which crank angles reach that are such a turn, with or without its end."""
 
 
 def of_mechanism(mechanism):
@@ -214,11 +216,11 @@ def of_count(given):
 
 def of_angles(angle):
     """Say if crank angles look like degrees, or like radians taken for degrees."""
-    if not isinstance(angle, np.ndarray) or angle.dtype == object or not angle.size:
+    if not isinstance(angle, np.ndarray) or angle.dtype.char == "O" or not angle.size:
         return ()
     first, last = angle.item(0), angle.item(-1)
-    if abs(first) < TWO_TURNS and abs(last) < TWO_TURNS:
-        return _converted_twice(angle) if angle.size > 2 and _is_small(last - first) else ()
+    if -TWO_TURNS < first < TWO_TURNS and -TWO_TURNS < last < TWO_TURNS:
+        return _converted_twice(angle) if SMALL[0] < abs(last - first) < SMALL[1] and angle.size > 2 else ()
     if angle.size < 3:
         return _few(np.ravel(angle))
     row = np.ravel(angle)
@@ -237,10 +239,6 @@ def _few(row):
     if row.size == 1:
         return (f"the crank angle {text} looks like degrees; it is taken as radians",)
     return (f"crank angles {text} look like degrees; they are taken as radians",)
-
-
-def _is_small(reach):
-    return 0.9 * TURN_TWICE < abs(reach) < 1.01 * TURN_TWICE
 
 
 def _converted_twice(angle):

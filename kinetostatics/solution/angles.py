@@ -11,6 +11,7 @@ from ..numbers import checks
 from ..numbers.elementary import read_only
 
 ANGLE = checks.Number("rad", "crank_angle", table=True)
+PLAIN = int, float, list, tuple
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 BYTES = 8
 """Of a crank angle, and of one value there."""
@@ -37,8 +38,11 @@ def hint_at(owner, given):
     """Warn whoever called the caller of valid crank angles that look like degrees, or like a count of them."""
     if type(given) is float and abs(given) < hints.TWO_TURNS:
         return
-    angle = np.asarray(given) if isinstance(given, int | float | list | tuple) else given
-    for text in hints.of_given_angles(given, angle):
+    if type(given) is np.ndarray:
+        texts = hints.of_angles(given)
+    else:
+        texts = hints.of_given_angles(given, np.asarray(given) if isinstance(given, PLAIN) else given)
+    for text in texts:
         warnings.warn(HintWarning(owner, text), stacklevel=3)
 
 
