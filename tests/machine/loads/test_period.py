@@ -89,11 +89,11 @@ def test_a_table_does_not_follow_the_array_it_was_made_from():
     assert table.y.tolist() == GAS[:-1].tolist()
 
 
-def test_a_load_must_have_the_period_of_its_table():
+def test_a_load_has_the_period_of_its_table_and_no_other():
     table = Table(STROKES, GAS, period=2 * TURN)
-    assert ks.ProcessForce(table, period=4 * np.pi).period == 4 * np.pi
-    with pytest.raises(ks.ParameterError, match=r"the period is 6.28.*, but that of its force 12.56"):
-        ks.ProcessForce(table)
+    assert ks.ProcessForce(table).period == ks.ProcessForce(table, period=4 * np.pi).period == 4 * np.pi
+    with pytest.raises(ks.ParameterError, match=r"the period is 6.28.*, but that of its force 12.56.*; leave it out"):
+        ks.ProcessForce(table, period=2 * np.pi)
 
 
 @pytest.mark.parametrize("turns", [1, 2, 3, 7])
