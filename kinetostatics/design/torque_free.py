@@ -10,13 +10,14 @@ a symmetric machine is odd, so that no symmetric cam can balance it: sine terms,
 counterweight on the crank with an offset guide can, each at a price.
 """
 
+import warnings
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import DesignError
+from ..errors import DesignError, HintWarning
 from ..machine.loads import Gravity
 from ..numbers import checks
 from ..results.reductions import Output
@@ -89,8 +90,8 @@ def torque_free_cam(
     Parameters
     ----------
     source : Case, Scene or variant
-        A crank-slider, plain or with a cam; its masses, speed and loads stay. Of a case the first variant besides the
-        reference, unless told.
+        A crank-slider, plain or with a cam; its masses, speed and loads stay, friction and crank acceleration are left
+        out with a `HintWarning`. Of a case the first variant besides the reference, unless told.
     cosine, sine : int
         Harmonics of the cam.
     minimise, maximise : str, optional
@@ -152,8 +153,8 @@ def torque_free_cam(
         cubic=cubic,
         shaft_radius=shaft_radius,
     )
-    given = _weighted(scene_of(source), gravity)
-    compared = None if reference is None else _weighted(scene_of(reference), gravity)
+    given = _ideal(scene_of(source), gravity)
+    compared = None if reference is None else _ideal(scene_of(reference), gravity)
     start = begun(given, options)
     aims = _aims(start, compared, minimise, maximise, limits)
     problem = _problem(start, compared, aims, max(cosine, sine), dict(vary or {}), engine)
@@ -238,12 +239,19 @@ def bound(start, scene, reference):
     return float(plain * 2 * np.pi / (4 * abs(start.weight) * height))
 
 
-def _weighted(scene, gravity):
-    """The scene, without its gravity if that shall not act."""
-    if gravity:
-        return scene
-    loads = tuple(item for item in scene.loads if not isinstance(item, Gravity))
-    return replace(scene, loads=loads)
+def _ideal(scene, gravity):
+    """The scene at constant speed without friction, nor gravity if that shall not act; says what it leaves out."""
+    left = [f"friction at {', '.join(scene.friction.acting)}"] if scene.friction.acting else []
+    if np.any(scene.crank_acceleration):
+        left.append("the crank acceleration")
+    if left:
+        text = (
+            f"leaves out {' and '.join(left)} of {scene.mechanism.name}: it searches, and compares, at constant speed "
+            "without friction; look at them in the scene that is made"
+        )
+        warnings.warn(HintWarning("torque_free_cam", text), stacklevel=3)
+    loads = tuple(item for item in scene.loads if gravity or not isinstance(item, Gravity))
+    return replace(scene, loads=loads, friction=None, crank_acceleration=0.0)
 
 
 def _require_possible(problem, start):

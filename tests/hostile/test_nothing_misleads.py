@@ -470,3 +470,19 @@ def test_a_function_of_a_load_that_is_not_pure_is_refused(name, way):
     make, words = IMPURE[name]
     with pytest.raises(ks.ParameterError, match=words):
         WAYS[way](make())
+
+
+@pytest.mark.slow
+def test_a_torque_free_cam_says_that_it_leaves_out_friction_and_acceleration():
+    saw = ks.load_case("sawframe_2r63").variants["cam-cosine"].scene
+    rough = ks.Scene(
+        saw.mechanism,
+        saw.crank_speed,
+        5.0,
+        loads=saw.loads,
+        friction={"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.01, 0.1)},
+    )
+    with pytest.warns(ks.HintWarning, match="leaves out friction at guide, O and the crank acceleration of"):
+        found = ks.design.torque_free_cam(rough, cosine=2, gravity=False)
+    smooth = ks.design.torque_free_cam(saw, cosine=2, gravity=False)
+    assert found.values == pytest.approx(smooth.values, rel=1e-9)
