@@ -3,7 +3,8 @@
     (J + Jf) alpha + J' omega^2 / 2 + load torque(phi, omega) + friction torque(phi, omega, alpha) = motor torque
 
 is solved for alpha at each crank angle by the secant rule, and between two bounds where a kink of friction keeps that
-from converging; friction comes from the scene's own program at the true alpha. Which way each joint moves is told beforehand (`senses`), so all is smooth between the angles at which that changes.
+from converging; friction comes from the scene's own program at the true alpha. Which way each
+joint moves is known beforehand (`senses`), so all is smooth between the angles at which that changes.
 """
 
 import math
@@ -297,7 +298,8 @@ class RubbingDriven(Driven):
         degrees = math.degrees(angle[worst] % self.period)
         raise DriveError(
             f"{self.scene.mechanism.name}: friction jams at crank angle {degrees:.6g} deg and "
-            f"{speed[worst]:.6g} rad/s: each rad/s2 of deceleration adds {growth[worst]:.6g} N m of friction torque, but frees only "
+            f"{speed[worst]:.6g} rad/s: each rad/s2 of deceleration adds {growth[worst]:.6g} N m of friction torque, "
+            "but frees only "
             f"{inertia[worst]:.6g} N m of inertia torque, so no acceleration balances them; give a flywheel of "
             f"{growth[worst] - inertia[worst]:.3g} kg m2 or more in addition, or lower coefficients of friction",
             crank_angle=float(angle[worst]),
