@@ -67,9 +67,6 @@ def read(spreads, reader):
     """What the reader, which raises `ValueError`, makes of the spread of each parameter."""
     require_mapping(spreads)
     found, problems = {}, [] if spreads else ["there are no parameters"]
-    problems += [
-        f"a parameter must be a name, got {checks.shown(name)}" for name in spreads if not isinstance(name, str)
-    ]
     for name, given in spreads.items():
         try:
             found[name] = reader(given)

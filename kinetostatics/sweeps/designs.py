@@ -248,6 +248,10 @@ def _require_room(count, parameters, *problems):
 
 def _table(values, found):
     """Table of designs; refused if a number that every machine's parts call so is told in what measures another."""
+    checks.require(
+        "designs",
+        *(f"a parameter must be a name, got {checks.shown(name)}" for name in found if not isinstance(name, str)),
+    )
     problems = []
     for name, (_, unit) in found.items():
         usual = _usual_units().get(re.sub(r"[0-9]+(?=\.|$)", "", name))

@@ -1,12 +1,12 @@
 """What a sweep is asked for: all that is wrong is told at once, and which engines are tried."""
 
+import sys
 from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import compiled
 from kinetostatics.sweeps import asked, sweeps
 from kinetostatics.sweeps.asked import _type_problems
 from support import factories
@@ -83,7 +83,7 @@ def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
     monkeypatch.setattr(asked, "WORTH_COMPILING", 41 * 200)
     for options in ({}, {"engine": "numpy"}, {"angles": 199}):
         sweep(factories.pump, DESIGNS, OUTPUTS, **{"angles": 200} | options)
-    monkeypatch.setattr(compiled, "available", lambda: False)
+    monkeypatch.setitem(sys.modules, "numba", None)
     sweep(factories.pump, DESIGNS, OUTPUTS, angles=200)
     assert taken == [["compiled", "numpy"], ["numpy"], ["numpy"], ["numpy"]]
     with pytest.raises(ks.errors.MissingLibraryError, match="kinetostatics\\[fast\\]"):
