@@ -27,7 +27,7 @@ class Named(dict):
         return super().__contains__(normal(name))
 
     def __missing__(self, name):
-        if normal(name) != name:
+        if isinstance(name, str) and normal(name) != name:
             return self[normal(name)]
         raise NoSuchNameError(self.path, [checks.choice(self.kind, name, tuple(self))])
 

@@ -18,7 +18,7 @@ from .friction import kind_for
 from .group import FRAME, Resolved
 from .links import Wrench, arm, present
 from .names import name_problems
-from .pairs import Turning
+from .pairs import Sliding, Turning
 from .placement import margin, place
 
 NAME = checks.Name()
@@ -288,10 +288,14 @@ def output_problems(part, resolved):
     for vector, found in ((True, resolved.reactions), (False, resolved.scalars)):
         declared = {name for name, output in part.outputs.items() if output.vector == vector}
         what = "reaction" if vector else "quantity"
-        yield from (
-            f"{kind} resolves {what} {name!r}, which its outputs do not declare" for name in found.keys() - declared
-        )
+        undeclared = found.keys() - declared - _couples(part)
+        yield from (f"{kind} resolves {what} {name!r}, which its outputs do not declare" for name in undeclared)
         yield from (f"{kind} declares {what} {name!r}, but does not resolve it" for name in declared - found.keys())
+
+
+def _couples(part):
+    """Names of the couples of a part's sliding pairs: friction reads them, outputs or not."""
+    return {pair.couple for pair in part.pairs.values() if isinstance(pair, Sliding)}
 
 
 def _smallest(*lengths):

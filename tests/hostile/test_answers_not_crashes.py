@@ -189,6 +189,7 @@ def test_without_a_compiler_sweeps_have_their_rows():
     assert out == "True\n"
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")  # so short a coupler has too large an inertia
 def test_a_command_whose_designs_all_fail_does_not_end_with_success(capsys):
     assert main(["sweep", "compressor", "--vary", "coupler_length=0.01..0.02 m:3", "--angles", "24"]) == 2
     assert "all 3 designs failed: crank-slider cannot be assembled" in capsys.readouterr().err

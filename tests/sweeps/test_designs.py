@@ -57,10 +57,10 @@ def test_sample_takes_quantiles():
 
 def test_spaces_words_and_signs_are_read_as_they_may_be_written():
     texts = ["uniform -3 .. 1e1 1/s", " normal -3 mm ± 10 um ", "normal 3 kg m^2+-1 kg m^2", "triangular 1..1..2 rad"]
-    read = designs.distributions(dict(enumerate(texts)))
+    read = designs.distributions({f"p{place}": text for place, text in enumerate(texts)})
     assert [unit for _, unit in read.values()] == ["1/s", "mm", "kg m^2", "rad"]
     assert [found.mean() for found, _ in read.values()] == pytest.approx([3.5, -3, 3, 4 / 3])
-    assert read[1][0].std() == pytest.approx(0.01)
+    assert read["p1"][0].std() == pytest.approx(0.01)
 
 
 WRONG_GRID = {
