@@ -123,6 +123,16 @@ def torque_of_1600_newton(angle):
     return 1600.0 * height * (1.0 + 0.1 * np.cos(angle) / np.sqrt(rod**2 - height**2))
 
 
+@pytest.mark.parametrize("ratio", [10.0, -10.0])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_running_has_the_sense_of_its_motor_whatever_that_of_the_scene_at_rest(ratio, sense):
+    loads = ks.ProcessForce(INDICATOR)
+    resting = ks.drive.steady(ks.Scene(PRESS, 0.0, loads=loads, sense=sense), motor(ratio), 5.0)
+    moving = ks.drive.steady(press(loads), motor(ratio), 5.0)
+    assert np.array_equal(resting.solution.balancing_torque, moving.solution.balancing_torque)
+    assert resting.energy_flow.frame().equals(moving.energy_flow.frame())
+
+
 # Design
 
 
@@ -221,3 +231,14 @@ gravity = {}
         scene = case.variants[name].scene
         moving = ks.solve(scene.mechanism, 1.0, crank_speed=sense * 1e-9, loads=scene.loads, friction=scene.friction)
         assert scene.solve(1.0).balancing_torque == pytest.approx(moving.balancing_torque, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_a_sense_may_be_traced():
+    jax = pytest.importorskip("jax")
+
+    def torque(sense):
+        return ks.solve(PRESS, 1.0, crank_speed=0.0, sense=sense, loads=ks.ProcessForce(INDICATOR)).balancing_torque
+
+    traced = [float(jax.jit(torque)(sense)) for sense in (1.0, -1.0)]
+    assert traced == pytest.approx([torque(1), torque(-1)], rel=1e-6)
