@@ -120,7 +120,7 @@ def test_machines_that_pass_change_points(name):
     group = replace(group, **dict.fromkeys(group.links, body))
     machine = ks.Mechanism(name, ks.Crank(0.1, body), (group,))
     scene = ks.Scene(machine, 8.0, 20.0, ks.Gravity(direction=-2.0))
-    assert_mirrored(laws.solved(scene, CLEAR), close=1e-11)
+    assert_mirrored(laws.solved(scene, CLEAR))
 
 
 # Over the turn
@@ -233,7 +233,7 @@ def test_coasting(name):
     one = ks.drive.coast(scene, 1.0, 0.7, speed, until=0.4, motor=motor)
     image = None if motor is None else mirrored(motor)
     other = ks.drive.coast(mirrored(scene), 1.0, -0.7, -speed, until=0.4, motor=image)
-    assert_mirrored(laws.moving(one, other), close=1e-12)
+    assert_mirrored(laws.moving(one, other))
 
 
 @pytest.mark.slow
@@ -242,7 +242,7 @@ def test_coasting_with_a_table_of_two_strokes(speed):
     scene = drawn("crank slider", 4, loads=("table with back",))
     one = ks.drive.coast(scene, 1.0, 0.7, speed, until=0.4)
     other = ks.drive.coast(mirrored(scene), 1.0, -0.7, -speed, until=0.4)
-    assert_mirrored(laws.moving(one, other), close=1e-12)
+    assert_mirrored(laws.moving(one, other))
 
 
 @pytest.mark.parametrize("motor", ["kloss", "linear"])
@@ -252,7 +252,7 @@ def test_starting(motor):
         ks.drive.start(machine, drive, 1.0, from_angle=angle)
         for machine, drive, angle in ((scene, motor, 0.7), (mirrored(scene), mirrored(motor), -0.7))
     )
-    assert_mirrored(laws.moving(one, other), close=1e-12)
+    assert_mirrored(laws.moving(one, other))
 
 
 @pytest.mark.slow
@@ -261,7 +261,7 @@ def test_starting_with_a_table_of_two_strokes_and_a_load_by_speed():
     motor = MOTORS["kloss"]
     one = ks.drive.start(scene, motor, 1.0, from_angle=0.7, until=0.2)
     other = ks.drive.start(mirrored(scene), mirrored(motor), 1.0, from_angle=-0.7, until=0.2)
-    assert_mirrored(laws.moving(one, other), close=1e-12)
+    assert_mirrored(laws.moving(one, other), close=1e-12)  # near its mean speed the motor's torque is steep
 
 
 @pytest.mark.slow
@@ -270,7 +270,7 @@ def test_coasting_to_standstill_under_friction(speed):
     scene = drawn("crank slider", 4, loads=("gravity",), friction=True)
     one = ks.drive.coast(scene, 0.05, 0.7, speed, until="standstill")
     other = ks.drive.coast(mirrored(scene), 0.05, -0.7, -speed, until="standstill")
-    assert_mirrored(laws.moving(one, other), close=1e-10)
+    assert_mirrored(laws.moving(one, other))
 
 
 # Designs
