@@ -166,6 +166,21 @@ def test_a_resting_solution_gives_its_sense_to_starting_torque_and_lift_off():
 # The scene at rest
 
 
+@pytest.mark.parametrize("law", STROKES)
+@pytest.mark.parametrize(
+    "drive", [{"sense": -1}, {"crank_acceleration": -3.0}, {"crank_acceleration": [3.0, -3.0, 3.0]}]
+)
+def test_functions_know_the_motion_about_to_begin_as_tables_do(law, drive):
+    """By the velocity, and of the acceleration's sense where the scene has none."""
+    angle, speed = [1.0, 2.0, 4.0], np.zeros(3) if np.ndim(drive.get("crank_acceleration", 0.0)) else 0.0
+    own, table = (
+        ks.solve(PRESS, angle, crank_speed=speed, loads=ks.ProcessForce(STROKES[name]), **drive).load_torque
+        for name in (law, "table")
+    )
+    assert np.any(table)
+    assert own == pytest.approx(table, rel=1e-12)
+
+
 @pytest.mark.parametrize("sense", [1, -1])
 def test_at_rest_the_sense_is_given_or_that_of_the_acceleration(sense):
     drive = {"friction": {"O": ks.PinFriction(0.1, 0.02)}, "loads": ks.ProcessForce(STROKES["table"])}
