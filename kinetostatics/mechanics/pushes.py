@@ -12,7 +12,7 @@ from .motion import Motion
 
 STANDING = 1e-150
 """Crank speed, rad/s, that a function of the motion sees at rest, times the sense of rotation or, without one, the
-crank acceleration: velocities then have the sense of the motion about to begin. It is nothing beside any other speed."""
+crank acceleration: velocities have the sense of the motion about to begin. It is nothing beside any other speed."""
 KNOWN = (
     "crank_angle",
     "crank_speed",
