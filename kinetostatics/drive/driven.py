@@ -46,8 +46,6 @@ class Driven:
     rotation, +1 or -1, and that of every motion unless another `sense` is given: a machine that coasts may turn back.
     """
 
-    by_friction = False
-
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
         flywheel, wrong = checks.single("flywheel", flywheel, "kg*m**2", low=0.0)
         checks.require(
@@ -154,6 +152,9 @@ class Driven:
         found = self.program.unlooked(angle, values, self._compiled) if values else self.program.evaluated(angle)
         inertia, slope, load = (float(found[name]) for name in (INERTIA, SLOPE, TORQUE))
         return self.flywheel + inertia, slope, float(self.motor_torque(speed)) - load
+
+    def prepare(self, speed):
+        """Get ready for motions from standstill to a speed: without friction there is nothing to do."""
 
     def senses_ahead(self, angle, sense):
         """Senses of all motions just ahead of a crank angle in [0, period], and the next angle where one changes."""

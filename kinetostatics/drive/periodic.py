@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import DriveError
 from ..numbers import checks
+from ..numbers.leaves import with_fields
 from ..solution.angles import crank_angles
 from ..solution.scene import scene_problem
 from .bends import parted
@@ -70,6 +71,7 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
     direction = _direction(scene) if motor is None else None
     driven = driven_by("steady", scene, motor, flywheel, engine, direction)
     checks.require("steady", _angles_problem(angles))
+    scene = with_fields(scene, sense=None)  # running never stands: its sense is that of its speed
     pieces, energy = (_prescribed if motor is None else _driven_running)(driven, scene)
     angle = np.linspace(0.0, driven.period, angles, endpoint=False) if _is_count(angles) else crank_angles(angles)
     again = partial(steady, scene, motor, angles=angles, engine=engine)

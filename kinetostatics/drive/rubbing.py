@@ -61,8 +61,6 @@ class RubbingDriven(Driven):
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()
 
-    by_friction = True
-
     @property
     def by_speed(self):
         return True

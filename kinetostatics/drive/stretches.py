@@ -129,7 +129,7 @@ def followed(driven, angle, speed, end, target=None, to_standstill=False, sense=
         if what in ("end", "ready", "standstill", "stuck"):
             break
     path = Path(stretches) if stretches else lambda time: np.multiply.outer(rows[0], np.ones(np.shape(time)))
-    ended = "lost" if what in ("edge", "bend") else what
+    ended = "lost" if what in ("edge", "bend", "still") else what
     starts = [stretch.start for stretch in stretches]
     return Followed(np.array(times), np.array(rows).T, path, reversals, ended, starts)
 

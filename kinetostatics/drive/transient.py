@@ -205,8 +205,7 @@ def _easiest(places, missing, direction):
 
 def _followed(driven, scene, angle, speed, until, target=None, one_way=False):
     """The motion from an angle and speed until a time, a standstill, or a target speed."""
-    if driven.by_friction:
-        driven.prepare(max(abs(speed), abs(target or 0.0)))
+    driven.prepare(max(abs(speed), abs(target or 0.0)))
     end = until if isinstance(until, float) else _long(driven, speed if target is None else target)
     sense = driven.direction if one_way else None
     found = followed(driven, angle, speed, end, target, until == "standstill" or one_way, sense)

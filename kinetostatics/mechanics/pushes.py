@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..errors import ParameterError
+from ..machine.links import present
 from ..machine.loads import Load
 from ..numbers import checks
 from ..numbers.elementary import is_foreign_array
@@ -10,8 +11,8 @@ from ..numbers.leaves import with_fields
 from .motion import Motion
 
 STANDING = 1e-150
-"""Crank speed, rad/s, that a function of the motion sees at rest, in the sense of the motion about to begin: it tells
-the sense of every velocity, and is nothing beside any other speed."""
+"""Crank speed, rad/s, that a function of the motion sees at rest, times the sense of rotation or, without one, the
+crank acceleration: velocities have the sense of the motion about to begin. It is nothing beside any other speed."""
 KNOWN = (
     "crank_angle",
     "crank_speed",
@@ -64,7 +65,8 @@ def drive_asked_for(item, motion):
 
 def moving(motion, kind=Moving):
     """The motion without its forces."""
-    speed = motion.crank_speed if motion.sense is None else motion.crank_speed + STANDING * motion.sense
+    begins = present(motion.crank_acceleration if motion.sense is None else motion.sense)
+    speed = motion.crank_speed if begins is None else motion.crank_speed + STANDING * begins
     made = kind(motion.mechanism, motion.crank_angle, speed, motion.crank_acceleration, sense=motion.sense)
     vars(made).update(shape=motion.shape, placement=motion.placement)
     return made

@@ -339,9 +339,9 @@ def _engine(name, angle, solution):
 def _sense(owner, given, speed):
     """The sense of rotation, checked: +1 or -1, and that of the speed where the crank turns."""
     sense, problem = SENSE.taken(given, "sense")
-    if not problem and np.any(np.abs(sense) != 1.0):
+    if not problem and checks.known(sense) and np.any(np.abs(sense) != 1.0):
         problem = f"sense must be +1 or -1, the way the crank is about to turn, got {checks.shown(given)}"
-    if not problem and checks.known(speed) and np.any(np.asarray(speed) * sense < 0.0):
+    if not problem and checks.known(sense) and checks.known(speed) and np.any(np.asarray(speed) * sense < 0.0):
         problem = f"sense is for a crank at rest: {checks.shown(given)} contradicts crank_speed {checks.shown(speed)}"
     checks.require(owner, problem)
     return sense

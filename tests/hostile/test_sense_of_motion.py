@@ -123,6 +123,16 @@ def torque_of_1600_newton(angle):
     return 1600.0 * height * (1.0 + 0.1 * np.cos(angle) / np.sqrt(rod**2 - height**2))
 
 
+@pytest.mark.parametrize("ratio", [10.0, -10.0])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_running_has_the_sense_of_its_motor_whatever_that_of_the_scene_at_rest(ratio, sense):
+    loads = ks.ProcessForce(INDICATOR)
+    resting = ks.drive.steady(ks.Scene(PRESS, 0.0, loads=loads, sense=sense), motor(ratio), 5.0)
+    moving = ks.drive.steady(press(loads), motor(ratio), 5.0)
+    assert np.array_equal(resting.solution.balancing_torque, moving.solution.balancing_torque)
+    assert resting.energy_flow.frame().equals(moving.energy_flow.frame())
+
+
 # Design
 
 
@@ -154,6 +164,21 @@ def test_a_resting_solution_gives_its_sense_to_starting_torque_and_lift_off():
 
 
 # The scene at rest
+
+
+@pytest.mark.parametrize("law", STROKES)
+@pytest.mark.parametrize(
+    "drive", [{"sense": -1}, {"crank_acceleration": -3.0}, {"crank_acceleration": [3.0, -3.0, 3.0]}]
+)
+def test_functions_know_the_motion_about_to_begin_as_tables_do(law, drive):
+    """By the velocity, and of the acceleration's sense where the scene has none."""
+    angle, speed = [1.0, 2.0, 4.0], np.zeros(3) if np.ndim(drive.get("crank_acceleration", 0.0)) else 0.0
+    own, table = (
+        ks.solve(PRESS, angle, crank_speed=speed, loads=ks.ProcessForce(STROKES[name]), **drive).load_torque
+        for name in (law, "table")
+    )
+    assert np.any(table)
+    assert own == pytest.approx(table, rel=1e-12)
 
 
 @pytest.mark.parametrize("sense", [1, -1])
@@ -221,3 +246,14 @@ gravity = {}
         scene = case.variants[name].scene
         moving = ks.solve(scene.mechanism, 1.0, crank_speed=sense * 1e-9, loads=scene.loads, friction=scene.friction)
         assert scene.solve(1.0).balancing_torque == pytest.approx(moving.balancing_torque, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_a_sense_may_be_traced():
+    jax = pytest.importorskip("jax")
+
+    def torque(sense):
+        return ks.solve(PRESS, 1.0, crank_speed=0.0, sense=sense, loads=ks.ProcessForce(INDICATOR)).balancing_torque
+
+    traced = [float(jax.jit(torque)(sense)) for sense in (1.0, -1.0)]
+    assert traced == pytest.approx([torque(1), torque(-1)], rel=1e-6)

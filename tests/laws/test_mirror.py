@@ -120,7 +120,7 @@ def test_machines_that_pass_change_points(name):
     group = replace(group, **dict.fromkeys(group.links, body))
     machine = ks.Mechanism(name, ks.Crank(0.1, body), (group,))
     scene = ks.Scene(machine, 8.0, 20.0, ks.Gravity(direction=-2.0))
-    assert_mirrored(laws.solved(scene, CLEAR), close=1e-11)
+    assert_mirrored(laws.solved(scene, CLEAR))
 
 
 # Over the turn
@@ -243,7 +243,7 @@ def test_coasting(name):
     one = ks.drive.coast(scene, 1.0, 0.7, speed, until=0.4, motor=motor)
     image = None if motor is None else mirrored(motor)
     other = ks.drive.coast(mirrored(scene), 1.0, -0.7, -speed, until=0.4, motor=image)
-    assert_mirrored(laws.moving(one, other), close=1e-12)
+    assert_mirrored(laws.moving(one, other))
 
 
 @pytest.mark.slow
@@ -252,7 +252,7 @@ def test_coasting_with_a_table_of_two_strokes(speed):
     scene = drawn("crank slider", 4, loads=("table with back",))
     one = ks.drive.coast(scene, 1.0, 0.7, speed, until=0.4)
     other = ks.drive.coast(mirrored(scene), 1.0, -0.7, -speed, until=0.4)
-    assert_mirrored(laws.moving(one, other), close=1e-12)
+    assert_mirrored(laws.moving(one, other))
 
 
 @pytest.mark.parametrize("motor", ["kloss", "linear"])
@@ -262,7 +262,7 @@ def test_starting(motor):
         ks.drive.start(machine, drive, 1.0, from_angle=angle)
         for machine, drive, angle in ((scene, motor, 0.7), (mirrored(scene), mirrored(motor), -0.7))
     )
-    assert_mirrored(laws.moving(one, other), close=1e-12)
+    assert_mirrored(laws.moving(one, other))
 
 
 @pytest.mark.slow
@@ -271,7 +271,7 @@ def test_starting_with_a_table_of_two_strokes_and_a_load_by_speed():
     motor = MOTORS["kloss"]
     one = ks.drive.start(scene, motor, 1.0, from_angle=0.7, until=0.2)
     other = ks.drive.start(mirrored(scene), mirrored(motor), 1.0, from_angle=-0.7, until=0.2)
-    assert_mirrored(laws.moving(one, other), close=1e-12)
+    assert_mirrored(laws.moving(one, other), close=1e-12)  # near its mean speed the motor's torque is steep
 
 
 @pytest.mark.slow
@@ -280,7 +280,7 @@ def test_coasting_to_standstill_under_friction(speed):
     scene = drawn("crank slider", 4, loads=("gravity",), friction=True)
     one = ks.drive.coast(scene, 0.05, 0.7, speed, until="standstill")
     other = ks.drive.coast(mirrored(scene), 0.05, -0.7, -speed, until="standstill")
-    assert_mirrored(laws.moving(one, other), close=1e-10)
+    assert_mirrored(laws.moving(one, other))
 
 
 # Designs
@@ -484,9 +484,6 @@ def test_starting_torque_at_rest_is_of_the_motion_that_begins(acceleration):
 def test_sweeps_keep_the_sense_of_each_design():
     speeds = pd.DataFrame({"crank_speed": [-12.0, -4.0, 4.0, 12.0]})
     table = ks.sweep(pump(friction=ROUND), speeds, ["mean balancing_torque"], progress=False)
-    found = (
-        table["mean balancing_torque [N m]"].to_numpy() if "mean balancing_torque [N m]" in table else table.iloc[:, 1]
-    )
-    for speed, mean in zip(speeds["crank_speed"], found, strict=True):
+    for speed, mean in zip(speeds["crank_speed"], table["mean balancing_torque [N m]"], strict=True):
         turn = pump(speed, friction=ROUND).solve(4).energy_per_turn
-        assert np.sign(speed) * mean * 2 * np.pi == pytest.approx(turn, rel=1e-3)
+        assert np.sign(speed) * mean * 2 * np.pi == pytest.approx(turn, rel=1e-12)
