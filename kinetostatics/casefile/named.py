@@ -24,7 +24,7 @@ class Named(dict):
         return super().__getitem__(name) if isinstance(name, str) else self.__missing__(name)
 
     def __contains__(self, name):
-        return super().__contains__(normal(name))
+        return isinstance(name, str) and super().__contains__(normal(name))
 
     def __missing__(self, name):
         if isinstance(name, str) and normal(name) != name:

@@ -27,11 +27,11 @@ FASTER = 2.0**600
 
 
 def sense_of(speed, acceleration):
-    """Which way a crank turns: the sign of its speed, at rest of its acceleration."""
+    """Which way a crank turns: the sign of its speed, at rest of its acceleration; +1 where both are 0."""
     speed, acceleration = present(speed), present(acceleration)
     if speed is None or acceleration is None:
-        return sign(number(acceleration if speed is None else speed))
-    return sign(speed * FASTER + acceleration)
+        return sign(number(acceleration if speed is None else speed) + 0.0)
+    return sign(speed * FASTER + acceleration + 0.0)
 
 
 def _given(kind):
@@ -228,7 +228,7 @@ class Motion:
 
     @property
     def crank_sense(self):
-        """Which way the crank turns or is about to turn: +1 counter-clockwise, -1 clockwise."""
+        """Which way the crank turns or is about to turn: +1 counter-clockwise, -1 clockwise; +1 if nothing tells."""
         return sense_of(self.crank_speed, self.crank_acceleration) if self.sense is None else self.sense
 
     @cached_property

@@ -19,7 +19,7 @@ crank_speed, crank_acceleration : float or array
 sense : None, float or array
     Which way a crank at rest is about to turn, as it was given: +1 counter-clockwise, -1 clockwise.
 crank_sense : float or array
-    The same of every crank: `sense`, else the sign of its speed, at rest of its acceleration.
+    The same of every crank: `sense`, else the sign of its speed, at rest of its acceleration; +1 where both are 0.
 loads : tuple
 friction : mapping of joint to friction
 engine, silent

@@ -257,3 +257,8 @@ def test_a_sense_may_be_traced():
 
     traced = [float(jax.jit(torque)(sense)) for sense in (1.0, -1.0)]
     assert traced == pytest.approx([torque(1), torque(-1)], rel=1e-6)
+
+
+def test_a_zero_has_no_sense():
+    signs = [ks.solve(PRESS, 0.5, crank_speed=speed).crank_sense for speed in (0.0, -0.0)]
+    assert signs == [1.0, 1.0]
