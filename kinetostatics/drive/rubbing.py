@@ -102,9 +102,13 @@ class RubbingDriven(Driven):
         return tuple(dict.fromkeys(names))
 
     def rubbed(self, angle, speed, acceleration, senses):
-        """Values of the program of friction at crank angles, speeds and accelerations, all of one shape."""
-        shape = np.shape(angle)
-        given = {"crank_speed": speed, "crank_acceleration": acceleration}
+        """Values of the program of friction at crank angles, speeds and accelerations, all of one shape.
+
+        A speed against the sense, of a step that ends beyond a standstill, counts as none.
+        """
+        shape, sense = np.shape(angle), senses["sense"]
+        ahead = np.maximum(sense * speed, 0.0) if shape else max(sense * speed, 0.0)
+        given = {"crank_speed": sense * ahead, "crank_acceleration": acceleration}
         given |= senses
         if not shape:
             found = self._program.unlooked(float(angle), given, self._single_by_loop)
