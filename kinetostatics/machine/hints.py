@@ -212,13 +212,20 @@ def of_count(given):
     )
 
 
+def is_ordinary(angle):
+    """Whether the first and last of crank angles tell that none of these hints is for them."""
+    first, last = angle.item(0), angle.item(-1)
+    return -TWO_TURNS < first < TWO_TURNS and -TWO_TURNS < last < TWO_TURNS and not _is_small(last - first)
+
+
 def of_angles(angle):
     """Say if crank angles look like degrees, or like radians taken for degrees."""
     if not isinstance(angle, np.ndarray) or angle.dtype == object or not angle.size:
         return ()
-    first, last = angle.item(0), angle.item(-1)
-    if abs(first) < TWO_TURNS and abs(last) < TWO_TURNS:
-        return _converted_twice(angle) if angle.size > 2 and _is_small(last - first) else ()
+    if is_ordinary(angle):
+        return ()
+    if abs(angle.item(0)) < TWO_TURNS and abs(angle.item(-1)) < TWO_TURNS:
+        return _converted_twice(angle) if angle.size > 2 else ()
     if angle.size < 3:
         return _few(np.ravel(angle))
     row = np.ravel(angle)

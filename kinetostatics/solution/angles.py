@@ -14,6 +14,7 @@ ANGLE = checks.Number("rad", "crank_angle", table=True)
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 BYTES = 8
 """Of a crank angle, and of one value there."""
+DOUBLE = np.dtype(float)
 MOST = checks.MEMORY // BYTES
 """Crank angles, from which on not even these have room in memory."""
 
@@ -36,6 +37,8 @@ def crank_angles(given, owner="solve"):
 def hint_at(owner, given):
     """Warn whoever called the caller of valid crank angles that look like degrees, or like a count of them."""
     if type(given) is float and abs(given) < hints.TWO_TURNS:
+        return
+    if type(given) is np.ndarray and given.dtype is DOUBLE and given.size and hints.is_ordinary(given):
         return
     angle = np.asarray(given) if isinstance(given, int | float | list | tuple) else given
     for text in hints.of_given_angles(given, angle):

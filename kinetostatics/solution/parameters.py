@@ -91,7 +91,7 @@ def is_judged_together(item, steps):
 
 
 def fixed(places, mechanism):
-    """Paths by which there is no derivative: lengths of which any other makes another kind of mechanism, and the sense."""
+    """Paths by which there is no derivative: the sense, and lengths of which any other makes another kind."""
     return shaping(places, mechanism, [group for group in mechanism.groups if group.passes]) | {"sense"}
 
 

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.mirrored import mirrored
+from support.turning_machines import ANGLES, turning_scene
 
 PRESS = ks.crank_slider(0.1, 0.35, crank=ks.Link(2.0, 0.03, 0.02), slider=ks.Link(4.0))
 RUBS = {"guide": ks.GuideFriction(0.1)}
@@ -74,3 +76,15 @@ def test_nothing_is_derived_by_the_sense(name):
     slopes = ks.compile(scene, "balancing_torque").derivatives(0.5)["balancing_torque"]
     assert "slider.mass" in slopes
     assert "sense" not in slopes
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("kind", ["crank slider", "lever", "roller follower", "two sliders"])
+def test_a_machine_at_rest_is_that_which_creeps_and_has_its_mirror_image(kind, sense):
+    turning = turning_scene(kind, 60, friction=True)
+    rest = ks.Scene(turning.mechanism, 0.0, 0.0, turning.loads, turning.friction, sense=sense)
+    creeping = ks.Scene(turning.mechanism, sense * 1e-12, 0.0, turning.loads, turning.friction)
+    torque = rest.solve(ANGLES).balancing_torque
+    close = 1e-9 * np.abs(torque).max()
+    assert creeping.solve(ANGLES).balancing_torque == pytest.approx(torque, abs=close)
+    assert mirrored(rest).solve(-ANGLES).balancing_torque == pytest.approx(-torque, abs=close)
