@@ -16,6 +16,7 @@ import numpy as np
 from ..engines.compiled import available
 from ..errors import DriveError
 from ..machine.friction import PASSES
+from ..machine.loads import is_given
 from ..machine.pairs import Rolling, Sliding
 from ..mechanics.friction_laws import bends
 from ..mechanics.jamming import converged, require_free
@@ -57,6 +58,7 @@ class RubbingDriven(Driven):
         super().__init__(owner, scene, motor, flywheel, engine, direction)
         self.senses = Senses.of(self.scene)
         self._engine, self._passes = engine, PASSES[0]
+        self._asks_for_speed = not all(map(is_given, self.scene.loads))
         self._single_by_loop = engine == "compiled" or (engine is None and available())
         self._guess: tuple[Any, ...] = (None,)
         self._near: Any = ()
@@ -100,8 +102,15 @@ class RubbingDriven(Driven):
         return tuple(dict.fromkeys(names))
 
     def rubbed(self, angle, speed, acceleration, senses):
-        """Values of the program of friction at crank angles, speeds and accelerations, all of one shape."""
+        """Values of the program of friction at crank angles, speeds and accelerations, all of one shape.
+
+        Tables and functions see a speed against the sense, of a step that ends beyond a standstill, as none; without
+        them all goes on smoothly there.
+        """
         shape = np.shape(angle)
+        if self._asks_for_speed:
+            sense = senses["sense"]
+            speed = sense * (np.maximum(sense * speed, 0.0) if shape else max(sense * speed, 0.0))
         given = {"crank_speed": speed, "crank_acceleration": acceleration}
         given |= senses
         if not shape:

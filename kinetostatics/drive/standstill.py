@@ -20,7 +20,7 @@ def require_a_standstill(driven, angle, speed):
         _require_slowing(driven, angle, speed, way)
         return
     places = angle + way * np.linspace(0.0, driven.period, 721)
-    state = driven.at(np.mod(places, driven.period))
+    state = driven.unrubbed(np.mod(places, driven.period), sense=way)
     between = 0.5 * (state.torque[1:] + state.torque[:-1]) * np.diff(places)
     taken = np.cumsum(between)
     motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import ConditionWarning, JammingError
 from ..machine.friction import PASSES
+from ..numbers.elementary import where_zero
 from ..numbers.leaves import with_fields
 
 CONVERGED = 1e-13
@@ -17,8 +18,7 @@ def standing(solution):
     """What is wrong with a crank that neither moves nor begins to, as a sentence, or None."""
     if solution.sense is not None:
         return None
-    still = [np.asarray(part) == 0.0 for part in (solution.crank_speed, solution.crank_acceleration)]
-    if not np.any(np.logical_and(*still)):
+    if not np.any(np.logical_and(where_zero(solution.crank_speed), where_zero(solution.crank_acceleration))):
         return None
     return (
         "friction acts against motion, but crank_speed and crank_acceleration are both 0; give sense=+1 or sense=-1, "

@@ -30,6 +30,20 @@ def is_foreign_array(x):
     return is_array_api_obj(x)
 
 
+def looked_at(x):
+    """Numbers as a NumPy array; None where a library traces them, as JAX does for a derivative, and shows no value."""
+    try:
+        return np.asarray(x)
+    except TypeError:
+        return None
+
+
+def where_zero(x):
+    """Where numbers are 0; nowhere if their values are not known."""
+    known = looked_at(x)
+    return np.False_ if known is None else np.asarray(known == 0.0)
+
+
 def read_only(array):
     """The array, locked against writing if it is NumPy's: results are kept and handed out again."""
     if isinstance(array, np.ndarray):

@@ -91,17 +91,21 @@ def is_judged_together(item, steps):
 
 
 def fixed(places, mechanism):
-    """Paths of lengths by which there is no derivative, as any other makes another kind of mechanism."""
-    return shaping(places, mechanism, [group for group in mechanism.groups if group.passes])
+    """Paths by which there is no derivative: the sense, and lengths of which any other makes another kind."""
+    return shaping(places, mechanism, [group for group in mechanism.groups if group.passes]) | {"sense"}
 
 
 def require_free(owner, mechanism, paths, fixed):
-    """Refuse to derive by a length that decides which change points are passed."""
+    """Refuse to derive by a length that decides which change points are passed, and by the sense of rotation."""
     checks.require(
         owner,
         *(
-            f"there is no derivative by {path}: {mechanism.name} passes change points, and with any other length it "
-            "would be of another kind"
+            f"there is no derivative by {path}: "
+            + (
+                "it is +1 or -1 and nothing between; solve with each"
+                if path == "sense"
+                else f"{mechanism.name} passes change points, and with any other length it would be of another kind"
+            )
             for path in paths
             if path in fixed
         ),

@@ -17,6 +17,7 @@ from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
 from ..numbers import checks, paths
+from ..numbers.elementary import looked_at
 from ..numbers.leaves import made
 from . import slips
 from .angles import BYTES, crank_angles, problems
@@ -339,9 +340,10 @@ def _engine(name, angle, solution):
 def _sense(owner, given, speed):
     """The sense of rotation, checked: +1 or -1, and that of the speed where the crank turns."""
     sense, problem = SENSE.taken(given, "sense")
-    if not problem and checks.known(sense) and np.any(np.abs(sense) != 1.0):
+    ways, rates = None if problem else looked_at(sense), looked_at(speed)
+    if ways is not None and np.any(np.abs(ways) != 1.0):
         problem = f"sense must be +1 or -1, the way the crank is about to turn, got {checks.shown(given)}"
-    if not problem and checks.known(sense) and checks.known(speed) and np.any(np.asarray(speed) * sense < 0.0):
+    elif ways is not None and rates is not None and np.any(rates * ways < 0.0):
         problem = f"sense is for a crank at rest: {checks.shown(given)} contradicts crank_speed {checks.shown(speed)}"
     checks.require(owner, problem)
     return sense

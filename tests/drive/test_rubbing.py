@@ -128,7 +128,8 @@ def test_without_numba_friction_beside_a_table_is_computed_by_numpy(monkeypatch)
     press = ks.crank_slider(0.06, 0.26, slider=ks.Link(22.0))
     scene = ks.Scene(press, 12.0, loads=work, friction={"O": ks.PinFriction(0.05, 0.025)})
     driven = driven_by("start", scene, SMALL, 3.0)
-    one = driven.rubbed(1.0, 12.0, 0.0, {"friction.O.sense": 1.0})
-    several = driven.rubbed(np.array([1.0, 2.0]), np.full(2, 12.0), np.zeros(2), {"friction.O.sense": 1.0})
+    senses = {"sense": 1.0, "friction.O.sense": 1.0}
+    one = driven.rubbed(1.0, 12.0, 0.0, senses)
+    several = driven.rubbed(np.array([1.0, 2.0]), np.full(2, 12.0), np.zeros(2), senses)
     for name, value in several.items():
         assert one[name] == pytest.approx(value[0], rel=1e-14), name

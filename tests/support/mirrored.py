@@ -50,6 +50,7 @@ def _(scene):
         negated(scene.crank_acceleration),
         tuple(map(mirrored, scene.loads)),
         dict(scene.friction),
+        sense=None if scene.sense is None else negated(scene.sense),
     )
 
 

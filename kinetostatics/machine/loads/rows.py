@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.elementary import namespace
+from ...numbers.elementary import namespace, where_zero
 from .period import TURN
 
 BEYOND = 1e-9
@@ -94,7 +94,7 @@ def require_sense(motion):
     """Raise an error where a crank at rest begins to turn neither way, so that the stroke is not known."""
     if motion.sense is not None:
         return
-    still = np.logical_and(np.asarray(motion.crank_speed) == 0.0, np.asarray(motion.crank_acceleration) == 0.0)
+    still = np.logical_and(where_zero(motion.crank_speed), where_zero(motion.crank_acceleration))
     if still.any():
         raise ParameterError(
             "table over travel: it has other values for the stroke back, but crank_speed and crank_acceleration are "
