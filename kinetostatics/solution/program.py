@@ -262,14 +262,14 @@ class Program:
         )
 
     def _state(self, angle, values, leaves):
-        shape = _shape(angle, leaves)
-        if self._refuses or self._program.recording.tables:
-            drive = values.keys() <= DRIVE.rules.keys() | {"sense"}
-            scene = with_fields(self.scene, **values) if drive else self.scene.varied(values)
-            state = scene.dynamics(angle)
-            checks.require("program", *refusals(state))
-            return state, leaves
-        return made(Dynamics, **{**self._fields, "crank_angle": angle, "shape": shape}), leaves
+        fields, shape = self._fields, _shape(angle, leaves)
+        if not (self._refuses or self._program.recording.tables):
+            return made(Dynamics, **{**fields, "crank_angle": angle, "shape": shape}), leaves
+        drive = values.keys() <= DRIVE.rules.keys() | {"sense"}
+        fields = {**fields, **values} if drive else vars(self.scene.varied(values).dynamics(angle))
+        state = made(Dynamics, **{**fields, "crank_angle": angle, "shape": shape})
+        checks.require("program", *refusals(state))
+        return state, leaves
 
     def _numbers_with(self, values):
         """All numbers, in their order, with some values in place of their own."""

@@ -165,6 +165,30 @@ def test_a_resting_solution_gives_its_sense_to_starting_torque_and_lift_off():
 
 # The scene at rest
 
+CASE_AT_REST = """
+title = "A crank at rest"
+reference = "forward"
+
+[variants.forward]
+mechanism = "crank-slider"
+crank_length = "100 mm"
+coupler_length = "350 mm"
+crank_speed = "0 rpm"
+sense = 1
+friction.guide = { mu = 0.1 }
+slider = { mass = "4 kg" }
+gravity = {}
+
+[variants.backward]
+mechanism = "crank-slider"
+crank_length = "100 mm"
+coupler_length = "350 mm"
+crank_speed = "0 rpm"
+sense = -1
+friction.guide = { mu = 0.1 }
+slider = { mass = "4 kg" }
+gravity = {}"""
+
 
 @pytest.mark.parametrize("law", STROKES)
 @pytest.mark.parametrize(
@@ -212,35 +236,10 @@ def test_a_sense_that_cannot_be_is_refused(drive, words):
         _ = ks.solve(PRESS, 0.5, loads=ks.ProcessForce(INDICATOR), **drive).balancing_torque
 
 
+@pytest.mark.slow_start
 def test_a_case_file_tells_the_sense_of_a_crank_at_rest(tmp_path):
     path = tmp_path / "rest.toml"
-    path.write_text(
-        """
-title = "A crank at rest"
-reference = "forward"
-
-[variants.forward]
-mechanism = "crank-slider"
-crank_length = "100 mm"
-coupler_length = "350 mm"
-crank_speed = "0 rpm"
-sense = 1
-friction.guide = { mu = 0.1 }
-slider = { mass = "4 kg" }
-gravity = {}
-
-[variants.backward]
-mechanism = "crank-slider"
-crank_length = "100 mm"
-coupler_length = "350 mm"
-crank_speed = "0 rpm"
-sense = -1
-friction.guide = { mu = 0.1 }
-slider = { mass = "4 kg" }
-gravity = {}
-""",
-        encoding="utf-8",
-    )
+    path.write_text(CASE_AT_REST, encoding="utf-8")
     case = ks.load_case(path)
     for name, sense in {"forward": 1, "backward": -1}.items():
         scene = case.variants[name].scene
@@ -262,3 +261,11 @@ def test_a_sense_may_be_traced():
 def test_a_zero_has_no_sense():
     signs = [ks.solve(PRESS, 0.5, crank_speed=speed).crank_sense for speed in (0.0, -0.0)]
     assert signs == [1.0, 1.0]
+
+
+@pytest.mark.parametrize("sense", ["true", "0", "2", '"clockwise"', "0.5"])
+def test_a_case_file_refuses_what_is_no_sense(tmp_path, sense):
+    path = tmp_path / "rest.toml"
+    path.write_text(CASE_AT_REST.replace("sense = -1", f"sense = {sense}"), encoding="utf-8")
+    with pytest.raises(ks.CaseError, match=r"variants\.backward\.sense"):
+        ks.load_case(path)

@@ -31,6 +31,7 @@ from .texts import (
 SliderAssembly = Annotated[Any, BeforeValidator(by(SliderGroup.RULES.rules["assembly"]))]
 RockerAssembly = Annotated[Any, BeforeValidator(by(RockerGroup.RULES.rules["assembly"]))]
 LeverAssembly = Annotated[Any, BeforeValidator(by(LeverGroup.RULES.rules["assembly"]))]
+Sense = Annotated[Any, BeforeValidator(by(checks.Sign()))]
 Name = Annotated[Any, BeforeValidator(by(checks.Name()))]
 
 
@@ -90,7 +91,7 @@ class MechanismVariant(Table):
     """Counter-clockwise; negative turns clockwise."""
     crank_acceleration: AngularAcceleration = 0.0
     """Counter-clockwise."""
-    sense: Literal[1, -1] | None = None
+    sense: Sense | None = None
     """Which way a crank at rest is about to turn: 1 counter-clockwise, -1 clockwise."""
     crank: LinkTable = LinkTable()
     """Mass properties, from O along the crank."""
