@@ -87,7 +87,7 @@ def _scales(scene, solution):
     arm = max(float(np.max(np.abs(solution.position(joint)))) for joint in solution.mechanism.joints)
     force, torque = float(solution.largest_force_term), float(solution.largest_torque_term)
     power = torque * abs(float(scene.crank_speed))
-    return {"N": force, "N m": max(torque, force * arm), "W": power, "period": float(solution.period)}
+    return {"N": force, "N m": force * arm, "torque": torque, "W": power, "period": float(solution.period)}
 
 
 def has_table_loads(scene):
@@ -105,14 +105,14 @@ def extremes(scene):
         turn = _quietly(ks.extremes, solution, name)
         size = max(map(abs, turn.range))
         scale = max(size, scales.get(_unit(solution, name), 0.0))
-        found[f"scales/{name}"] = float(scale)
+        found[f"sizes/{name}"] = float(scale)
         for which, end in zip(("smallest", "largest"), turn.range, strict=True):
             found[f"extremes/{which} {name}"] = float(end)
             near = np.abs(turn.value - end) <= NEAR * size
             if near.any() and size > ROUNDING * scale:
                 found[f"angles/{which} {name}"] = turn.angle[near]
     found["extremes/energy_per_turn"] = float(solution.energy_per_turn)
-    found["scales/energy_per_turn"] = float(solution.largest_torque_term) * scales["period"]
+    found["sizes/energy_per_turn"] = float(solution.largest_torque_term) * scales["period"]
     outputs = [f"{mean} {name}" for mean in MEANS for name in solution.scalars]
     design = pd.DataFrame({"crank_speed": [float(scene.crank_speed)]})
     table = _quietly(ks.sweep, scene, design, outputs, progress=False)
@@ -125,7 +125,7 @@ def _unit(solution, name):
     if name in solution.reactions or name == "shaking_force":
         return "N"
     if name in solution.scalars or name == "shaking_moment":
-        return "N m" if re.search("torque|moment", name) else "N"
+        return "torque" if "torque" in name else "N m" if "moment" in name else "N"
     return None
 
 
@@ -485,7 +485,8 @@ class Context(NamedTuple):
         variant, _, name = path.split(SEP, 2)
         unit = re.search(r"\[(.*)\]", name)
         own = float(np.nanmax(np.abs(kept), initial=0.0))
-        return max(own, self.kept.get(f"{variant}/scales/{unit[1]}", 0.0)) if unit else own
+        known = "torque" if "torque" in name else unit[1] if unit else ""
+        return max(own, self.kept.get(f"{variant}/scales/{known}", 0.0))
 
 
 def _values(path, kept, now, context):
@@ -527,7 +528,7 @@ def _within(path, kept, now, allowed, told, period=None):
 
 def _relative(share, path, kept, now, context):
     variant, _, name = path.split(SEP, 2)
-    known = context.kept.get(f"{variant}/scales/{name.split()[-1]}", 0.0)
+    known = context.kept.get(f"{variant}/sizes/{name.split()[-1]}", 0.0)
     scale = max(known, float(np.nanmax(np.abs(kept), initial=0.0)))
     allowed = ANGLE if "_at " in name else share * scale
     yield from _within(path, kept, now, allowed, f"{share:g} of {scale:.4g}")
@@ -563,6 +564,7 @@ RULES = {
     "values": _values,
     "still": partial(_relative, TABLE_LOADS),
     "scales": partial(_relative, TABLE_LOADS),
+    "sizes": partial(_relative, EXTREMES),
     "extremes": partial(_relative, EXTREMES),
     "table": partial(_relative, EXTREMES),
     "curves": partial(_relative, EXTREMES),
@@ -589,7 +591,7 @@ def same_text(kept, now):
 
 
 def same_number(kept, now):
-    """Whether two printed numbers are within one unit of the last place of the shorter one."""
+    """Whether two printed numbers are within one unit of the last place of the longer one, as zeros at the end go."""
     one, other = float(kept), float(now)
     if max(abs(one), abs(other)) < ROUNDING:
         return True
@@ -620,8 +622,8 @@ def bound_problems(kept, variant, scene):
             row, place = np.argwhere(wrong)[0]
             side = "below" if limit is error else "above"
             yield (
-                f"{variant}: {way} bound of {name} (component {row}) at {angles[place]:.6g} deg: {bound[row, place]!r} "
-                f"is {side} {meant}, {limit[row, place]!r}"
+                f"{variant}: {way} bound of {name} (component {row}) at {angles[place]:.6g} deg: {bound[row, place]} "
+                f"is {side} {meant}, {limit[row, place]}"
             )
 
 
