@@ -13,6 +13,7 @@ from ..errors import ParameterError
 from ..mechanics import assembly
 from ..mechanics.principal_points import principal_points
 from ..numbers import checks
+from ..solution.scene import mechanism_problem
 from .counterweights import Balanced, Counterweight, counterweight, guide_direction
 from .least_shaking import Search, least
 from .shapes import crank_sliders, four_bar
@@ -160,7 +161,7 @@ def optimal(mechanism, norm="largest", *, phase=False, weights=(1.0, 0.0), angle
     >>> print(f"{np.hypot(*after).mean() / np.hypot(*before).mean():.2f}")
     0.56
     """
-    _refuse_massless(mechanism)
+    _require_masses(mechanism)
     paired = isinstance(weights, list | tuple | np.ndarray) and getattr(weights, "ndim", 1) == 1 and len(weights) == 2
     found = checks.examined(
         "optimal balancing",
@@ -240,7 +241,7 @@ def ratio_problem(ratio):
 
 def _refuse(mechanism):
     """Refuse what full and partial balancing cannot do."""
-    _refuse_massless(mechanism)
+    _require_masses(mechanism)
     if len(mechanism.groups) > 1 and mechanism.crank.length is not None:
         raise ParameterError(
             f"full and partial balancing are for a crank with one group; the {mechanism.name} has "
@@ -255,7 +256,8 @@ def _refuse(mechanism):
         )
 
 
-def _refuse_massless(mechanism):
+def _require_masses(mechanism):
+    checks.require("balancing", mechanism_problem(mechanism))
     if mechanism.batch:
         raise ParameterError(f"balancing works on one design at a time, got a batch of shape {mechanism.batch}")
     if not np.any(principal_points(mechanism).mass):

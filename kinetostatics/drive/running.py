@@ -120,7 +120,10 @@ class Running(Powers):
 
     @cached_property
     def time(self):
-        """Time since the crank passed angle 0, up to the duration of the period, (..., N), s."""
+        """Time since the crank passed angle 0, up to the duration of the period, (..., N), s.
+
+        It falls along rising crank angles where the crank turns clockwise.
+        """
         return read_only(self._time_after(np.mod(self.direction * self.crank_angle, self.period)))
 
     @cached_property

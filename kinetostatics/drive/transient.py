@@ -73,6 +73,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     """
     driven, flywheel, angle, speed = _begun("coast", scene, motor, flywheel, from_angle, from_speed, engine)
     if not (isinstance(until, str) and until == "standstill"):
+        checks.require("coast", 'give until, a time in s, or "standstill"' if until is None else None)
         until, wrong = checks.single("until", until, "s", low=0.0, strict=True)
         checks.require("coast", wrong and f'until must be a time in s, or "standstill": {wrong}')
     elif speed == 0.0:

@@ -9,10 +9,10 @@ from ..machine.group import FRAME, Resolved
 from ..machine.links import Joint, Wrench, arm, first_at, load, second_at
 from ..machine.loads import value_of
 from ..machine.placement import place as placed
+from ..machine.sense import sense_of
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.friction import Rubbing
 from ..mechanics.friction_laws import size_of
-from ..mechanics.motion import sense_of
 from ..mechanics.pushes import pushed, settled, title_of
 from ..mechanics.quantities import magnitude
 from ..numbers.lazy import cached_property

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import ConditionWarning, JammingError
 from ..machine.friction import PASSES
-from ..numbers.elementary import where_zero
+from ..machine.sense import WANTED, stands
 from ..numbers.leaves import with_fields
 
 CONVERGED = 1e-13
@@ -16,14 +16,7 @@ CONVERGED = 1e-13
 
 def standing(solution):
     """What is wrong with a crank that neither moves nor begins to, as a sentence, or None."""
-    if solution.sense is not None:
-        return None
-    if not np.any(np.logical_and(where_zero(solution.crank_speed), where_zero(solution.crank_acceleration))):
-        return None
-    return (
-        "friction acts against motion, but crank_speed and crank_acceleration are both 0; give sense=+1 or sense=-1, "
-        "the way the crank is about to turn, or a crank_acceleration, for the torque that begins a motion that way"
-    )
+    return f"friction acts against the motion, {WANTED}" if np.any(stands(solution)) else None
 
 
 def converged(margin, residual):

@@ -13,25 +13,15 @@ from ..machine.links import Joint, Spot, accelerated, angular_acceleration, arm,
 from ..machine.loads import is_given
 from ..machine.loads.places import PLACE
 from ..machine.mechanism import Mechanism
+from ..machine.sense import sense_of
 from ..numbers import checks, kinds
-from ..numbers.elementary import namespace, read_only, sign, stack
+from ..numbers.elementary import namespace, read_only, stack
 from ..numbers.lazy import cached_property
 from ..numbers.leaves import Leaves, wider
 from ..numbers.planar import number, plus, product, stretched, vector
 from ..numbers.structures import taken_apart
 from .gaps import gap, groups_behind
 from .quantities import of_mechanism
-
-FASTER = 2.0**600
-"""Factor by which a crank speed counts before the crank acceleration."""
-
-
-def sense_of(speed, acceleration):
-    """Which way a crank turns: the sign of its speed, at rest of its acceleration; +1 where both are 0."""
-    speed, acceleration = present(speed), present(acceleration)
-    if speed is None or acceleration is None:
-        return sign(number(acceleration if speed is None else speed) + 0.0)
-    return sign(speed * FASTER + acceleration + 0.0)
 
 
 def _given(kind):

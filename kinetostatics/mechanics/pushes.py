@@ -5,6 +5,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.links import present
 from ..machine.loads import Load
+from ..machine.sense import require_sense
 from ..numbers import checks
 from ..numbers.elementary import is_foreign_array
 from ..numbers.leaves import with_fields
@@ -29,6 +30,12 @@ KNOWN = (
 
 class Moving(Motion):
     """A motion as functions of it see it, without forces: these come of what the functions give."""
+
+    @property
+    def crank_sense(self):
+        """Which way the crank turns or is about to turn; refused where it is about to turn neither way."""
+        require_sense("a function of the motion asks for crank_sense", self)
+        return super().crank_sense
 
     def __getattr__(self, name):
         if name.startswith("_"):

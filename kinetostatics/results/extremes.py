@@ -103,8 +103,8 @@ def extremes(solution, quantity):
     Brackets come from samples a quarter of a degree apart, a twentieth where a load is a function, and closer near
     limit positions; each extremum is then found by minimisation (scipy.optimize.elementwise) of the quantity evaluated
     by the mechanism itself. As a minimum fixes its place only to half the digits, the angle is last read from the slope
-    of a Chebyshev fit through nearby evaluations, and kept if the value there is as good. Where a load jumps, the
-    extremum is that of the samples.
+    of a Chebyshev fit through nearby evaluations, and kept if the value there is as good. At a jump the extrema are
+    the values on its two sides; at one that a function does not declare, those of the nearest samples.
 
     Values with less than two correct digits, by `Solution.condition`, do not count. In their place, and at the ends of
     gaps, stands what the quantity tends to there, from each side.

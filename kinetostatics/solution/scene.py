@@ -78,7 +78,7 @@ class Scene(Parameters):
     def _admit(self, owner):
         values = vars(self)
         if type(self.mechanism) is not Mechanism:
-            checks.require(owner, _no_mechanism(self.mechanism))
+            checks.require(owner, mechanism_problem(self.mechanism))
         DRIVE.keep(values, owner)
         if self.sense is not None:
             values.update(sense=_sense(owner, self.sense, values["crank_speed"]))
@@ -344,12 +344,15 @@ def _sense(owner, given, speed):
     if ways is not None and np.any(np.abs(ways) != 1.0):
         problem = f"sense must be +1 or -1, the way the crank is about to turn, got {checks.shown(given)}"
     elif ways is not None and rates is not None and np.any(rates * ways < 0.0):
-        problem = f"sense is for a crank at rest: {checks.shown(given)} contradicts crank_speed {checks.shown(speed)}"
+        problem = (
+            f"sense is for a crank at rest: {checks.shown(given)} contradicts crank_speed {checks.shown(speed)}; leave "
+            "sense out, the speed tells it"
+        )
     checks.require(owner, problem)
     return sense
 
 
-def _no_mechanism(found):
+def mechanism_problem(found):
     """What is wrong with what was given for a mechanism, or None."""
     if isinstance(found, Mechanism):
         return None

@@ -177,7 +177,7 @@ def test_the_balanced_saw_does_not_start_against_its_springs(angle, words):
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: ks.drive.coast(PENDULUM, until=None), "until must be a time"),
+        (lambda: ks.drive.coast(PENDULUM, until=None), "give until, a time in s"),
         (lambda: ks.drive.coast(PENDULUM, until=-1.0), "until must be a time"),
         (lambda: ks.drive.coast(PENDULUM, until="stand"), "until must be a time"),
         (lambda: ks.drive.coast(PENDULUM, until="standstill"), "needs a from_speed"),

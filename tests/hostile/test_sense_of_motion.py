@@ -222,7 +222,7 @@ def test_at_rest_the_sense_is_given_or_that_of_the_acceleration(sense):
 
 
 REFUSED = {
-    "neither way": ({"crank_speed": 0.0}, r"values for the stroke back, .* both 0, .* give sense=\+1 or sense=-1"),
+    "neither way": ({"crank_speed": 0.0}, r"values for the stroke back, .* both 0: give sense=\+1 or sense=-1"),
     "no sign": ({"crank_speed": 0.0, "sense": 0}, r"sense must be \+1 or -1, .*, got 0"),
     "a speed": ({"crank_speed": 0.0, "sense": -8.0}, r"sense must be \+1 or -1, .*, got -8"),
     "a word": ({"crank_speed": 0.0, "sense": "clockwise"}, "sense must be a number"),
@@ -269,3 +269,24 @@ def test_a_case_file_refuses_what_is_no_sense(tmp_path, sense):
     path.write_text(CASE_AT_REST.replace("sense = -1", f"sense = {sense}"), encoding="utf-8")
     with pytest.raises(ks.CaseError, match=r"variants\.backward\.sense"):
         ks.load_case(path)
+
+
+def test_a_function_cannot_ask_for_the_sense_of_a_crank_that_stands():
+    loads = ks.Torque(lambda q: -5.0 * q.crank_sense, on="crank")
+    with pytest.raises(ks.ParameterError, match=r"asks for crank_sense, but .* both 0: give sense=\+1 or sense=-1"):
+        _ = ks.solve(PRESS, 0.5, crank_speed=0.0, loads=loads).balancing_torque
+    assert ks.solve(PRESS, 0.5, crank_speed=0.0, sense=-1, loads=loads).balancing_torque == pytest.approx(-5.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: ks.Force(5.0), "at must be a joint"),
+        (lambda: ks.balancing.optimal(press(())), "mechanism must be a Mechanism"),
+        (lambda: ks.balancing.full(press(()), crank=0.1, coupler=0.1), "mechanism must be a Mechanism"),
+        (lambda: ks.drive.coast(press(()), 1.0, from_speed=1.0), 'give until, a time in s, or "standstill"'),
+    ],
+)
+def test_what_is_left_out_or_mistaken_is_named(call, words):
+    with pytest.raises(ks.ParameterError, match=words):
+        call()

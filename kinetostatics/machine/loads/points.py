@@ -76,7 +76,7 @@ class Force(Load):
     """
 
     value: Any
-    at: Any = field(kw_only=True)
+    at: Any = field(default=None, kw_only=True)
     direction: Any = field(default=0.0, kw_only=True)
     along: Any = field(default=None, kw_only=True)
 

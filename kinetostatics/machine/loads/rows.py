@@ -7,7 +7,7 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.elementary import namespace, where_zero
+from ...numbers.elementary import namespace
 from .period import TURN
 
 BEYOND = 1e-9
@@ -87,20 +87,6 @@ def require_inside(x, place, motion):
             f"table from {x[0]:.9g} to {x[-1]:.9g} m; beyond it at {angle.size} crank angles, the first "
             f"{angle[0]:.6g} deg; travel is the coordinate of the pin along the guide (solution.slider_position)",
             out.any(axis=-1) if out.ndim > 1 else None,
-        )
-
-
-def require_sense(motion):
-    """Raise an error where a crank at rest begins to turn neither way, so that the stroke is not known."""
-    if motion.sense is not None:
-        return
-    still = np.logical_and(where_zero(motion.crank_speed), where_zero(motion.crank_acceleration))
-    if still.any():
-        raise ParameterError(
-            "table over travel: it has other values for the stroke back, but crank_speed and crank_acceleration are "
-            "both 0, so the stroke is not known; give sense=+1 or sense=-1, the way the crank is about to turn, or a "
-            "crank_acceleration",
-            still.any(axis=-1) if still.ndim > 1 else None,
         )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from ...errors import CaseError, ParameterError
 from ...numbers import checks
 from ...numbers.leaves import with_fields
+from ..sense import require_sense
 from . import rows
 from .bending import bending, left_out
 from .crossings import crossings
@@ -285,7 +286,7 @@ class Table:
         if xp is np:
             rows.require_inside(self.x, place, motion)
             if self.by_sense:
-                rows.require_sense(motion)
+                require_sense("table over travel: it has other values for the stroke back", motion)
             return start, value, slope
         return start, xp.where(rows.outside(self.x, place), xp.nan, value), slope
 
