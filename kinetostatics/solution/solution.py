@@ -179,8 +179,10 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
 
     @cached_property
     def power_residual(self):
-        """Largest difference of the two torques over the turn, relative to the largest single power that flows."""
+        """Largest difference of the two torques over the turn, relative to the largest of one load or of friction."""
         scale = self.largest_torque_term
+        if self.friction.acting:
+            scale = np.maximum(scale, self.dynamics.largest(self.friction_torque))
         difference = self.dynamics.largest(self.balancing_torque - self.balancing_torque_by_power)
         return np.where(scale > 0, difference / np.where(scale > 0, scale, 1.0), 0.0 * difference)[()]
 

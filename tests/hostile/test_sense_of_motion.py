@@ -290,3 +290,11 @@ def test_a_function_cannot_ask_for_the_sense_of_a_crank_that_stands():
 def test_what_is_left_out_or_mistaken_is_named(call, words):
     with pytest.raises(ks.ParameterError, match=words):
         call()
+
+
+def test_the_power_balance_at_rest_is_relative_to_friction():
+    machine = ks.crank_slider(0.1, 0.35, guide_offset=0.02, slider=ks.Link(4.0))
+    friction = {"guide": ks.GuideFriction(0.2), "O": ks.PinFriction(0.1, 0.02)}
+    angle = np.linspace(0.0, 6.0, 13)
+    at_rest = ks.solve(machine, angle, crank_speed=0.0, sense=1, loads=ks.Gravity(), friction=friction)
+    assert at_rest.power_residual < 1e-14
