@@ -57,7 +57,7 @@ def test_no_module_is_longer_than_600_lines():
 
 
 FRAGMENTS = 77
-"""Modules of less than 80 lines: each new one needs a reason, and none of them is to hide a part of another's concept."""
+"""Modules of less than 80 lines: each new one needs a reason; none is to hide a part of another's concept."""
 
 
 def test_fragments_become_no_more():
