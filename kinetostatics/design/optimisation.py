@@ -284,11 +284,11 @@ def _listed(problem, values):
 def held(problem, goal, limits, best) -> Reached:
     """The design with its limits kept at true extremes: they are drawn in by what the samples did not tell."""
     drawn = list(limits)
-    for _ in range(TIGHTER):
+    for left in reversed(range(TIGHTER + 1)):
         over, failure = _true_excesses(problem, limits, best.values)
         if failure is None and all(part <= KEPT * limit.scale / 2 for part, limit in zip(over, limits, strict=True)):
             return best
-        if not any(part > 0 for part in over):
+        if not left or not any(part > 0 for part in over):
             break
         drawn = [
             limit if part <= 0 else replace(limit, value=limit.value - _outward(limit, problem, best) * 1.01 * part)
