@@ -66,6 +66,10 @@ class Machine(Drawn):
         """A number."""
         return round(super().real(low, high) * STEPS) / STEPS
 
+    def inertia(self, mass):
+        """Any moment of inertia: the data is older than the hint at those that no bar of its length has."""
+        return self.real(0.001, 0.1)
+
     def disagreement(self, solution, found):
         """Largest difference from the tests' system at all crank angles, relative to the largest force."""
         gaps, size = [], 0.0

@@ -59,10 +59,14 @@ class Drawn:
         """A number."""
         return float(self.rng.uniform(low, high))
 
+    def inertia(self, mass):
+        """Moment of inertia of a body of some mass, by its radius of gyration."""
+        return mass * self.real(0.03, 0.3) ** 2
+
     def link(self, name, point, direction):
         """Mass properties, also for the system."""
-        mass, gyration = self.real(0.1, 9), self.real(0.03, 0.3)
-        inertia = mass * gyration**2
+        mass = self.real(0.1, 9)
+        inertia = self.inertia(mass)
         centre = self.real(-0.1, 0.2), self.real(-0.05, 0.05)
         self.bodies[name] = Body(point, direction, mass, mp.mpc(*centre), inertia)
         return ks.Link(mass, centre, inertia)
