@@ -16,7 +16,7 @@ CONVERGED = 1e-13
 
 def standing(solution):
     """What is wrong with a crank that neither moves nor begins to, as a sentence, or None."""
-    return f"friction acts against the motion, {WANTED}" if np.any(stands(solution)) else None
+    return f"friction acts against motion, {WANTED}" if np.any(stands(solution)) else None
 
 
 def converged(margin, residual):
