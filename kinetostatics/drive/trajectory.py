@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..machine.loads import TURN
+from ..mechanics.jamming import settled
 from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property, pyplot
@@ -115,9 +116,19 @@ class Trajectory:
     @cached_property
     def solution(self):
         """`Solution` along the motion: every reaction and torque at its times; at standstill, of the motion before."""
+        return self._moving.solve(self.crank_angle)
+
+    @property
+    def _moving(self):
+        """The scene at the speeds, accelerations and senses of the motion."""
         sense = np.where(self.speed == 0.0, self._dense(self.time)[4], np.sign(self.speed))
-        moving = {"crank_speed": self.speed, "crank_acceleration": self.acceleration, "sense": sense}
-        return with_fields(self.scene, **moving).solve(self.crank_angle)
+        return with_fields(self.scene, crank_speed=self.speed, crank_acceleration=self.acceleration, sense=sense)
+
+    @property
+    def _unchecked(self):
+        """The solution without a look at its digits, which takes longer than all its torques."""
+        found = self._moving.unsolved(self.crank_angle)
+        return settled(found) if self.scene.friction.acting else found
 
     @cached_property
     def energy_drift(self):
@@ -128,10 +139,11 @@ class Trajectory:
         ends = self._ends
         if ends.size < 2:
             return 0.0
-        half, energy = 0.5 * np.diff(ends), self.at(ends).kinetic_energy
+        half, at_ends = 0.5 * np.diff(ends), self.at(ends)
+        energy = at_ends._unchecked.kinetic_energy + 0.5 * self.flywheel * at_ends.speed**2
         inside = self.at(np.ravel(0.5 * (ends[:-1] + ends[1:])[:, None] + half[:, None] * NODES))
-        drive = 0.0 if self.motor is None else self.motor.torque_at_crank(inside.speed)
-        power = (drive - inside.solution.load_torque - inside.solution.friction_torque) * inside.speed
+        drive, asked = 0.0 if self.motor is None else self.motor.torque_at_crank(inside.speed), inside._unchecked
+        power = (drive - asked.load_torque - asked.friction_torque) * inside.speed
         work = np.cumsum(half * (power.reshape(half.size, NODES.size) @ WEIGHTS))
         return float(np.abs(energy[1:] - energy[0] - work).max())
 
