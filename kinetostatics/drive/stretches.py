@@ -95,7 +95,7 @@ def followed(driven, angle, speed, end, target=None, to_standstill=False, sense=
     """
     state, time, shift = np.array([angle, speed, 0.0, 0.0]), 0.0, 0.0
     direction = math.copysign(1.0, speed) if speed else sense or sense_from_rest(driven, angle)
-    times, rows, reversals = [0.0], [np.append(state, direction)], []
+    times, rows, reversals = [0.0], [np.append(state, direction or driven.direction)], []
     stretches: list[Stretch] = []
     what, crossed, evaluations = "stuck", None, itertools.count()
 

@@ -88,3 +88,13 @@ def test_a_machine_at_rest_is_that_which_creeps_and_has_its_mirror_image(kind, s
     close = 1e-9 * np.abs(torque).max()
     assert creeping.solve(ANGLES).balancing_torque == pytest.approx(torque, abs=close)
     assert mirrored(rest).solve(-ANGLES).balancing_torque == pytest.approx(-torque, abs=close)
+
+
+@pytest.mark.parametrize("loads", [(), (ks.ProcessForce(ks.Table([0.2, 0.5], [-100.0] * 2, "travel", [100.0] * 2)),)])
+def test_a_machine_held_at_rest_from_the_start_has_a_solution(loads):
+    scene = ks.Scene(PRESS, 1.0, loads=[ks.Gravity(), *loads], friction={"O": ks.PinFriction(0.5, 0.3)})
+    motion = ks.drive.coast(scene, 0.06, from_angle=1.4, until=2.0)
+    assert motion.events[-1].name == "standstill"
+    assert np.all(np.abs(motion.solution.crank_sense) == 1.0)
+    assert np.isfinite(motion.solution.balancing_torque).all()
+    assert motion.energy_drift == 0.0
