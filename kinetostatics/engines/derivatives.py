@@ -14,12 +14,16 @@ def gradients(graph, outputs, parameters):
     """Derivatives of outputs by parameters: a tuple of nodes or numbers for each output."""
     if len(outputs) < len(parameters):
         return [_adjoints(graph, output, parameters) for output in outputs]
-    columns = [_tangents(graph, outputs, parameter) for parameter in parameters]
+    columns = [tangents(graph, outputs, {parameter: 1.0}) for parameter in parameters]
     return list(zip(*columns, strict=True))
 
 
-def _tangents(graph, outputs, parameter):
-    slopes = {parameter: 1.0}
+def tangents(graph, outputs, slopes):
+    """Derivatives of outputs along one direction, a tuple of nodes or numbers.
+
+    `slopes` is a mapping of inputs to their own derivatives along it, nodes or numbers; others have none.
+    """
+    slopes = dict(slopes)
     for node in needed(outputs):
         parts = [
             _times(partial, slopes[argument])

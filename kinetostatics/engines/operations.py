@@ -1,10 +1,13 @@
 """What recorded operations do to plain numbers, to arrays with new memory, and to arrays with memory given."""
 
 import math
+import operator
+from typing import Any
 
 import numpy as np
 
 from ..numbers.elementary import ROUNDING, lost, off_square, rest, total
+from .trace import INPUTS, Node, needed
 
 
 def _plain_root(square, unit):
@@ -126,3 +129,39 @@ ARRAYS = {
     "total_of": _total_of,
     "maximum": lambda one, other, out: np.maximum(one, other, out=out),
 }
+
+
+_FUNCTIONS: dict[str, Any] = BY_DESIGN | {
+    "+": operator.add,
+    "-": lambda *parts: parts[0] - parts[1] if len(parts) == 2 else -parts[0],
+    "*": operator.mul,
+    "/": np.divide,
+    "sign": lambda value: np.copysign(1.0, value),
+    "held": lambda value: value,
+}
+
+
+class Evaluation:
+    """Outputs of a graph on arrays that broadcast, operation by operation: for few calls, which repay no source.
+
+    Each array is let go after its last use, so that the next one finds its memory in the cache.
+    """
+
+    def __init__(self, outputs):
+        self._outputs = outputs
+        nodes, kept = needed(outputs), set(outputs)
+        last = {part: node for node in nodes for part in node.arguments if isinstance(part, Node) and part not in kept}
+        spent: dict[Node, list[Node]] = {node: [] for node in nodes}
+        for part, node in last.items():
+            spent[node].append(part)
+        computed = [node for node in nodes if node.operation not in INPUTS]
+        self._steps = [(node, _FUNCTIONS[node.operation], node.arguments, spent[node]) for node in computed]
+
+    def __call__(self, inputs):
+        """Values of the outputs, a list of numbers and arrays, from those of all inputs, a mapping by node."""
+        values = dict(inputs)
+        for node, function, arguments, spent in self._steps:
+            values[node] = function(*[values[part] if part.__class__ is Node else part for part in arguments])
+            for part in spent:
+                del values[part]
+        return [values[part] if part.__class__ is Node else part for part in self._outputs]

@@ -1,12 +1,8 @@
 """Where a mechanism can be assembled: the check behind `solve`, and the crank-angle intervals for its message."""
 
-import math
-import warnings
-from functools import reduce
-
 import numpy as np
 
-from ..errors import AssemblyError, ConditionWarning, ParameterError
+from ..errors import AssemblyError, ParameterError
 from ..machine.loads import TURN
 from ..machine.placement import require_positions
 from ..numbers.elementary import ROUNDING
@@ -18,13 +14,17 @@ HALF = 1e8
 """Condition from which half of the digits are lost."""
 NO_DIGIT = 1e16
 """Condition from which rates and forces have no correct digit."""
-WORST = 100.0
-"""Largest condition of a mechanism times margin^2 / (proportion^2 times crank angle)."""
 
 
 def check(solution):
-    """Raise `AssemblyError` if the mechanism does not close at some angle; warn where half of the digits are lost."""
-    placement, margins, least = solution.placement, [], 1.0
+    """Raise `AssemblyError` if the mechanism does not close at some angle.
+
+    Returns
+    -------
+    list of array (..., N)
+        Margins of the groups; nothing in another precision than double, and of groups whose values are not known yet.
+    """
+    placement, margins = solution.placement, []
     found = solution.mechanism.margins(placement, solution.shape)
     for group, margin in zip(solution.mechanism.groups, map(_looked_at, found), strict=True):
         if margin is None:
@@ -33,44 +33,13 @@ def check(solution):
         if not group.trusted and _in_double_precision(solution):
             require_positions(group, placement, margin)
         smallest = margin.min()
-        least *= min(smallest, 1.0)
         if smallest >= 0.0:
             continue
         if not np.all(np.isfinite(placement.angle)):
             raise ParameterError("crank angles must be finite; found NaN or infinity")
         if smallest < -ROUNDING:
             raise _error(solution.mechanism, group, placement, margin)
-    if margins and _in_double_precision(solution) and not least >= _enough(solution):
-        _warn_where_digits_are_lost(solution, margins)
-
-
-def warn_of_lost_digits(solution):
-    """Warn where half of the digits are lost, whether or not the mechanism closes at all angles."""
-    margins = [margin for margin in solution.closure if isinstance(margin, np.ndarray) and margin.dtype == float]
-    if len(margins) == len(solution.closure) and not surely_well(solution, margins):
-        _warn_where_digits_are_lost(solution, margins)
-
-
-def surely_well(solution, margins):
-    """Whether the margins of closure alone tell that no crank angle loses half of its digits.
-
-    Those of a group of the user's own may be wrong.
-    """
-    least = 1.0 if solution.mechanism.trusted else 0.0
-    for margin in margins:
-        least *= min(margin.min(), 1.0)
-    if not least > 0.0:
-        return False
-    return least >= _enough(solution, solution.farthest) or least >= _enough(solution)
-
-
-def _enough(solution, farthest=None):
-    """Product of all groups' margins from which the condition is below `HALF`, however they lie.
-
-    A bound of the crank angles will do in place of the farthest of them.
-    """
-    farthest = float(np.abs(np.asarray(solution.crank_angle)).max()) if farthest is None else farthest
-    return solution.proportion * math.sqrt(WORST * max(1.0, farthest) / HALF)
+    return margins if _in_double_precision(solution) else []
 
 
 def _in_double_precision(solution):
@@ -86,53 +55,6 @@ def _looked_at(margin):
         return np.asarray(margin, dtype=float)
     except (TypeError, ValueError):
         return None
-
-
-def ill_conditioned(solution, margins=None):
-    """Crank angles that lose half of their digits or more, found without the condition of all others.
-
-    Parameters
-    ----------
-    solution : Solution
-    margins : sequence of arrays, optional
-        Its `closure`.
-
-    Returns
-    -------
-    points : array of int (M,)
-        Their places in the flattened shape of the solution.
-    condition : array (M,)
-        Above `HALF`, infinite where no rounding is small enough.
-    """
-    from .sensitivity import condition
-
-    margins = solution.closure if margins is None else margins
-    product = reduce(np.multiply, (np.minimum(margin, 1.0) for margin in margins), np.ones(()))
-    closed = reduce(np.minimum, margins, np.ones(())) >= -ROUNDING
-    points = np.flatnonzero(np.broadcast_to(closed & (product < _enough(solution)), solution.shape))
-    found = condition(solution, points) if points.size else np.zeros(0)
-    return points[found > HALF], found[found > HALF]
-
-
-def _warn_where_digits_are_lost(solution, margins):
-    points, found = ill_conditioned(solution, margins)
-    if not points.size:
-        return
-    worst = int(np.argmax(found))
-    angle = np.broadcast_to(solution.crank_angle, solution.shape).flat[points[worst]]
-    cause = "it is near a limit position or change point: errors of its lengths, rounding among them, are"
-    if found[worst] * TURN < HALF * abs(angle):
-        cause = "it is many turns from 0 (angles within one turn would do): rounding of the crank angle is"
-    warnings.warn(
-        f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg {cause} "
-        f"magnified {found[worst]:.3g} times, so rates and "
-        f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {points.size} of "
-        f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
-        "angle by angle; how many digits are correct for the very numbers given, often far more, is proven by "
-        f"solution.error_bound(quantity)){_kinks(solution.mechanism)}",
-        ConditionWarning,
-        stacklevel=6,
-    )
 
 
 def growth(solution, name, values):
@@ -153,11 +75,6 @@ def growth(solution, name, values):
         "that the mechanism passes: it has a second freedom there for an instant, and its joints hold no load; motion "
         f"and balancing torque are right ({int(np.sum(beyond))} of {sizes.size} crank angles)"
     )
-
-
-def _kinks(mechanism):
-    texts = [text for group in mechanism.groups if (text := group.kink(mechanism.throws))]
-    return "".join(f"; {text}" for text in texts)
 
 
 def _error(mechanism, group, placement, margin):

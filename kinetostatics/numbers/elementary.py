@@ -113,7 +113,7 @@ def sign(x):
 
 
 def _sign_of_one(x):
-    """Of a recorded number, one with derivatives, or an enclosure; of a plain one among them too."""
+    """Of a recorded number or an enclosure; of a plain one among them too."""
     return np.copysign(1.0, x) if isinstance(x, float | int) else x.sign() if hasattr(x, "sign") else x.sgn()
 
 

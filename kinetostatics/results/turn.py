@@ -131,9 +131,7 @@ class Turn:
     def _condition(self, solution):
         if not self.passed.size:
             return solution.condition
-        from ..mechanics import sensitivity
-
-        found = sensitivity.condition(solution.dynamics, reactions=True)
+        found = solution._condition_with_reactions
         distance = (solution.crank_angle[:, None] - self.passed + self.period / 2) % self.period - self.period / 2
         with np.errstate(divide="ignore"):  # forces grow as one over it, also at 0, near which angles are exact
             return np.fmax(found, 1.0 / np.abs(distance).min(axis=-1))

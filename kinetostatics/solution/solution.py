@@ -22,6 +22,7 @@ from ..results.turn import Turn
 from . import contents, slips
 from .angles import crank_angles, hint_at
 from .certainty import Certainty
+from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
 from .contacts import Contacts
 from .drive_and_loads import in_a_line, over_the_angles
 from .energies import Energies
@@ -56,12 +57,12 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
 
     def check(self):
         """Raise `AssemblyError` where the mechanism does not close; warn where half of the digits are lost."""
-        if not assembly.surely_well(self, self._found("closure")):
-            assembly.check(self.dynamics)
+        if not is_surely_well_conditioned(self, self._found("closure")):
+            warn_of_lost_digits(self.dynamics, assembly.check(self.dynamics))
 
     def warn(self):
         """Warn where half of the digits are lost; where the mechanism does not close there are none."""
-        assembly.warn_of_lost_digits(self.dynamics)
+        warn_of_lost_digits(self.dynamics, self.dynamics.closure)
 
     def __repr__(self):
         return f"<Solution: {self.mechanism.name}, shape {self.shape}, {in_a_line(self)}>"
@@ -229,16 +230,22 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
 
         A bound of the true magnification: the sum over all lengths and the crank angle p of ``|p dq/dp|``, over the
-        largest term of q, worst of rates, reactions and torque (see `sensitivity`). Below 1e3 where nothing is lost,
+        largest term of q, worst of rates, reactions and torque (`solution.condition`). Below 1e3 where nothing is lost,
         infinite at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
         16 - log10(condition) correct digits of its largest term, or more.
 
         Where change points are passed ("open", "crossed") it is of motion and torque alone, which are ordinary there;
         `condition_of` tells it of a reaction.
-        """
-        from ..mechanics.sensitivity import condition
 
+        Derivatives are exact, those of the recorded program. Where a group of the user's own does more than arithmetic,
+        so that it cannot be recorded, they are differences, and a `ConditionWarning` says so.
+        """
         return read_only(condition(self.dynamics).reshape(self.shape))
+
+    @cached_property
+    def _condition_with_reactions(self):
+        """The same with reactions also where change points are passed, (..., N)."""
+        return read_only(condition(self.dynamics, reactions=True).reshape(self.shape))
 
     def condition_of(self, quantity):
         """How many times relative errors are magnified in one quantity, relative to its largest value, (..., N).
@@ -260,12 +267,10 @@ class Solution(Certainty, Energies, Contacts, Explained, Motion):
         largest = np.asarray(self.dynamics.largest(values(replace(self, silent=True), quantity)))
         terms = np.broadcast_to(scale(self, quantity), largest.shape)
         cancelled = np.divide(terms, largest, out=np.ones(largest.shape), where=largest > 0)
-        condition = self.condition
+        found = self.condition
         if not callable(quantity) and self.mechanism.grows(quantity):
-            from ..mechanics import sensitivity
-
-            condition = sensitivity.condition(self.dynamics, reactions=True).reshape(self.shape)
-        return condition * np.fmax(cancelled, 1.0).reshape(*largest.shape, *[1] * (condition.ndim > 0))
+            found = self._condition_with_reactions
+        return found * np.fmax(cancelled, 1.0).reshape(*largest.shape, *[1] * (found.ndim > 0))
 
     def frame(self):
         """All results as a pandas DataFrame, one row for each crank angle (and design), units in the column names."""

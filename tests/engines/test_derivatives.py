@@ -2,10 +2,15 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import kinetostatics as ks
+from kinetostatics.engines.derivatives import tangents
+from kinetostatics.engines.operations import Evaluation
+from kinetostatics.engines.trace import Graph
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components
+from kinetostatics.numbers import elementary
 from kinetostatics.numbers.leaves import put_together
 
 ANGLES = np.linspace(0.1, 6.2, 7)
@@ -94,3 +99,53 @@ def test_derivatives_are_the_same_compiled_and_by_either_sweep(name):
             assert np.abs(found[1][quantity][path] - slope).max() <= 1e-13 * largest
             alone = one_by_one.derivatives(ANGLES, path)[quantity][path]  # one parameter: forward
             assert np.abs(alone - slope).max() <= 1e-12 * largest
+
+
+FUNCTIONS = {
+    "arithmetic": lambda x, f: (2.0 - x) * x / (1.0 + x) + 3.0 / x - 1.5,
+    "square": lambda x, f: -(x**2),
+    "size": lambda x, f: abs(1.0 - 2.0 * x),
+    "sine": lambda x, f: f.sin(x) * f.cos(3.0 * x),
+    "root": lambda x, f: f.sqrt(1.0 + x * x),
+    "angle": lambda x, f: f.atan(x / 2.0),
+}
+
+
+class Elementary:
+    """The elementary functions as kernels call them: on arrays of objects."""
+
+    def __getattr__(self, name):
+        return lambda x: getattr(elementary, name)(np.array([x], dtype=object))[0]
+
+
+def along_two_directions(function):
+    """Value of a function of a recorded number at 0.8, and its slopes along 1 and 2."""
+    graph = Graph()
+    x, direction = graph.parameter(0), graph.parameter(1)
+    found = function(x)
+    outputs = [found, *tangents(graph, [found], {x: direction})]
+    return Evaluation(outputs)({x: np.array([0.8]), direction: np.array([[1.0], [2.0]])})
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_value_and_slope_of_operations_are_those_of_sympy(name):
+    x = sp.Symbol("x", positive=True)
+    expression = FUNCTIONS[name](x, sp)
+    value, slopes = along_two_directions(lambda number: FUNCTIONS[name](number, Elementary()))
+    slope = float(sp.diff(expression, x).subs(x, 0.8))
+    assert value[0] == pytest.approx(float(expression.subs(x, 0.8)), rel=1e-14)
+    assert slopes[:, 0] == pytest.approx([slope, 2.0 * slope], rel=1e-13)
+
+
+@pytest.mark.parametrize("name", ["held", "sign", "rest"])
+def test_signs_and_numbers_that_are_held_have_no_slope(name):
+    functions = {"rest": lambda x: elementary.rest(x, 0.3 * x, 0.4)}
+    value, slope = along_two_directions(functions.get(name, getattr(Elementary(), name)))
+    assert np.isfinite(value[0])
+    assert slope == 0.0
+
+
+def test_a_total_has_the_slopes_of_a_sum():
+    value, slopes = along_two_directions(lambda x: elementary.total(x, 0.2, -(x * x)))
+    assert value[0] == pytest.approx(0.36, rel=1e-15)
+    assert slopes[:, 0] == pytest.approx([-0.6, -1.2], rel=1e-15)

@@ -10,7 +10,6 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines.trace import Graph
 from kinetostatics.numbers import elementary
-from kinetostatics.numbers.duals import Dual
 from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, rest, root, sign, stack, total
 from support.every import every
 
@@ -99,11 +98,7 @@ def test_a_rest_in_single_precision_is_all_that_rounding_took_from_numpy_and_fro
         np.testing.assert_allclose(found, lost, rtol=1e-6, atol=1e-14)
 
 
-def test_a_rest_of_numbers_with_slopes_has_none_and_enclosures_have_no_rest():
-    seeded = [Dual(np.array(part), np.ones((1, 1))) for part in (0.5, 0.3, 0.4)]
-    found = rest(*seeded)
-    assert found.slopes is None
-    assert found.value == rest(0.5, 0.3, 0.4) != 0.0
+def test_enclosures_have_no_rest():
     assert rest(*(np.array([part], dtype=object) for part in (5, 3, 4))) is None
 
 
@@ -114,7 +109,6 @@ def test_absent_terms_of_a_total_are_none():
 NUMBERS = {
     "float": 0.1,
     "array": np.array([0.1, 0.2]),
-    "dual": Dual(np.array(0.1)),
     "recorded": Graph().parameter(0),
     "Fraction": Fraction(1, 10),
 }
@@ -127,12 +121,6 @@ def test_a_total_takes_six_numbers_of_any_kind_and_absent_ones_do_not_count(name
     assert type(total(None, number)) is type(number)
     with pytest.raises(ks.ParameterError, match="takes 6 numbers at most, got 7; make two of it"):
         total(*[number] * 7)
-
-
-def test_a_total_has_the_slopes_of_a_sum():
-    found = total(Dual(np.array(0.1), np.array([[1.0], [0.0]])), 0.2, -Dual(np.array(0.3), np.array([[0.0], [2.0]])))
-    assert found.value == math.fsum((0.1, 0.2, -0.3))
-    np.testing.assert_array_equal(found.slopes, [[1.0], [-2.0]])
 
 
 def test_numbers_of_any_precision_are_not_moved_off_zero():
