@@ -18,7 +18,7 @@ from ..errors import DriveError
 from ..machine.friction import PASSES
 from ..machine.loads import is_given
 from ..machine.pairs import Rolling, Sliding
-from ..mechanics.friction_laws import bends
+from ..mechanics.friction import kink_functions
 from ..mechanics.jamming import converged, require_free
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
@@ -325,7 +325,7 @@ class RubbingDriven(Driven):
         return [
             row
             for force, couple, half in self._pressed
-            for row in bends("size" if half is None else "larger", _parts(found, force, couple, half))
+            for row in kink_functions("size" if half is None else "larger", _parts(found, force, couple, half))
         ]
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..machine.pairs import Rolling
-from ..mechanics.friction_laws import rate_of
+from ..mechanics.friction import pair_rate
 from ..results.changes import sign_changes
 from ..results.turn import SAMPLES
 
@@ -49,7 +49,7 @@ class Senses:
 
         def rates(angle):
             placement = scene.unsolved(np.asarray(angle, dtype=float)).placement
-            found = (rate_of(part, name, pair, placement) for part, name, pair in moving)
+            found = (pair_rate(part, name, pair, placement) for part, name, pair in moving)
             return [1.0 if rate is None else rate for rate in found]
 
         row, angle = (part[0] for part in sign_changes(rates, period, SAMPLES))

@@ -11,8 +11,7 @@ from ..machine.loads import value_of
 from ..machine.placement import place as placed
 from ..machine.sense import sense_of
 from ..mechanics.dynamics import Dynamics
-from ..mechanics.friction import Rubbing
-from ..mechanics.friction_laws import size_of
+from ..mechanics.friction import FrictionSolver, size_of
 from ..mechanics.pushes import pushed, settled, title_of
 from ..mechanics.quantities import magnitude
 from ..numbers.lazy import cached_property
@@ -240,13 +239,13 @@ class Told(Dynamics):
             ]
 
     @cached_property
-    def rubbing(self):
+    def friction_solver(self):
         """What resolves each part, with friction or without."""
         way = sense_of(self.crank_speed, None) if self.runs and self.sense is None else self.crank_sense
         return _Telling(self.mechanism, self.friction, way, self.names)
 
 
-class _Telling(Rubbing):
+class _Telling(FrictionSolver):
     """Resolves parts, and names what acts on their links and what is found."""
 
     def __init__(self, mechanism, friction, direction, names):
@@ -267,7 +266,7 @@ class _Telling(Rubbing):
             resolved = self._named(super().__call__(part, placement, loads, along), part)
             names.reading = True
             for law, amount in self.laws:
-                size = number(product(law.factor, size_of(law.kind, law.watched(resolved))))
+                size = number(product(law.factor, size_of(law.kind, law.reaction(resolved))))
                 names.satisfies(node_of(amount), node_of(size))
         return resolved
 
@@ -277,9 +276,9 @@ class _Telling(Rubbing):
             self.names.number(wrench.moment, Symbol("M", "", name), f"moment that {words}", "N m"),
         )
 
-    def _amounts(self, system, laws, placement):
+    def _amounts(self, equations, laws, placement):
         found = []
-        for law, amount in zip(laws, super()._amounts(system, laws, placement), strict=True):
+        for law, amount in zip(laws, super()._amounts(equations, laws, placement), strict=True):
             moment = law.kind in ("length", "itself")
             symbol = Symbol("M" if moment else "F", "", f"friction_{law.name}")
             words = f"friction {'moment' if moment else 'force'} at {law.name}"

@@ -17,8 +17,7 @@ from ..machine.loads import Gravity
 from ..numbers.lazy import cached_property
 from ..numbers.planar import added, minus, moment, number, plus, product
 from . import contact, energy, springs
-from .friction import Rubbing
-from .friction_laws import larger, smaller
+from .friction import FrictionSolver, larger, smaller
 from .gaps import places
 from .motion import Motion
 from .principal_points import principal_points
@@ -50,12 +49,12 @@ class Dynamics(Motion):
         """All reactions and other forces, as the groups find them."""
         with np.errstate(divide="ignore", invalid="ignore"):
             loads, along = self.acting
-            found = self.mechanism.resolve(self.placement, loads, along, self.rubbing)
+            found = self.mechanism.resolve(self.placement, loads, along, self.friction_solver)
         if not self.mechanism.trusted:
             self._warn_of_lost_power(found.scalars["balancing_torque"])
         if self.mechanism.outgrown:  # the crank's equilibrium has reactions that grow without bound
-            rubbed = {} if self.rubbing is None else self.rubbing.found
-            found.scalars["balancing_torque"] = self._torque_with(rubbed)
+            friction = {} if self.friction_solver is None else self.friction_solver.found
+            found.scalars["balancing_torque"] = self._torque_with(friction)
         return found
 
     @property
@@ -76,59 +75,56 @@ class Dynamics(Motion):
         return getattr(group, what)(self.placement, item.free_position) if hasattr(group, what) else None
 
     @cached_property
-    def rubbing(self):
-        """What resolves parts with friction, and keeps what rubs; None without friction."""
-        if not self.friction.rubs:
-            return None
-        return Rubbing(self.mechanism, self.friction, self.crank_sense)
+    def friction_solver(self):
+        """Solver that resolves parts with friction; None without friction."""
+        return FrictionSolver(self.mechanism, self.friction, self.crank_sense) if self.friction.rubs else None
 
     @cached_property
-    def rubbed(self):
-        """Friction by joint, each a `friction.Rubbed`; nothing of joints that do not rub."""
-        return self.rubbing.found if self.rubbing is not None and self.resolved else {}
+    def friction_by_joint(self):
+        """Friction by joint, each a `friction.PairFriction`; nothing of joints without friction."""
+        return self.friction_solver.found if self.friction_solver is not None and self.resolved else {}
+
+    def _of_friction(self, name):
+        """A list of the solver, filled as the forces are resolved; empty without friction."""
+        return getattr(self.friction_solver, name) if self.friction_by_joint else []
 
     @property
     def friction_signs(self):
         """Rates and forces at whose zeros friction jumps or has a kink, each (..., N)."""
-        self.rubbed  # noqa: B018  found with the forces
-        return [self._scalar(part) for part in (*self.rubbing.turning, *self.rubbing.bending)] if self.rubbing else []
+        return [self._scalar(part) for part in (*self._of_friction("rates"), *self._of_friction("kinks"))]
 
     def friction_at(self, joint):
         """Friction at a joint on the link that moves there: moment of a pin, N m, else the force along the pair, N."""
-        return self._scalar(minus(None, self.rubbed[joint].amount) if joint in self.rubbed else None)
+        found = self.friction_by_joint.get(joint)
+        return self._scalar(found and minus(None, found.amount))
 
     def friction_loss_at(self, joint):
         """Power lost by friction at a joint, (..., N), W."""
-        return self._scalar(product(self.crank_speed, self.rubbed[joint].work) if joint in self.rubbed else None)
+        found = self.friction_by_joint.get(joint)
+        return self._scalar(found and product(self.crank_speed, found.work))
 
     @property
     def friction_loss(self):
         """Power lost by friction at all joints, (..., N), W."""
-        return self._scalar(product(self.crank_speed, self._work_of_friction))
+        return self._scalar(product(self.crank_speed, _work_of(self.friction_by_joint)))
 
     @property
     def friction_torque(self):
         """Torque on the crank that friction takes, its loss over the crank speed, (..., N), N m."""
-        return self._scalar(self._work_of_friction)
-
-    @property
-    def _work_of_friction(self):
-        return _work_of(self.rubbed)
+        return self._scalar(_work_of(self.friction_by_joint))
 
     @property
     def friction_margin(self):
         """How far friction is from jamming, 1 without friction; where it is not positive all friction is NaN.
 
-        Exact of a guide or pin that rubs alone, a bound of several joints: see `Solution.friction_margin`.
+        Exact for a guide or pin alone, a bound for several joints: see `Solution.friction_margin`.
         """
-        self.rubbed  # noqa: B018  found with the forces
-        return self._scalar(reduce(smaller, self.rubbing.margins, 1.0) if self.rubbing else 1.0)
+        return self._scalar(reduce(smaller, self._of_friction("margins"), 1.0))
 
     @property
     def friction_residual(self):
         """How much forces would change by one more pass over friction, relative to the largest of a group."""
-        self.rubbed  # noqa: B018  found with the forces
-        return self._scalar(reduce(larger, self.rubbing.residuals, 0.0) if self.rubbing else 0.0)
+        return self._scalar(reduce(larger, self._of_friction("residuals"), 0.0))
 
     def _warn_of_lost_power(self, torque):
         """Warn if a group of the user's own finds forces that do not do the work of the loads."""
@@ -176,10 +172,10 @@ class Dynamics(Motion):
 
     @property
     def _torque_by_power(self):
-        return self._torque_with(self.rubbed)
+        return self._torque_with(self.friction_by_joint)
 
-    def _torque_with(self, rubbed):
-        total = minus(reduce(plus, self.powers), _work_of(rubbed))
+    def _torque_with(self, friction):
+        total = minus(reduce(plus, self.powers), _work_of(friction))
         return minus(None, total) if total is not None else 0.0
 
     @property
@@ -317,6 +313,6 @@ class Dynamics(Motion):
         return np.where(closed.any(axis=-1), np.max(np.where(closed, size, 0.0), axis=-1), np.nan)
 
 
-def _work_of(rubbed):
-    """Loss of friction by joint per unit of crank angle, None without any."""
-    return reduce(plus, (found.work for found in rubbed.values()), None)
+def _work_of(friction):
+    """Loss of friction at all joints per unit of crank angle, N m; None without any."""
+    return reduce(plus, (found.work for found in friction.values()), None)

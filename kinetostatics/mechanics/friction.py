@@ -1,32 +1,73 @@
-"""Forces of a part whose joints rub: reactions and friction found together, to rounding.
+"""Forces of a part with friction in its joints: reactions and friction found together, to rounding.
 
-All reactions of a part are linear in the moments and forces that friction puts on its links, and friction is the
-magnitude of a reaction times a constant. A magnitude is the reaction times its own direction, so with directions known
-the equations are linear; they are solved with the directions of the reactions found before, and directions are found
-anew. That is Newton's method: each pass doubles the digits; the first takes friction from the reactions without it. Of
-a guide alone the direction is a sign, and the second pass exact: N = N0 / (1 + kappa sgn N0).
+Friction in a joint is a constant times the magnitude of a reaction. All reactions of a part are linear in the moments
+and forces that friction puts on its links. A magnitude is the reaction times its own direction, so with known
+directions the equations are linear. Each pass solves them with the directions of the reactions of the pass before: that
+is Newton's method, so each pass doubles the digits. The first pass takes friction from the reactions without friction.
+For a guide alone the direction is a sign, and the second pass is exact: N = N0 / (1 + kappa sgn N0).
 
 A magnitude does not change with its direction to first order, so derivatives take directions as given, and need the
-last pass alone. The number of passes is fixed, so that all this is arithmetic like all else of a group.
+last pass alone. The number of passes is fixed (`jamming.solve_friction` chooses it), so friction is arithmetic like
+all else of a group.
 """
 
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Any, NamedTuple
 
 from ..machine.group import FRAME, Resolved
 from ..machine.links import Wrench
-from ..machine.pairs import Rolling, Turning
-from ..numbers.elementary import sign, sqrt
-from ..numbers.nothing import NOTHING
-from ..numbers.planar import added, length, minus, plus, product, quotient, stretched, vector
-from .friction_laws import Channel, Law, bends, rate_of
-from .friction_system import System
+from ..machine.pairs import Rolling, Sliding, Turning
+from ..numbers.elementary import held, root, sign, sqrt
+from ..numbers.nothing import NOTHING, absent
+from ..numbers.planar import added, length, minus, number, plus, product, quotient, stretched, vector
+
+MIN_SQUARE = 1e-290
+"""Square of a force that is added so that a force of zero can be divided by, N2."""
+MIN_FORCE = 1e-100
+"""Force, or moment, that is added to a scale so that zero can be divided by it."""
 
 
-class Rubbed(NamedTuple):
+# Friction of one pair
+
+
+class Channel(NamedTuple):
+    """Loads on links, and pushes on sliders, of a unit of friction: of all moments on a link, or of a force."""
+
+    name: str
+    wrenches: tuple = ()
+    pushes: tuple = ()
+
+
+class FrictionLaw(NamedTuple):
+    """A friction moment or force: `factor` times the size of a reaction.
+
+    Attributes
+    ----------
+    name : str
+        Of the pair.
+    factor : number
+        With the sign of the motion.
+    reaction : function
+        Components of the reaction, a tuple, from a `Resolved`.
+    kind : str
+        Size of the reaction: "length" of a vector, "size" of a number, "larger" of the sizes of two, or the number
+        "itself".
+    effects : tuple of (Channel, int)
+        Channels by which it acts on links, each with the sign.
+    """
+
+    name: str
+    factor: Any
+    reaction: Any
+    kind: str
+    effects: tuple
+
+
+class PairFriction(NamedTuple):
     """Friction of a pair: its moment or force, positive where the pair moves positively, and the rate of that motion.
 
-    On the link it acts the other way round. `couple` is that of a roller's pin on the link, with its own rate.
+    It acts on the link with the opposite sign. `couple` is that of a roller's pin on the link, with its own rate.
     """
 
     amount: Any
@@ -36,21 +77,82 @@ class Rubbed(NamedTuple):
 
     @property
     def work(self):
-        """Loss per unit of crank angle, with the sign of the crank speed."""
+        """Loss per unit of crank angle, with the sign of the crank speed, N m."""
         return plus(product(self.amount, self.rate), product(self.couple, self.couple_rate))
 
 
+def pair_rate(part, name, pair, placement):
+    """Rate by the crank angle at which a pair of a part turns (1) or slides (m); None if it never does."""
+    if isinstance(pair, Sliding):
+        return part.sliding(name, placement).rate
+    if pair.against == pair.link:
+        return None
+    against = None if pair.against == FRAME else placement.links[pair.against].ratio
+    return minus(placement.links[pair.link].ratio, against)
+
+
+def size_of(kind, parts):
+    """Size of a reaction from its components, None if it is absent."""
+    if kind == "itself":
+        return parts[0]
+    given = [part for part in parts if part is not None]
+    if not given:
+        return None
+    if len(given) == 1:
+        return abs(given[0])
+    if kind == "length":
+        return sqrt(given[0] * given[0] + given[1] * given[1] + MIN_SQUARE)
+    return larger(abs(given[0]), abs(given[1]))
+
+
+def direction_of(law, parts):
+    """Factor of a law times the direction of its reaction, by components."""
+    if law.kind == "itself":
+        return (law.factor,)
+    if law.kind == "size" or len(parts) == 1:
+        return (None if parts[0] is None else law.factor * sign(parts[0]),)
+    first, second = parts
+    if first is None and second is None:
+        return (None, None)
+    if law.kind == "length":
+        over = 1.0 / size_of("length", parts)  # friction does not change with the direction to first order
+        return tuple(product(law.factor, None if part is None else held(over * part)) for part in parts)
+    if first is None or second is None:
+        return tuple(None if part is None else law.factor * sign(part) for part in parts)
+    ahead = 0.5 * sign(abs(first) - abs(second))
+    return law.factor * (0.5 + ahead) * sign(first), law.factor * (0.5 - ahead) * sign(second)
+
+
+def kink_functions(kind, parts):
+    """Functions that are zero where the size of a reaction has a kink; that of a vector has none unless it vanishes."""
+    given = [part for part in parts if part is not None]
+    if kind == "larger" and len(given) == 2:
+        return [given[0], given[1], abs(given[0]) - abs(given[1])]
+    return given if kind == "size" else []
+
+
+def larger(a, b):
+    return 0.5 * (a + b + abs(a - b))
+
+
+def smaller(a, b):
+    return 0.5 * (a + b - abs(a - b))
+
+
+# Friction of all pairs of a part
+
+
 @dataclass(eq=False)
-class Rubbing:
-    """Resolves parts with friction, and keeps what rubs.
+class FrictionSolver:
+    """Resolves parts with friction, and keeps the friction of each pair.
 
     Attributes
     ----------
-    found : dict of str to Rubbed
+    found : dict of str to PairFriction
     margins, residuals : list
-        Of each part: how far it is from jamming (`_margin`), and what the last pass still changed, relative.
-    turning, bending : list
-        Rates, and forces, at whose zeros friction jumps or has a kink.
+        Of each part: how far it is from jamming (`FrictionEquations`), and the relative change by the last pass.
+    rates, kinks : list
+        Rates at whose zeros friction jumps, and forces at whose zeros it has a kink.
     """
 
     mechanism: Any
@@ -59,15 +161,16 @@ class Rubbing:
     found: dict = field(default_factory=dict)
     margins: list = field(default_factory=list)
     residuals: list = field(default_factory=list)
-    turning: list = field(default_factory=list)
-    bending: list = field(default_factory=list)
+    rates: list = field(default_factory=list)
+    kinks: list = field(default_factory=list)
 
     def __post_init__(self):
         self.acting, self.senses = self.friction.acting, self.friction.senses
 
     def __call__(self, part, placement, loads, along):
+        """Reactions and other forces of a part, a `Resolved`, as `part.resolve` gives them without friction."""
         rates: dict[str, Any] = {}
-        laws: list[Law] = []
+        laws: list[FrictionLaw] = []
         for name in part.pairs:
             if name in self.acting:
                 laws += self._laws(part, name, placement, rates)
@@ -78,88 +181,88 @@ class Rubbing:
         channels = {channel.name: channel for law in laws for channel, _ in law.effects}
         inner = [channel for channel in channels.values() if _acts_on(channel, own)]
         unloaded = dict.fromkeys(own, Wrench((NOTHING, NOTHING), NOTHING))
-        columns = [part.resolve(placement, *_with(unloaded, {}, [(channel, 1.0)], own)) for channel in inner]
-        system = System(laws, [channel.name for channel in inner], free, columns)
-        amounts = self._amounts(system, laws, placement)
-        self._keep(system, laws, amounts, rates)
+        columns = [part.resolve(placement, *_with_friction(unloaded, {}, [(channel, 1.0)], own)) for channel in inner]
+        equations = FrictionEquations(laws, [channel.name for channel in inner], free, columns)
+        amounts = self._amounts(equations, laws, placement)
+        self._keep(equations, laws, amounts, rates)
         acting = [
             (channel, amount if way > 0 else -amount)
             for law, amount in zip(laws, amounts, strict=True)
             for channel, way in law.effects
         ]
-        resolved = part.resolve(placement, *_with(loads, along, acting, own))
-        self.turning += rates.values()
+        resolved = part.resolve(placement, *_with_friction(loads, along, acting, own))
+        self.rates += rates.values()
         for law in laws:
-            self.bending += bends(law.kind, law.watched(resolved))
+            self.kinks += kink_functions(law.kind, law.reaction(resolved))
         return self._completed(resolved, part, placement, acting, own)
 
-    def _amounts(self, system, laws, placement):
+    def _amounts(self, equations, laws, placement):
         """Friction of each law."""
-        return system.solved(self.friction.passes, placement.angle)
+        return equations.solve(self.friction.passes, placement.angle)
 
     def _laws(self, part, name, placement, rates):
-        """Laws of a pair; what it moves at goes into `rates`."""
+        """Laws of a pair; its rate is written into `rates`."""
         pair, friction = self.mechanism.pairs[name], self.acting[name]
         if isinstance(pair, Rolling):
-            yield from self._of_roller(name, pair, friction, placement, rates)
+            yield from self._laws_of_roller(name, pair, friction, placement, rates)
             return
-        rate = rate_of(part, name, pair, placement)
+        rate = pair_rate(part, name, pair, placement)
         if rate is None:
             return
         rates[name] = rate
-        way = self._way(name, rate)
+        way = self._sense(name, rate)
         if isinstance(pair, Turning):
             effects = [(_moment(pair.link), -1)]
             if pair.against != FRAME:
                 effects.append((_moment(pair.against), 1))
             factor = friction.mu * friction.radius * way
-            yield Law(name, factor, lambda found: vector(found.reactions[name]), "length", tuple(effects))
+            yield FrictionLaw(name, factor, lambda found: vector(found.reactions[name]), "length", tuple(effects))
         else:
             slide, half = part.sliding(name, placement), friction.half_length
 
-            def watched(found):
+            def reaction(found):
                 force = found.scalars[pair.force]
                 return (force,) if half is None else (force, quotient(found.scalars[pair.couple], half))
 
             kind = "size" if half is None else "larger"
-            yield Law(name, friction.mu * way, watched, kind, ((_force(name, pair, slide), -1),))
+            yield FrictionLaw(name, friction.mu * way, reaction, kind, ((_force(name, pair, slide), -1),))
 
-    def _way(self, name, rate=None):
+    def _sense(self, name, rate=None):
         """Sign of the motion of a pair; of a roller that of the crank."""
         if name in self.senses:
             return self.senses[name]
         return self.direction if rate is None else self.direction * sign(rate)
 
-    def _of_roller(self, name, pair, friction, placement, rates):
-        """A roller rubs on its pin with the whole of its load: cam force and the force along the profile by which the
-        cam turns it. The couple stays with the link that carries the pin.
+    def _laws_of_roller(self, name, pair, friction, placement, rates):
+        """Friction of a roller's pin under its whole load: the cam force, and the force along the profile by which the
+        cam turns the roller. The couple acts on the link that carries the pin.
         """
         first = vector(placement.joints[pair.joint].first)
         speed = length(first)
         lever = friction.mu * friction.pin_radius / friction.roller_radius
-        slope = lever / sqrt(1.0 - lever * lever) * self._way(name)
+        slope = lever / sqrt(1.0 - lever * lever) * self._sense(name)
         rates[name] = speed
         tangent = (first[0] / speed, first[1] / speed)
         force = Channel(f"force of {name}", ((pair.link, Wrench(tangent, None)),))
 
-        def watched(found):
+        def reaction(found):
             return (found.scalars[pair.force],)
 
-        yield Law(name, slope, watched, "size", ((force, -1),))
-        yield Law(name, slope * friction.roller_radius, watched, "itself", ((_moment(pair.link), -1),))
+        yield FrictionLaw(name, slope, reaction, "size", ((force, -1),))
+        yield FrictionLaw(name, slope * friction.roller_radius, reaction, "itself", ((_moment(pair.link), -1),))
 
-    def _keep(self, system, laws, amounts, rates):
+    def _keep(self, equations, laws, amounts, rates):
         for law, amount in zip(laws, amounts, strict=True):
             if law.kind == "itself":  # the roller turns the other way round on the other side of the cam
                 self.found[law.name] = self.found[law.name]._replace(couple=amount, couple_rate=1.0)
             else:
-                self.found[law.name] = Rubbed(amount, rates[law.name])
-        if system.margin is not None:
-            self.margins.append(system.margin)
-            self.residuals.append(system.residual)
+                self.found[law.name] = PairFriction(amount, rates[law.name])
+        if equations.margin is not None:
+            self.margins.append(equations.margin)
+            self.residuals.append(equations.residual)
 
     def _completed(self, resolved, part, placement, acting, own):
-        """What a part finds, with friction along guides, and with what it demands of other links."""
+        """The forces of a part with friction along guides, and with its demands on other links."""
         reactions, demands = dict(resolved.reactions), dict(resolved.demands)
         for channel, amount in acting:
             name = channel.name
@@ -190,8 +293,8 @@ def _acts_on(channel, own):
     return any(link in own for link, _ in (*channel.wrenches, *channel.pushes))
 
 
-def _with(loads, along, acting, own):
-    """Loads and pushes of a part, and what friction adds to them."""
+def _with_friction(loads, along, acting, own):
+    """Loads and pushes of a part with those of friction added."""
     loads, along = dict(loads), dict(along)
     for channel, amount in acting:
         for link, wrench in channel.wrenches:
@@ -202,3 +305,143 @@ def _with(loads, along, acting, own):
         for link, push in channel.pushes:
             along[link] = plus(along.get(link), amount * push)
     return loads, along
+
+
+# Equations of the friction laws of a part
+
+
+class FrictionEquations:
+    """Friction laws of a part together, and how their reactions depend on the channels by which friction acts.
+
+    Attributes
+    ----------
+    margin : number or None
+        How far friction is from jamming: 1 without friction, 0 where it may jam or have several solutions; None where
+        no reaction of a law depends on friction. It is the smallest pivot of one less the largest feedback from
+        friction to friction. All pivots are positive if and only if its spectral radius is less than 1. Then friction
+        is a contraction, for all loads and senses of motion, so there is one state. That is necessary as well for a
+        guide or pin alone, 1 - |kappa|, but not for several joints, whose feedbacks may be of opposite signs.
+    residual : number or None
+        Change of the reactions by one more pass, over the largest of them; known after `solve`.
+    """
+
+    def __init__(self, laws, names, free, columns):
+        self._laws = laws
+        self._free = [tuple(map(absent, law.reaction(free))) for law in laws]
+        slopes = [[tuple(map(absent, law.reaction(column))) for column in columns] for law in laws]
+        counts = [sum(any(part is not None for part in law[place]) for law in slopes) for place in range(len(names))]
+        used = [place for place in sorted(range(len(names)), key=counts.__getitem__) if counts[place]]
+        self._slopes = [[law[place] for place in used] for law in slopes]
+        places = {names[place]: number for number, place in enumerate(used)}
+        self._effects = [
+            [(places[channel.name], way) for channel, way in law.effects if channel.name in places] for law in laws
+        ]
+        self._count = len(used)
+        self.residual = None
+        self.margin = self._margin() if used else None
+
+    def solve(self, passes, angle):
+        """Friction of each law after some passes, NaN where it jams or has several solutions."""
+        reactions: list[Any] = self._free
+        amounts, unknowns = self._amounts(reactions), []
+        if self.margin is None:
+            return amounts
+        all_signs = all(law.kind != "length" for law in self._laws)  # one pass less, unless friction turns a sign
+        for step in range(passes - all_signs):
+            unknowns = self._by_directions(reactions) if step else self._totals(amounts)
+            reactions = [self._reaction(place, unknowns) for place in range(len(self._laws))]
+        amounts = self._amounts(reactions)
+        self.residual = self._change(unknowns, amounts, reactions)
+        closed = held(0.0 * root(self.margin + 0.0 * angle, 1.0))
+        return [amount + closed for amount in amounts]
+
+    def _amounts(self, reactions):
+        """Friction of each law, from its reaction."""
+        sizes = (size_of(law.kind, parts) for law, parts in zip(self._laws, reactions, strict=True))
+        return [number(product(law.factor, size)) for law, size in zip(self._laws, sizes, strict=True)]
+
+    def _totals(self, amounts):
+        """Friction by channel, from that of each law."""
+        found: list[Any] = [None] * self._count
+        for amount, effects in zip(amounts, self._effects, strict=True):
+            for place, way in effects:
+                found[place] = (plus if way > 0 else minus)(found[place], amount)
+        return found
+
+    def _reaction(self, law, unknowns):
+        """Components of the reaction of a law, for friction by channel."""
+        found = list(self._free[law])
+        for slope, unknown in zip(self._slopes[law], unknowns, strict=True):
+            found = [plus(part, product(unknown, one)) for part, one in zip(found, slope, strict=True)]
+        return tuple(found)
+
+    def _by_directions(self, reactions):
+        """Friction by channel with the directions of these reactions."""
+        directed = [direction_of(law, parts) for law, parts in zip(self._laws, reactions, strict=True)]
+        matrix: list[list] = [[None] * self._count for _ in range(self._count)]
+        right: list[Any] = [None] * self._count
+        for law, weights in enumerate(directed):
+            constant = _weighted(weights, self._free[law])
+            row = [_weighted(weights, slope) for slope in self._slopes[law]]
+            for place, way in self._effects[law]:
+                add = plus if way > 0 else minus
+                right[place] = add(right[place], constant)
+                matrix[place] = [add(one, other) for one, other in zip(matrix[place], row, strict=True)]
+        return _solution_of(matrix, right)
+
+    def _margin(self):
+        matrix: list[list] = [[None] * self._count for _ in range(self._count)]
+        for law, slopes, effects in zip(self._laws, self._slopes, self._effects, strict=True):
+            kind = "size" if law.kind == "itself" else law.kind
+            sizes = [product(abs(law.factor), size_of(kind, slope)) for slope in slopes]
+            for place, _ in effects:
+                matrix[place] = [plus(one, other) for one, other in zip(matrix[place], sizes, strict=True)]
+        return reduce(smaller, _pivots(matrix))
+
+    def _change(self, unknowns, amounts, reactions):
+        """Change of the reactions by one more pass, over the largest of them."""
+        changes = [minus(total, unknown) for total, unknown in zip(self._totals(amounts), unknowns, strict=True)]
+        moved, sizes = [], []
+        for law, slopes, parts in zip(self._laws, self._slopes, reactions, strict=True):
+            shifts = [_weighted(changes, column) for column in zip(*slopes, strict=True)]
+            kind = "size" if law.kind == "itself" else law.kind
+            moved.append(size_of(kind, shifts))
+            sizes.append(size_of(kind, parts))
+        given = [[part for part in found if part is not None] for found in (moved, sizes)]
+        change, largest = (reduce(larger, found, 0.0) for found in given)
+        return change / (largest + MIN_FORCE)
+
+
+def _weighted(weights, parts):
+    return reduce(plus, (product(weight, part) for weight, part in zip(weights, parts, strict=True)))
+
+
+def _solution_of(matrix, right):
+    """Solution x of x - matrix x = right, by elimination: near one no pivot is small."""
+    above, right, inverse = _triangle(matrix, right)
+    count, found = len(right), [None] * len(right)
+    for i in reversed(range(count)):
+        rest = reduce(plus, (product(above[i][k], found[k]) for k in range(i + 1, count)), None)
+        found[i] = product(minus(right[i], rest), inverse[i])
+    return [number(one) for one in found]
+
+
+def _pivots(matrix):
+    """Pivots of one less a matrix."""
+    above, _, _ = _triangle(matrix, [None] * len(matrix))
+    return [row[i] for i, row in enumerate(above)]
+
+
+def _triangle(matrix, right):
+    """One less a matrix, and a right-hand side, with zeros below the pivots; and the inverses of the pivots."""
+    count = len(right)
+    rows = [[minus(1.0 if i == k else None, matrix[i][k]) for k in range(count)] for i in range(count)]
+    right, inverse = list(right), []
+    for i in range(count):
+        inverse.append(1.0 / rows[i][i])
+        for k in range(i + 1, count):
+            factor = product(rows[k][i], inverse[i])
+            rest = zip(rows[k][i + 1 :], rows[i][i + 1 :], strict=True)
+            rows[k][i + 1 :] = [minus(one, product(factor, other)) for one, other in rest]
+            right[k] = minus(right[k], product(factor, right[i]))
+    return rows, right, inverse

@@ -60,7 +60,7 @@ def bends(solution, straight=STRAIGHT):
 
 def _of_friction(solution):
     """Where rates that turn friction about, and forces that bend it, change their signs; and whether it is rates."""
-    rates = len(solution.dynamics.rubbing.turning) if solution.dynamics.friction_signs else 0
+    rates = len(solution.dynamics.friction_solver.rates) if solution.dynamics.friction_signs else 0
     samples = SAMPLES * round(solution.period / TURN)
     row, angle = sign_changes(lambda angle: solution.at(angle).dynamics.friction_signs, solution.period, samples)
     return angle, row < rates

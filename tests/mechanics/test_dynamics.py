@@ -34,4 +34,4 @@ def test_without_friction_nothing_rubs():
     s = solved()
     assert s.dynamics.friction_margin == pytest.approx(1.0)
     assert np.all(s.dynamics.friction_loss == 0.0)
-    assert s.dynamics.rubbed == {}
+    assert s.dynamics.friction_by_joint == {}
