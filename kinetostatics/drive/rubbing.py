@@ -15,11 +15,10 @@ import numpy as np
 
 from ..engines.compiled import available
 from ..errors import DriveError
-from ..machine.friction import PASSES
 from ..machine.loads import is_given
 from ..machine.pairs import Rolling, Sliding
 from ..mechanics.friction import kink_functions
-from ..mechanics.jamming import converged, require_free
+from ..mechanics.jamming import require_free, solve_friction
 from ..numbers.leaves import with_fields
 from ..solution.compile import compile as compiled
 from .driven import STEP, Driven, State, apart
@@ -57,7 +56,9 @@ class RubbingDriven(Driven):
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
         super().__init__(owner, scene, motor, flywheel, engine, direction)
         self.senses = Senses.of(self.scene)
-        self._engine, self._passes = engine, PASSES[0]
+        self._engine = engine
+        rubs = tuple(with_fields(rub, sense=1.0) for rub in self.scene.friction.rubs)
+        self._solved = with_fields(self.scene, friction=with_fields(self.scene.friction, rubs=rubs))
         self._asks_for_speed = not all(map(is_given, self.scene.loads))
         self._single_by_loop = engine == "compiled" or (engine is None and available())
         self._guess: tuple[Any, ...] = (None,)
@@ -82,10 +83,8 @@ class RubbingDriven(Driven):
 
     @cached_property
     def _program(self):
-        rubs = tuple(with_fields(rub, sense=1.0) for rub in self.scene.friction.rubs)
-        friction = with_fields(self.scene.friction, rubs=rubs, passes=self._passes)
-        scene, kept = with_fields(self.scene, friction=friction), ("crank_speed", "crank_acceleration")
-        return compiled(scene, (*OWN, *self._bending), parameters=kept, engine=self._engine or "numpy")
+        kept = "crank_speed", "crank_acceleration"
+        return compiled(self._solved, (*OWN, *self._bending), parameters=kept, engine=self._engine or "numpy")
 
     @cached_property
     def _pressed(self):
@@ -204,14 +203,18 @@ class RubbingDriven(Driven):
     def _looked_at(self, angle, speed, acceleration, senses=None):
         """Values of the program of friction with as many passes as it takes, the crank turning in `direction`."""
         senses = self.senses.at(angle, self.direction) if senses is None else senses
-        found = self.rubbed(angle, speed, acceleration, senses)
-        margin, residual = (found[name] for name in CHECKS)
-        if not np.isfinite(found[FRICTION]).all():
-            require_free(self.scene.solve(np.ravel(angle), on_gap="nan"), "drive")
-        if not converged(margin, residual).all() and self._passes < PASSES[-1]:
-            self._passes = next(passes for passes in PASSES if passes > self._passes)
-            del self._program
-            return self._looked_at(angle, speed, acceleration, senses)
+        found: dict[str, Any] = {}
+
+        def evaluate(scene):
+            if scene is not self._solved:
+                self._solved = scene
+                del self._program
+            found.update(self.rubbed(angle, speed, acceleration, senses))
+            if not np.isfinite(found[FRICTION]).all():
+                require_free(self.scene.solve(np.ravel(angle), on_gap="nan"), "drive")
+            return [found[name] for name in CHECKS]
+
+        solve_friction(self._solved, evaluate)
         return found
 
     def _settled(self, angle, speed, senses, inertia, rest, acceleration=None, slope=0.0):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..machine.loads import TURN
-from ..mechanics.jamming import settled
+from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.elementary import read_only
 from ..numbers.lazy import cached_property, pyplot
@@ -128,7 +128,7 @@ class Trajectory:
     def _unchecked(self):
         """The solution without a look at its digits, which takes longer than all its torques."""
         found = self._moving.unsolved(self.crank_angle)
-        return settled(found) if self.scene.friction.acting else found
+        return solve_friction(found, checks_of) if self.scene.friction.acting else found
 
     @cached_property
     def energy_drift(self):

@@ -1,7 +1,6 @@
-"""Where friction jams, or leaves more than one state of forces: the check behind `solve`."""
+"""Friction of a scene solved, or refused: how many passes it takes, where it jams, or has several states of forces."""
 
 import warnings
-from dataclasses import replace
 
 import numpy as np
 
@@ -10,64 +9,93 @@ from ..machine.friction import PASSES
 from ..machine.sense import WANTED, stands
 from ..numbers.leaves import with_fields
 
-CONVERGED = 1e-13
-"""Change of forces by one more pass, relative, times the margin from jamming, from which on they are not found."""
+MAX_CHANGE = 1e-13
+"""Upper limit of the relative change of forces by one more pass, times the margin from jamming, for convergence."""
 
 
-def standing(solution):
-    """What is wrong with a crank that neither moves nor begins to, as a sentence, or None."""
-    return f"friction acts against motion, {WANTED}" if np.any(stands(solution)) else None
+def solve_friction(item, evaluate=None):
+    """The item with as many passes over its friction as it takes, or the most there are.
+
+    This alone chooses passes. One pass solves the friction of each part (`friction.FrictionEquations`); each doubles
+    the digits. Most scenes take the fewest; near jamming several joints take more.
+
+    Parameters
+    ----------
+    item : Scene or Solution
+        With friction.
+    evaluate : function, optional
+        ``evaluate(item) -> (margin, residual)``, each (..., N), at the crank angles that count. Without it nobody looks
+        at the friction afterwards, so the item gets more passes than most need.
+    """
+    if evaluate is None:
+        return _with_passes(item, max(item.friction.passes, PASSES[1]))
+    for passes in (item.friction.passes, *(more for more in PASSES if more > item.friction.passes)):
+        item = _with_passes(item, passes)
+        margin, residual = evaluate(item)
+        if not _is_plain(margin) or np.all(converged(margin, residual) | np.logical_not(margin > 0)):
+            break
+    return item
+
+
+def with_one_more_pass(item):
+    """The item with twice as many digits of its friction as now."""
+    return _with_passes(item, item.friction.passes + 1) if item.friction else item
+
+
+def _with_passes(item, passes):
+    if passes == item.friction.passes:
+        return item
+    return with_fields(item, friction=with_fields(item.friction, passes=passes))
+
+
+def checks_of(solution):
+    """Margin from jamming and relative change by one more pass of a solution, each (..., N)."""
+    return solution._found("friction_margin"), solution._found("friction_residual")
 
 
 def converged(margin, residual):
-    """Whether friction was found to rounding."""
+    """Whether friction is found to rounding, (..., N) of bool."""
     with np.errstate(invalid="ignore", over="ignore"):
-        return np.asarray((margin > 0) & (residual * margin <= CONVERGED))
-
-
-def settled(solution):
-    """The solution with as many passes over its friction as it takes, or the most there are."""
-    for passes in PASSES:
-        if passes > solution.friction.passes:
-            solution = replace(solution, friction=with_fields(solution.friction, passes=passes))
-        margin, residual = solution._found("friction_margin"), solution._found("friction_residual")
-        if not _is_plain(margin) or np.all(converged(margin, residual) | ~(margin > 0)):
-            break
-    return solution
+        return np.asarray((margin > 0) & (residual * margin <= MAX_CHANGE))
 
 
 def _is_plain(values):
-    return isinstance(values, np.ndarray | np.floating) and np.issubdtype(values.dtype, np.float64)
+    return isinstance(values, float) or (isinstance(values, np.ndarray) and values.dtype == np.float64)
+
+
+def problem_at_rest(solution):
+    """Problem of friction on a crank that neither moves nor begins to, as a sentence, or None."""
+    return f"friction acts against motion, {WANTED}" if np.any(stands(solution)) else None
 
 
 def check(solution, on_gap):
     """Raise `JammingError` where friction has no state, or several; warn where it was not found to rounding."""
-    margin, residual = solution._found("friction_margin"), solution._found("friction_residual")
+    margin, residual = checks_of(solution)
     if not _is_plain(margin):
         return
     with np.errstate(invalid="ignore"):
         jams = margin <= 0
     if jams.any() and on_gap == "raise":
         raise _error(solution, margin, jams)
-    warn(solution, margin, residual, stacklevel=6)
+    warn_if_not_converged(solution, margin, residual, stacklevel=6)
 
 
 def require_free(solution, owner):
     """Raise `JammingError` for a result over the turn if friction jams at the solution's crank angles."""
-    if where(solution).size:
-        margin = solution._found("friction_margin")
+    if jammed_angles(solution).size:
+        margin, _ = checks_of(solution)
         raise _error(solution, margin, margin <= 0, f"{owner}: ", "")
 
 
-def where(solution):
-    """Crank angles of a solution of one design at which friction jams."""
+def jammed_angles(solution):
+    """Crank angles of a solution of one design at which friction jams, rad."""
     if not solution.friction.acting:
         return np.empty(0)
     with np.errstate(invalid="ignore"):
         return np.asarray(solution.crank_angle)[solution._found("friction_margin") <= 0]
 
 
-def warn(item, margin, residual, stacklevel):
+def warn_if_not_converged(item, margin, residual, stacklevel):
     """Warn where friction of a solution, or of a program's state, was not found to rounding."""
     with np.errstate(invalid="ignore"):
         lost = (margin > 0) & ~converged(margin, residual)
@@ -83,7 +111,7 @@ def warn(item, margin, residual, stacklevel):
 
 
 def _error(solution, margin, jams, owner="", other=', or pass on_gap="nan" to get NaN there and the rest exact'):
-    """What is wrong where friction jams, for the owner of a call."""
+    """Error of a solution that jams, for the owner of a call."""
     angle = np.broadcast_to(solution.crank_angle, margin.shape)[jams]
     return JammingError(
         f"{owner}{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, "

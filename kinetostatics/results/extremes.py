@@ -157,7 +157,7 @@ def warning(solution, several):
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
-    jams = jamming.where(solution.sampled.at)
+    jams = jamming.jammed_angles(solution.sampled.at)
     if jams.size:
         ends = f"{_degrees(jams[:1])} ... {_degrees(jams[-1:])}"
         sentences.append(f"friction jams between {ends} deg (solution.friction_margin), no value counts there")

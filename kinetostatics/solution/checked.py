@@ -10,8 +10,8 @@ def checked(solution, on_gap="raise"):
     """The solution, its friction found, if nothing stands against it; `on_gap` as for `solve`."""
     (solution.check if on_gap == "raise" else solution.warn)()
     if solution.friction.acting:
-        checks.require("solve", jamming.standing(solution))
-        solution = jamming.settled(solution)
+        checks.require("solve", jamming.problem_at_rest(solution))
+        solution = jamming.solve_friction(solution, jamming.checks_of)
         jamming.check(solution, on_gap)
     if not solution.loads_are_given:
         require_pure(solution)

@@ -120,4 +120,4 @@ class Energies:
         """Whether friction and reactions were found together to rounding, (..., N) of bool; so they are without."""
         if not self.friction.acting:
             return np.broadcast_to(self.closed, self.shape)
-        return jamming.converged(self._found("friction_margin"), self._found("friction_residual"))
+        return jamming.converged(*jamming.checks_of(self))

@@ -7,10 +7,10 @@ import numpy as np
 
 from ..engines import programs
 from ..errors import NotGivenError
-from ..machine.friction import PASSES
 from ..machine.loads import STRAIGHT
+from ..mechanics.jamming import solve_friction
 from ..mechanics.quantities import quantity, sizes
-from ..numbers.leaves import Leaves, put_together, with_fields
+from ..numbers.leaves import Leaves, put_together
 from ..numbers.structures import taken_apart
 from ..results.bends import bends
 from ..results.pieces import Pieces
@@ -25,8 +25,8 @@ VALUES = 100_000
 
 def solution_of(scene, angles):
     """Solution at so many crank angles over the period, or at these."""
-    if scene.friction.acting:  # nobody looks at each design's friction, so it gets more passes than most need
-        scene = with_fields(scene, friction=with_fields(scene.friction, passes=PASSES[1]))
+    if scene.friction.acting:
+        scene = solve_friction(scene)
     return unchecked(scene, scene.turn(angles), "numpy")
 
 

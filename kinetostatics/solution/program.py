@@ -10,14 +10,13 @@ import numpy as np
 from ..engines import programs
 from ..engines.trace import needed
 from ..errors import ParameterError
-from ..machine.friction import PASSES
 from ..machine.loads import by_sense, may_refuse, refusals
 from ..mechanics import jamming
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.quantities import CHECKS
 from ..numbers import checks
 from ..numbers.elementary import read_only
-from ..numbers.leaves import made, with_fields
+from ..numbers.leaves import made
 from .angles import crank_angles, hint_at, problems
 from .parameters import DRIVE, fixed, is_judged_together, is_zero, keeping, leaves_of, require_free, shaping, unknown
 from .scene import unchecked
@@ -232,9 +231,9 @@ class Program:
 
     def _look_at_friction(self, state, leaves, values):
         """Refuse a crank at rest, and warn where friction takes more passes than the scene's own numbers do."""
-        checks.require("program", jamming.standing(self.scene.varied(values)))
+        checks.require("program", jamming.problem_at_rest(self.scene.varied(values)))
         margin, residual = self._friction.run(state, leaves, self._compiled)
-        jamming.warn(state, np.asarray(margin), np.asarray(residual), stacklevel=4)
+        jamming.warn_if_not_converged(state, np.asarray(margin), np.asarray(residual), stacklevel=4)
 
     @property
     def unrecorded(self):
@@ -332,10 +331,10 @@ def _of_designs(rule):
 def _with_enough_passes(scene):
     """The scene with as many passes over its friction as it takes around the turn."""
     if any(np.ndim(leaf) and np.shape(leaf)[-1] > 1 for leaf in (scene.crank_speed, scene.crank_acceleration)):
-        return with_fields(scene, friction=with_fields(scene.friction, passes=PASSES[1]))
+        return jamming.solve_friction(scene)
+    angles = np.linspace(0.0, scene.period, FEW, endpoint=False)
     with np.errstate(all="ignore"):
-        found = jamming.settled(unchecked(scene, np.linspace(0.0, scene.period, FEW, endpoint=False), "numpy"))
-    return with_fields(scene, friction=found.friction)
+        return jamming.solve_friction(scene, lambda scene: jamming.checks_of(unchecked(scene, angles, "numpy")))
 
 
 def _shape(angle, leaves):

@@ -34,7 +34,7 @@ def test_it_is_left_open_where_asked():
 @pytest.mark.parametrize(("speed", "acceleration", "stands"), [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
 def test_a_crank_that_stands_has_no_direction_of_friction(speed, acceleration, stands):
     s = ks.solve(PUMP, TURN, crank_speed=speed, crank_acceleration=acceleration)
-    assert bool(jamming.standing(s)) == stands
+    assert bool(jamming.problem_at_rest(s)) == stands
 
 
 def test_friction_is_found_where_one_more_pass_changes_no_digit():

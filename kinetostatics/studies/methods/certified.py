@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import KinetostaticsError
+from ...mechanics.jamming import with_one_more_pass
 from ...mechanics.quantities import scale
-from ...numbers.leaves import with_fields
 from .enclosures import Enclosure, enclosure, library, magnitude, place_of
 from .independent import independent, working_digits
 
@@ -52,7 +52,7 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
     >>> found.agreement < 1e-30
     True
     """
-    found = enclosure(_rubbing_on(solution), quantity, digits)
+    found = enclosure(with_one_more_pass(solution), quantity, digits)
     mp = library("mpmath").mp
     count = len(found.middle[0])
     indices = np.unique(np.arange(checks) * count // checks)
@@ -66,13 +66,6 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
                 raise KinetostaticsError(_disagreement(mp, solution, quantity, index, own, other, gap, digits))
             agreement = max(agreement, float(gap))
     return replace(found, agreement=agreement)
-
-
-def _rubbing_on(solution):
-    """The solution with its friction found anew once more, which doubles the digits, than doubles need."""
-    if not solution.friction:
-        return solution
-    return replace(solution, friction=with_fields(solution.friction, passes=solution.friction.passes + 1))
 
 
 def relative_errors(found, reference: Enclosure):
