@@ -5,7 +5,6 @@ A program runs in three ways, all from one recording: on plain numbers, on array
 
 import math
 import threading
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -315,20 +314,6 @@ def of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Lea
     if isinstance(found, NotGivenError):
         raise found
     return found, leaves
-
-
-def numbered(state):
-    """The scene of a `Dynamics` with the place of each number among its leaves, a `Numbered`, instead of it."""
-    parts: list[Any] = list(state.kind.numbered)
-    mechanism, speed, acceleration, loads, friction, sense = parts + [None, None][len(parts) - 4 :]
-    return SimpleNamespace(
-        mechanism=mechanism,
-        crank_speed=speed,
-        crank_acceleration=acceleration,
-        loads=loads,
-        friction=friction,
-        sense=sense,
-    )
 
 
 def _recorded(state, structure, quantities, sizes):

@@ -14,7 +14,6 @@ import numpy as np
 from ..errors import NotGivenError
 from ..machine import loads
 from ..machine.crank import ray
-from ..machine.friction import NONE
 from ..machine.loads import Load, ProcessForce, table_errors
 from ..mechanics.dynamics import Dynamics
 from ..mechanics.pushes import given, moving, title_of
@@ -177,8 +176,9 @@ class Recorder:
         self.tables: list[Table] = []
         self.inputs: dict[Node, Callable[[Any], Error]] = {}
         self._rows = self._arrays = 0
-        parts: list[Any] = list(put_together(structure, self._parameter, self._array, lambda: None))
-        mechanism, speed, acceleration, items, friction, sense = parts + [NONE, None][len(parts) - 4 :]
+        mechanism, speed, acceleration, items, friction, sense = put_together(
+            structure, self._parameter, self._array, lambda: None
+        )
         self.angle = self._nodes(self.graph.angle())
         groups = [self._with_cam(group, place) for place, group in enumerate(mechanism.groups)]
         object.__setattr__(mechanism, "groups", tuple(groups))

@@ -39,7 +39,7 @@ def refusals(solution):
 
 
 def _touching(kind):
-    mechanism, *_ = kind.numbered
+    mechanism = kind.numbered.mechanism
     return any(group.contacts for group in mechanism.groups)
 
 

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,9 +24,19 @@ from .gaps import gap, groups_behind
 from .quantities import of_mechanism
 
 
+class SceneParts(NamedTuple):
+    """What a scene is made of, in the order of its structure, which leaves out those at the end that are absent."""
+
+    mechanism: Any
+    crank_speed: Any
+    crank_acceleration: Any
+    loads: Any
+    friction: Any = NONE
+    sense: Any = None
+
+
 def _given(kind):
-    _, _, _, loads, *_ = kind.numbered
-    return all(map(is_given, loads))
+    return all(map(is_given, kind.numbered.loads))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +75,7 @@ class Motion:
             scene = (*scene, self.friction, self.sense)
         elif self.friction.rubs:
             scene = (*scene, self.friction)
-        return taken_apart(scene, leaves), leaves
+        return (SceneParts, *taken_apart(scene, leaves)[1:]), leaves
 
     @cached_property
     def kind(self):

@@ -269,17 +269,17 @@ def _of_forces(scene, size_of, links, largest_pushes, reactions):
 def _lengths(structure):
     """Places of the lengths among the leaves of a structure, and its loads with a number for each leaf."""
     places = itertools.count(1.0)  # from 1 on, for a zero is absent
-    mechanism, _, _, loads, *_ = put_together(structure, places.__next__, lambda: None, lambda: None)
+    scene = put_together(structure, places.__next__, lambda: None, lambda: None)
     found: list[float] = []
     special = {
         Link: lambda link: mapped(link.centre, found.append),
         Guide: lambda guide: mapped(guide.guide_offset, found.append),
     }
-    mapped(mechanism, found.append, special)
-    for item in loads:
+    mapped(scene.mechanism, found.append, special)
+    for item in scene.loads:
         for name in item.LENGTHS if isinstance(item, Load) else ():
             mapped(getattr(item, name), found.append)
-    return [int(place) - 1 for place in found], loads
+    return [int(place) - 1 for place in found], scene.loads
 
 
 def _recorded(kind):

@@ -16,6 +16,7 @@ from ..engines.told import result, told
 from ..errors import HintWarning, NotGivenError, ParameterError, QuantityError
 from ..machine import hints
 from ..mechanics import quantities
+from ..mechanics.motion import SceneParts
 from ..numbers import checks
 from ..numbers.leaves import mapped
 from ..results.rounding import without_rounding
@@ -103,8 +104,7 @@ def _alone(solution, angle, design):
         fits = index is not None and np.shape(leaf)[-1] == solution.shape[-1]
         return float(np.broadcast_to(leaf, solution.shape)[place][index]) if fits else leaf
 
-    given = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction", "sense")
-    parts = {name: mapped(getattr(solution, name), number) for name in given}
+    parts = {name: mapped(getattr(solution, name), number) for name in SceneParts._fields}
     return checked(replace(solution, **parts, crank_angle=np.array(asked), engine=NUMPY))
 
 

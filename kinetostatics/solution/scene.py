@@ -16,6 +16,7 @@ from ..machine import hints
 from ..machine.loads import KINDS, MOST_TURNS, TURN, Load, period_of, value_of
 from ..machine.mechanism import Mechanism
 from ..mechanics.dynamics import Dynamics
+from ..mechanics.motion import SceneParts
 from ..numbers import checks, paths
 from ..numbers.elementary import looked_at
 from ..numbers.leaves import made
@@ -26,7 +27,6 @@ from .drive_and_loads import in_a_line
 from .parameters import DRIVE, SENSE, Parameters, unknown
 from .solution import Solution
 
-PARTS = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction", "sense")
 GAPS, ENGINES = ("raise", "nan"), ("numpy", "compiled")
 WORTH_COMPILING = 1_000_000
 """Crank angles, all designs together, from which a compiled loop is worth its preparation."""
@@ -105,7 +105,7 @@ class Scene(Parameters):
         100.0
         """
         checks.require("scene", checks.solution("solution", solution))
-        return cls(**{name: getattr(solution, name) for name in PARTS})
+        return cls(**{name: getattr(solution, name) for name in SceneParts._fields})
 
     @property
     def period(self):
@@ -162,7 +162,7 @@ class Scene(Parameters):
     @property
     def _parts(self):
         """All fields by name."""
-        return {name: getattr(self, name) for name in PARTS}
+        return {name: getattr(self, name) for name in SceneParts._fields}
 
     def turn(self, angles):
         """Crank angles of so many over one period from 0, its end excluded; what is no whole number stays as it is."""
@@ -297,17 +297,8 @@ def odd(solution):
 
 def unchecked(scene, crank_angle, engine=None):
     """What `solve` returns, before a look at slips, at where the mechanism closes and at where digits are lost."""
-    angle, mechanism = crank_angles(crank_angle), scene.mechanism
-    solution = made(
-        Solution,
-        mechanism=mechanism,
-        crank_angle=angle,
-        crank_speed=scene.crank_speed,
-        crank_acceleration=scene.crank_acceleration,
-        loads=scene.loads,
-        friction=scene.friction,
-        sense=scene.sense,
-    )
+    angle = crank_angles(crank_angle)
+    solution = made(Solution, crank_angle=angle, **scene._parts)
     wrong = None if 0.0 < solution.farthest < math.inf else problems(angle)
     checks.require("solve", wrong, None if engine is None else checks.choice("engine", engine, ENGINES))
     if angle.dtype == "float32":

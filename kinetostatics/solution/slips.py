@@ -10,8 +10,6 @@ from ..numbers.kinds import Numbered
 from ..numbers.leaves import made, put_together
 from .parameters import Parameters
 
-FIELDS = ("mechanism", "crank_speed", "crank_acceleration", "loads", "friction", "sense")
-
 
 class Judged(NamedTuple):
     """A number of a kind of scenes of which something is usual: its path, its place among the leaves, and that.
@@ -51,4 +49,4 @@ def of_scene(solution):
 
 
 def _scene(parts):
-    return made(Parameters, **dict(zip(FIELDS, (*parts, None, None)[: len(FIELDS)], strict=True)))
+    return made(Parameters, **parts._asdict())

@@ -69,7 +69,7 @@ def test_derivatives_equal_central_differences_of_the_kernels_on_enclosures(name
             numbers = [flint.arb(float(number)) for number in leaves.numbers]
             numbers[place] *= 1 + share
             given = iter(numbers)
-            mechanism, speed, acceleration, loads = put_together(structure, lambda: next(given), None, None)
+            mechanism, speed, acceleration, loads, *_ = put_together(structure, lambda: next(given), None, None)
             moved = Dynamics(mechanism, angle, speed, acceleration, loads)
             return {name: np.array([list(part) for part in components(moved, name)]) for name in quantities}
 

@@ -213,7 +213,7 @@ def test_derivatives_by_every_number_equal_differences_with_60_digits(interprete
 
     def beside(place, way):
         numbers = iter([flint.arb(value) + way * step * (k == place) for k, value in enumerate(leaves.numbers)])
-        mechanism, speed, acceleration, loads = put_together(structure, lambda: next(numbers), None, None)
+        mechanism, speed, acceleration, loads, *_ = put_together(structure, lambda: next(numbers), None, None)
         moved = Dynamics(mechanism, angles, speed, acceleration, loads)
         return [part for quantity in names for part in components(moved, quantity)]
 
