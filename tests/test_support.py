@@ -1,10 +1,21 @@
-"""What tests lean on: many inputs in one test are each tried, named and timed."""
+"""What tests share: the reference that imports nothing of the package, and many inputs in one test."""
 
+import ast
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
 from support.every import every, limited
+
+
+def test_the_reference_imports_only_mpmath():
+    """So that it shares nothing with the package, nor with what the other helpers of the tests take from it."""
+    tree = ast.parse((Path(__file__).parent / "support" / "multibody.py").read_text(encoding="utf-8"))
+    modules = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+    modules |= {"." * node.level + (node.module or "") for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert {name for name in modules if name.partition(".")[0] not in sys.stdlib_module_names} == {"mpmath"}
 
 
 def failure(test, **fixtures):

@@ -8,10 +8,9 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.design.grashof import grashof
-from support.four_bars import TURN, turning
-from support.four_bars import of_lengths as four_bar
-from support.four_bars import swept as solved
-from support.machines import largest, planar
+from support.machines import TURN, largest, planar, turning
+from support.machines import four_bar_of as four_bar
+from support.machines import swept as solved
 from support.strategies import number, reproducible
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")

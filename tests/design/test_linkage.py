@@ -15,10 +15,10 @@ from kinetostatics.design.linkage import (
     transmission_angle,
 )
 from kinetostatics.studies.methods.papers import chain_unit_by_atan_acos
-from support.four_bars import TURN, FourBar, moved, turning
-from support.four_bars import of_lengths as four_bar
-from support.four_bars import swept as solved
-from support.machines import largest, planar
+from support import multibody
+from support.machines import TURN, FourBar, largest, planar, turning
+from support.machines import four_bar_of as four_bar
+from support.machines import swept as solved
 from support.strategies import four_bars, number, reproducible
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
@@ -112,8 +112,11 @@ def study(lengths, angle):
     gamma, psi, *rates = chain_unit_by_atan_acos(r, c, h, x, angle)
     s = ks.solve(chain_unit(r, c, h, pivot_x=x), chain_unit_angle(angle), crank_speed=1.0, on_gap="nan")
     links = [s.placement.links[name] for name in ("coupler", "rocker")]
-    exact = [moved(FourBar(r, c, h, complex(x, -h)), one) for one in chain_unit_angle(angle)]
-    turned = np.array([[pose[name][1] for pose in exact] for name in ("coupler", "rocker")], dtype=float)
+    system = multibody.four_bar(FourBar(r, c, h, complex(x, -h), speed=1.0, acceleration=0.0))
+    exact = [system.motion(one) for one in chain_unit_angle(angle)]
+    names = [("coupler", "angle"), ("rocker", "angle")]
+    turned = [[(found["position"][name], found["velocity"][name]) for found in exact] for name in names]
+    turned = np.array(turned, dtype=float)
     return {
         "study": (np.array([np.exp(-1j * gamma), 1j * np.exp(-1j * psi)]), np.array(rates)),
         "library": (np.array([planar(link.direction) for link in links]), np.array([link.ratio for link in links])),

@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import kinetostatics as ks
-from support.four_bars import turning
-from support.machines import ANGLES, assert_close, largest, planar
+from support.machines import ANGLES, assert_close, largest, planar, turning
 from support.scenes import six_bar
 from support.strategies import body, either_sign, number, reproducible
 

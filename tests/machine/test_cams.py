@@ -7,16 +7,15 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from support.machines import ANGLES, assert_close, largest, planar
-from support.newton_euler import (
-    DIGITS,
+from support.multibody import (
+    FINE_DIGITS,
     Body,
-    Scene,
+    CrankSlider,
     critical_cosine,
     critical_length,
     path,
     pin_by_cosine_law,
     pin_on_circle,
-    solve,
 )
 
 ROUNDING = 4e-15
@@ -61,7 +60,7 @@ def test_cosine_law_derivatives_at_and_near_the_singular_angle(amplitude, mean):
 @pytest.mark.parametrize(("amplitude", "mean"), LAWS)
 def test_cosine_law_coupler_length_and_singular_angle(amplitude, mean):
     cam = ks.cams.CosineLaw(amplitude, mean)
-    with mp.workdps(DIGITS):
+    with mp.workdps(FINE_DIGITS):
         length, cosine = critical_length(amplitude, mean), critical_cosine(amplitude, mean)
         assert abs(cam.coupler_length / length - 1) < 4e-16
         assert abs(cam.singular_angle - mp.acos(cosine)) < 4e-16
@@ -87,10 +86,10 @@ def test_torque_and_cam_force_of_the_sawframe_at_and_near_the_singular_angle():
     """Against the Newton-Euler reference with 80 digits of motion."""
     amplitude, mean, speed = 0.3, 2.0, 33.5
     cam = ks.cams.CosineLaw(amplitude, mean)
-    with mp.workdps(DIGITS):
+    with mp.workdps(FINE_DIGITS):
         length = critical_length(amplitude, mean)
     stiffness = 600 * speed**2
-    scene = Scene(
+    scene = CrankSlider(
         pin=pin_by_cosine_law(amplitude, mean),
         has_cam=True,
         coupler_length=length,
@@ -102,7 +101,7 @@ def test_torque_and_cam_force_of_the_sawframe_at_and_near_the_singular_angle():
     mechanism = ks.cam_crank_slider(cam, cam.coupler_length, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Link(600.0))
     angles = near_singular(amplitude, mean)
     s = ks.solve(mechanism, angles, crank_speed=speed, loads=[ks.Gravity(9.81, -1.2), ks.Spring(stiffness, mean)])
-    expected = [solve(scene, angle) for angle in angles]
+    expected = [scene.solve(angle) for angle in angles]
     for name in ("balancing_torque", "cam_force", "slot_force"):
         assert_close(getattr(s, name), [found[name] for found in expected], tolerance=1e-12)
     assert_close(planar(s.reaction("O")), [found["O"] for found in expected], tolerance=1e-12)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support import multipliers
 from support.rubbing_machines import JOINTS, KINDS, RUBBED, Drawn, differences
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
@@ -29,11 +28,6 @@ def test_all_forces_are_those_of_newtons_equations_of_all_bodies(kind, seed):
 @pytest.mark.parametrize("kind", KINDS)
 def test_so_they_are_with_four_times_the_friction(kind):
     assert differences(kind, 100, 4.0)[0] < 1e-13
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_all_forces_are_those_of_virtual_power_and_multipliers(kind):
-    assert differences(kind, 200, solver=multipliers.solved)[0] < 1e-13
 
 
 def _from_rest(drawn):

@@ -9,8 +9,7 @@ import kinetostatics as ks
 from kinetostatics.mechanics import sensitivity
 from kinetostatics.mechanics.assembly import HALF, ill_conditioned, surely_well
 from kinetostatics.numbers.elementary import UNIT
-from support.four_bars import turning
-from support.machines import ANGLES, planar
+from support.machines import ANGLES, planar, turning
 
 TURN = np.linspace(0.0, 2 * np.pi, 1441)
 BODY = ks.Link(3.0, 0.5, 2.0)

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import kinetostatics as ks
-from support.newton_euler import solve
 from support.strategies import cases, columns, errors, planar, reproducible
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")]
@@ -46,7 +45,7 @@ def force_errors(scene, solution, reference):
 
 def exact(scene, solution):
     """The reference at the crank angles of a solution."""
-    return [solve(scene, angle) for angle in solution.crank_angle]
+    return [scene.solve(angle) for angle in solution.crank_angle]
 
 
 def wrong(errors):

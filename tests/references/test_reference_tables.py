@@ -15,7 +15,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 import kinetostatics as ks
 from support import DATA
-from support.newton_euler import Body, Scene, critical_length, pin_by_cosine_law, pin_on_circle, pin_on_crank, solve
+from support.multibody import Body, CrankSlider, critical_length, pin_by_cosine_law, pin_on_circle, pin_on_crank
 
 TABLES = {"plain": "sawframe_plain", "circle": "sawframe_cam_circle", "cosine": "sawframe_cam_cosine"}
 CLOSE = {"plain": 1e-14, "circle": 2e-13, "cosine": 2e-13}
@@ -44,7 +44,7 @@ def scene(variant):
         "circle": (pin_on_circle(CRANK, (-0.0219, 0.0)), 2.0219),
         "cosine": (pin_by_cosine_law(CRANK, MEAN), critical_length(CRANK, MEAN)),
     }[variant]
-    return Scene(
+    return CrankSlider(
         pin=pin,
         has_cam=variant != "plain",
         coupler_length=length,
@@ -124,7 +124,7 @@ def test_value_at_an_angle_does_not_depend_on_its_neighbours(variant, step):
 
 @cache
 def reference(variant, angle):
-    return solve(scene(variant), angle)
+    return scene(variant).solve(angle)
 
 
 def extreme(variant, function, row):

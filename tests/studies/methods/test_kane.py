@@ -12,8 +12,7 @@ from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.methods import kane, kane_equations, papers
 from kinetostatics.studies.methods.method import NotGivenError
 from support import followers
-from support.four_bars import FourBar
-from support.machines import ANGLES, CLOSE, Machine, largest
+from support.machines import ANGLES, CLOSE, FourBar, Machine, largest
 
 pytestmark = pytest.mark.slow
 
