@@ -20,7 +20,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.engines import compiled, loops, programs
 from kinetostatics.studies.methods import kane
-from support.shipped import shipped
+from support.case_files import shipped
 from support.speed import (
     CENTRE,
     COUPLER,

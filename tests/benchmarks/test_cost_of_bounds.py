@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinetostatics.engines import compiled, loops, programs
-from support.shipped import shipped
+from support.case_files import shipped
 from support.speed import seconds
 
 CASES = [

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file, problems
-from support.plain_case import PLAIN
+from support.case_files import PLAIN, case_file, problems
 
 
 def test_shipped_sawframe_equals_the_mechanism_built_in_python():

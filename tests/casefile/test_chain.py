@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file, problems
-from support.chain_cases import (
+from support.case_chains import (
+    BY_TRAVEL,
     EXAMPLES,
     IN_PYTHON,
+    LOADS,
+    PUMP,
+    agree,
     rpm,
 )
-from support.load_cases import BY_TRAVEL, LOADS, PUMP, agree
+from support.case_files import case_file, problems
 
 
 @pytest.mark.parametrize("name", IN_PYTHON)

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.designs import write_found
-from support.designs import FRONT, STIFFER, saw_with
+from support.case_files import FRONT, STIFFER, saw_with
 
 
 def test_a_design_of_a_file_finds_what_python_finds(tmp_path):

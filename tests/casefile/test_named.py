@@ -7,8 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.named import NoSuchNameError
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 CASE = shipped("sawframe_2r63")
 

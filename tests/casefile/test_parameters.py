@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.chain_cases import EXAMPLES, IN_PYTHON
+from support.case_chains import EXAMPLES, IN_PYTHON
 
 
 @pytest.mark.parametrize("name", IN_PYTHON)

@@ -7,9 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
-from support.case_files import problems
+from support.case_files import PLAIN, problems
 from support.every import every
-from support.plain_case import PLAIN
 
 
 def test_a_path_and_a_shipped_name_read_the_same_case(tmp_path):

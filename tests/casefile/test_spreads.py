@@ -5,8 +5,7 @@ import warnings
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file
-from support.plain_case import PLAIN
+from support.case_files import PLAIN, case_file
 
 DOUBTFUL = [
     ('"slider.mass" = "normal 600000 kg +- 5 kg"', True),

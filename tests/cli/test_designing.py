@@ -6,8 +6,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
-from support.designs import FRONT, STIFFER, saw_with
-from support.held import held
+from support.case_files import FRONT, STIFFER, saw_with
+from support.commands import held
 
 pytestmark = pytest.mark.slow
 

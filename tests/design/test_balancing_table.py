@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.design.balancing_table import balancing_table
-from support.shipped import shipped
+from support.case_files import shipped
 
 CASE = shipped("mower_drive")
 NAME = next(name for name, variant in CASE.variants.items() if variant.balanced is not None)

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 import kinetostatics as ks
 from kinetostatics.casefile.designs import CAM
 from kinetostatics.design.cam_start import Options
-from support.shipped import shipped
+from support.case_files import shipped
 
 SAW, MOWER = shipped("sawframe_2r63"), shipped("mower_drive")
 RATIO = "ratio mean_absolute balancing_torque"

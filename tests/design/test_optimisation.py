@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from support.case_files import shipped
 from support.improved_saws import CIRCLE, RATIO, SAW, SPRING, TORQUE, bound
-from support.shipped import shipped
 
 
 def test_one_number_is_best_where_a_search_by_values_alone_finds_it():

@@ -8,9 +8,8 @@ from kinetostatics.design import measures
 from kinetostatics.design.demands import wanted
 from kinetostatics.design.problem import Problem, true_value
 from kinetostatics.results.reductions import parsed
-from support.case_files import case_file
+from support.case_files import PLAIN, case_file
 from support.improved_saws import CIRCLE
-from support.plain_case import PLAIN
 
 
 def test_derivatives_of_a_design_are_those_of_small_changes():

@@ -8,7 +8,7 @@ import kinetostatics as ks
 from kinetostatics.design.demands import wanted
 from kinetostatics.design.problem import Problem
 from kinetostatics.design.robust import Sampled
-from support.shipped import shipped
+from support.case_files import shipped
 
 pytestmark = pytest.mark.slow
 

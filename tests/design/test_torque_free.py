@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from support.shipped import shipped
+from support.case_files import shipped
 
 pytestmark = pytest.mark.slow
 

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from kinetostatics.design.cam_start import Options, begun
 from kinetostatics.design.problem import Problem
 from kinetostatics.design.torque_squares import least_squares, wave
-from support.shipped import shipped
+from support.case_files import shipped
 
 pytestmark = pytest.mark.slow
 

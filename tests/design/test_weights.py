@@ -3,8 +3,8 @@
 import pytest
 
 import kinetostatics as ks
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 pytestmark = pytest.mark.slow
 

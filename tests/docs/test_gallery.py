@@ -4,7 +4,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from support import drawn_pages as pages
+from support import pages
 
 pytestmark = pages.needed
 gallery, pictures = pages.script("draw_gallery"), pages.script("pictures")

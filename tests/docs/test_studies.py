@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from support import drawn_pages as pages
+from support import pages
 
 pytestmark = pages.needed
 FIGURES = {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support import drawn_pages as pages
+from support import pages
 
 pytestmark = pages.needed
 theory = pages.script("draw_theory")

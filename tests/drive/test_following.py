@@ -7,7 +7,7 @@ from kinetostatics.drive.following import from_above
 from kinetostatics.drive.newton import settled
 from kinetostatics.drive.operating import operating_speed
 from kinetostatics.drive.resolution import resolved
-from support.driven_machines import DISC, PUMP, driven
+from support.drives import DISC, PUMP, driven
 
 
 def test_from_above_the_running_is_met_that_newton_settles_on():

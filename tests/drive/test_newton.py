@@ -7,7 +7,7 @@ import kinetostatics as ks
 from kinetostatics.drive.newton import looked_at, settled
 from kinetostatics.drive.operating import operating_speed
 from kinetostatics.drive.resolution import resolved
-from support.driven_machines import PUMP, driven
+from support.drives import PUMP, driven
 
 
 def test_running_settles_where_a_turn_gives_back_the_energy_it_began_with():

@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from support import DATA
-from support.driven_saws import CUT, FAN, MOTOR, SAW, TURN, saw
+from support.drives import CUT, FAN, MOTOR, SAW, TURN, saw
 
 CAM = ks.cams.CosineLaw(0.3, 2.0)
 DAMPER = ks.PointDamper(150.0, between=("A", (0.5, 1.0)))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.driven_saws import CUT, FAN, MOTOR, TURN, saw
+from support.drives import CUT, FAN, MOTOR, TURN, saw
 
 
 def test_rotor_loss_is_slip_times_air_gap_power():

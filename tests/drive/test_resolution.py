@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.drive.pieces import TAIL
 from kinetostatics.drive.resolution import require_inertia, resolved
-from support.driven_machines import DISC, PUMP, driven
+from support.drives import DISC, PUMP, driven
 
 JUMP = 2.0
 

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.rubbing import driven_by
-from support.driven_rubbing import MOTOR, PUMP, REFERENCE, RUBBING, SAW, SMALL
+from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, MOTOR, RUBBING, SAW, SMALL
 
 CAM = ks.Scene(
     ks.cam_crank_slider(ks.cams.Circle(0.1, (0.02, 0.0)), 0.4, slider=ks.Link(10.0), coupler=ks.Link(2.0, 0.2, 0.03)),
@@ -20,7 +20,7 @@ CAM = ks.Scene(
         "guide": ks.GuideFriction(0.1),
     },
 )
-MACHINES = {"saw": (RUBBING, MOTOR, 1000.0), "pump": (PUMP, SMALL, 0.3), "cam": (CAM, SMALL, 1.0)}
+MACHINES = {"saw": (RUBBING, MOTOR, 1000.0), "pump": (FRICTION_PUMP, SMALL, 0.3), "cam": (CAM, SMALL, 1.0)}
 
 
 @pytest.fixture(scope="module", params=MACHINES)
@@ -76,8 +76,8 @@ def test_without_motor_a_constant_torque_carries_the_losses(speed):
 
 
 def test_a_flywheel_for_a_fluctuation_is_the_one_that_runs_with_it():
-    textbook = ks.drive.flywheel(PUMP, 0.02)
-    s = PUMP.solve(7200)
+    textbook = ks.drive.flywheel(FRICTION_PUMP, 0.02)
+    s = FRICTION_PUMP.solve(7200)
     spare = np.cumsum(s.balancing_torque.mean() - s.balancing_torque) * 2 * np.pi / 7200
     assert textbook.energy == pytest.approx(np.ptp(spare), rel=1e-3)
 
@@ -95,13 +95,13 @@ def test_friction_that_vanishes_changes_nothing():
 def test_the_rubbing_saw_runs_as_many_digits_say(engine):
     if engine == "compiled":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")
-    angles = np.radians(REFERENCE["angle [deg]"])
+    angles = np.radians(FRICTION_REFERENCE["angle [deg]"])
     run = ks.drive.steady(RUBBING, MOTOR, 1000.0, angles=angles, engine=engine)
     for name in ("speed", "acceleration", "motor_torque"):
-        exact = np.array(REFERENCE[name], dtype=float)
+        exact = np.array(FRICTION_REFERENCE[name], dtype=float)
         assert np.abs(getattr(run, name) - exact).max() < 1e-12 * np.abs(exact).max(), name
-    assert run.mean_speed == pytest.approx(float(REFERENCE["mean_speed"]), rel=1e-14)
-    assert run.friction_energy_per_turn == pytest.approx(float(REFERENCE["friction_energy"]), rel=1e-12)
+    assert run.mean_speed == pytest.approx(float(FRICTION_REFERENCE["mean_speed"]), rel=1e-14)
+    assert run.friction_energy_per_turn == pytest.approx(float(FRICTION_REFERENCE["friction_energy"]), rel=1e-12)
 
 
 def test_friction_that_jams_is_refused_with_its_angles():

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import kinetostatics as ks
-from support.driven_saws import CUT, FAN, MOTOR, saw
+from support.drives import CUT, FAN, MOTOR, saw
 
 
 def test_speed_is_the_integral_of_acceleration_and_time_that_of_slowness():

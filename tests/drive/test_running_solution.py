@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.driven_rubbing import MOTOR, SAW
+from support.drives import MOTOR, SAW
 
 RUN = ks.drive.steady(ks.Scene(SAW, 1.0, loads=ks.Gravity()), MOTOR, 30.0)
 FEW = np.array([0.1, 2.0, 9.0])

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.senses import Senses
-from support.driven_rubbing import RUBBING
+from support.drives import RUBBING
 
 ROLLING = ks.Scene(
     ks.cam_crank_slider(ks.cams.Circle(0.1, (0.02, 0.0)), 0.4, slider=ks.Link(10.0)),

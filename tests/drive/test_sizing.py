@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.driven_saws import MOTOR, SAW, TURN
+from support.drives import MOTOR, SAW, TURN
 
 RPM = TURN / 60
 

@@ -3,7 +3,7 @@
 import pytest
 
 import kinetostatics as ks
-from support.driven_machines import DISC, MOTOR, PUMP
+from support.drives import DISC, DISC_MOTOR, PUMP
 
 RUBS = {"O": ks.PinFriction(0.1, 0.03), "guide": ks.GuideFriction(0.1)}
 
@@ -14,8 +14,8 @@ RUBS = {"O": ks.PinFriction(0.1, 0.03), "guide": ks.GuideFriction(0.1)}
         (ks.Scene(PUMP, 1.0), 3.0, None, "give back all that they take"),
         (ks.Scene(PUMP, 1.0, loads=ks.Torque(2.0, on="crank"), friction=RUBS), 9.0, None, "times the kinetic energy"),
         (ks.Scene(PUMP, 1.0), -30.0, ks.drive.Motor.linear(100.0, 50.0, transmission=-2.0), "its motor keeps it"),
-        (ks.Scene(PUMP, 1.0, friction=RUBS), 60.0, MOTOR, "its motor keeps it running"),
-        (ks.Scene(PUMP, 1.0, friction=RUBS), 4.0, MOTOR, "times the kinetic energy"),
+        (ks.Scene(PUMP, 1.0, friction=RUBS), 60.0, DISC_MOTOR, "its motor keeps it running"),
+        (ks.Scene(PUMP, 1.0, friction=RUBS), 4.0, DISC_MOTOR, "times the kinetic energy"),
     ],
 )
 def test_a_machine_that_runs_on_is_not_followed_to_its_standstill(scene, speed, motor, words):
@@ -33,5 +33,5 @@ def test_a_disc_whose_weight_rubs_stops_when_its_momentum_is_used_up(speed):
 
 
 def test_a_motor_against_the_motion_stops_it():
-    motion = ks.drive.coast(ks.Scene(DISC, 1.0), from_speed=-1.0, until="standstill", motor=MOTOR)
+    motion = ks.drive.coast(ks.Scene(DISC, 1.0), from_speed=-1.0, until="standstill", motor=DISC_MOTOR)
     assert motion.events[-1].name == "standstill"

@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.drive.rubbing import driven_by
 from kinetostatics.drive.stretches import followed, sense_from_rest
-from support.driven_rubbing import PUMP, REFERENCE, RUBBING, SMALL
+from support.drives import FRICTION_PUMP, FRICTION_REFERENCE, RUBBING, SMALL
 
 PENDULUM = ks.Scene(
     ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)),
@@ -57,7 +57,7 @@ def test_what_sticks_does_not_move():
 
 
 def test_the_rubbing_saw_coasts_to_a_standstill_as_many_digits_say():
-    given = REFERENCE["coasting"]
+    given = FRICTION_REFERENCE["coasting"]
     motion = ks.drive.coast(RUBBING, given["flywheel"], given["from_angle"], given["from_speed"], "standstill")
     assert motion.crank_angle[-1] == pytest.approx(float(given["angle"]), rel=1e-14)
     assert motion.time[-1] == pytest.approx(float(given["time"]), rel=1e-14)
@@ -75,15 +75,15 @@ def test_a_saw_that_coasts_gives_its_energy_to_friction():
 
 
 def test_a_start_takes_longer_with_friction_and_ends_running():
-    free = ks.Scene(PUMP.mechanism, 20.0, loads=PUMP.loads)
-    slow, fast = (ks.drive.start(scene, SMALL, 0.3, 0.4) for scene in (PUMP, free))
+    free = ks.Scene(FRICTION_PUMP.mechanism, 20.0, loads=FRICTION_PUMP.loads)
+    slow, fast = (ks.drive.start(scene, SMALL, 0.3, 0.4) for scene in (FRICTION_PUMP, free))
     assert slow.time[-1] > fast.time[-1]
-    assert slow.speed[-1] == pytest.approx(0.99 * ks.drive.steady(PUMP, SMALL, 0.3).mean_speed, rel=1e-12)
+    assert slow.speed[-1] == pytest.approx(0.99 * ks.drive.steady(FRICTION_PUMP, SMALL, 0.3).mean_speed, rel=1e-12)
 
 
 def test_a_machine_that_friction_holds_does_not_start_and_says_by_how_much():
     friction = {"guide": ks.GuideFriction(0.3), "O": ks.PinFriction(0.3, 0.05)}
-    scene = ks.Scene(PUMP.mechanism, 20.0, loads=(ks.Gravity(), ks.ProcessForce(-2000.0)), friction=friction)
+    scene = ks.Scene(FRICTION_PUMP.mechanism, 20.0, loads=(ks.Gravity(), ks.ProcessForce(-2000.0)), friction=friction)
     weak = ks.drive.Motor.constant(30.0)
     with pytest.raises(ks.DriveError, match=r"does not start: .* of them to overcome friction") as caught:
         ks.drive.start(scene, weak, 0.3, -math.pi / 2, until=1.0)

@@ -6,14 +6,14 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.summary import mistaken_speed, summary
-from support.driven_machines import MOTOR, PUMP
+from support.drives import DISC_MOTOR, PUMP
 
 KLOSS = ks.drive.Motor.kloss(5e3, 150.0, synchronous_speed=157.0, overload=2.5, transmission=5.0)
 
 
 def test_machines_stand_side_by_side_with_units():
     scene = ks.Scene(PUMP, 1.0, loads=(ks.Gravity(), ks.Torque(-40.0, on="crank")))
-    runs = {"line": ks.drive.steady(scene, MOTOR, 5.0), "Kloss": ks.drive.steady(scene, KLOSS, 5.0)}
+    runs = {"line": ks.drive.steady(scene, DISC_MOTOR, 5.0), "Kloss": ks.drive.steady(scene, KLOSS, 5.0)}
     table = summary(runs, {"line": None, "Kloss": ks.drive.start(scene, KLOSS, 5.0)})
     assert list(table) == ["unit", "line", "Kloss"]
     for name, run in runs.items():

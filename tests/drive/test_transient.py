@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.driven_saws import MOTOR, SAW
-from support.shipped import shipped
+from support.case_files import shipped
+from support.drives import MOTOR, SAW
 
 PENDULUM = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)), 1.0, loads=ks.Gravity())
 

@@ -5,8 +5,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.sweeps import designs
+from support.case_files import BADLY_WRITTEN
 from support.every import every
-from support.written import BADLY_WRITTEN
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -12,7 +12,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main
-from support.held import held
+from support.commands import held
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])

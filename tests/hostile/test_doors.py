@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 import kinetostatics as ks
 from kinetostatics.views.figures import draw_case
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 mpl.use("agg")
 SAW = shipped("sawframe_2r63")

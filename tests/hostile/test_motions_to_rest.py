@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.mirrored import mirrored
+from support.mirror import mirrored
 from support.turning_machines import ANGLES, turning_scene
 
 PRESS = ks.crank_slider(0.1, 0.35, crank=ks.Link(2.0, 0.03, 0.02), slider=ks.Link(4.0))

@@ -10,8 +10,8 @@ import kinetostatics as ks
 from kinetostatics.cli import main
 from kinetostatics.numbers.units import factor, to_si
 from kinetostatics.sweeps import designs
+from support.case_files import BADLY_WRITTEN
 from support.every import every
-from support.written import BADLY_WRITTEN
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -13,8 +13,8 @@ from kinetostatics.mechanics.assembly import HALF, NO_DIGIT
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.elementary import UNIT
 from support.bounded import FAMILIES, solution
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 LOOSE = 1000.0
 """How many times more than condition times rounding a bound may be: it has every operation on its worst side."""

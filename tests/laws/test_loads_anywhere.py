@@ -6,7 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.studies.methods import configurations, newton
-from support.loads import KINDS, between, load
+from support.chains import LOAD_KINDS, between, load
 from support.machines import largest, planar
 from support.scenes import six_bar
 
@@ -78,12 +78,12 @@ def by_newton_euler(s, names):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LOAD_KINDS)
 @pytest.mark.parametrize("name", [*CHAINS, "cam"])
 def test_reactions_and_torque_under_any_load_are_those_of_the_full_system(name, kind):
     tried = 0
     for seed in range(6):
-        random = np.random.default_rng([seed, KINDS.index(kind)])
+        random = np.random.default_rng([seed, LOAD_KINDS.index(kind)])
         mechanism = cam(random) if name == "cam" else chain(random, name)
         item = load(random, kind, mechanism)
         if item is None:
@@ -102,9 +102,9 @@ def test_reactions_and_torque_under_any_load_are_those_of_the_full_system(name, 
     assert tried or kind in ("Spring", "ProcessForce")
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LOAD_KINDS)
 def test_loads_superpose(kind):
-    random = np.random.default_rng(KINDS.index(kind))
+    random = np.random.default_rng(LOAD_KINDS.index(kind))
     one, other = load(random, kind, six_bar()), load(random, "PointDamper", six_bar())
     both, first, second, none = (
         ks.solve(six_bar(), ANGLES, crank_speed=9.0, loads=loads) for loads in ([one, other], [one], [other], [])
@@ -115,7 +115,7 @@ def test_loads_superpose(kind):
 
 
 @pytest.mark.parametrize("engine", ["compiled", "arb"])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LOAD_KINDS)
 def test_every_engine_gives_the_same_under_any_load(kind, engine):
     item = load(np.random.default_rng(3), kind, six_bar())
     s = ks.solve(six_bar(), ANGLES[::4], crank_speed=9.0, crank_acceleration=-4.0, loads=item)

@@ -1,7 +1,7 @@
 """A machine mirrored in the x axis, y -> -y, gives mirrored results: whatever is computed, for random machines.
 
-Forces are mirrored, torques change their sign, powers and energies stay. `support.mirrored` makes the mirror image,
-`support.mirror_laws` compares. What one machine and its image are both refused counts as agreement.
+Forces are mirrored, torques change their sign, powers and energies stay. `support.mirror` makes the mirror image
+and compares. What one machine and its image are both refused counts as agreement.
 """
 
 from dataclasses import replace
@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from support import mirror_laws as laws
-from support.mirrored import mirrored
+from support import mirror as laws
+from support.mirror import mirrored
 from support.turning_machines import KINDS, LOADS, SPEED_LOADS, turning_scene
 
 pytestmark = [

@@ -4,8 +4,8 @@ import numpy as np
 
 import kinetostatics as ks
 from kinetostatics.studies.methods.enclosures import on_arb
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 STRAIGHT = np.linspace(5.7, 6.28, 40)
 """Crank angles at which the knuckle of the toggle press is nearly straight."""

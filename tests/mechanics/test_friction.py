@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.rubbing_machines import JOINTS, KINDS, RUBBED, Drawn, differences
+from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn, differences
 
 TURN = np.linspace(0.0, 2 * np.pi, 90, endpoint=False) + 0.01
 CENTRIC = ks.crank_slider(0.1, 0.3)

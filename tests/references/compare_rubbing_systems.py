@@ -11,7 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from support.rubbing_machines import KINDS, differences
+from support.friction_machines import KINDS, differences
 
 
 def main(count=200, scale=1.0):

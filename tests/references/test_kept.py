@@ -4,7 +4,7 @@ import pytest
 
 import kinetostatics as ks
 from support import kept
-from support.shipped import shipped
+from support.case_files import shipped
 
 pytestmark = pytest.mark.skipif(
     not kept.FOLDER.is_dir(), reason="nothing is kept: python tests/references/make_kept.py writes it"

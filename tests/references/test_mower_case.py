@@ -11,9 +11,8 @@ import kinetostatics as ks
 from kinetostatics.cli import main
 from kinetostatics.views.figures import draw_case
 from kinetostatics.views.peaks import with_peaks
-from support.case_files import case_file, problems
+from support.case_files import case_file, problems, shipped
 from support.every import every
-from support.shipped import shipped
 
 pytestmark = pytest.mark.slow
 

@@ -13,7 +13,7 @@ import pytest
 
 import kinetostatics as ks
 from support import DATA
-from support.shipped import shipped
+from support.case_files import shipped
 
 VARIANTS = {
     "unbalanced": "unbalanced",

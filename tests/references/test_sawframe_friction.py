@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.shipped import shipped
+from support.case_files import shipped
 
 CASE = shipped("sawframe_2r63_friction")
 LOST = {"plain": 43, "cam-circle": 12, "cam-cosine": 12, "plain-rolling": 10.5, "cam-cosine-rolling": 7.3}

@@ -8,9 +8,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.mechanics.quantities import scale
+from support.case_files import shipped
 from support.enclosed import ordinary_angles, worst
 from support.every import every
-from support.shipped import shipped
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 

@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.losses import losses
-from support.rubbing_machines import JOINTS, KINDS, RUBBED, Drawn
+from support.friction_machines import JOINTS, KINDS, RUBBED, Drawn
 
 R, MASS, MU, G, SPEED = 0.1, 3.0, 0.2, 9.81, 6.0
 YOKE = ks.scotch_yoke(R, slider=ks.Link(MASS))

@@ -7,7 +7,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.results.turn import Turn, repeating_problem, require_single, runs
-from support import spikes
+from support import sweeping as spikes
 from support.every import every
 
 PUMP = ks.crank_slider(0.1, 0.4)

@@ -11,15 +11,15 @@ import kinetostatics as ks
 from kinetostatics.casefile.reading import shipped_cases
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.solution.drive_and_loads import over_the_angles
-from tests.support.chains import chain
-from tests.support.every import every
-from tests.support.followers import KINDS as FOLLOWERS
-from tests.support.followers import scene as with_follower
-from tests.support.retold import largest_error
-from tests.support.rubbing_machines import KINDS as RUBBING
-from tests.support.rubbing_machines import Drawn
-from tests.support.scenes import ANGLES, FORCES, OWN, SCENES, SPEED
-from tests.support.scenes import solve as solved
+from support.chains import chain
+from support.every import every
+from support.followers import KINDS as FOLLOWERS
+from support.followers import scene as with_follower
+from support.friction_machines import KINDS as RUBBING
+from support.friction_machines import Drawn
+from support.retold import largest_error
+from support.scenes import ANGLES, FORCES, OWN, SCENES, SPEED
+from support.scenes import solve as solved
 
 STEP, CHAIN, VALUE = 1e-15, 1e-14, 1e-13
 LOADED = ks.Scene(

@@ -7,8 +7,8 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.solution.explanation_pages import STYLE
-from tests.support.chains import chain
-from tests.support.rubbing_machines import Drawn
+from support.chains import chain
+from support.friction_machines import Drawn
 
 
 @pytest.fixture(scope="module", params=["friction of a cam", "chain", "balanced cam"])

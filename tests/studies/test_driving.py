@@ -7,7 +7,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.studies import driving
 from kinetostatics.views import charts
-from support.driven_saws import BY_NAME, IDLE, MOTOR, SAW
+from support.drives import BY_NAME, IDLE, MOTOR, SAW
 
 pytestmark = pytest.mark.slow
 

@@ -10,8 +10,8 @@ import kinetostatics as ks
 from kinetostatics.engines import programs
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
-from support.needed import MECHANISMS, SPEED, TURN, alone, change, cranked, solved
-from support.shipped import shipped
+from support.case_files import shipped
+from support.studied import MECHANISMS, SPEED, TURN, alone, change, cranked, solved
 
 pytestmark = pytest.mark.slow
 

@@ -17,7 +17,7 @@ from kinetostatics.studies import precision
 from kinetostatics.studies.methods import METHODS, Method, kane, newton, structures
 from kinetostatics.studies.methods.certified import enclosure, relative_errors
 from kinetostatics.views import charts
-from support.curves import FEW, torque_study
+from support.studied import FEW, torque_study
 
 pytestmark = pytest.mark.slow
 

@@ -6,7 +6,7 @@ import kinetostatics as ks
 from kinetostatics.studies import needs as ingredients
 from kinetostatics.studies import simplifications
 from kinetostatics.studies.simplifications import two_mass_coupler
-from support.needed import MECHANISMS, alone, change, cranked, solved
+from support.studied import MECHANISMS, alone, change, cranked, solved
 
 
 @pytest.fixture

@@ -7,9 +7,9 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
+from support.case_files import shipped
 from support.every import every
 from support.factories import DESIGNS, OUTPUTS
-from support.shipped import shipped
 from support.sweeping import SAW, assert_equal, sweep
 
 

@@ -12,8 +12,8 @@ import kinetostatics as ks
 from kinetostatics.casefile import parameters, schema
 from kinetostatics.numbers.headings import si_columns
 from kinetostatics.sweeps import designs
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 SPREADS = {
     "spring.stiffness": "normal 700 kN/m +- 5000 N/m",

@@ -8,8 +8,8 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.sweeps import asked, job
 from kinetostatics.sweeps.sweeps import FAILED
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 from support.sweeping import SAW, assert_equal, sweep
 
 

@@ -19,9 +19,8 @@ from kinetostatics.results.reductions import REDUCTIONS
 from kinetostatics.sweeps import sweeps, together, workers
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
-from support.case_files import written
+from support.case_files import shipped, written
 from support.factories import DESIGNS, OUTPUTS
-from support.shipped import shipped
 from support.sweeping import SAW, assert_equal, rising, sweep
 
 # Rows of a case

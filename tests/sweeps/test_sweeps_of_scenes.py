@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.sweeps.sweeps import FAILED
-from support.shipped import shipped
+from support.case_files import shipped
 
 sweep = partial(ks.sweep, progress=False, angles=36)
 SAW = shipped("sawframe_2r63")

@@ -11,10 +11,11 @@ from kinetostatics.mechanics.quantities import sizes
 from kinetostatics.sweeps import together
 from kinetostatics.sweeps.job import LEAST
 from kinetostatics.sweeps.sweeps import FAILED
-from support import factories, spikes
+from support import factories
+from support import sweeping as spikes
+from support.case_files import shipped
 from support.every import every
 from support.factories import DESIGNS, OUTPUTS
-from support.shipped import shipped
 from support.sweeping import SAW, assert_equal, rising, sweep
 
 

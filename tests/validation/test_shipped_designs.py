@@ -8,7 +8,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.design.demands import demands
 from kinetostatics.design.optimisation import true_excess
-from support.shipped import shipped
+from support.case_files import shipped
 
 pytestmark = pytest.mark.slow
 

@@ -6,7 +6,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views import charts
-from support.curves import FEW, torque_study
+from support.studied import FEW, torque_study
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views import designs
-from support.designs import FRONT, STIFFER, saw_with
+from support.case_files import FRONT, STIFFER, saw_with
 
 
 @pytest.fixture(scope="module")

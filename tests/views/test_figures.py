@@ -10,8 +10,8 @@ import kinetostatics as ks
 from kinetostatics.views import figures, symbols
 from kinetostatics.views.canvas import FROM_X, FROM_Y_CLOCKWISE
 from kinetostatics.views.figures import draw_case
+from support.case_files import shipped
 from support.every import every
-from support.shipped import shipped
 
 pytestmark = pytest.mark.slow
 

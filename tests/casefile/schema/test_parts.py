@@ -3,11 +3,13 @@
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file
-from support.chain_cases import (
+from support.case_chains import (
+    LOADS,
+    PUMP,
+    agree,
     rpm,
 )
-from support.load_cases import LOADS, PUMP, agree
+from support.case_files import case_file
 
 
 @pytest.mark.parametrize("name", LOADS)

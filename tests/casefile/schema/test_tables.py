@@ -5,8 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from support.case_files import case_file, problems
-from support.plain_case import PLAIN
+from support.case_files import PLAIN, case_file, problems
 
 
 def test_a_cam_of_a_kind_that_is_not_there_is_told_the_nearest(tmp_path):

@@ -7,7 +7,7 @@ import kinetostatics as ks
 from kinetostatics.drive.driven import Driven
 from kinetostatics.studies.methods import running
 from kinetostatics.studies.methods.exact_running import exact_speed
-from support.driven_saws import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE, SAW
+from support.drives import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE, SAW
 
 pytestmark = pytest.mark.slow
 

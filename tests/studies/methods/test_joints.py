@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.studies import precision
 from kinetostatics.studies.methods import METHODS
-from support.curves import torque_study
+from support.studied import torque_study
 
 pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
 

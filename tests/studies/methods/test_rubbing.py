@@ -8,9 +8,9 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
 from kinetostatics.studies.methods import certified, independent, integration, kane, newton
+from support.case_files import shipped
 from support.every import every
-from support.rubbing_machines import KINDS, Drawn
-from support.shipped import shipped
+from support.friction_machines import KINDS, Drawn
 
 ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False) + 0.05
 (NEWTON,) = newton.METHODS

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from kinetostatics.studies.methods import running
-from support.driven_saws import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE
+from support.drives import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE
 
 
 @pytest.mark.parametrize(

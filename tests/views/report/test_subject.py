@@ -5,9 +5,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views.report.subject import subject_of
+from support.case_files import shipped
 from support.every import every
 from support.reports import plain, subject
-from support.shipped import shipped
 
 
 def test_machines_of_a_case_stand_in_its_order_with_the_reference_first():

@@ -1,4 +1,4 @@
-"""Random mechanisms whose joints rub, each as the library has it and as `multibody.System` of its own geometry."""
+"""Random mechanisms with friction in their joints, each for the package and as `multibody.System`."""
 
 import math
 
