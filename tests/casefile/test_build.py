@@ -28,12 +28,6 @@ def test_the_law_of_a_cam_gives_the_length_left_out(tmp_path):
         variant(tmp_path, HEAD + 'mechanism = "cam-crank-slider"\ncam = { kind = "circle", radius = "0.3 m" }\n')
 
 
-def test_a_spring_that_balances_is_found_of_mass_and_speed(tmp_path):
-    found = variant(tmp_path, SAW + 'spring = { stiffness = "balance the slider", free_position = "2 m" }\n')
-    (spring,) = found.loads
-    assert spring.stiffness == ks.Spring.balancing(10.0, found.crank_speed, 2.0).stiffness
-
-
 def test_balancing_without_a_weight_on_the_crank_is_refused(tmp_path):
     text = SAW + '[variants.a.balancing]\nmethod = "full"\ncoupler = { arm = "-0.2 m" }\n'
     with pytest.raises(ks.CaseError, match=r"needs a counterweight on the crank|balancing"):

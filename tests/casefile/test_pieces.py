@@ -5,25 +5,11 @@ from types import SimpleNamespace
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.casefile.pieces import PartsError, all_of, guide_of, link_of
+from kinetostatics.casefile.pieces import guide_of, link_of
 
 
 def guide(**values):
     return SimpleNamespace(**{"guide_through": None, "guide_angle": None, "guide_offset": None} | values)
-
-
-def refused(text):
-    def make():
-        raise ks.ParameterError(text)
-
-    return make
-
-
-def test_all_that_is_wrong_is_told_with_its_keys_and_else_all_is_made():
-    assert all_of([(("a",), lambda: 1), (("b",), lambda: 2)]) == {("a",): 1, ("b",): 2}
-    with pytest.raises(PartsError) as caught:
-        all_of([(("a",), lambda: 1), (("b",), refused("too long")), (("c", "d"), refused("too heavy"))])
-    assert caught.value.problems == ((("b",), "too long"), (("c", "d"), "too heavy"))
 
 
 def test_a_centre_at_mid_length_needs_a_length():
