@@ -18,17 +18,3 @@ def test_ends_are_the_best_of_each_output_alone():
     greatest = ks.design.optimise(SAW, FRONT_OF, maximise=RATIO, variant="cam-circle", angles=180)
     assert front().table.iloc[0, 0] == pytest.approx(least.report().iloc[0]["after"], rel=1e-6)
     assert front().table.iloc[-1, 1] == pytest.approx(greatest.report().iloc[0]["after"], rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("minimise", "points", "message"),
-    [
-        ((FORCE,), 3, "must be two outputs"),
-        ((FORCE, RATIO, FORCE), 3, "must be two outputs"),
-        ((FORCE, RATIO), 1, "points must be at least 2"),
-        ((FORCE, "torque"), 3, "must be a reduction and a quantity"),
-    ],
-)
-def test_fronts_of_another_kind_are_refused(minimise, points, message):
-    with pytest.raises(ks.ParameterError, match=message):
-        ks.design.pareto(SAW, FRONT_OF, minimise, variant="cam-circle", points=points)
