@@ -67,10 +67,3 @@ def test_machines_that_no_cam_balances_are_refused(drive, name):
     scene, text = machines(drive)[name]
     with pytest.raises(ks.KinetostaticsError, match=text):
         ks.design.torque_balancing_cam(scene, mass=0.3, travel=0.012)
-
-
-@pytest.mark.parametrize("pair", [("R", "R"), ("A", "R")])
-def test_two_followers_of_one_name_are_refused_by_name(pair):
-    groups = tuple(ks.RollerFollower(LAW, pin=name) for name in pair)
-    with pytest.raises(ks.ParameterError, match="'follower' a second time"):
-        ks.Mechanism("twins", ks.Crank(None), groups)

@@ -33,20 +33,6 @@ def test_names_are_texts(make, bad):
         make(bad)
 
 
-@every("bad", [0, 2, -1.5, True, "+1", None, np.array([1, -1]), "open up", [1]])
-@every(
-    "make",
-    [
-        lambda bad: ks.SliderGroup(1.0, assembly=bad),
-        lambda bad: ks.RockerGroup(0.4, 0.3, (0.35, 0.1), assembly=bad),
-        lambda bad: ks.Dyad(0.4, 0.3, assembly=bad),
-    ],
-)
-def test_assembly_is_a_sign(make, bad):
-    with pytest.raises(ks.ParameterError, match=r"assembly must be \+1 or -1"):
-        make(bad)
-
-
 @every("bad", [None, 3.0, "link", {}, ks.Link, ks.Gravity(), (2.0, 0.1, 0.05)])
 @every(
     "make",
