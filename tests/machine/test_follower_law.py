@@ -2,24 +2,11 @@
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
 
 import kinetostatics as ks
 from kinetostatics.machine.follower_law import FollowerLaw
 
 LAW = ks.laws.cosine(0.02, 0.08, 0.3)
-
-
-def test_it_gives_a_coordinate_and_two_derivatives_at_any_shape():
-    angle = np.array([[0.0, 1.0, 2.0]])
-    found = FollowerLaw(LAW).polar(angle, None)
-    assert_array_equal(found, LAW(angle)[:3])
-    assert [part.shape for part in found] == [(1, 3)] * 3
-
-
-def test_constants_of_a_function_are_spread_over_the_angles():
-    rest = FollowerLaw(lambda phi: (0.1, 0.0, 0.0, 0.0))
-    assert_array_equal(rest.radius(np.zeros(3)), [[0.1] * 3, [0.0] * 3, [0.0] * 3])
 
 
 def test_a_group_made_again_keeps_its_law():

@@ -27,13 +27,3 @@ def test_the_torque_is_that_of_spring_and_inertia_whatever_the_offset(kind):
         machine = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
         s = ks.solve(machine, ANGLES, crank_speed=12.0, loads=ks.Spring(5e3, 0.01, on="follower"))
         assert_allclose(s.balancing_torque, expected, rtol=1e-13)
-
-
-@every_face
-def test_the_follower_is_placed_where_it_is_found(kind):
-    follower = kind(LAW, ks.Guide.at(0.4, 0.01), BODY)
-    mechanism = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
-    placed, again = mechanism.place(ANGLES), mechanism.place(ANGLES)
-    follower.follow(again, placed.joints)
-    for part, other in zip(placed.travels["follower"], again.travels["follower"], strict=True):
-        assert_allclose(other, part, atol=1e-16)

@@ -31,10 +31,3 @@ def test_which_of_several_sliders_is_meant_must_be_said():
         two_sliders("1", "2").slider_position  # noqa: B018
     with pytest.raises(ks.QuantityError, match="four-bar has no slider"):
         ks.solve(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), 0.1, crank_speed=1.0).slider_velocity  # noqa: B018
-
-
-def test_cams_fixed_to_the_frame_are_told_from_those_on_the_crank():
-    saw = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.02, 0.0)), 2.02)
-    pump = ks.Mechanism("cam", ks.Crank(), (ks.RollerFollower(ks.laws.cosine(0.01, 0.05)),))
-    assert saw.led_by_ground == saw.groups[:1]
-    assert pump.led_by_ground == ()

@@ -8,8 +8,6 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics import ConditionWarning
-from kinetostatics.engines.record import record
-from kinetostatics.engines.trace import BY_ANGLE, needed
 from kinetostatics.machine import lever_group, on_crank, rocker_group, slider_group
 from kinetostatics.machine.guide import Line
 from kinetostatics.machine.placement import Throw
@@ -142,30 +140,6 @@ def test_what_jax_traces_is_no_known_length_and_has_derivatives(double):
 
     slope, step = float(double.grad(torque)(0.35)), 1e-6
     assert slope == pytest.approx(float(torque(0.35 + step) - torque(0.35 - step)) / (2 * step), rel=1e-7)
-
-
-def counted(structure):
-    """Operations at each crank angle, and how many of these are divisions or roots."""
-    recording = record(structure, ("balancing_torque",))
-    slow = [node for node in needed(recording.outputs) if node.operation in ("/", "sqrt", "root")]
-    return recording.operations, sum(node.varies == BY_ANGLE for node in slow)
-
-
-def test_a_four_bar_on_the_crank_takes_few_more_operations_and_fewer_divisions(monkeypatch):
-    links = {name: ks.Link(3.0, 0.1, 0.1) for name in ("coupler", "rocker")}
-    scene = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), **links), 9.0)
-    structure, _ = scene.solve(3).apart
-    whole, slow = counted(structure)
-
-    def general(placement, on, *given):
-        *given, is_close, knuckle = given
-        assert (is_close, knuckle) == (False, "")
-        return rocker_group.place(placement.joints[on], *given)
-
-    monkeypatch.setattr(rocker_group, "turned_by_crank", general)
-    whole_before, slow_before = counted(structure)
-    assert whole <= whole_before + 2  # the pin itself, which hangs on nothing here, would save two
-    assert slow < slow_before
 
 
 HEAVY = ks.Link(3.0, 0.2, 5e-2)

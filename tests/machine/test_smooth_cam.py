@@ -28,13 +28,6 @@ def test_a_law_of_ones_own_is_told_how_to_shift_itself():
         ks.cams.from_law(lambda phi: own(phi), guide_offset=0.02)
 
 
-def test_the_coupler_length_asked_for_must_be_the_one():
-    law = laws.cosine(0.3, 2.0)
-    assert ks.cams.from_law(law, coupler_length=2.0219051769).coupler_length == pytest.approx(2.0219051769)
-    with pytest.raises(ks.ParameterError, match=r"with a coupler of 2\.021905177 m only, .* got 2\.02 m; leave"):
-        ks.cams.from_law(law, coupler_length=2.02)
-
-
 @pytest.mark.parametrize(
     ("law", "message"),
     [

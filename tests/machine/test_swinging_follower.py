@@ -67,12 +67,3 @@ def test_what_no_follower_can_have_is_refused(name):
     given, text = WRONG[name]
     with pytest.raises(ks.ParameterError, match=text):
         ks.SwingingFollower(**{"cam": SWING, "arm_length": 0.1, "pivot": (0.12, 0.0)} | given)
-
-
-def test_the_arm_is_placed_where_its_roller_is_found():
-    follower = KINDS["swinging"]()
-    mechanism = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
-    placed, again = mechanism.place(ANGLES), mechanism.place(ANGLES)
-    follower.follow(again, placed.joints)
-    for name in ("ratio", "ratio_slope"):
-        assert_allclose(getattr(again.links["arm"], name), getattr(placed.links["arm"], name), atol=1e-14)

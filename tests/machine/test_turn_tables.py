@@ -44,15 +44,6 @@ def test_the_second_derivative_is_continuous_at_the_points_and_across_the_seam()
         assert largest(second(angle + width) - second(angle - width)) < 2 * width * largest(third(FINE)) * 1.01
 
 
-def test_noise_of_uneven_points_and_a_point_read_wrongly_are_found():
-    angle = uneven(360)
-    scatter = np.random.default_rng(0).normal(0.0, 1e-8, 360)
-    assert table(angle, value(angle) + scatter).noise == pytest.approx(1e-8, rel=0.15)
-    wrong = table(angle, value(angle) + 1e-5 * (np.arange(360) == 77))
-    with pytest.warns(UserWarning, match="table: 360 points are too coarse or too noisy: x is uncertain"):
-        wrong.warn_if_uncertain("table", "x", "value", wrong.force_error(0.1))
-
-
 @pytest.mark.parametrize(("count", "step"), [(90, 1e-6), (360, 1e-6), (24, 0.0)])
 def test_the_error_stated_is_that_of_the_second_derivative(count, step):
     """By rounding to a step, or by few points."""
@@ -62,24 +53,6 @@ def test_the_error_stated_is_that_of_the_second_derivative(count, step):
     assert 0.5 * true <= made.second_derivative_error <= 10 * true
     assert made.force_error(0.1) == pytest.approx(70.0 * made.second_derivative_error)
     assert made.force_error(0.0) == np.inf
-
-
-def test_noise_stated_is_smoothed_away():
-    angle = 2 * np.pi * np.arange(360) / 360
-    rounded = np.round(value(angle), 6)
-    rough, smooth = table(angle, rounded), table(angle, rounded, 1e-6 / np.sqrt(12))
-    errors = [largest(made.splines[2](FINE) - value(FINE, 2)) for made in (rough, smooth)]
-    assert errors[1] < errors[0] / 20
-    assert errors[1] <= smooth.second_derivative_error <= 40 * errors[1]
-
-
-def test_what_is_kept_is_a_copy_that_nobody_changes():
-    angle = uneven(24)
-    made = table(angle, value(angle))
-    angle[0] = 99.0
-    assert made.angle[0] == pytest.approx(0.3)
-    with pytest.raises(ValueError, match="read-only"):
-        made.values[0] = 1.0
 
 
 def test_noise_stated_too_small_hides_no_error():
