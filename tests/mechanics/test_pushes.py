@@ -18,18 +18,3 @@ def test_a_function_may_follow_the_motion_and_give_one_number_or_one_for_each_an
     speeds = ks.solve(PUMP, TURN, crank_speed=2.0).slider_velocity
     assert found == pytest.approx(50.0 * speeds**2 / 2.0, abs=1e-12)
     assert np.array_equal(guide_force(lambda motion: 3), guide_force(lambda motion: np.full(12, 3.0)))
-
-
-@pytest.mark.parametrize(
-    ("function", "words"),
-    [
-        (lambda motion: "5", "a text"),
-        (lambda motion: np.ones(5), r"got shape \(5,\)"),
-        (lambda motion: None, "must return its force in N"),
-        (lambda motion: np.where(motion.crank_angle > 5.0, np.inf, 1.0), "must return finite forces"),
-        (lambda motion: motion.guide_force, "asks for 'guide_force', which it has not"),
-    ],
-)
-def test_what_is_no_force_is_refused_by_the_name_of_the_load(function, words):
-    with pytest.raises(ks.ParameterError, match=words):
-        guide_force(function)
