@@ -9,24 +9,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.trace import Graph
-from kinetostatics.numbers import elementary
 from kinetostatics.numbers.duals import Dual
-from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, read_only, rest, root, sign, stack, total
+from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, rest, root, sign, total
 from support.every import every
-
-
-@pytest.mark.parametrize("name", ["sin", "cos", "sqrt"])
-@pytest.mark.parametrize("value", [0.5, np.float64(0.5), np.array([0.25, 0.5])])
-def test_numbers_and_arrays_are_numpys(name, value):
-    assert np.array_equal(getattr(elementary, name)(value), getattr(np, name)(value))
-
-
-def test_arrays_of_another_library_stay_with_it():
-    jnp = pytest.importorskip("jax.numpy")
-    found = elementary.sin(jnp.array([0.5]))
-    assert isinstance(found, jnp.ndarray)
-    assert elementary.is_foreign_array(found)
-    assert not any(map(elementary.is_foreign_array, (1.0, np.ones(2), [1.0], np.float64(1.0))))
 
 
 def test_a_square_below_zero_by_rounding_only_has_the_root_zero():
@@ -52,12 +37,6 @@ def test_divisors_stay_off_zero_and_distances_have_a_direction():
 def test_signs_of_zeros_are_their_own():
     assert [sign(value) for value in (3.0, -3.0, 0.0, -0.0)] == [1.0, -1.0, 1.0, -1.0]
     assert sign(np.array([0.0, -0.0, -2.0])).tolist() == [1.0, -1.0, -1.0]
-
-
-def test_stacks_are_arrays_and_locked_arrays_cannot_be_written_to():
-    assert stack([np.ones(2), np.zeros(2)]).tolist() == [[1.0, 1.0], [0.0, 0.0]]
-    with pytest.raises(ValueError, match="read-only"):
-        read_only(np.ones(2))[0] = 2.0
 
 
 def cancelling(count):
@@ -105,10 +84,6 @@ def test_a_rest_of_numbers_with_slopes_has_none_and_enclosures_have_no_rest():
     assert found.slopes is None
     assert found.value == rest(0.5, 0.3, 0.4) != 0.0
     assert rest(*(np.array([part], dtype=object) for part in (5, 3, 4))) is None
-
-
-def test_absent_terms_of_a_total_are_none():
-    assert total(0.1, None, 0.2, -0.3, None) == math.fsum((0.1, 0.2, -0.3))
 
 
 NUMBERS = {
