@@ -5,30 +5,10 @@ import numpy as np
 import kinetostatics as ks
 from kinetostatics.results.bends import bends, bent
 
-ROWS = [0.1, 0.18, 0.19, 0.2, 0.3], [0.0, 0.0, 1e3, 2e3, 2e3]
-
 
 def solved(loads=(), friction=None, crank=0.05, offset=0.01):
     pump = ks.crank_slider(crank, 0.19, guide_offset=offset, slider=ks.Link(1.0))
     return ks.solve(pump, np.zeros(1), crank_speed=30.0, loads=loads, friction=friction)
-
-
-def table(back=None):
-    return ks.ProcessForce(ks.Table(*ROWS, over="travel", back=back))
-
-
-def test_a_table_bends_where_its_rows_are_off_a_line():
-    at = bends(solved([table()])).angle[0]
-    place = solved().mechanism.place(at).travels["slider"].position
-    np.testing.assert_allclose(np.sort(place), [0.18, 0.18, 0.2, 0.2], rtol=0, atol=1e-15)
-
-
-def test_strokes_that_differ_jump_at_the_ends():
-    load = table([0.0] * 5)
-    _, jumps = load.force.kinks(solved())
-    at = bends(solved([load])).angle[0]
-    assert all(np.abs(at - jump).min() < 1e-12 for jump in jumps)
-    assert at.size == 6
 
 
 def test_rows_of_a_smooth_curve_bend_nothing_until_they_are_looked_at_more_closely():
@@ -57,31 +37,9 @@ def test_no_bend_is_beyond_a_period_that_is_thirteen_turns_but_for_rounding():
     assert np.sum(np.isclose(at % (2 * np.pi), 1.0)) == 13
 
 
-def test_friction_bends_where_a_turn_knows_it():
-    s = solved((), {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.02), "B": ks.PinFriction(0.1, 0.02)})
-    np.testing.assert_allclose(np.unique(bends(s).angle), s.sampled.kinks, rtol=0, atol=1e-12)
-
-
 def test_friction_of_designs_bends_for_each_where_it_does_alone():
     friction, crank = {"guide": ks.GuideFriction(0.1), "B": ks.PinFriction(0.1, 0.02)}, np.array([[0.03], [0.05]])
     both = np.sort(bends(solved((), friction, crank)).angle, axis=1)
     for row, length in zip(both, crank[:, 0], strict=True):
         alone = np.sort(bends(solved((), friction, float(length))).angle[0])
         np.testing.assert_allclose(row[: alone.size], alone, rtol=0, atol=1e-12)
-
-
-def test_loads_bend_forces_and_no_motion():
-    s = solved([table()])
-    assert bent(s, "O")
-    assert bent(s, "balancing_torque")
-    assert not bent(s, "slider_velocity")
-    assert not bent(solved([ks.Gravity()]), "O")
-
-
-def test_friction_jumps_where_it_turns_about_and_strokes_at_their_ends_alone():
-    s = solved([table([0.0] * 5)], {"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.02)})
-    found = bends(s)
-    stops = table([0.0] * 5).force.kinks(s)[1]
-    jumping = found.angle[0][found.jumps[0]]
-    assert all(np.abs(stops - angle).min() < 1e-9 for angle in jumping)
-    assert 0 < found.jumps.sum() < found.jumps.size

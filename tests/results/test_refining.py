@@ -63,21 +63,6 @@ def test_a_jump_that_nobody_declares_is_told_from_both_sides():
     np.testing.assert_allclose(numbers, 0.5 + 1.5 * (PLACE[:, 0] - 1.0) / TURN, rtol=0, atol=1e-8)
 
 
-def test_what_is_smooth_is_not_halved():
-    for text in ("largest O", "mean O", "smallest_at O"):
-        _, rough, pieces = run(text, lambda angle, designs: np.cos(angle - PLACE[designs]))
-        assert not rough.any()
-        assert pieces.tolist() == [24, 24, 24]
-
-
-def test_only_designs_that_need_it_are_halved():
-    one = lambda angle, designs: np.where(designs[:, None] == 1, hyperbola(1e-5)(angle, designs), np.cos(angle))  # noqa: E731
-    _, rough, pieces = run("smallest O", one)
-    assert not rough.any()
-    assert pieces[[0, 2]].tolist() == [24, 24]
-    assert pieces[1] > 30
-
-
 def test_where_everything_bends_it_is_said():
     rough_one = lambda angle, designs: np.sin(3e5 * angle) + 0.0 * PLACE[designs]  # noqa: E731
     _, rough, pieces = run("mean_absolute O", rough_one)
@@ -85,17 +70,3 @@ def test_where_everything_bends_it_is_said():
     assert rough.all()
     assert peak.all()
     assert pieces.max() <= 24 + MOST
-
-
-def test_many_crank_angles_tell_no_less_than_few():
-    """Pieces that there are to begin with do not count against those that halving may add."""
-    numbers, rough, pieces = run("smallest O", hyperbola(1e-6), angles=8 * MOST)
-    assert not rough.any()
-    np.testing.assert_allclose(numbers, 1.0 + 1e-6, rtol=0, atol=1e-8)
-    assert pieces.min() > MOST
-
-
-def test_the_goal_is_kept():
-    coarse, fine = (run("mean O", hyperbola(1e-6), goal=goal) for goal in (1e-4, 1e-8))
-    assert coarse[2].max() < fine[2].min()
-    assert np.abs(coarse[0] - fine[0]).max() < 1e-4

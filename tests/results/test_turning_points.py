@@ -4,35 +4,12 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.results.turning_points import Path, turning_points
 
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
 
 
 def loaded(force):
     return ks.solve(SAW, [0.0], crank_speed=33.5, loads=[ks.ProcessForce(force)])
-
-
-def turns(values, floor=1e-9, period=0.0):
-    values = np.asarray(values, dtype=float)
-    count = values.size
-    angle = np.arange(count) * (period / count if period else 1.0)
-    brackets, value, _, maximum = turning_points(Path(angle, values, np.full(count, floor), period))
-    return brackets[1].tolist(), value.tolist(), maximum.tolist()
-
-
-def test_ends_of_an_open_path_are_extrema_and_a_level_stretch_counts_once():
-    assert turns([0, 2, 2, 2, 1]) == ([0.0, 2.0, 4.0], [0.0, 2.0, 1.0], [False, True, False])
-
-
-def test_a_periodic_path_has_none_at_its_ends():
-    angle, value, maximum = turns([1, 0, -1, 0], period=4.0)
-    assert (angle, value, maximum) == ([2.0, 4.0], [-1.0, 1.0], [False, True])
-
-
-def test_rises_within_rounding_are_taken_out_least_first():
-    assert turns([0, 5, 4.9, 6, 0], floor=0.2) == ([0.0, 3.0, 4.0], [0.0, 6.0, 0.0], [False, True, False])
-    assert len(turns([0, 5, 4.9, 6, 0], floor=0.05)[0]) == 5
 
 
 def test_extremes_at_a_jump_and_at_the_seam_of_the_turn_are_those_of_the_samples():
