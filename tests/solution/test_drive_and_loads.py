@@ -1,22 +1,11 @@
 """Drive and loads in a line, and tables among them."""
 
 import numpy as np
-import pytest
 
 import kinetostatics as ks
 
 TURN = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
-
-
-def solved(angle=TURN, **change):
-    return ks.solve(SAW, angle, **{"crank_speed": 33.5, "loads": [ks.Gravity()], **change})
-
-
-def test_a_table_over_the_angles_cannot_be_moved_to_others():
-    solution = solved(loads=[ks.ProcessForce(np.linspace(0, 1, TURN.size))])
-    with pytest.raises(ks.ParameterError, match="ProcessForce is a table"):
-        solution.at([0.0])
 
 
 def test_scene_and_solution_show_themselves_in_a_line_however_long_their_tables():
