@@ -234,22 +234,6 @@ def test_chart_of_a_case_opens_as_png_and_svg_and_names_every_method_that_gave_a
     assert plt.get_fignums() == others
 
 
-def test_table_that_cannot_be_written_leaves_the_old_one_whole(few, case, tmp_path, monkeypatch):
-    target = tmp_path / "sawframe_2r63_precision.csv"
-    target.write_text("old")
-
-    def fails(self, path, **_):
-        with open(path, "w") as stream:  # noqa: PTH123
-            stream.write("half")
-        raise OSError("disk full")
-
-    monkeypatch.setattr(pd.DataFrame, "to_csv", fails)
-    with pytest.raises(OSError, match="disk full"):
-        precision.case_study(case, tmp_path, variants=["plain"], angles=16)
-    assert target.read_text() == "old"
-    assert list(tmp_path.iterdir()) == [target]
-
-
 # The command line
 
 
