@@ -182,16 +182,6 @@ def test_labels_lie_clear_of_each_other(axes):
     assert not [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
 
 
-def test_labels_of_two_hodographs_lie_clear_of_each_other(axes):
-    speeds = {"slow": 2.0, "fast": 10.0}
-    turn = np.linspace(0, 2 * np.pi, 72, endpoint=False)
-    ks.plots.hodograph({name: ks.solve(SAW, turn, crank_speed=speed) for name, speed in speeds.items()}, ax=axes)
-    axes.figure.canvas.draw()
-    boxes = [text.get_window_extent() for text in axes.texts]
-    assert len(boxes) > 10
-    assert not [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
-
-
 def test_the_roller_of_a_cam_is_drawn_about_its_centre(axes):
     machine = ks.cam_crank_slider(ks.cams.Circle(0.1, (-0.01, 0.0)), 0.6, slider=ks.Link(1.0))
     pose = drawn(machine, axes)
