@@ -391,3 +391,20 @@ def test_a_slip_of_units_in_a_case_is_told_once_for_all_its_variants(tmp_path, c
         line for line in capsys.readouterr().err.splitlines() if "is it in degrees? That makes -1.5708 rad" in line
     ]
     assert told.startswith(f"kinetostatics: warning: {path}: variants.plain, variants.cam-circle, ")
+
+
+# What may be written on the line
+
+
+@pytest.mark.parametrize("arguments", [["run", "sawframe_2r63", "--angles", "0"], ["runn", "sawframe_2r63"], []])
+def test_wrong_usage_ends_with_status_2(arguments):
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+
+
+def test_version_is_that_of_the_library(capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    assert capsys.readouterr().out == f"kinetostatics {ks.__version__}\n"

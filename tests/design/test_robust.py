@@ -8,6 +8,7 @@ import kinetostatics as ks
 from kinetostatics.design.demands import wanted
 from kinetostatics.design.problem import Problem
 from kinetostatics.design.robust import Sampled
+from kinetostatics.design.spread import harrell_davis
 from support.case_files import shipped
 
 pytestmark = pytest.mark.slow
@@ -136,3 +137,12 @@ def test_peaks_beside_kinks_are_seen_in_each_machine():
     above, below = (sampled(np.array([length]))[0] for length in (0.05 + 1e-6, 0.05 - 1e-6))
     assert value == pytest.approx(np.quantile(found, 0.9), rel=0.02)
     assert slopes[0] == pytest.approx((above - below) / 2e-6, rel=1e-3)
+
+
+# How numbers spread
+
+
+def test_weights_of_ordered_samples_sum_to_one_and_estimate_the_quantile():
+    weights = harrell_davis(0.05, 4096)
+    assert weights.sum() == pytest.approx(1.0, abs=1e-12)
+    assert weights @ np.linspace(0, 1, 4096) == pytest.approx(0.05, abs=1e-3)

@@ -1,11 +1,19 @@
 """Torque-free cams: what they must reach, from where, what gravity forbids, and that the designs are what they say."""
 
+import inspect
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.casefile.designs import CAM
+from kinetostatics.design.cam_start import Options, begun
+from kinetostatics.design.problem import Problem
+from kinetostatics.design.torque_squares import least_squares, wave
 from support.case_files import shipped
+from support.every import every
 
 pytestmark = pytest.mark.slow
 
@@ -110,3 +118,118 @@ def test_bound_is_what_the_weight_alone_asks():
     plain = np.mean(np.abs(found.reference.solve(2880).balancing_torque))
     assert_allclose(found.bound, plain / torque, rtol=1e-3)
     assert numbers["coupler_length"] > 2.0
+
+
+# Least squares of the torque
+
+
+TORQUE_SQUARES_SAW = shipped("sawframe_2r63")
+
+
+def search(cosine, sine):
+    start = begun(TORQUE_SQUARES_SAW.variant("cam-cosine").scene, Options(cosine, sine))
+    return start, Problem(start.machine, start.vary, ["balancing_torque", "slider_position"], None, 360)
+
+
+def squares(problem, values):
+    return np.sqrt(np.mean(problem.curves(values)["balancing_torque"].values ** 2))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("harmonics", [(3, 0), (4, 4), (8, 8)])
+def test_least_squares_from_the_studys_cam_within_20_evaluations(harmonics):
+    start, problem = search(*harmonics)
+    assert_allclose(problem.start[: 1 + harmonics[0]][1], -0.0219, atol=3e-3)
+    first = squares(problem, problem.start)
+    found = least_squares(problem, start, problem.start)
+    assert problem.evaluations <= 20
+    assert squares(problem, found) < 0.05 * first
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("harmonics", [(4, 4), (8, 8)])
+def test_random_starts_reach_the_same_least_squares(harmonics):
+    start, problem = search(*harmonics)
+    best = squares(problem, least_squares(problem, start, problem.start))
+    generator = np.random.default_rng(7)
+    starts = [start.random(problem.names, problem.start, generator) for _ in range(6)]
+    assert max(abs(values[0] - 0.3) for values in starts) <= 0.03
+    ends = [squares(problem, least_squares(problem, start, values)) for values in starts]
+    assert np.mean(np.isclose(ends, best, rtol=1e-6)) >= 0.6
+
+
+@pytest.mark.slow
+def test_smooth_cams_come_first():
+    """Waves are counted from the second harmonic on."""
+    names = ("cam.cosine.0", "cam.cosine.1", "cam.sine.3", "coupler_length")
+    assert [wave(name) for name in names] == [0.0, 0.0, 9.0, 0.0]
+
+
+# What carries the weight that a symmetric cam cannot
+
+
+@pytest.mark.slow
+def test_ways_to_carry_the_weight_are_told_with_their_prices():
+    table = ks.design.weight_options(SAW, 3)
+    ratios = table[f"{RATIO} [1]"]
+    assert ratios["symmetric"] < table.loc["symmetric", "bound"] < ratios["sine terms"] < ratios["coupler spring"]
+    assert table["largest O [N]"].idxmax() == "counterweight"
+    assert table["largest_absolute guide_moment [N m]"].idxmax() == "coupler spring"
+
+
+@pytest.mark.slow
+@every("machine", [
+    ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), ks.scotch_yoke(0.1), ks.slotted_lever(0.1, pivot=(0.0, -0.2)),
+    ks.crank_slider(0.1, 0.4, assembly=-1),
+])  # fmt: skip
+def test_other_machines_than_crank_sliders_are_refused_in_words(machine):
+    with pytest.raises(ks.ParameterError, match="takes a crank-slider, plain or with a cam, whose slider"):
+        ks.design.weight_options(ks.Scene(machine, 1.0), 2)
+
+
+# Where the search for a torque-free cam begins
+
+
+def test_coupler_keeps_mass_inertia_and_the_share_of_its_mass_centre():
+    found = torque_free(2, gravity=False, minimise=SQUARES)
+    coupler = found.scene.mechanism.links["coupler"]
+    assert (coupler.mass, coupler.inertia) == (150.0, 20.5)
+    assert_allclose(coupler.centre[0], found.values["coupler_length"] / 2, rtol=1e-15)
+
+
+def test_the_study_s_ends_are_kept_from_a_plain_machine_as_well():
+    """A scene of Python, of which a plain crank-slider is the reference too."""
+    plain = SAW.variant("plain").scene
+    found = ks.design.torque_free_cam(plain, 3, reference=plain, minimise=SQUARES, gravity=False)
+    assert_allclose(ks.extremes(found.scene.solve(90), "slider_position").range, (1.7, 2.3), rtol=1e-9)
+    assert found.report().loc[f"{RATIO} [1]", "before"] == 1.0
+
+
+def test_a_turned_machine_has_the_turned_design():
+    """Guide and gravity turned together by 0.4 rad: the same harmonics."""
+    plain = SAW.variant("plain").scene
+    parts = {"coupler": ks.Link(150.0, 1.0, 20.5), "slider": ks.Link(600.0)}
+    turned = ks.Scene(
+        ks.crank_slider(0.3, 2.0, guide_angle=0.4, **parts), plain.crank_speed, loads=ks.Gravity(9.81, 0.4 - np.pi / 2)
+    )
+    one, other = (ks.design.torque_free_cam(scene, 2, 2, minimise=SQUARES) for scene in (plain, turned))
+    assert_allclose(list(other.values.values()), list(one.values.values()), rtol=1e-5, atol=1e-7)
+
+
+def test_all_that_is_wrong_with_options_is_told_at_once_wherever_they_come_from():
+    wrong = {"cosine": 0, "sine": 100, "gravity": 1, "counterweight": -3.0, "guide_offset": "low"}
+    with pytest.raises(ks.ParameterError) as options:
+        Options.checked(**wrong)
+    with pytest.raises(ks.ParameterError) as found:
+        torque_free(**wrong, starts=0)
+    for told in map(str, (options.value, found.value)):
+        for name in wrong:
+            assert f"{name} must be" in told
+    assert "starts must be" in str(found.value)
+
+
+def test_options_are_those_of_the_function_and_of_case_files():
+    function = inspect.signature(ks.design.torque_free_cam).parameters
+    for option in fields(Options):
+        assert function[option.name].default == option.default
+    assert {"cosine", "sine", "ends", "guide_offset", "coupler_spring", "counterweight", "cubic"} == set(CAM)

@@ -2,11 +2,15 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.drive.following import from_above
+from kinetostatics.drive.newton import settled
 from kinetostatics.drive.operating import operating_speed
-from support.drives import DISC, driven
+from kinetostatics.drive.resolution import require_inertia, resolved
+from support.drives import DISC, DISC_MOTOR, PUMP, driven
 
 
 def test_a_motor_too_weak_and_a_machine_that_nothing_holds_are_told():
@@ -37,3 +41,59 @@ def test_a_motor_told_to_be_so_many_times_as_strong_carries_the_load():
     times = float(str(caught.value).partition("give a motor ")[2].partition(" times")[0])
     assert 1.6 < times <= 1.667
     assert steady(1.001 * times).mean_speed < 2.0
+
+
+# A scene as one degree of freedom
+
+
+class Speedy:
+    """A torque on the crank by its speed, which declares where it jumps."""
+
+    def __call__(self, motion):
+        """Torque, N m."""
+        return np.where(np.mod(motion.crank_angle, 2 * np.pi) < 2.0, -0.1, -0.05) * motion.crank_speed
+
+    def kinks(self, motion):
+        """No kinks, and two jumps."""
+        return [], [0.0, 2.0]
+
+
+def test_a_function_that_declares_kinks_may_still_depend_on_the_speed():
+    found = driven(DISC, ks.Torque(Speedy(), on="crank"))
+    assert found.kinks.tolist() == [2.0]
+    assert found.loads_by_speed
+    left = [found.here(0.3, speed)[2] - float(DISC_MOTOR.torque_at_crank(speed)) for speed in (5.0, 10.0)]
+    assert left == pytest.approx([-0.5, -1.0], rel=1e-12)
+    assert not driven(DISC, ks.Torque(ks.Table([0.0, 2.0, 4.0], [-1.0, -2.0, -1.5]), on="crank")).loads_by_speed
+
+
+# Running met by following a machine from above
+
+
+def test_from_above_the_running_is_met_that_newton_settles_on():
+    machine = driven(PUMP, ks.Gravity(), ks.Torque(-40.0, on="crank"), flywheel=2.0)
+    speed = operating_speed(machine)
+    pieces, energy = from_above(machine, resolved(machine, speed), speed)
+    own, expected = settled(
+        machine, resolved(machine, speed), lambda pieces: 0.5 * machine.inertia(pieces.angle) * speed**2
+    )
+    at = own.angle % machine.period
+    assert pieces.evaluate(pieces.series(energy), at) == pytest.approx(expected, rel=1e-11)
+
+
+def test_a_machine_that_comes_to_a_standstill_says_where_and_what_is_missing():
+    machine = driven(DISC, ks.Torque(-1e3, on="crank"))
+    with pytest.raises(ks.errors.DriveError, match="comes to a standstill at crank angle") as caught:
+        from_above(machine, resolved(machine, 10.0), 10.0)
+    assert caught.value.missing == pytest.approx(1e3 - float(machine.motor_torque(0.0)), rel=1e-6)
+
+
+# Pieces of a turn in which a machine is resolved
+
+
+def test_a_machine_without_inertia_somewhere_is_refused_with_the_crank_angle():
+    motor = ks.drive.Motor.linear(100.0, 50.0)
+    machine = driven(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), motor=motor, flywheel=0.0)
+    with pytest.raises(ks.errors.DriveError, match="all inertia vanishes at crank angle"):
+        require_inertia(machine, resolved(machine, 3.0))
+    require_inertia(driven(), resolved(driven(), 3.0))

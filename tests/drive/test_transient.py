@@ -8,7 +8,8 @@ import pytest
 
 import kinetostatics as ks
 from support.case_files import shipped
-from support.drives import MOTOR, SAW
+from support.drives import DISC as STANDSTILL_DISC
+from support.drives import DISC_MOTOR, MOTOR, PUMP, SAW
 
 PENDULUM = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)), 1.0, loads=ks.Gravity())
 
@@ -204,3 +205,70 @@ def test_a_motion_into_a_gap_ends_with_the_gap():
     angle = next(a for a in np.linspace(0.0, 6.0, 25) if np.all(rocking.solve(a, on_gap="nan").dynamics.closed))
     with pytest.raises((ks.AssemblyError, ks.DriveError)):
         ks.drive.coast(rocking, 0.0, float(angle), 5.0, 10.0)
+
+
+# Motion over time
+
+
+DISC = ks.Scene(
+    ks.Mechanism("disc", ks.Crank(0.1, ks.Link(inertia=3.0)), ()), 1.0, loads=(ks.Torque(-6.0, on="crank"),)
+)
+
+
+@pytest.fixture(scope="module")
+def coasting():
+    return ks.drive.coast(DISC, 1.0, from_speed=3.0, until="standstill")
+
+
+def test_it_ends_at_the_standstill_with_the_energy_spent(coasting):
+    last = coasting.events[-1]
+    assert (last.name, last.time, last.crank_angle) == ("standstill", pytest.approx(2.0), pytest.approx(3.0))
+    assert coasting.kinetic_energy == pytest.approx(2.0 * coasting.speed**2, rel=1e-12)
+    assert coasting.energy_drift < 1e-9 * 18.0
+    assert "standstill" in repr(coasting)
+
+
+def test_the_table_has_a_row_for_each_time(coasting):
+    table = coasting.at(5).frame()
+    assert table["time [s]"].tolist() == pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0])
+    assert table["load_torque [N m]"].tolist() == pytest.approx([6.0] * 5)
+
+
+def test_times_beyond_the_motion_are_refused(coasting):
+    with pytest.raises(ks.ParameterError, match="time must lie between 0 and 2 s"):
+        coasting.at([0.0, 2.5])
+
+
+# Whether a machine that coasts comes to a standstill at all
+
+
+RUBS = {"O": ks.PinFriction(0.1, 0.03), "guide": ks.GuideFriction(0.1)}
+
+
+@pytest.mark.parametrize(
+    ("scene", "speed", "motor", "words"),
+    [
+        (ks.Scene(PUMP, 1.0), 3.0, None, "give back all that they take"),
+        (ks.Scene(PUMP, 1.0, loads=ks.Torque(2.0, on="crank"), friction=RUBS), 9.0, None, "times the kinetic energy"),
+        (ks.Scene(PUMP, 1.0), -30.0, ks.drive.Motor.linear(100.0, 50.0, transmission=-2.0), "its motor keeps it"),
+        (ks.Scene(PUMP, 1.0, friction=RUBS), 60.0, DISC_MOTOR, "its motor keeps it running"),
+        (ks.Scene(PUMP, 1.0, friction=RUBS), 4.0, DISC_MOTOR, "times the kinetic energy"),
+    ],
+)
+def test_a_machine_that_runs_on_is_not_followed_to_its_standstill(scene, speed, motor, words):
+    with pytest.raises(ks.errors.DriveError, match=f"never comes to a standstill: .*{words}"):
+        ks.drive.coast(scene, 5.0, from_speed=speed, until="standstill", motor=motor)
+
+
+@pytest.mark.parametrize("speed", [2.0, -2.0])
+def test_a_disc_whose_weight_rubs_stops_when_its_momentum_is_used_up(speed):
+    disc = ks.Mechanism("disc", ks.Crank(0.1, ks.Link(50.0, 0.0, 3.0)), ())
+    scene = ks.Scene(disc, 1.0, loads=ks.Gravity(10.0), friction={"O": ks.PinFriction(0.1, 0.03)})
+    motion = ks.drive.coast(scene, 1.0, from_speed=speed, until="standstill")
+    assert motion.time[-1] == pytest.approx(4.0 * 2.0 / (0.1 * 0.03 * 500.0), rel=1e-12)
+    assert motion.friction_energy[-1] == pytest.approx(0.5 * 4.0 * speed**2, rel=1e-12)
+
+
+def test_a_motor_against_the_motion_stops_it():
+    motion = ks.drive.coast(ks.Scene(STANDSTILL_DISC, 1.0), from_speed=-1.0, until="standstill", motor=DISC_MOTOR)
+    assert motion.events[-1].name == "standstill"

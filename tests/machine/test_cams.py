@@ -6,6 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
+from kinetostatics.machine.cam import Cam
 from support.machines import ANGLES, assert_close, largest, planar
 from support.multibody import (
     FINE_DIGITS,
@@ -163,3 +164,97 @@ def test_a_circle_beside_one_that_o_lies_close_to_changes_by_rounding_only():
     for both, one, other in zip(circle.radius(angle), alone.radius(angle), close.radius(angle), strict=True):
         np.testing.assert_allclose(both[0], one, rtol=0, atol=4 * np.spacing(0.3))
         assert np.array_equal(both[1], other)
+
+
+# What every cam has from its radius
+
+
+PHI = np.linspace(0.1, 6.0, 7)
+
+
+class Spiral(Cam):
+    """Radius e^(k phi): the same pressure angle everywhere."""
+
+    def polar(self, angle, ray):
+        """Radius, and its derivatives."""
+        r = np.exp(0.3 * angle)
+        return r, 0.3 * r, 0.09 * r
+
+
+class Round(Cam):
+    """A circle about O."""
+
+    def polar(self, angle, ray):
+        """Radius, and its derivatives."""
+        return 2.0 + 0.0 * angle, 0.0 * angle, 0.0 * angle
+
+
+class Line(Cam):
+    """The straight line x = 1."""
+
+    def polar(self, angle, ray):
+        """Radius, and its derivatives."""
+        x, y = ray
+        return 1.0 / x, y / x**2, (1.0 + y**2) / x**3
+
+
+def test_a_logarithmic_spiral_has_one_pressure_angle_and_its_known_curvature():
+    assert Spiral().pressure_angle(PHI) == pytest.approx(np.full(7, np.arctan(0.3)), rel=1e-14)
+    assert Spiral().curvature_radius(PHI) == pytest.approx(np.exp(0.3 * PHI) * np.sqrt(1.09), rel=1e-14)
+
+
+def test_a_circle_is_as_curved_everywhere_and_a_line_nowhere():
+    assert Round().curvature_radius([0.0, 1.0]).tolist() == [2.0, 2.0]
+    assert abs(1.0 / Line().curvature_radius(0.4)) < 1e-14
+
+
+def test_a_cam_without_its_one_method_says_so():
+    with pytest.raises(TypeError, match="Cam must define polar"):
+        Cam().radius(0.0)
+
+
+# Cam roller
+
+
+TURN = np.linspace(0.0, 2 * np.pi, 25)
+CAM = ks.cams.Circle(0.3, (-0.05, 0.02))
+BLOCK = ks.Link(4.0)
+ROLLER = ks.Mechanism("roller", ks.Crank(None), (ks.CamRoller(CAM, BLOCK),))
+
+
+def test_the_roller_runs_on_the_circle():
+    x, y = ks.solve(ROLLER, TURN, crank_speed=1.0).position("A")
+    assert np.hypot(x + 0.05, y - 0.02) == pytest.approx(np.full(25, 0.3), rel=1e-15)
+
+
+def test_cam_and_slot_force_bear_the_block_alone():
+    s = ks.solve(ROLLER, TURN, crank_speed=6.0, crank_acceleration=-3.0, loads=ks.Gravity())
+    x, y = s.position("A")
+    inward = -np.array([x + 0.05, y - 0.02]) / 0.3
+    across = np.array([-np.sin(TURN), np.cos(TURN)])
+    needed = 4.0 * (s.acceleration("A") + np.array([[0.0], [9.81]]))
+    assert s.cam_force * inward + s.slot_force * across == pytest.approx(needed, abs=1e-11)
+
+
+def test_a_cam_about_o_leaves_the_block_to_its_slot():
+    s = ks.solve(
+        ks.Mechanism("round", ks.Crank(None), (ks.CamRoller(ks.cams.Circle(0.3), BLOCK),)), TURN, crank_speed=6.0
+    )
+    assert s.cam_force == pytest.approx(np.full(25, 4.0 * 36.0 * 0.3), rel=1e-13)
+    assert np.abs(s.slot_force).max() < 1e-12
+
+
+def test_a_cam_roller_alone_is_a_mechanism():
+    """Without any bar: a block that the slotted crank drives around a circle takes its centrifugal force."""
+    machine = ks.Mechanism("wheel", ks.Crank(None), (ks.CamRoller(ks.cams.Circle(0.2), ks.Link(3.0)),))
+    np.testing.assert_allclose(ks.solve(machine, TURN, crank_speed=10.0).cam_force, 3.0 * 0.2 * 100.0, rtol=1e-13)
+
+
+def test_a_block_placed_where_it_is_found_knows_how_its_path_is_curved():
+    """Methods under study find joints in another way; on a circle the curvature is that of the circle."""
+    placed, again = ROLLER.place(TURN), ROLLER.place(TURN)
+    group = ks.CamRoller(CAM, BLOCK, ks.Roller(0.05, 0.06, 210e9, 0.3))
+    group.follow(again, placed.joints)
+    for side, room in ((-1.0, 0.25), (1.0, 0.35)):
+        found = group.relative_radius("contact_pressure", again, side)
+        assert found == pytest.approx(np.full(25, 0.05 * room / 0.3), rel=1e-13)

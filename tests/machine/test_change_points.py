@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.change_points import LINKAGES, LINKS, SIDES, SINGLE, SPEED, each, four_bar, solve
+from support.change_points import LINKAGES, LINKS, NEAR, SIDES, SINGLE, SPEED, each, errors, four_bar, reference, solve
+from support.enclosed import assert_enclosed
 
 # What the branches are
 
@@ -200,3 +201,130 @@ def test_fixed_side_names_its_kinks_and_jumps():
     for name, words in (("parallelogram", "a kink at 0 deg and a kink at 180 deg"), ("deltoid", "a jump, as A meets")):
         with pytest.warns(ks.ConditionWarning, match=words):
             solve(four_bar(name, 1), np.array([0.0, 1.0]))
+
+
+# Change points passed
+
+
+@each
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+def test_motion_forces_and_torque_are_exact_on_both_sides_of_a_change_point_however_near(name, assembly):
+    """The change point lies at crank angle 0, near which angles are as fine as they can be."""
+    behind = SINGLE.get(name) == "far"
+    made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
+    angles = np.array([*NEAR, 0.7, -2.0, 4.0, 9.0])
+    solution = solve(made, angles)
+    wrong = {
+        (angle, quantity): error
+        for place, angle in enumerate(angles.tolist())
+        for quantity, error in errors(solution, place, reference(name, assembly, behind, angle)).items()
+        if not error < 1e-12
+    }
+    assert not wrong
+
+
+@each
+def test_torque_and_motion_at_the_exact_angle_are_what_both_sides_tend_to_and_reactions_are_infinite(name, assembly):
+    behind = SINGLE.get(name) == "far"
+    made = four_bar(name, assembly, (-float(LINKAGES[name][3]), 0.0) if behind else None)
+    solution = solve(made, np.array([-1e-10, 0.0, 1e-10]))
+    for values in (
+        solution.balancing_torque,
+        *solution.velocity("B"),
+        *solution.acceleration("B"),
+        solution.rate("rocker"),
+        solution.angular_acceleration("coupler"),
+    ):
+        assert np.ptp(values) < 1e-6
+    with pytest.warns(ks.ConditionWarning, match="B is infinite at crank angle 0 deg, at a change point"):
+        force = solution.reaction("B")
+    assert np.isinf(np.hypot(*force)[1])
+    assert np.isinf(np.hypot(*solution.reaction("O"))[1])
+
+
+@each
+def test_engines_agree(name, assembly, interpreted):
+    scene = ks.Scene(four_bar(name, assembly, (1.2, -0.9)) if name == "near" else four_bar(name, assembly), SPEED)
+    angles = np.array([0.3, 2.0, 5.0, 8.0, 11.0])
+    numpy, compiled = (scene.solve(angles, engine=engine) for engine in ("numpy", "compiled"))
+    kernels = numpy.dynamics
+    for found in (compiled, kernels):
+        np.testing.assert_allclose(found.balancing_torque, numpy.balancing_torque, rtol=1e-13, atol=1e-13)
+        np.testing.assert_allclose(found.reaction("O2"), numpy.reaction("O2"), rtol=1e-13, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        four_bar("4/1/3/2", "open"),
+        four_bar("deltoid", "crossed"),
+        ks.four_bar(2.5, 5.0, 2.5, rocker_pivot=(-3.0, -4.0), assembly="crossed", **LINKS),
+        ks.crank_slider(0.5, 0.75, guide_angle=2.5, guide_offset=-0.25, assembly="crossed", slider=LINKS["rocker"]),
+        ks.crank_slider(0.5, 0.5, guide_angle=0.4, assembly="open", slider=LINKS["rocker"], coupler=LINKS["coupler"]),
+    ],
+    ids=lambda made: f"{made.name} {made.groups[0].passage}",
+)
+def test_enclosures_by_the_kernels_hold_what_other_formulas_give(made):
+    assert_enclosed(solve(made, np.array([0.3, 4.0, 9.0])), "B")
+
+
+# Programs, batches, sweeps and case files keep to the kind that the words have chosen
+
+
+def program(name, quantities="balancing_torque"):
+    return ks.compile(ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()), quantities, engine="numpy")
+
+
+def test_program_takes_values_that_keep_the_kind():
+    longer = {"crank_length": 2.0, "rocker_length": 2.0, "coupler_length": 3.0, "rocker_pivot.x": 3.0}
+    found = program("parallelogram")(0.3, longer)["balancing_torque"]
+    made = ks.four_bar(2.0, 3.0, 2.0, rocker_pivot=(3.0, 0.0), assembly="open", **LINKS)
+    assert found == ks.Scene(made, SPEED, loads=ks.Gravity()).solve(0.3).balancing_torque
+    assert program("parallelogram")(0.3, {"crank_length": 1.0 + 2.0**-52})["balancing_torque"] > 0
+
+
+def test_program_of_no_change_point_refuses_values_that_make_one():
+    made = ks.four_bar(1.0, 3.0, 2.5, rocker_pivot=(3.0, 0.0), assembly="open", **LINKS)
+    found = ks.compile(ks.Scene(made, SPEED), "balancing_torque", engine="numpy")
+    assert found.derivatives(0.3, "crank_length")["balancing_torque"]["crank_length"] != 0
+    with pytest.raises(ks.ParameterError, match="another kind"):
+        found(0.3, {"rocker_length": 1.0})
+
+
+@pytest.mark.parametrize("path", ["crank_length", "coupler_length", "rocker_length", "rocker_pivot.x"])
+def test_derivatives_by_lengths_are_refused_and_those_by_masses_given(path):
+    found = program("4/1/3/2")
+    with pytest.raises(ks.ParameterError, match=f"no derivative by {path}"):
+        found.derivatives(0.3, (path, "crank.mass"))
+    slopes = found.derivatives(0.3)["balancing_torque"]
+    assert path not in slopes
+    step = 1e-3
+    difference = (
+        found(0.3, {"coupler.mass": 1.5 + step})["balancing_torque"]
+        - found(0.3, {"coupler.mass": 1.5 - step})["balancing_torque"]
+    )
+    assert slopes["coupler.mass"] == pytest.approx(difference / (2 * step), rel=1e-9)
+
+
+def test_batches_of_one_kind_are_solved_and_of_several_refused():
+    scale = np.array([[1.0], [2.5], [0.3]])
+    made = ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4 * scale, 0.0), assembly="open")
+    assert solve(made, np.linspace(0.0, 12.0, 9)).position("B").shape == (2, 3, 9)
+    with pytest.raises(
+        ks.ParameterError, match=r"must be of one kind, but these have change points none; a \+ d = b"
+    ) as error:
+        ks.four_bar(scale, 3 * scale, 2 * scale, rocker_pivot=(4.0, 0.0), assembly="open")
+    assert error.value.designs.tolist() == [True, False, False]
+
+
+def test_reductions_of_forces_that_grow_are_refused_in_sweeps():
+    import pandas as pd
+
+    scene = ks.Scene(four_bar("4/1/3/2", "open"), SPEED, loads=ks.Gravity())
+    designs = pd.DataFrame({"coupler.mass": [1.0, 2.0]})
+    with pytest.raises(ks.ParameterError, match="no mean and no largest value"):
+        ks.sweep(scene, designs, ["mean B"], progress=False)
+    table = ks.sweep(scene, designs, ["largest balancing_torque"], angles=720, progress=False)
+    with_mass = scene.varied({"coupler.mass": 2.0})
+    largest = ks.extremes(with_mass.solve(12), "balancing_torque").range[1]
+    assert table.iloc[1, 1] == pytest.approx(largest, rel=1e-6)

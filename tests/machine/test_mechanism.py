@@ -1,5 +1,7 @@
 """A mechanism: which of several sliders is meant, and what tells its parts apart."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
@@ -31,3 +33,39 @@ def test_which_of_several_sliders_is_meant_must_be_said():
         two_sliders("1", "2").slider_position  # noqa: B018
     with pytest.raises(ks.QuantityError, match="four-bar has no slider"):
         ks.solve(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), 0.1, crank_speed=1.0).slider_velocity  # noqa: B018
+
+
+# Names in a chain of parts
+
+
+def test_a_repeated_group_is_told_briefly():
+    """Links that two groups share are named; what follows from their names is not told too, and the remedy once."""
+    with pytest.raises(ks.ParameterError) as told:
+        ks.Mechanism("twice", ks.Crank(0.1), (ks.SliderGroup(0.5), ks.SliderGroup(0.5, on="A", pin="D")))
+    text = str(told.value)
+    assert "adds link 'coupler' a second time" in text
+    assert "coupler_rate" not in text
+    assert "slider_position" not in text
+    assert text.count("give the second group another pin, pivot_name or label") == 1
+    assert text.endswith("label")
+
+
+# The crank, and what is derived from it
+
+
+@dataclass(frozen=True, eq=False)
+class Forgetful(ks.Crank):
+    """A crank that leaves out the torque it declares."""
+
+    def resolve(self, placement, loads, along):
+        """All but the torque."""
+        return super().resolve(placement, loads, along)._replace(scalars={})
+
+
+def test_a_class_derived_from_the_librarys_crank_is_not_trusted_but_looked_at():
+    groups = (ks.SliderGroup(2.0, slider=ks.Link(600.0)),)
+    assert ks.Mechanism("own", ks.Crank(0.3), groups).trusted
+    own = ks.Mechanism("own", Forgetful(0.3), groups)
+    assert not own.trusted
+    with pytest.raises(ks.ParameterError, match=r"Forgetful declares .*'balancing_torque', but does not resolve it"):
+        ks.solve(own, np.linspace(0.0, 6.0, 8), crank_speed=30.0).balancing_torque  # noqa: B018

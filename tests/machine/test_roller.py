@@ -2,9 +2,11 @@
 
 import re
 
+import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.machine import hertz
 from support.cam_contacts import CAM, LOADS, STEEL, rolled
 
 ROLLER = (0.05, 0.06, *STEEL)
@@ -71,3 +73,25 @@ def test_two_contacts_of_one_name_are_refused():
     follower = ks.RollerFollower(ks.laws.cosine(0.01, 0.5), roller=ks.Roller(*ROLLER))
     with pytest.raises(ks.ParameterError, match="adds quantity 'contact_pressure' a second time"):
         ks.Mechanism("both", ks.Crank(None), (ks.CamRoller(CAM, roller=ks.Roller(*ROLLER)), follower))
+
+
+# Line contact by Hertz
+
+
+HERTZ_STEEL = hertz.modulus((2.1e11, 0.3), (2.1e11, 0.3))
+
+
+def test_equal_materials_have_half_of_one_plane_modulus():
+    assert pytest.approx(2.1e11 / 0.91 / 2.0, rel=1e-14) == HERTZ_STEEL
+
+
+def test_an_ellipse_of_the_largest_pressure_bears_the_force():
+    p, b = (part(-5e3, 0.02, HERTZ_STEEL, 0.015) for part in (hertz.pressure, hertz.half_width))
+    assert 0.5 * np.pi * b * p * 0.02 == pytest.approx(5e3, rel=1e-14)
+    assert p / b == pytest.approx(HERTZ_STEEL / (2.0 * 0.015), rel=1e-14)
+
+
+def test_a_roller_in_a_ring_conforms_and_on_a_disk_does_not():
+    disk, ring = hertz.relative_radius(1.0 / 0.3, 0.03, np.array([-1.0, 1.0]))
+    assert 1.0 / disk == pytest.approx(1.0 / 0.03 + 1.0 / 0.27, rel=1e-14)
+    assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)

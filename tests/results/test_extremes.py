@@ -1,5 +1,6 @@
 """Extremes: where they must lie, that all are found, and what is refused."""
 
+import itertools
 import re
 
 import numpy as np
@@ -9,6 +10,9 @@ from scipy.optimize import brentq
 
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
+from kinetostatics.results.tables import extremes_by_name, extremes_frame, frames
+from kinetostatics.results.turn import Turn
+from support import sweeping as spikes
 from support.every import every
 from support.machines import ANGLES, KINDS, Machine, largest
 
@@ -248,3 +252,97 @@ def test_an_extreme_just_before_a_jump_at_crank_angle_0_is_not_looked_up_on_its_
     assert before < s.balancing_torque.min() - 1e-4
     assert found.range[0] == pytest.approx(before, rel=1e-7)
     assert found.angle[np.argmin(found.value)] == pytest.approx(2 * np.pi, abs=1e-9)
+
+
+# The turn that results are reduced over
+
+
+PUMP = ks.crank_slider(0.1, 0.4)
+
+
+def solved(mechanism=PUMP, *loads):
+    return ks.solve(mechanism, np.zeros(1), crank_speed=1.0, loads=loads, on_gap="nan")
+
+
+def test_every_kink_of_a_table_is_a_sample_with_others_between():
+    table = ks.Table([0.2, 0.4, 0.4000001, 0.4000003, 0.6], [0.0, 0.0, 1.0, 0.0, 0.0], over="travel")
+    turn = Turn.of(solved(PUMP, ks.ProcessForce(table)))
+    assert turn.kinks.size == 8
+    assert np.isin(turn.kinks, turn.angle).all()
+    for kink, following in itertools.pairwise(turn.kinks):
+        assert np.sum((turn.angle > kink) & (turn.angle < following)) >= 3
+
+
+@every("seed", [2, 6, 16])
+def test_no_extremum_hides_between_kinks_nearer_than_samples(seed):
+    scene = spikes.spiky(seed)
+    for name in ("balancing_torque", "O"):
+        low, high = spikes.ends(scene, name)
+        found, size = ks.extremes(scene.solve(13), name).range, max(abs(low), abs(high))
+        assert high - 1e-9 * size <= found[1] < high + 1e-7 * size
+        assert low - 2e-3 * size < found[0] <= low + 1e-9 * size  # few angles stand where a reaction is least
+
+
+# Where sampled values turn
+
+
+def test_extremes_at_a_jump_and_at_the_seam_of_the_turn_are_those_of_the_samples():
+    ramp = ks.extremes(loaded(lambda motion: -3e4 * np.mod(motion.crank_angle / (2 * np.pi), 1.0)), "B")
+    assert np.all(np.isfinite(ramp.value))
+    assert ramp.range[1] == pytest.approx(600 * 33.5**2 * 0.3 * 1.15, rel=1e-12)
+    step = ks.extremes(loaded(lambda motion: np.where(np.mod(motion.crank_angle, 2 * np.pi) < np.pi, -3e4, 0.0)), "B")
+    assert np.all(np.isfinite(step.angle))
+    assert np.all(np.isfinite(step.value))
+
+
+def test_rounding_of_terms_that_cancel_is_no_extremum():
+    law = ks.cams.CosineLaw(0.3, 2.0)
+    balanced = ks.solve(
+        ks.cam_crank_slider(law, law.coupler_length, slider=ks.Link(600)),
+        [0.0],
+        crank_speed=33.5,
+        loads=[ks.Spring.balancing(600, 33.5, 2.0)],
+    )
+    assert len(ks.extremes(balanced, "balancing_torque")) == 0
+    assert np.all(np.isnan(ks.compare(loaded(0.0), balanced).torque_extremum_ratios))
+
+
+@pytest.mark.parametrize(
+    "wave", [lambda s: 1 + 1e-12 * np.cos(s.crank_angle), lambda s: np.round(10 * np.cos(s.crank_angle))]
+)
+def test_ripples_and_treads_are_no_extrema(wave):
+    assert list(ks.extremes(loaded(0.0), wave).maximum) in ([True, False], [False, True])
+
+
+# The table of true extremes
+
+
+YOKE = ks.scotch_yoke(0.1, slider=ks.Link(3.0))
+
+
+def test_extremes_stand_beside_their_crank_angles():
+    table = extremes_frame(ks.solve(YOKE, np.zeros(1), crank_speed=10.0))
+    row = table.loc["slider acceleration"]
+    assert row["unit"] == "m/s2"
+    assert row[["smallest", "smallest at [deg]", "largest", "largest at [deg]"]].tolist() == pytest.approx(
+        [-10.0, 0.0, 10.0, 180.0], abs=1e-6
+    )
+
+
+def test_what_is_rounding_stands_as_zero():
+    table = extremes_frame(ks.solve(YOKE, np.zeros(1), crank_speed=10.0))
+    assert (table.loc["guide force", ["smallest", "largest"]] == 0.0).all()
+
+
+def test_the_tables_of_values_and_of_bounds_have_the_same_rows_and_columns():
+    saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
+    solution = ks.solve(saw, 0.0, crank_speed=33.5)
+    values, bounds = frames(extremes_by_name(solution))
+    assert values.equals(extremes_frame(solution))
+    assert (values.index.equals(bounds.index), list(values)) == (True, list(bounds))
+    assert bounds["largest at [deg]"].isna().all()
+    largest = ks.extremes(solution, "balancing_torque").error_bound.max()
+    assert bounds.loc["balancing torque", "largest"] == pytest.approx(largest, rel=1e-12, abs=0.0)
+    proven = bounds["largest"].notna()
+    assert proven.sum() > 10
+    assert (bounds["largest"][proven] < 1e-11 * values["largest"][proven].abs() + 1e-9).all()

@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
+import kinetostatics as ks
+from kinetostatics.results.bends import bends, bent
 from kinetostatics.results.pieces import Pieces
 from kinetostatics.results.reductions import parsed
+from kinetostatics.results.refining import GOAL, MOST, refined
 
 TURN = 2 * np.pi
 BENDS = np.array([[1.0, 1.002, 4.0, np.nan], [2.0, 2.001, 2.002, 5.0]])
@@ -142,3 +145,112 @@ def test_no_value_is_taken_at_a_bend_nor_where_a_design_has_fewer():
     pieces = Pieces.of(np.array([[1.0, 1.0, 4.0], [2.0, np.nan, np.nan]]), TURN, 192)
     assert not np.isin(pieces.angle, [0.0, 1.0, 2.0, 4.0, *np.linspace(0.0, TURN, 25)]).any()
     np.testing.assert_allclose(pieces.width.sum(axis=1), TURN, rtol=1e-15)
+
+
+# Pieces halved until they tell an output
+
+
+PLACE = np.array([[1.2345], [3.2109], [5.0]])
+
+
+def run(text, function, count=3, vector=False, goal=GOAL, angles=192):
+    """Numbers of designs, whether they are rough, and how many pieces each has."""
+    output = parsed(text)
+    pieces = Pieces.of(np.full((count, 1), np.nan), TURN, angles, output.order or 0)
+    values = {output.quantity: function(pieces.angle, np.arange(count))}
+    evaluate = lambda designs, angle: {output.quantity: function(angle, designs)}  # noqa: E731
+    numbers, rough, pieces_of = np.full(count, np.nan), np.zeros(count, bool), np.zeros(count, int)
+    for designs, own, told in refined(pieces, values, [(output, vector)], evaluate, goal):
+        numbers[designs], rough[designs] = own.estimated(output, told[output.quantity], vector)
+        pieces_of[designs] = (own.width > 0).sum(axis=1)
+    return numbers, rough, pieces_of
+
+
+def hyperbola(width):
+    """What friction does where a reaction passes near zero: a size that turns about within so wide an angle."""
+    return lambda angle, designs: 1.0 + np.hypot(2.0 * np.sin(0.5 * (angle - PLACE[designs])), width)
+
+
+@pytest.mark.parametrize("width", [0.0, 1e-9, 1e-6, 1e-4, 1e-2])
+@pytest.mark.parametrize("text", ["smallest O", "largest O", "mean O", "smallest_at O", "rms O", "range O"])
+def test_a_size_that_passes_near_zero_is_told_however_near(text, width):
+    numbers, rough, pieces = run(text, hyperbola(width))
+    high, angle = np.hypot(2.0, width), np.linspace(0.0, TURN, 7)
+    fine = np.sort(np.concatenate([[0.0], np.ravel([TURN * 2.0**-k for k in range(45)]), angle[1:-1]]))
+    share, weights = np.polynomial.legendre.leggauss(40)
+    nodes = fine[:-1, None] + 0.5 * np.diff(fine)[:, None] * (1.0 + share)
+    values = 1.0 + np.hypot(2.0 * np.sin(0.5 * nodes), width)
+    mean, square = (0.5 * np.sum(np.diff(fine) * (part @ weights)) / TURN for part in (values, values**2))
+    truth = {
+        "smallest O": 1.0 + width,
+        "largest O": 1.0 + high,
+        "mean O": mean,
+        "rms O": np.sqrt(square),
+        "range O": high - width,
+        "smallest_at O": PLACE[:, 0],
+    }[text]
+    assert not rough.any()
+    np.testing.assert_allclose(numbers, truth, rtol=0, atol=(1e-6 if text.endswith("_at") else 1e-7))
+    assert pieces.max() < 150
+
+
+def test_a_jump_that_nobody_declares_is_told_from_both_sides():
+    step = lambda angle, designs: np.where((angle > 1.0) & (angle < PLACE[designs]), 2.0, 0.5)  # noqa: E731
+    for text, truth in {"largest O": 2.0, "smallest O": 0.5, "range O": 1.5}.items():
+        numbers, rough, _ = run(text, step)
+        assert not rough.any()
+        np.testing.assert_allclose(numbers, truth, rtol=1e-14)
+    numbers, rough, _ = run("mean O", step)
+    assert not rough.any()
+    np.testing.assert_allclose(numbers, 0.5 + 1.5 * (PLACE[:, 0] - 1.0) / TURN, rtol=0, atol=1e-8)
+
+
+def test_where_everything_bends_it_is_said():
+    rough_one = lambda angle, designs: np.sin(3e5 * angle) + 0.0 * PLACE[designs]  # noqa: E731
+    _, rough, pieces = run("mean_absolute O", rough_one)
+    _, peak, _ = run("largest O", rough_one)
+    assert rough.all()
+    assert peak.all()
+    assert pieces.max() <= 24 + MOST
+
+
+# Where loads and friction of designs bend
+
+
+def solved(loads=(), friction=None, crank=0.05, offset=0.01):
+    pump = ks.crank_slider(crank, 0.19, guide_offset=offset, slider=ks.Link(1.0))
+    return ks.solve(pump, np.zeros(1), crank_speed=30.0, loads=loads, friction=friction)
+
+
+def test_rows_of_a_smooth_curve_bend_nothing_until_they_are_looked_at_more_closely():
+    x = np.linspace(0.1, 0.3, 1100)
+    one, other = (ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel", back=back)) for back in (None, -x))
+    assert not bent(solved([one]), "O")
+    assert bent(solved([one]), "O", 1e-9)
+    assert bends(solved([one]), 1e-9).angle.shape[1] > 500
+    assert bends(solved([one, other])).angle.shape[1] == 2  # where strokes that differ may jump
+
+
+def test_a_table_over_the_angle_bends_in_every_turn_of_the_period():
+    x = np.arange(0.0, 6.1, 0.5)
+    twice = ks.Torque(ks.Table(x, np.interp(x, [0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0])), on="crank")
+    four = ks.ProcessForce(ks.Table(np.linspace(0, 4 * np.pi, 9), np.zeros(9), period=4 * np.pi), period=4 * np.pi)
+    at = np.unique(bends(solved([twice, four])).angle)
+    assert {0.0, 1.0, 2.0, 2 * np.pi, 1.0 + 2 * np.pi, 2.0 + 2 * np.pi} <= set(at)
+
+
+def test_no_bend_is_beyond_a_period_that_is_thirteen_turns_but_for_rounding():
+    once = ks.Torque(ks.Table([0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0]), on="crank")
+    long = ks.ProcessForce(ks.Table(np.linspace(0, 26 * np.pi, 9), np.zeros(9), period=26 * np.pi), period=26 * np.pi)
+    s = solved([once, long])
+    at = bends(s).angle
+    assert np.nanmax(at) < s.period
+    assert np.sum(np.isclose(at % (2 * np.pi), 1.0)) == 13
+
+
+def test_friction_of_designs_bends_for_each_where_it_does_alone():
+    friction, crank = {"guide": ks.GuideFriction(0.1), "B": ks.PinFriction(0.1, 0.02)}, np.array([[0.03], [0.05]])
+    both = np.sort(bends(solved((), friction, crank)).angle, axis=1)
+    for row, length in zip(both, crank[:, 0], strict=True):
+        alone = np.sort(bends(solved((), friction, float(length))).angle[0])
+        np.testing.assert_allclose(row[: alone.size], alone, rtol=0, atol=1e-12)

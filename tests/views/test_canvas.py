@@ -1,5 +1,7 @@
 """What every figure shares."""
 
+import inspect
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
@@ -139,3 +141,17 @@ def test_a_legend_has_as_many_columns_as_fit_and_stands_above_the_curves(width, 
     assert box.x1 <= frame.x1
     assert ax.transData.transform((180.0, 1.0))[1] < box.y0 + 0.02 * frame.height
     plt.close(figure)
+
+
+# The door to all figures
+
+
+def test_every_figure_is_a_function_with_axes_or_a_search_to_draw_and_an_example():
+    figures = {name: getattr(ks.plots, name) for name in ks.plots.__all__}
+    assert all(">>>" in inspect.getdoc(figure) for figure in figures.values())
+    without_axes = {name for name, figure in figures.items() if "ax" not in inspect.signature(figure).parameters}
+    assert without_axes == {"before_and_after"}
+
+
+def test_only_figures_are_listed():
+    assert dir(ks.plots) == sorted(ks.plots.__all__)

@@ -2,14 +2,22 @@
 
 import itertools
 from pathlib import Path
+from types import SimpleNamespace
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
+from matplotlib.path import Path as LabelsPath
 
 import kinetostatics as ks
-from kinetostatics.views import symbols
+from kinetostatics.views import labels, symbols
+from kinetostatics.views.alike import moves_alike, own_strokes
 from kinetostatics.views.canvas import LOAD
+from kinetostatics.views.labels import Labels, label
+from kinetostatics.views.shape import Shape, Stroke
+from kinetostatics.views.strokes import LINES, PLATES, artist, put
 from support.chains import chain
 
 BARS = {"coupler": ks.Link(2.0, (0.2, 0.05), 0.1), "rocker": ks.Link(1.0, 0.1, 0.02)}
@@ -215,3 +223,175 @@ def test_a_crank_angle_at_which_the_machine_does_not_close_is_said_to_be_one(axe
     ks.plots.mechanism(solution, ax=axes, angles=(40, 160, 280))
     told = [text.get_text() for text in axes.texts if "°" in text.get_text()]
     assert told == ["40°", "160°", "280°: cannot be assembled"]
+
+
+# How each kind of stroke is drawn
+
+
+def test_every_kind_is_a_line_or_a_filled_shape_that_takes_its_points():
+    figure, ax = plt.subplots()
+    corners = np.array([[0.0, 1.0, 1.0], [0.0, 0.0, 2.0]])
+    for kind in (*LINES, *PLATES):
+        made = artist(ax, Stroke(kind, corners[..., None]), 0.5)
+        put(made, corners)
+        assert isinstance(made, Line2D) == (kind in LINES)
+        shown = made.get_xydata() if kind in LINES else made.get_xy()[:3]
+        assert np.array_equal(shown, corners.T)
+    plt.close(figure)
+
+
+# What a mechanism looks like, read off what it declares
+
+
+TURN = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
+
+
+def shape(mechanism):
+    return Shape(ks.solve(mechanism, TURN, crank_speed=0.0).dynamics)
+
+
+def test_the_size_is_the_largest_extent_over_the_turn_and_blocks_follow_it():
+    small, large = (shape(ks.crank_slider(0.1 * size, 0.4 * size)) for size in (1.0, 3.0))
+    assert small.size == pytest.approx(0.6, rel=1e-9)
+    assert large.unit == pytest.approx(3.0 * small.unit, rel=1e-9)
+
+
+def test_the_way_of_a_slider_reaches_over_its_stroke():
+    (ends,) = shape(ks.crank_slider(0.1, 0.4)).ways.values()
+    assert np.ptp(ends, axis=-1).max() >= 0.2 - 1e-9 or np.ptp(ends, axis=0).max() >= 0.2 - 1e-9
+
+
+def test_strokes_of_a_pose_are_finite_lines_of_known_kinds():
+    made = shape(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)))
+    strokes = list(made.strokes(made.turn))
+    assert len(strokes) >= 3
+    assert all(stroke.points.shape[0] == 2 and stroke.points.shape[-1] == 36 for stroke in strokes)
+
+
+def test_a_cam_on_the_crank_is_drawn_through_its_roller_in_every_pose():
+    follower = ks.RollerFollower(ks.laws.cosine(0.02, 0.08), ks.Guide.at(0.7, 0.01))
+    made = shape(ks.Mechanism("cam drive", ks.Crank(0.1), (follower,)))
+    (outline,) = (stroke.points for stroke in made.strokes(made.turn) if stroke.kind == "outline")
+    roller = made.turn.position("R")
+    nearest = np.min(np.hypot(*(outline - roller[:, None, :])), axis=0)
+    assert np.max(nearest) < 2e-3
+    radius = np.hypot(*outline)
+    np.testing.assert_allclose(radius, np.broadcast_to(radius[:, :1], radius.shape), rtol=1e-12)
+
+
+# Signs of drawings
+
+
+def test_a_sign_is_placed_by_origin_direction_and_size_and_mirrored_by_its_sense():
+    origin, up = np.array([[1.0], [2.0]]), np.array([[0.0], [1.0]])
+    points = symbols.placed([(0, 0), (1, 0), (0, 1)], origin, up, 2.0)
+    assert points[..., 0].T.tolist() == [[1, 2], [1, 4], [-1, 2]]
+    assert symbols.placed([(0, 1)], origin, up, 2.0, -1.0)[:, 0, 0].tolist() == [3, 2]
+
+
+@pytest.mark.parametrize("shape", [symbols.SPRING, symbols.DAMPER, symbols.LINE])
+def test_what_joins_two_points_begins_and_ends_at_them(shape):
+    start, end = np.array([[1.0, 0.0], [1.0, 0.0]]), np.array([[4.0, 0.0], [5.0, 2.0]])
+    points = symbols.spanned(shape, start, end, 0.1)
+    assert np.allclose(points[:, 0], start)
+    assert np.allclose(points[:, -1], end)
+
+
+def test_points_that_coincide_are_joined_by_a_sign_without_length():
+    here = np.ones((2, 1))
+    assert np.allclose(symbols.spanned(symbols.LINE, here, here, 0.1), 1.0)
+
+
+def test_ground_is_hatched_on_the_right_of_its_line():
+    points = symbols.hatched(np.array([0.0, 0.0]), np.array([1.0, 0.0]), 0.1)
+    assert points[:, :2].T.tolist() == [[0, 0], [1, 0]]
+    assert np.nanmin(points[1]) == pytest.approx(-0.1)
+    assert np.nanmax(points[1]) == 0.0
+
+
+# Machines that look alike, and what of counterweights and loads each has of its own
+
+
+SLIDER = ks.Link(1.0)
+
+
+def solved(machine, **options):
+    return ks.Scene(machine, 10.0, **options).solve(12)
+
+
+PLAIN = solved(ks.crank_slider(0.1, 0.4, slider=SLIDER))
+WEIGHED = solved(ks.crank_slider(0.1, 0.4, crank=ks.Link(2.0, -0.06), slider=SLIDER), loads=ks.Spring(9.0, 0.4))
+
+
+def test_machines_that_differ_in_masses_and_loads_move_alike():
+    assert moves_alike(PLAIN, WEIGHED)
+
+
+def test_machines_of_other_lengths_joints_or_assembly_do_not():
+    others = [
+        ks.crank_slider(0.1, 0.41, slider=SLIDER),
+        ks.crank_slider(0.1, 0.4, guide_offset=0.01, slider=SLIDER),
+        ks.scotch_yoke(0.1, slider=SLIDER),
+        ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)),
+    ]
+    assert not any(moves_alike(PLAIN, solved(other)) for other in others)
+
+
+def test_strokes_have_the_labels_of_all_that_bear_them():
+    found = own_strokes({"plain": PLAIN, "one": WEIGHED, "other": WEIGHED}, np.array([40.0]))
+    assert {stroke.kind for stroke, _ in found} == {"counterweight", "spring"}
+    assert all(owners == ["one", "other"] for _, owners in found)
+
+
+# Labels that keep clear of each other and of what is drawn
+
+
+@pytest.fixture
+def axes():
+    figure, ax = plt.subplots()
+    ax.plot([0.0, 1.0], [0.5, 0.5])
+    yield ax
+    plt.close(figure)
+
+
+def boxes(ax, texts):
+    ax.figure.canvas.draw()
+    return [text.get_window_extent() for text in texts]
+
+
+def test_labels_of_one_point_do_not_overlap(axes):
+    found = boxes(axes, [label(axes, f"label {place}", (0.5, 0.5)) for place in range(4)])
+    assert not any(one.overlaps(other) for place, one in enumerate(found) for other in found[:place])
+
+
+def test_a_label_leaves_the_curve_beneath_it(axes):
+    (box,) = boxes(axes, [label(axes, "here", (0.5, 0.5))])
+    assert not box.contains(*axes.transData.transform((0.5, 0.5)))
+    height = axes.transData.transform((0.5, 0.5))[1]
+    assert box.y0 > height or box.y1 < height
+
+
+@pytest.mark.slow
+def test_lines_that_lead_to_labels_cross_neither_each_other_nor_labels(monkeypatch):
+    """Points in heaps, from which labels must be led away; ten find room, more need not with every font."""
+    count = 0
+    drawn = SimpleNamespace(draw=lambda renderer: None)
+    for seed in range(12):
+        lines: list[LabelsPath] = []
+        monkeypatch.setattr(
+            labels, "Line2D", lambda x, y, to=lines, **style: to.append(LabelsPath(np.array([x, y]).T)) or drawn
+        )
+        figure, ax = plt.subplots()
+        spots = 0.5 + 0.006 * np.random.default_rng(seed).normal(size=(10, 2))
+        found = boxes(ax, [label(ax, f"{20 * place}°", spot) for place, spot in enumerate(spots)])
+        plt.close(figure)
+        assert not any(one.intersects_path(other, False) for place, one in enumerate(lines) for other in lines[:place])
+        assert not any(line.intersects_bbox(box.padded(-1.0), filled=False) for line in lines for box in found)
+        count += len(lines)
+    assert count
+
+
+def test_all_labels_of_axes_have_one_keeper_that_draws_nothing(axes):
+    texts = [label(axes, "a", (0.1, 0.1)), label(axes, "b", (0.2, 0.2))]
+    (keeper,) = (item for item in axes.artists if isinstance(item, Labels))
+    assert keeper.texts == texts

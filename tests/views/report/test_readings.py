@@ -1,15 +1,20 @@
 """Values at the angles of the page are the library's, in units that read well."""
 
+import math
 import warnings
 
 import numpy as np
+import pandas as pd
 import pytest
 
+import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.results.rounding import FLOOR
 from kinetostatics.views.report.movement import unpacked
 from kinetostatics.views.report.readings import decimals, readings
 from kinetostatics.views.report.subject import subject_of
+from kinetostatics.views.report.tables import of_frame, times, with_published
+from kinetostatics.views.report.words import angle, pretty
 from support.every import every
 from support.reports import near_change_points, series, subject
 
@@ -86,3 +91,56 @@ def test_a_reaction_near_a_change_point_sets_neither_unit_nor_decimals_nor_scale
     assert (found["O"]["unit"], found["O"]["factor"], found["O"]["decimals"]) == ("N", 1.0, 4)
     assert 30.0 < found["O"]["sight"] < 300.0
     assert found["balancing_torque"]["sight"] is None
+
+
+# Tables as text
+
+
+FRAME = pd.DataFrame(
+    {
+        "unit": ["N m", "1"],
+        "plain": [286771.94, 3.16347e-16],
+        "ratio": [6.080751, np.nan],
+        "largest at [deg]": [1e-13, 39.2871],
+    },
+    index=pd.Index(["torque", "power residual"], name="quantity"),
+)
+
+
+def test_a_frame_becomes_text_with_readable_units_and_no_more_digits_than_wanted():
+    found = of_frame(FRAME, "caption", "note")
+    assert found.columns == ["quantity", "unit", "plain", "ratio", "largest at [deg]"]
+    assert found.rows == [["torque", "N·m", "286772", "6.081", "0.00"], ["power residual", "", "3.2e-16", "", "39.29"]]
+    assert (found.words, found.caption, found.note) == (2, "caption", "note")
+
+
+def test_published_figures_stand_in_brackets_behind_ours():
+    found = with_published(FRAME, {"torque": {"plain": "about 287 kN m"}}, "x.toml", "")
+    assert found.rows[0][2] == "286772 (about 287 kN m)"
+
+
+def test_published_figures_without_a_row_or_column_are_refused_all_at_once():
+    published = {"torqe": {"plain": "1"}, "torque": {"plan": "1"}}
+    with pytest.raises(ks.CaseError, match=r"2 problems[\s\S]*row is 'torqe'[\s\S]*column of 'torque' is 'plan'"):
+        with_published(FRAME, published, "x.toml", "")
+
+
+def test_a_ratio_says_how_many_times():
+    assert [times(ratio) for ratio in (6.0807, np.nan, np.inf)] == ["6.081 ×", "", "∞ ×"]
+
+
+# Numbers and units as a reader wants them
+
+
+@every("unit, text", [
+    ("N m", "N·m"), ("kg m2", "kg·m²"), ("kg m^2", "kg·m²"), ("m/s2", "m/s²"), ("rad/s", "rad/s"), ("deg", "°"),
+    ("1", ""), ("", ""),
+    ("N/m**3", "N/m³"),
+])  # fmt: skip
+def test_units_have_raised_exponents_and_dots(unit, text):
+    assert pretty(unit) == text
+
+
+def test_an_angle_of_rounding_is_zero():
+    assert angle(1.1e-13) == angle(-1e-9) == "0.00"
+    assert angle(math.nan) == ""
