@@ -1,4 +1,4 @@
-"""The search itself: several starts, and demands that cannot be met."""
+"""The search: starts, limits, fronts, what it finds and reports, and demands that cannot be met."""
 
 import numpy as np
 import pandas as pd
@@ -176,4 +176,4 @@ def test_searches_find_the_same_with_a_bar(capsys, monkeypatch, wanted):
         variant="cam-circle", angles=72, progress=wanted,
     )  # fmt: skip
     assert ("steps" in capsys.readouterr().err) is wanted
-    assert found.values["spring.stiffness"] == pytest.approx(804e3, rel=0.02)
+    assert dict(found.values)["spring.stiffness"] == pytest.approx(804e3, rel=0.02)

@@ -123,11 +123,11 @@ def test_bound_is_what_the_weight_alone_asks():
 # Least squares of the torque
 
 
-TORQUE_SQUARES_SAW = shipped("sawframe_2r63")
+SAW_CASE = shipped("sawframe_2r63")
 
 
 def search(cosine, sine):
-    start = begun(TORQUE_SQUARES_SAW.variant("cam-cosine").scene, Options(cosine, sine))
+    start = begun(SAW_CASE.variant("cam-cosine").scene, Options(cosine, sine))
     return start, Problem(start.machine, start.vary, ["balancing_torque", "slider_position"], None, 360)
 
 
