@@ -1,4 +1,4 @@
-"""A machine in periodic running as any solution."""
+"""Periodic running as any solution: speed, powers and the summary of several machines."""
 
 import math
 

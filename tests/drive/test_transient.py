@@ -8,7 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from support.case_files import shipped
-from support.drives import DISC as STANDSTILL_DISC
+from support.drives import DISC as WHEEL
 from support.drives import DISC_MOTOR, MOTOR, PUMP, SAW
 
 PENDULUM = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)), 1.0, loads=ks.Gravity())
@@ -270,5 +270,5 @@ def test_a_disc_whose_weight_rubs_stops_when_its_momentum_is_used_up(speed):
 
 
 def test_a_motor_against_the_motion_stops_it():
-    motion = ks.drive.coast(ks.Scene(STANDSTILL_DISC, 1.0), from_speed=-1.0, until="standstill", motor=DISC_MOTOR)
+    motion = ks.drive.coast(ks.Scene(WHEEL, 1.0), from_speed=-1.0, until="standstill", motor=DISC_MOTOR)
     assert motion.events[-1].name == "standstill"
