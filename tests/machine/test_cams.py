@@ -1,4 +1,4 @@
-"""Cams: exact at the singular angle, derivatives by other formulas, tables by their convergence."""
+"""Cams fixed to the frame: the pitch curve, the roller on it, and accuracy at the singular angle."""
 
 import mpmath as mp
 import numpy as np

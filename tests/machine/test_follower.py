@@ -1,4 +1,4 @@
-"""What all followers have in common: the curvature of the roller's path as seen from the crank."""
+"""Followers: laws, motion, contact forces, and the disks they run on."""
 
 import numpy as np
 import pytest
@@ -7,13 +7,7 @@ from numpy.testing import assert_allclose
 import kinetostatics as ks
 from kinetostatics.machine.follower import bend
 from kinetostatics.machine.follower_law import FollowerLaw
-from support.followers import ANGLES as FLAT_FOLLOWER_ANGLES
-from support.followers import ANGLES as GUIDED_FOLLOWER_ANGLES
-from support.followers import ANGLES as ROLLER_FOLLOWER_ANGLES
-from support.followers import ANGLES as SWINGING_FOLLOWER_ANGLES
-from support.followers import BODY, KINDS, LAW, SWING, scene
-
-ANGLES = np.linspace(0.1, 6.2, 12)
+from support.followers import ANGLES, BODY, KINDS, LAW, SWING, scene
 
 
 @pytest.mark.parametrize("kind", [name for name in KINDS if "flat" not in name])
@@ -38,11 +32,8 @@ def test_every_follower_names_its_link_and_says_what_touches_the_cam():
 # What a follower takes as its law
 
 
-FOLLOWER_LAW_LAW = ks.laws.cosine(0.02, 0.08, 0.3)
-
-
 def test_a_group_made_again_keeps_its_law():
-    follower = ks.RollerFollower(FOLLOWER_LAW_LAW)
+    follower = ks.RollerFollower(LAW)
     assert ks.RollerFollower(follower.cam).cam is follower.cam
 
 
@@ -73,8 +64,8 @@ every_face = pytest.mark.parametrize("kind", [ks.RollerFollower, ks.FlatFollower
 
 @every_face
 def test_the_follower_moves_by_the_law(kind):
-    s = scene(kind(LAW, ks.Guide.at(0.4, 0.01), BODY)).solve(GUIDED_FOLLOWER_ANGLES)
-    law = LAW(GUIDED_FOLLOWER_ANGLES)
+    s = scene(kind(LAW, ks.Guide.at(0.4, 0.01), BODY)).solve(ANGLES)
+    law = LAW(ANGLES)
     assert_allclose(s.travel("follower"), law.position, rtol=1e-15)
     assert_allclose(s.travel_velocity("follower"), 12.0 * law.velocity, rtol=1e-14)
     assert_allclose(s.travel_acceleration("follower"), 144.0 * law.acceleration - 30.0 * law.velocity, rtol=1e-13)
@@ -82,12 +73,12 @@ def test_the_follower_moves_by_the_law(kind):
 
 @every_face
 def test_the_torque_is_that_of_spring_and_inertia_whatever_the_offset(kind):
-    law = LAW(GUIDED_FOLLOWER_ANGLES)
+    law = LAW(ANGLES)
     expected = (2.0 * 144.0 * law.acceleration + 5e3 * (law.position - 0.01)) * law.velocity
     for offset in (0.0, 0.02):
         follower = kind(LAW, ks.Guide.at(0.4, offset), BODY)
         machine = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
-        s = ks.solve(machine, GUIDED_FOLLOWER_ANGLES, crank_speed=12.0, loads=ks.Spring(5e3, 0.01, on="follower"))
+        s = ks.solve(machine, ANGLES, crank_speed=12.0, loads=ks.Spring(5e3, 0.01, on="follower"))
         assert_allclose(s.balancing_torque, expected, rtol=1e-13)
 
 
@@ -97,23 +88,21 @@ def test_the_torque_is_that_of_spring_and_inertia_whatever_the_offset(kind):
 def test_the_pressure_angle_is_the_textbooks():
     """Norton: tan = (v - offset) / (sqrt(base^2 - offset^2) + lift), offset to the side that the cam turns to."""
     follower = KINDS["roller, offset"]()
-    s = scene(follower).solve(ROLLER_FOLLOWER_ANGLES)
-    law = LAW(ROLLER_FOLLOWER_ANGLES)
+    s = scene(follower).solve(ANGLES)
+    law = LAW(ANGLES)
     expected = np.arctan((law.velocity + 0.013) / law.position)
     assert_allclose(s.measure("pressure_angle_1"), expected, rtol=1e-14)
 
 
 def test_the_contact_force_is_along_the_normal_of_the_pitch_curve():
     follower = KINDS["roller, offset"]()
-    s = scene(follower).solve(ROLLER_FOLLOWER_ANGLES)
-    centre, first, _ = follower.disk.curve(ROLLER_FOLLOWER_ANGLES)
-    normal = 1j * first / np.abs(first) * np.exp(1j * ROLLER_FOLLOWER_ANGLES)
+    s = scene(follower).solve(ANGLES)
+    centre, first, _ = follower.disk.curve(ANGLES)
+    normal = 1j * first / np.abs(first) * np.exp(1j * ANGLES)
     on_follower = s.scalar("contact_force_1") * normal
-    torque = (np.conj(centre * np.exp(1j * ROLLER_FOLLOWER_ANGLES)) * on_follower).imag
+    torque = (np.conj(centre * np.exp(1j * ANGLES)) * on_follower).imag
     alone = scene(follower).mechanism.crank
-    bare = ks.Scene(ks.Mechanism("bars", alone, s.mechanism.groups[:1]), 12.0, -30.0, s.loads[:2]).solve(
-        ROLLER_FOLLOWER_ANGLES
-    )
+    bare = ks.Scene(ks.Mechanism("bars", alone, s.mechanism.groups[:1]), 12.0, -30.0, s.loads[:2]).solve(ANGLES)
     assert_allclose(s.balancing_torque - bare.balancing_torque, torque, rtol=1e-11)
 
 
@@ -131,15 +120,13 @@ def test_the_side_of_the_offset_trades_pressure_angle_of_rise_and_return():
 
 def test_two_followers_stand_side_by_side():
     pair = (KINDS["roller"](), ks.RollerFollower(LAW, ks.Guide.at(2.0), pin="S", label="_2"))
-    s = ks.solve(ks.Mechanism("cam drive", ks.Crank(None), pair), ROLLER_FOLLOWER_ANGLES, crank_speed=10.0)
+    s = ks.solve(ks.Mechanism("cam drive", ks.Crank(None), pair), ANGLES, crank_speed=10.0)
     assert {"contact_force", "contact_force_2"} <= set(s.scalars)
 
 
 def test_a_guide_may_rub():
     drive = scene(KINDS["roller"]())
-    rubbing = ks.Scene(drive.mechanism, 12.0, 0.0, drive.loads, {"guide": ks.GuideFriction(0.1, 0.05)}).solve(
-        ROLLER_FOLLOWER_ANGLES
-    )
+    rubbing = ks.Scene(drive.mechanism, 12.0, 0.0, drive.loads, {"guide": ks.GuideFriction(0.1, 0.05)}).solve(ANGLES)
     assert np.all(rubbing.friction_loss > 0)
     size = np.max(rubbing.dynamics.largest_torque_term)
     assert_allclose(rubbing.balancing_torque, rubbing.balancing_torque_by_power, rtol=0, atol=1e-12 * size)
@@ -162,7 +149,7 @@ def test_its_numbers_are_parameters_with_derivatives():
 # Flat followers on a cam that turns
 
 
-def solved(law=LAW, offset=0.0, angles=FLAT_FOLLOWER_ANGLES):
+def solved(law=LAW, offset=0.0, angles=ANGLES):
     follower = ks.FlatFollower(law, ks.Guide.at(2.0, offset), ks.Link(2.0))
     machine = ks.Mechanism("cam drive", ks.Crank(None), (follower,))
     return ks.solve(machine, angles, crank_speed=12.0, loads=ks.Spring(5e3, 0.0, on="follower"))
@@ -170,10 +157,10 @@ def solved(law=LAW, offset=0.0, angles=FLAT_FOLLOWER_ANGLES):
 
 def test_the_contact_is_as_far_aside_as_the_velocity():
     s = solved()
-    assert_allclose(s.measure("contact_place"), -LAW(FLAT_FOLLOWER_ANGLES).velocity, rtol=1e-15)
+    assert_allclose(s.measure("contact_place"), -LAW(ANGLES).velocity, rtol=1e-15)
     assert_allclose(
         s.measure("curvature_radius"),
-        LAW(FLAT_FOLLOWER_ANGLES).position + LAW(FLAT_FOLLOWER_ANGLES).acceleration,
+        LAW(ANGLES).position + LAW(ANGLES).acceleration,
         rtol=1e-15,
     )
 
@@ -189,7 +176,7 @@ def test_the_guide_bears_the_moment_of_the_contact_alone():
 def test_no_side_force_whatever_the_pressure():
     assert_allclose(
         solved().scalar("contact_force"),
-        2.0 * 144.0 * LAW(FLAT_FOLLOWER_ANGLES).acceleration + 5e3 * LAW(FLAT_FOLLOWER_ANGLES).position,
+        2.0 * 144.0 * LAW(ANGLES).acceleration + 5e3 * LAW(ANGLES).position,
     )
 
 
@@ -212,19 +199,19 @@ both_sides = pytest.mark.parametrize("kind", ["swinging", "swinging, other side"
 @both_sides
 def test_the_arm_stands_at_the_angle_of_the_law_from_the_line_of_centres(kind):
     follower = KINDS[kind]()
-    s = scene(follower).solve(SWINGING_FOLLOWER_ANGLES)
+    s = scene(follower).solve(ANGLES)
     pivot = complex(*follower.pivot)
     x, y = s.position(follower.pin)
     angle = np.angle((x + 1j * y - pivot) / -pivot)
-    assert_allclose(-follower.assembly * angle, SWING(SWINGING_FOLLOWER_ANGLES).position, rtol=1e-13)
+    assert_allclose(-follower.assembly * angle, SWING(ANGLES).position, rtol=1e-13)
 
 
 @both_sides
 def test_the_pressure_angle_is_between_normal_and_way_of_the_roller(kind):
     follower = KINDS[kind]()
-    s = scene(follower).solve(SWINGING_FOLLOWER_ANGLES)
-    _, first, _ = follower.disk.curve(SWINGING_FOLLOWER_ANGLES)
-    normal = 1j * first / np.abs(first) * np.exp(1j * SWINGING_FOLLOWER_ANGLES)
+    s = scene(follower).solve(ANGLES)
+    _, first, _ = follower.disk.curve(ANGLES)
+    normal = 1j * first / np.abs(first) * np.exp(1j * ANGLES)
     x, y = s.velocity(follower.pin)
     way = (x + 1j * y) / np.hypot(x, y)
     expected = np.arccos(np.abs((np.conj(way) * normal).real))
@@ -237,12 +224,10 @@ def test_moments_about_the_pivot_balance(kind):
     follower = KINDS[kind]()
     bare = type(follower)(follower.cam, 0.1, follower.pivot, follower.assembly)
     machine = ks.Mechanism("cam drive", ks.Crank(None), (bare,))
-    s = ks.solve(
-        machine, SWINGING_FOLLOWER_ANGLES, crank_speed=12.0, loads=ks.Torque(follower.assembly * 30.0, on="arm")
-    )
+    s = ks.solve(machine, ANGLES, crank_speed=12.0, loads=ks.Torque(follower.assembly * 30.0, on="arm"))
     assert np.all(s.scalar("contact_force") > 0)
-    _, first, _ = follower.disk.curve(SWINGING_FOLLOWER_ANGLES)
-    force = s.scalar("contact_force") * 1j * first / np.abs(first) * np.exp(1j * SWINGING_FOLLOWER_ANGLES)
+    _, first, _ = follower.disk.curve(ANGLES)
+    force = s.scalar("contact_force") * 1j * first / np.abs(first) * np.exp(1j * ANGLES)
     x, y = s.position("R")
     arm = x + 1j * y - complex(*follower.pivot)
     assert_allclose((np.conj(arm) * force).imag, -follower.assembly * 30.0, rtol=1e-12)
@@ -255,7 +240,7 @@ def test_an_arm_that_crosses_the_line_of_centres_is_refused():
         ks.solve(ks.Mechanism("cam drive", ks.Crank(None), (follower,)), np.linspace(0, 6, 60), crank_speed=1.0)
 
 
-SWINGING_FOLLOWER_WRONG = {
+IMPOSSIBLE = {
     "pivot at O": ({"pivot": (0.0, 0.0)}, "must not be at O"),
     "no length": ({"arm_length": 0.0}, "arm length must be greater than 0"),
     "side": ({"assembly": 2}, "assembly must be"),
@@ -263,9 +248,9 @@ SWINGING_FOLLOWER_WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", SWINGING_FOLLOWER_WRONG)
+@pytest.mark.parametrize("name", IMPOSSIBLE)
 def test_what_no_follower_can_have_is_refused(name):
-    given, text = SWINGING_FOLLOWER_WRONG[name]
+    given, text = IMPOSSIBLE[name]
     with pytest.raises(ks.ParameterError, match=text):
         ks.SwingingFollower(**{"cam": SWING, "arm_length": 0.1, "pivot": (0.12, 0.0)} | given)
 

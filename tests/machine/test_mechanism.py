@@ -1,4 +1,4 @@
-"""A mechanism: which of several sliders is meant, and what tells its parts apart."""
+"""A mechanism: names of its parts, and cranks of a class of one's own."""
 
 from dataclasses import dataclass
 

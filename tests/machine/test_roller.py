@@ -1,4 +1,4 @@
-"""Rollers and faces as parts of a scene: what they refuse, and their paths."""
+"""Rollers and faces as parts of a scene, and the pressure of Hertz."""
 
 import re
 
@@ -78,17 +78,17 @@ def test_two_contacts_of_one_name_are_refused():
 # Line contact by Hertz
 
 
-HERTZ_STEEL = hertz.modulus((2.1e11, 0.3), (2.1e11, 0.3))
+STEEL_PAIR = hertz.modulus((2.1e11, 0.3), (2.1e11, 0.3))
 
 
 def test_equal_materials_have_half_of_one_plane_modulus():
-    assert pytest.approx(2.1e11 / 0.91 / 2.0, rel=1e-14) == HERTZ_STEEL
+    assert pytest.approx(2.1e11 / 0.91 / 2.0, rel=1e-14) == STEEL_PAIR
 
 
 def test_an_ellipse_of_the_largest_pressure_bears_the_force():
-    p, b = (part(-5e3, 0.02, HERTZ_STEEL, 0.015) for part in (hertz.pressure, hertz.half_width))
+    p, b = (part(-5e3, 0.02, STEEL_PAIR, 0.015) for part in (hertz.pressure, hertz.half_width))
     assert 0.5 * np.pi * b * p * 0.02 == pytest.approx(5e3, rel=1e-14)
-    assert p / b == pytest.approx(HERTZ_STEEL / (2.0 * 0.015), rel=1e-14)
+    assert p / b == pytest.approx(STEEL_PAIR / (2.0 * 0.015), rel=1e-14)
 
 
 def test_a_roller_in_a_ring_conforms_and_on_a_disk_does_not():

@@ -31,13 +31,13 @@ def test_spring_acts_on_the_slider_it_names():
 # Weight
 
 
-GRAVITY_TURN = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
+TWELVE = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
 ARM = ks.Mechanism("arm", ks.Crank(0.5, ks.Link(3.0, (0.2, 0.1), 0.0)), ())
 
 
 @pytest.mark.parametrize("direction", [-np.pi / 2, 0.0, 2.0])
 def test_the_torque_at_rest_holds_the_weight_at_its_arm(direction):
-    s = ks.solve(ARM, GRAVITY_TURN, crank_speed=0.0, loads=ks.Gravity(9.81, direction))
+    s = ks.solve(ARM, TWELVE, crank_speed=0.0, loads=ks.Gravity(9.81, direction))
     x, y = s.position("crank")
     expected = -3.0 * 9.81 * (x * np.sin(direction) - y * np.cos(direction))
     assert s.balancing_torque == pytest.approx(expected, abs=1e-13)
@@ -48,6 +48,6 @@ def test_the_torque_is_the_slope_of_the_potential():
         s = ks.solve(ARM, angle, crank_speed=0.0, loads=ks.Gravity())
         return ks.Gravity().potential(s.dynamics)
 
-    slope = (energy(GRAVITY_TURN + 1e-6) - energy(GRAVITY_TURN - 1e-6)) / 2e-6
-    found = ks.solve(ARM, GRAVITY_TURN, crank_speed=0.0, loads=ks.Gravity()).balancing_torque
+    slope = (energy(TWELVE + 1e-6) - energy(TWELVE - 1e-6)) / 2e-6
+    found = ks.solve(ARM, TWELVE, crank_speed=0.0, loads=ks.Gravity()).balancing_torque
     assert found == pytest.approx(slope, abs=1e-7)
