@@ -1,4 +1,4 @@
-"""Text with a unit to SI."""
+"""Text with a unit to SI, and the dimension of a unit."""
 
 import math
 
