@@ -1,4 +1,4 @@
-"""Extremes: where they must lie, that all are found, and what is refused."""
+"""Extremes: where they must lie, that all are found, their table, and what is refused."""
 
 import itertools
 import re

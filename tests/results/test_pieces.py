@@ -1,4 +1,4 @@
-"""Reductions by polynomials between bends: as exact integrals and peaks have them."""
+"""Reductions by polynomials between kinks: as exact integrals and peaks have them."""
 
 import numpy as np
 import pytest
