@@ -108,17 +108,17 @@ def test_whole_numbers_as_crank_angles_do_not_cut_results_off():
 # A scene
 
 
-SCENE_TURN = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
+TWELVE = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
 SCENE = ks.Scene(ks.crank_slider(0.1, 0.4, slider=ks.Link(3.0)), 10.0, 2.0, (ks.Gravity(), ks.Spring(500.0, 0.4)))
 
 
 def test_a_scene_is_solved_as_its_parts_are():
     whole, parts = (
-        SCENE.solve(SCENE_TURN),
-        ks.solve(SCENE.mechanism, SCENE_TURN, crank_speed=10.0, crank_acceleration=2.0, loads=SCENE.loads),
+        SCENE.solve(TWELVE),
+        ks.solve(SCENE.mechanism, TWELVE, crank_speed=10.0, crank_acceleration=2.0, loads=SCENE.loads),
     )
     assert np.array_equal(whole.balancing_torque, parts.balancing_torque)
-    assert SCENE.solve(12).crank_angle == pytest.approx(SCENE_TURN)
+    assert SCENE.solve(12).crank_angle == pytest.approx(TWELVE)
 
 
 def test_the_period_is_that_of_loads_and_mechanism():
