@@ -1,4 +1,4 @@
-"""What every figure shares."""
+"""What every figure shares: units, axes, legends."""
 
 import inspect
 

@@ -1,4 +1,4 @@
-"""Charts of the studies: axes, units, and a curve for each method."""
+"""Charts of studies, designs and fronts: axes, units, and a curve for each method."""
 
 import matplotlib.pyplot as plt
 import numpy as np

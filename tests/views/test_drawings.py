@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
-from matplotlib.path import Path as LabelsPath
+from matplotlib.path import Path as CurvePath
 
 import kinetostatics as ks
 from kinetostatics.views import labels, symbols
@@ -377,9 +377,9 @@ def test_lines_that_lead_to_labels_cross_neither_each_other_nor_labels(monkeypat
     count = 0
     drawn = SimpleNamespace(draw=lambda renderer: None)
     for seed in range(12):
-        lines: list[LabelsPath] = []
+        lines: list[CurvePath] = []
         monkeypatch.setattr(
-            labels, "Line2D", lambda x, y, to=lines, **style: to.append(LabelsPath(np.array([x, y]).T)) or drawn
+            labels, "Line2D", lambda x, y, to=lines, **style: to.append(CurvePath(np.array([x, y]).T)) or drawn
         )
         figure, ax = plt.subplots()
         spots = 0.5 + 0.006 * np.random.default_rng(seed).normal(size=(10, 2))

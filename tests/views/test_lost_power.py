@@ -87,12 +87,12 @@ SAW = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150.0, 1.0, 20.5), slider=ks.Lin
 CUT = ks.ProcessForce(ks.Table(np.linspace(0.0, TURN, 41)[:-1], 4e3 + 4e3 * np.sin(TURN / 40 * np.arange(40))))
 
 
-def saw_drives(*loads):
+def driven_saw(*loads):
     return ks.Scene(SAW, 33.0, loads=(ks.Gravity(), *loads))
 
 
 def test_figures_show_speed_and_the_torques_at_the_crank():
-    run = ks.drive.steady(saw_drives(CUT), MOTOR, 1000.0)
+    run = ks.drive.steady(driven_saw(CUT), MOTOR, 1000.0)
     speed, torques = run.plot()
     assert speed.get_ylabel() == "crank speed [rad/s]"
     drive, machine = (line.get_ydata() for line in torques.get_lines())
