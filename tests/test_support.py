@@ -46,19 +46,6 @@ def test_an_input_that_raises_nothing_where_an_error_is_due_is_named():
     assert [line.split(":")[0] for line in failure(test)[1:]] == ["1"]
 
 
-def test_decorators_give_all_combinations_beside_fixtures_and_keep_their_names():
-    seen = []
-
-    @every("a", {"x": 1, "y": 2})
-    @every("b", [1, 2, 3], ids=["one", "two", "three"])
-    def test(a, b, fixture):
-        seen.append((a, b, fixture))
-        assert (a, b) != ("y", 2)
-
-    assert failure(test, fixture="given")[1].startswith("y-two: AssertionError")
-    assert seen == [(a, b, "given") for a in "xy" for b in (1, 2, 3)]
-
-
 def work(seconds):
     """Keep this process busy."""
     end = time.process_time() + seconds
@@ -84,16 +71,3 @@ def test_a_test_is_stopped_once_at_work_or_waiting_so_that_its_failure_can_be_to
     with pytest.raises(TimeoutError, match=r"more than 0\.02 s"):
         stopped()
     spend(0.05)
-
-
-def test_an_input_that_would_skip_the_others_fails():
-    @every("value", [1, 2])
-    def test(value):
-        pytest.skip("no")
-
-    assert "leave it out" in failure(test)[0]
-
-
-def test_no_inputs_are_no_test():
-    with pytest.raises(ValueError, match="no inputs value"):
-        every("value", [])

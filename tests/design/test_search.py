@@ -28,12 +28,6 @@ def test_demands_end_with_how_near_the_best_comes():
     assert set(error.value.values) == {"spring.stiffness"}
 
 
-def test_a_machine_that_cannot_be_built_within_the_bounds_is_said():
-    pump = ks.Scene(ks.crank_slider(0.1, 0.3, slider=ks.Link(1.0)), 10.0)
-    with pytest.raises(ks.DesignError, match="no design that can be built"):
-        ks.design.optimise(pump, {"coupler_length": (0.05, 0.09)}, "largest O", angles=90)
-
-
 class Circle:
     """Numbers within bounds, and by how much the sum of their squares exceeds a limit."""
 

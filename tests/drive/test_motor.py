@@ -66,13 +66,6 @@ def test_what_no_motor_can_have_is_refused(changes, words):
     assert words in str(caught.value)
 
 
-def test_all_that_is_wrong_with_a_motor_is_said_at_once():
-    with pytest.raises(ks.ParameterError) as caught:
-        Motor.kloss(-1.0, 0.0, synchronous_speed=math.inf, overload=0.5, transmission=0.0, inertia=None)
-    for name in ("power", "; speed", "synchronous_speed", "overload", "transmission", "inertia"):
-        assert name in str(caught.value)
-
-
 @pytest.mark.parametrize(
     ("speed", "torque", "words"),
     [

@@ -7,10 +7,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.drive.following import from_above
-from kinetostatics.drive.newton import settled
 from kinetostatics.drive.operating import operating_speed
 from kinetostatics.drive.resolution import require_inertia, resolved
-from support.drives import DISC, DISC_MOTOR, PUMP, driven
+from support.drives import DISC, DISC_MOTOR, driven
 
 
 def test_a_motor_too_weak_and_a_machine_that_nothing_holds_are_told():
@@ -68,17 +67,6 @@ def test_a_function_that_declares_kinks_may_still_depend_on_the_speed():
 
 
 # Running met by following a machine from above
-
-
-def test_from_above_the_running_is_met_that_newton_settles_on():
-    machine = driven(PUMP, ks.Gravity(), ks.Torque(-40.0, on="crank"), flywheel=2.0)
-    speed = operating_speed(machine)
-    pieces, energy = from_above(machine, resolved(machine, speed), speed)
-    own, expected = settled(
-        machine, resolved(machine, speed), lambda pieces: 0.5 * machine.inertia(pieces.angle) * speed**2
-    )
-    at = own.angle % machine.period
-    assert pieces.evaluate(pieces.series(energy), at) == pytest.approx(expected, rel=1e-11)
 
 
 def test_a_machine_that_comes_to_a_standstill_says_where_and_what_is_missing():

@@ -181,45 +181,6 @@ def test_a_motor_too_weak_for_the_peak_without_flywheel_stalls_at_a_crank_angle(
     assert 1.5 < caught.value.crank_angle < math.pi
 
 
-@pytest.mark.parametrize(
-    ("scene", "motor", "flywheel", "words"),
-    [
-        (ks.Scene(ks.crank_slider(0.1, 0.4, slider=ks.Link(3.0)), 1.0), MOTOR, 0.0, "all inertia vanishes"),
-        (ks.Scene(ks.crank_slider(0.1, 0.4), 1.0), MOTOR, 0.0, "all inertia vanishes"),
-        (saw(), ks.drive.Motor.constant(30.0), 10.0, "nothing holds the speed"),
-        (saw(FAN), None, 10.0, "depend on the speed"),
-        (saw(), ks.drive.Motor.table([0.0, 100.0], [300.0, 200.0]), 10.0, "runs away"),
-    ],
-)
-def test_running_that_does_not_exist_is_refused(scene, motor, flywheel, words):
-    with pytest.raises(ks.DriveError, match=words):
-        ks.drive.steady(scene, motor, flywheel)
-
-
-@pytest.mark.parametrize(
-    ("scene", "motor", "flywheel", "words"),
-    [
-        (SAW, MOTOR, 1.0, "scene must be a Scene"),
-        (saw(), "55 kW", 1.0, "motor must be a Motor"),
-        (saw(), MOTOR, -1.0, "flywheel must be at least 0"),
-        (saw(), MOTOR, math.nan, "flywheel must be finite"),
-        (saw(), MOTOR, "big", "flywheel must be a number"),
-        (saw(ks.ProcessForce(np.ones(720))), MOTOR, 1.0, "table over the crank angles given"),
-        (
-            ks.Scene(ks.crank_slider(np.array([[0.3], [0.2]]), 2.0, slider=ks.Link(1.0)), 1.0),
-            MOTOR,
-            1.0,
-            "one design at a time",
-        ),
-        (saw(ks.ProcessForce(lambda motion: motion.slider_acceleration)), MOTOR, 9e3, "depends on the crank accelera"),
-        (ks.Scene(SAW, 0.0), None, 1.0, "crank_speed of the scene must not be 0"),
-    ],
-)
-def test_what_cannot_be_driven_is_refused(scene, motor, flywheel, words):
-    with pytest.raises(ks.ParameterError, match=words):
-        ks.drive.steady(scene, motor, flywheel)
-
-
 def test_a_mechanism_that_does_not_make_full_turns_is_refused_with_its_gaps():
     rocking = ks.Scene(ks.four_bar(0.6, 0.8, 0.3, rocker_pivot=(0.7, 0.4), rocker=ks.Link(5.0)), 1.0)
     with pytest.raises(ks.AssemblyError) as caught:

@@ -154,12 +154,3 @@ def test_a_crank_alone_has_no_joints_to_find_and_its_forces_are_right(name):
     for quantity in ("O", "balancing_torque", "shaking_force"):
         found = method.prepare(fan, quantity, method.settings[0])()
         np.testing.assert_array_equal(found, components(fan, quantity))
-
-
-def test_two_masses_are_made_of_the_couplers_that_are_known_and_other_groups_are_left_alone():
-    group = ks.SliderGroup(0.4, **BODIES)
-    beside = solved(ks.Mechanism("own", ks.Crank(0.1), (Wheel(), group)))
-    alone = solved(ks.Mechanism("plain", ks.Crank(0.1), (group,)))
-    method = CHOSEN["two-mass coupler"]
-    found, expected = (method.prepare(s, "O", None)() for s in (beside, alone))
-    np.testing.assert_allclose(found, expected, rtol=1e-14, atol=1e-14 * np.abs(expected).max())

@@ -381,18 +381,6 @@ def test_the_angle_of_a_rocker_that_turns_fully_is_continuous(mechanism, turns):
     assert ks.linkage.rocker_angle(s.at(8.0)) == pytest.approx(np.interp(8.0, s.crank_angle, angle), abs=1e-3)
 
 
-def test_the_rocker_angle_of_a_batch_is_that_of_each_design():
-    lengths = np.array([[0.5], [0.52]])
-    rows = ks.linkage.rocker_angle(
-        ks.solve(ks.four_bar(lengths, 0.45, 0.4, rocker_pivot=(0.2, 0.0)), np.linspace(-9.0, 9.0, 41), crank_speed=3.0)
-    )
-    for row, length in zip(rows, lengths[:, 0], strict=True):
-        one = ks.solve(
-            ks.four_bar(float(length), 0.45, 0.4, rocker_pivot=(0.2, 0.0)), np.linspace(-9.0, 9.0, 41), crank_speed=3.0
-        )
-        assert np.allclose(row, ks.linkage.rocker_angle(one), rtol=0.0, atol=1e-13)
-
-
 @pytest.mark.parametrize(
     ("mechanism", "function", "growth"),
     [

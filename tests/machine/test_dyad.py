@@ -155,10 +155,6 @@ def test_what_no_dyad_can_have_is_refused(fields, words):
         ks.Dyad(**{"length1": 0.4, "length2": 0.3} | fields)
 
 
-def test_names_of_its_joints_may_be_a_list():
-    assert ks.Dyad(0.4, 0.3, ["A", "C"]).on == ("A", "C")
-
-
 def test_a_joint_that_no_part_places_is_named():
     with pytest.raises(ParameterError, match="Dyad hangs on joint 'X', which no part before it places"):
         ks.Mechanism("chain", ks.Crank(0.1), (ks.Dyad(0.4, 0.3, ("A", "X")),))
@@ -167,15 +163,3 @@ def test_a_joint_that_no_part_places_is_named():
 def test_a_second_dyad_needs_names_of_its_own():
     with pytest.raises(ParameterError, match=r"adds joint 'D' a second time.*adds link 'dyad1' a second time"):
         ks.Mechanism("chain", ks.Crank(0.1), (*watt().groups, ks.Dyad(0.5, 0.4, ("A", "E"))))
-
-
-def test_dyads_of_other_joints_have_programs_of_their_own():
-    """Names of the joints belong to the structure: the same numbers on other joints are another machine."""
-    crank = ks.Crank(0.1, ARM)
-    pins = ks.Pin(on="crank", at=(0.0, 0.1), name="C"), ks.Pin(on="crank", at=(-0.1, 0.0), name="E")
-    found = [
-        solve(ks.Mechanism("chain", crank, (*pins, ks.Dyad(0.3, 0.3, ends, dyad1=ROD))), engine="numpy").position("D")
-        for ends in (("A", "C"), ("A", "E"), ("C", "A"))
-    ]
-    assert np.max(np.abs(found[0] - found[1])) > 0.01
-    assert np.max(np.abs(found[0] - found[2])) > 0.01

@@ -1,8 +1,6 @@
 """The straight guide: the same line by angle and offset as by two points, and what passes none."""
 
 import re
-from collections import namedtuple
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -65,19 +63,6 @@ def test_a_guide_through_points_along_an_axis_has_that_direction_in_its_structur
         crank_speed=3.0,
     )
     np.testing.assert_allclose(s.balancing_torque, plain.balancing_torque, rtol=0, atol=1e-14)
-
-
-def test_a_guide_along_an_axis_is_taken_by_whoever_makes_it_anew():
-    down = ks.Guide.through((0.0, 0.0), (0.0, -1.0))
-    assert replace(down, guide_offset=0.1).direction == (0.0, -1.0)
-    assert ks.Guide(None, 0.0, namedtuple("Direction", "x y")(0.0, -1.0)).direction == (0.0, -1.0)
-
-
-@pytest.mark.parametrize("direction", [(1.0, -0.0), (-0.0, -1.0)])
-def test_an_axis_has_one_zero(direction):
-    """For structures that are equal share what is recorded of the first."""
-    zero = next(part for part in ks.Guide(None, 0.0, direction).exact if not part)
-    assert np.copysign(1.0, zero) == 1.0
 
 
 def two_guides():

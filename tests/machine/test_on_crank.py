@@ -17,7 +17,6 @@ from support.every import every
 
 TURN = np.linspace(-7.0, 7.0, 41)
 SIDES = (1, -1)
-CLOSE_PIVOTS = (0.51, 0.0), (0.3, 0.4), (np.array([[0.3], [2.0]]), 0.4)
 
 
 def placed(crank, ahead=None):
@@ -116,15 +115,6 @@ def test_lengths_that_differ_little_from_what_others_leave_them_are_told(given, 
     radius, offset, length = given
     assert on_crank.is_small(Throw((radius, 0.0), True), offset, length) is close
     assert on_crank.is_small(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
-
-
-def test_ordinary_sliders_and_levers_are_placed_as_ever_and_close_ones_with_care():
-    ordinary = ks.crank_slider(0.3, 2.0, guide_offset=0.1), ks.slotted_lever(0.1, pivot=(0.0, -0.2), offset=0.02)
-    close = ks.crank_slider(0.3, 0.41, guide_offset=0.1), ks.slotted_lever(0.1, pivot=(0.0, -0.2), offset=0.099)
-    ordinary = *ordinary, ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
-    close = *close, *(ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=pivot) for pivot in CLOSE_PIVOTS)
-    assert not any(mechanism.groups[-1].is_close for mechanism in ordinary)
-    assert all(mechanism.groups[-1].is_close for mechanism in close)
 
 
 @pytest.mark.slow

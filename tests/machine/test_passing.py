@@ -266,16 +266,6 @@ def test_fixed_side_names_its_jump_and_its_kink():
 # What follows from it
 
 
-@every
-def test_engines_agree(name, assembly, interpreted):
-    scene = ks.Scene(lever(name, assembly, 0.7), SPEED)
-    angles = np.array([0.3, 2.0, 5.0, 8.0, 11.0])
-    numpy, compiled = (scene.solve(angles, engine=engine) for engine in ("numpy", "compiled"))
-    for found in (compiled, numpy.dynamics):
-        np.testing.assert_allclose(found.balancing_torque, numpy.balancing_torque, rtol=1e-12, atol=1e-12)
-        np.testing.assert_allclose(found.reaction("O2"), numpy.reaction("O2"), rtol=1e-12, atol=1e-11)
-
-
 @pytest.mark.parametrize(
     "made",
     [

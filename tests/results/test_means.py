@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.results.means import (
     NODES,
-    WEIGHTS,
     _mean_of_absolute_torque,
     closed_turn,
     energy_per_turn,
@@ -38,27 +36,6 @@ def test_the_mean_is_that_of_calculus(name):
     found, error = means(lambda x: function(x)[None], TURN, 1e-14)
     assert found[0] == pytest.approx(expected, rel=1e-11, abs=1e-14)
     assert error[0] < 1e-10
-
-
-def test_several_functions_together_are_as_right_as_each_alone():
-    functions, expected = zip(*FUNCTIONS.values(), strict=True)
-    found, _ = means(lambda x: np.array([function(x) for function in functions]), TURN, 1e-14)
-    assert found == pytest.approx(expected, rel=1e-11, abs=1e-14)
-
-
-def test_a_known_jump_given_as_an_edge_costs_no_more_panels():
-    asked = []
-
-    def jumping(x):
-        asked.append(x.size)
-        return np.where(x > 1.2345, 2.0, -1.0)[None]
-
-    found, _ = means(jumping, TURN, 1e-14, edges=[1.2345])
-    knowing = sum(asked)
-    asked.clear()
-    means(jumping, TURN, 1e-14)
-    assert found[0] == pytest.approx(FUNCTIONS["jump"][1], rel=1e-14)
-    assert knowing < sum(asked)
 
 
 @pytest.mark.parametrize("of", [mean_absolute_torque, energy_per_turn])
@@ -92,12 +69,6 @@ def _exact_rule():
         return [(1 + x) / 2 for x in roots], [
             1 / ((1 - x * x) * slope**2) for x, slope in zip(roots, slopes, strict=True)
         ]
-
-
-def test_nodes_and_weights_are_those_of_gauss_to_the_last_digit():
-    nodes, weights = _exact_rule()
-    assert all(abs(own - node) <= UNIT for own, node in zip(NODES, nodes, strict=True))
-    assert all(abs(own - weight) <= UNIT * weight for own, weight in zip(WEIGHTS, weights, strict=True))
 
 
 def test_the_rounding_of_a_mean_is_a_bound_on_that_of_its_own_sum_and_near_it():

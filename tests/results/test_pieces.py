@@ -103,15 +103,6 @@ def test_a_kink_just_before_a_bend_is_told_by_the_step_there():
         assert (doubts[at - 1] > 1e-4) != jump
 
 
-def test_nothing_is_joined_at_bends_nor_at_edges_that_rounding_sets_apart_from_them():
-    place = np.linspace(0.0, TURN, 25)[3]
-    pieces = Pieces.of(np.array([[place + 1e-14, 0.0], [4.0, np.nan]]), TURN, 192)
-    real = pieces.width > 0.0
-    apart = [start[~joined & real] for start, joined, real in zip(pieces.start, pieces.joined, real, strict=True)]
-    np.testing.assert_allclose(apart[0], [0.0, place], rtol=0, atol=1e-12)
-    assert apart[1].tolist() == [4.0]
-
-
 def test_values_that_are_no_polynomial_between_bends_are_told():
     pieces = Pieces.of(np.array([[1.0]]), TURN, 192)
     middle = np.pi / 24  # of the first piece
@@ -139,12 +130,6 @@ def test_a_jump_between_a_bend_and_an_even_edge_that_rounding_sets_apart_is_no_p
         for text, expected in {"largest O": 3.0, "smallest O": 1.0, "range O": 2.0}.items():
             assert found(text, step, bends) == pytest.approx(expected, rel=1e-14), text
             assert found(text, step, bends, vector=True) == pytest.approx(expected, rel=1e-14), text
-
-
-def test_no_value_is_taken_at_a_bend_nor_where_a_design_has_fewer():
-    pieces = Pieces.of(np.array([[1.0, 1.0, 4.0], [2.0, np.nan, np.nan]]), TURN, 192)
-    assert not np.isin(pieces.angle, [0.0, 1.0, 2.0, 4.0, *np.linspace(0.0, TURN, 25)]).any()
-    np.testing.assert_allclose(pieces.width.sum(axis=1), TURN, rtol=1e-15)
 
 
 # Pieces halved until they tell an output

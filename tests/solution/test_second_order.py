@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.solution.second_order import Terms, beyond, found
+from kinetostatics.solution.second_order import Terms, found
 from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 120, endpoint=False)
@@ -69,23 +69,11 @@ def test_designs_of_a_batch_are_told_together():
     assert "of 240 crank angles" in text
 
 
-@every("sizes", [0.0, 1e-9])
-def test_differences_within_rounding_are_no_second_order(sizes):
-    first, second = {"a": np.full((1, 3), 1e-12)}, {("a",): np.full((1, 3), sizes)}
-    assert beyond(np.zeros(3), first, second, np.full((1, 3), 1e-9)) is None
-
-
 def terms_of(compute, deviations, numbers=(0.0,) * 9):
     """Terms of a function of the numbers of a scene, one for each path that is given."""
     leaves = SimpleNamespace(numbers=list(numbers), with_numbers=lambda moved: SimpleNamespace(numbers=moved))
     places = {path: place for place, path in enumerate(deviations)}
     return Terms(lambda moved: compute(*moved.numbers), compute(*numbers), leaves, places, deviations)
-
-
-def test_differences_are_exact_for_squares_and_products():
-    terms = terms_of(lambda x, y, *_: np.array([[x * x + 3.0 * x * y]]), {"x": 0.5, "y": 0.25}, [2.0, 7.0])
-    assert terms.of_one() == {("x",): 0.25, ("y",): 0.0}
-    assert terms.of_two() == {("x", "y"): 0.375}
 
 
 @every("count", range(2, 9))

@@ -69,11 +69,6 @@ def test_ordinary_scene_needs_all_of_its_model_for_thirteen_digits(saw):
     assert min(made.error for made in needs.alone) > 1e-3
 
 
-def test_everything_may_go_within_100_per_cent(saw):
-    needs = ks.needs(saw["plain"], "O", within=1.0)
-    assert needs.smallest.operations == needs.ladder[-1].operations < needs.full.operations / 3
-
-
 def test_ingredient_of_no_effect_is_dropped_but_the_full_scene_stays_the_measure(saw):
     """A process force that is zero throughout, as a function that costs operations."""
     plain = saw["plain"]
@@ -264,13 +259,6 @@ def test_batch_is_refused_with_its_shape():
 def test_quantity_that_is_zero_throughout_is_refused(saw):
     with pytest.raises(ks.ParameterError, match=r"guide_moment is 0\.0"):
         ks.needs(saw["plain"], "guide_moment")
-
-
-def test_unknown_quantity_is_refused_with_those_there_are(saw):
-    with pytest.raises(
-        ks.QuantityError, match=r"'torqe', allowed: 'balancing_torque'.*'guide_force'.*'A', 'B', 'guide', 'O'"
-    ):
-        ks.needs(saw["plain"], "torqe")
 
 
 def test_simplifications_left_out_for_their_number_are_told(monkeypatch):

@@ -252,32 +252,6 @@ def test_command_prints_the_front_and_where_the_files_are(few, tmp_path, capsys)
     assert list(table["quantity"].unique()) == ["O", "balancing_torque"]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["--variant", "cam"], ["variant", "cam-circle", "cam-cosine", "plain"]),
-        (["--variant", "plain", "--variant", "plan"], ["variant", "plain"]),
-        (["--quantity", "torqe"], ["quantity", "balancing_torque", "slider_acceleration", "guide_force", "O", "A"]),
-        (["--quantity", "O", "--quantity", "guide_forc"], ["quantity", "did you mean 'guide_force'"]),
-    ],
-)
-def test_unknown_variant_or_quantity_lists_the_choices_and_leaves_no_files(few, arguments, said, tmp_path, capsys):
-    folder = tmp_path / "out"
-    assert cli.main(["precision", "sawframe_2r63", "--out", str(folder), "--angles", "16", *arguments]) == 2
-    printed, told = capsys.readouterr()
-    (line,) = [line for line in told.splitlines() if line not in {method.name for method in FEW}][-1:]
-    assert printed == ""
-    assert all(word in told[told.index("kinetostatics: ") :] for word in said), line
-    assert not folder.exists() or not list(folder.iterdir())
-
-
-@pytest.mark.parametrize("arguments", [["sawframe_2r63"], ["sawframe_2r63", "--out", "x", "--angles", "0"], []])
-def test_wrong_usage_of_the_command_ends_with_status_2(arguments):
-    with pytest.raises(SystemExit) as caught:
-        cli.main(["precision", *arguments])
-    assert caught.value.code == 2
-
-
 def test_command_without_python_flint_says_what_to_install_and_writes_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "flint", None)
     assert cli.main(["precision", "sawframe_2r63", "--out", str(tmp_path / "out")]) == 2

@@ -6,7 +6,6 @@ import subprocess
 import sys
 import tracemalloc
 import warnings
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pandas as pd
@@ -16,7 +15,7 @@ import kinetostatics as ks
 from kinetostatics.engines import compiled
 from kinetostatics.numbers.units import base_factor
 from kinetostatics.results.reductions import REDUCTIONS
-from kinetostatics.sweeps import sweeps, together, workers
+from kinetostatics.sweeps import together
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support.case_files import shipped, written
@@ -133,39 +132,6 @@ def test_tables_beforehand_are_cut_into_blocks_like_designs(interpreted, monkeyp
 
 
 # Memory and progress
-
-
-def test_more_designs_go_together_where_they_take_little_time_and_memory(interpreted, monkeypatch, tmp_path):
-    """Compiled, here, and without a table for each of them, unless told; what is written keeps its chunks."""
-    sizes, run = [], workers.run_chunk
-
-    def counted(job, frame):
-        sizes.append(len(frame))
-        return run(job, frame)
-
-    monkeypatch.setattr(workers, "run_chunk", counted)
-    monkeypatch.setattr(sweeps, "CHUNK", 3)
-    monkeypatch.setattr(sweeps, "WIDE", 4)
-    tabled = ks.ProcessForce(ks.Table((1.0, 3.0), (5.0, 9.0), over="travel"))
-
-    def loaded(crank):
-        mechanism = ks.crank_slider(crank, 2.0, slider=ks.Link(1.0))
-        return ks.Scene(mechanism, 10.0, loads=(tabled,))
-
-    designs = DESIGNS[["crank [mm]"]].head(6)
-    options = [
-        ({"engine": "compiled"}, [4, 2]),
-        ({"engine": "numpy"}, [3, 3]),
-        ({"engine": "compiled", "folder": tmp_path}, [3, 3]),
-        ({"engine": "compiled", "executor": ThreadPoolExecutor(1)}, [3, 3]),
-        ({"engine": "compiled", "chunk": 5}, [5, 1]),
-        ({"engine": "compiled", "source": loaded}, [3, 3]),
-    ]
-    for told, expected in options:
-        sizes.clear()
-        table = sweep(**{"source": factories.pump, "designs": designs, "outputs": OUTPUTS, "angles": 24} | told)
-        assert (table[FAILED] == "").all()
-        assert sizes == expected, told
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ from support import sweeping as spikes
 from support.case_files import shipped
 from support.every import every
 from support.factories import DESIGNS, OUTPUTS
-from support.sweeping import SAW, assert_equal, rising, sweep
+from support.sweeping import assert_equal, sweep
 
 
 def test_a_function_of_plain_numbers_is_called_for_each_design():
@@ -39,16 +39,6 @@ def test_as_many_designs_as_crank_angles_are_told_from_values_at_these():
     designs = pd.DataFrame({"acceleration": np.linspace(100.0, 300.0, LEAST)})
     column, flat = (sweep(made(shape), designs, "largest O", angles=LEAST) for shape in ((-1, 1), -1))
     assert flat["largest O [N]"].to_numpy() == pytest.approx(column["largest O [N]"].to_numpy(), rel=1e-12)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("engine", ["numpy", "compiled"])
-def test_it_does_not_matter_which_designs_come_together(interpreted, engine):
-    outputs = ["harmonic_2 O", "mean O", "rms O", "largest_at O", "smallest balancing_torque"]
-    options = {"variant": "cam-circle", "angles": 12, "engine": engine}
-    found = [sweep(SAW, rising(60), outputs, chunk=chunk, **options) for chunk in (1, 7, 10_000)]
-    assert_equal(found[0], found[2])
-    assert_equal(found[1], found[2])
 
 
 OF_SPIKES = ["largest", "smallest", "range", "mean_absolute", "rms"]
@@ -159,12 +149,6 @@ def test_jumps_at_dead_centres_are_no_peaks_by_rounding(angle, back, rubs):
     at = scene.solve(36)
     truth = [end for name in ("O", "B", "balancing_torque") for end in ks.extremes(at, name).range]
     np.testing.assert_allclose(found.iloc[2, 1:-1].to_numpy(dtype=float), truth, rtol=1e-6)
-
-
-def test_motions_are_swept_as_without_the_loads_that_bend_forces():
-    designs, outputs = pd.DataFrame({"crank": [0.04, 0.05]}), ["largest slider_velocity", "rms slider_acceleration"]
-    bare = lambda crank: ks.Scene(steep_pump(crank).mechanism, 30.0)  # noqa: E731
-    assert_equal(sweep(steep_pump, designs, outputs), sweep(bare, designs, outputs))
 
 
 def test_a_slider_that_leaves_its_table_is_still_told():

@@ -79,11 +79,6 @@ def test_animation_moves_bars_and_force_arrows_and_saves_as_gif(saw, axes, tmp_p
     assert (tmp_path / "saw.gif").read_bytes().startswith(b"GIF8")
 
 
-def test_a_quantity_the_mechanism_lacks_is_refused_by_name(saw, axes):
-    with pytest.raises(ks.QuantityError, match="cam_force"):
-        ks.plots.cam_force(saw["plain"], ax=axes)
-
-
 def test_hodograph_marks_stand_at_the_reactions_of_their_crank_angles(saw, axes):
     ks.plots.hodograph(saw["plain"], "O", ax=axes, marks=90)
     marks = np.array(axes.lines[1].get_data())
@@ -114,14 +109,6 @@ def test_acceleration_error_of_an_inclined_cosine_law_is_nil(axes):
     machine = ks.cam_crank_slider(law, law.coupler_length, guide_angle=0.5)
     ks.plots.acceleration_error(ks.solve(machine, turn, crank_speed=9.0, crank_acceleration=20.0), ax=axes)
     assert np.max(np.abs(axes.lines[0].get_ydata())) < 1e-11
-
-
-def test_a_table_of_forces_does_not_hinder_drawing_the_mechanism(axes):
-    turn = np.linspace(0, 2 * np.pi, 36, endpoint=False)
-    machine = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
-    solution = ks.solve(machine, turn, crank_speed=9.0, loads=[ks.ProcessForce(np.sin(turn))])
-    ks.plots.mechanism(solution, ax=axes)
-    ks.plots.hodograph(solution, ax=axes)
 
 
 def test_a_batch_is_refused_with_its_shape(axes):

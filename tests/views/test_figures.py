@@ -76,13 +76,6 @@ def test_what_only_one_variant_bears_is_named_in_the_legend():
     plt.close(made)
 
 
-def test_torques_that_cover_each_other_are_one_curve_under_all_their_names():
-    made = drawn("mower_drive", "torque")
-    curves = [line for line in made.axes[0].lines if len(line.get_xdata()) > 2]
-    assert [line.get_label() for line in curves] == ["unbalanced, partial-1, partial-2, partial-3, optimal", "full"]
-    plt.close(made)
-
-
 MEANT = {
     "sawframe_2r63": True,
     "sawframe_2r63_optimal": True,

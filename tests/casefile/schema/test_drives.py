@@ -121,15 +121,6 @@ def test_a_drive_is_no_part_of_what_designs_vary_and_sweeps_compare(tmp_path):
     np.testing.assert_array_equal(driven.solve(9).balancing_torque, plain.solve(9).balancing_torque)
 
 
-def test_all_that_is_wrong_with_drives_is_told_with_the_rest_of_the_file(tmp_path):
-    drive = KLOSS.replace("0.75 kW", "0.75 kN").replace("500 kg cm^2", "-1 kg m^2")
-    found = problems(tmp_path, f'{PUMP}{drive}[variants.pump]\ncoupler = {{ mass = "-1 kg" }}\n')
-    told = "\n".join(found)
-    for part in ("common.drive.motor.power", "common.drive.flywheel", "variants.pump.coupler.mass"):
-        assert part in told
-    assert len(found) == 3
-
-
 def test_the_shipped_sawframe_has_a_drive_marked_assumed():
     saw = ks.load_case("sawframe_2r63")
     assert {item.flywheel for item in saw.variants.values()} == {1000.0}

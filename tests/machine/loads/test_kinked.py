@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.machine.loads import bends_of, is_bent, kinked, period_on
+from kinetostatics.machine.loads import is_bent, kinked, period_on
 from support.sweeping import sweep
 
 PUMP = ks.crank_slider(0.05, 0.19, guide_offset=0.01, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(2.0))
@@ -55,21 +55,6 @@ def test_what_declares_kinks_is_found_and_nothing_else():
     assert found == [table.force, LOADS["value"].force, LOADS["load"]]
     assert is_bent(found[1], 1e-5)
     assert period_on(found[1], PUMP) == 2 * np.pi
-
-
-def test_of_what_declares_kinks_alone_all_bend_and_nothing_besides():
-    angle, jumps, rest = bends_of(Pulse(), ks.solve(PUMP, 0.0, crank_speed=30.0), 1e-5)
-    assert angle.tolist() == [[1.0, 1.0 + 2e-5]]
-    assert jumps.tolist() == [True, True]
-    assert rest == 0.0
-
-
-def test_rows_of_a_table_that_count_as_straight_are_told_by_how_much_they_bend():
-    x = np.linspace(0.0, 2 * np.pi, 500)
-    smooth, sharp = (ks.Table(x, y) for y in (np.sin(x), np.interp(x, x[[0, 250, 499]], [0.0, 1.0, 0.0])))
-    step = x[1]
-    assert 0.05 * step**2 < bends_of(smooth, None, 1e-3)[2] < step**2
-    assert bends_of(sharp, None, 1e-5)[2] < 1e-9
 
 
 @pytest.mark.parametrize("kind", LOADS)

@@ -82,20 +82,6 @@ def test_tables_are_frozen_equal_by_content_and_can_be_pickled():
         table.period = TURN
 
 
-def test_a_table_does_not_follow_the_array_it_was_made_from():
-    force = GAS.copy()
-    table = Table(STROKES, force, period=2 * TURN)
-    force[:] = 7.0
-    assert table.y.tolist() == GAS[:-1].tolist()
-
-
-def test_a_load_has_the_period_of_its_table_and_no_other():
-    table = Table(STROKES, GAS, period=2 * TURN)
-    assert ks.ProcessForce(table).period == ks.ProcessForce(table, period=4 * np.pi).period == 4 * np.pi
-    with pytest.raises(ks.ParameterError, match=r"the period is 6.28.*, but that of its force 12.56.*; leave it out"):
-        ks.ProcessForce(table, period=2 * np.pi)
-
-
 @pytest.mark.parametrize("turns", [1, 2, 3, 7])
 def test_a_period_of_whole_turns_is_taken_up_to_rounding(turns):
     assert ks.ProcessForce(1.0).period == TURN
@@ -116,17 +102,6 @@ def test_a_four_stroke_engine_has_its_gas_force_in_every_other_turn(tmp_path, en
     )
     expected = np.interp(angle, STROKES, GAS) * with_gas.slider_velocity / variant.crank_speed
     np.testing.assert_allclose(with_gas.balancing_torque, without.balancing_torque - expected, rtol=0, atol=1e-9)
-
-
-def test_a_table_of_one_turn_gives_what_it_gave_before(tmp_path):
-    angle = np.radians(np.arange(0, 360, 10))
-    force = 1e3 * np.sin(angle)
-    solution = ks.load_case(written(tmp_path, angle, force)).solve("a", 100)
-    by_hand = ks.ProcessForce(lambda motion: np.interp(motion.crank_angle, angle, force, period=TURN))
-    expected = ks.solve(
-        solution.mechanism, solution.crank_angle, crank_speed=solution.crank_speed, loads=by_hand
-    ).balancing_torque
-    np.testing.assert_allclose(solution.balancing_torque, expected, rtol=1e-13, atol=1e-13 * np.max(np.abs(expected)))
 
 
 def test_a_table_changed_after_loading_changes_nothing(tmp_path):

@@ -46,17 +46,6 @@ def test_the_mean_torque_is_the_work_of_both_strokes_by_hand():
     assert ks.compare(s, s).mean_torques[0] == pytest.approx(by_hand, rel=1e-13)
 
 
-def test_a_table_is_known_between_the_crank_angles_of_a_solution():
-    assert solved(DIAGRAM, [0.1, 0.2]).at(ANGLES).balancing_torque == pytest.approx(solved(DIAGRAM).balancing_torque)
-
-
-@pytest.mark.slow
-def test_the_compiled_loop_reads_tables_as_arrays_do():
-    pytest.importorskip("numba")
-    compiled = solved(DIAGRAM, engine="compiled").balancing_torque
-    assert largest(compiled - solved(DIAGRAM).balancing_torque) < 1e-13 * largest(compiled)
-
-
 def test_derivatives_go_through_the_travel_of_a_table():
     program = ks.compile(ks.Scene(PUMP, 100.0, 0.0, ks.ProcessForce(DIAGRAM)), "balancing_torque", engine="numpy")
     angles, step = ANGLES[(ANGLES > 0.3) & (np.abs(ANGLES - np.pi) > 0.3)], 1e-7

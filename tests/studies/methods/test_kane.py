@@ -9,7 +9,7 @@ import kinetostatics as ks
 from kinetostatics.design.linkage import chain_unit, chain_unit_angle
 from kinetostatics.mechanics import quantities
 from kinetostatics.numbers.elementary import UNIT
-from kinetostatics.studies.methods import kane, kane_equations, papers
+from kinetostatics.studies.methods import kane, papers
 from kinetostatics.studies.methods.method import NotGivenError
 from support import followers
 from support.machines import ANGLES, CLOSE, FourBar, Machine, largest
@@ -133,16 +133,6 @@ def test_cams_without_a_formula_give_their_own_radius_and_derivatives():
         mechanism = ks.cam_crank_slider(cam, 0.8, coupler=HEAVY, slider=HEAVY)
         s = ks.solve(mechanism, ANGLES, crank_speed=9.0, loads=ks.Spring(90.0, 0.5))
         assert_sound(s)
-
-
-def test_second_mechanism_of_a_kind_derives_nothing_and_of_a_pattern_compiles_nothing(monkeypatch):
-    kane.all_forces(LOADED["plain"])
-    monkeypatch.setattr(kane_equations, "KanesMethod", None)
-    level = Machine("plain", guide_angle=0.0, acceleration=0.0).solve()
-    assert max(error(level, name, parts) for name, parts in kane.all_forces(level)().items()) < CLOSE
-    monkeypatch.setattr(kane.sp, "lambdify", None)
-    longer = Machine("plain", guide_angle=0.0, acceleration=0.0, coupler_length=0.9).solve()
-    assert max(error(longer, name, parts) for name, parts in kane.all_forces(longer)().items()) < CLOSE
 
 
 @every_method
