@@ -300,7 +300,8 @@ class CrankSlider:
     """A crank-slider in motion under load, in plain numbers.
 
     `pin` gives the complex position of A at a crank angle; `has_cam` tells a roller on a cam from a pin on the crank;
-    `push` is the force on the slider along the guide as a function of its coordinate there.
+    `push` is the force on the slider along the guide as a function of its coordinate there. `friction` has the radius
+    of the friction circle by pin, and (coefficient, half length or None) of the guide.
     """
 
     pin: Callable[[Any], Any]
@@ -314,9 +315,15 @@ class CrankSlider:
     acceleration: float = 0.0
     gravity: tuple[float, float] = (0.0, 0.0)
     push: Callable[[Any], Any] = lambda coordinate: 0.0
+    friction: dict[str, Any] = field(default_factory=dict)
 
     def solve(self, angle):
-        """Motion and forces by name at one crank angle; the coupler's angle by the arc sine."""
+        """Motion and forces by name at one crank angle."""
+        return self.system.solve(angle)
+
+    @property
+    def system(self):
+        """All bodies and joints; the coupler's angle by the arc sine."""
         A, along = cache(self.pin), lambda phi: mp.expj(self.guide_angle)
 
         @cache
@@ -329,14 +336,17 @@ class CrankSlider:
         inner = "block" if self.has_cam else "crank"
         poses = {"crank": (_origin, mp.expj), "block": (A, mp.expj), "coupler": (A, coupler), "slider": (B, along)}
         joints = {"O": Pin("crank", None, _origin), "A": Pin("coupler", inner, A), "B": Pin("slider", "coupler", B)}
-        joints["guide"] = Slide("slider", None, B, along)
+        for name, radius in self.friction.items():
+            if name != "guide":
+                joints[name].rho = radius
+        joints["guide"] = Slide("slider", None, B, along, *self.friction.get("guide", ()))
         if self.has_cam:
             joints |= {"slot": Slide("block", "crank", A, mp.expj), "cam": Roller("block", A)}
         bodies = {name: self.bodies.get(name, Body()) for name in poses if name != "block" or self.has_cam}
         push = lambda phi: self.push((B(phi) / along(phi)).real) * along(phi)  # noqa: E731
         gravity = self.gravity[0] * mp.expj(self.gravity[1])
         applied = [("slider", push, B)]
-        return System(bodies, poses, joints, self.speed, self.acceleration, gravity, applied).solve(angle)
+        return System(bodies, poses, joints, self.speed, self.acceleration, gravity, applied)
 
 
 def _origin(phi):
