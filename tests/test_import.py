@@ -25,7 +25,7 @@ def printed(code):
     return subprocess.run([sys.executable, "-c", code], cwd=root, check=True, capture_output=True, text=True).stdout
 
 
-def test_import_loads_next_to_nothing_and_solve_no_heavy_library():
+def test_import_is_light():
     loaded = "{name for name in sys.modules if name.partition('.')[0] not in sys.stdlib_module_names}"
     code = (
         f"import sys; before = {loaded}; import kinetostatics as ks; print(len({loaded} - before)); "
@@ -36,7 +36,7 @@ def test_import_loads_next_to_nothing_and_solve_no_heavy_library():
     assert heavy == "[]"
 
 
-def test_every_public_name_is_there_by_star_by_dir_and_for_type_checkers():
+def test_public_names_are_complete():
     found: dict = {}
     exec("from kinetostatics import *", found)
     assert set(ks.__all__) <= set(found)
@@ -46,14 +46,14 @@ def test_every_public_name_is_there_by_star_by_dir_and_for_type_checkers():
     assert shown == ks._WHERE
 
 
-def test_a_name_is_looked_for_once_and_is_the_same_as_in_its_module():
+def test_name_is_looked_up_once():
     from kinetostatics.solution.scene import solve
 
     assert ks.solve is solve
     assert vars(ks)["solve"] is solve
 
 
-def test_a_name_that_is_not_there_is_an_attribute_error():
+def test_absent_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="module 'kinetostatics' has no attribute 'sovle'"):
         ks.sovle  # noqa: B018 - looking it up is the test
 
@@ -61,7 +61,7 @@ def test_a_name_that_is_not_there_is_an_attribute_error():
 # One version, wherever it is asked
 
 
-def test_the_package_tells_its_version_in_three_numbers():
+def test_version_has_three_numbers():
     assert ks.__version__ == version.__version__
     assert all(part.isdigit() for part in version.__version__.split("."))
     assert version.__version__.count(".") == 2
@@ -74,7 +74,7 @@ PACKAGE = Path(str(resources.files(ks)))
 
 
 @pytest.mark.parametrize("marked", [True, False])
-def test_mypy_takes_types_from_the_installed_package_for_its_marker_alone(tmp_path, marked):
+def test_mypy_reads_types_of_the_package(tmp_path, marked):
     modulefinder = pytest.importorskip("mypy.modulefinder")
     installed = tmp_path / "kinetostatics"
     installed.mkdir()
@@ -105,7 +105,7 @@ MADE = [
 
 
 @pytest.mark.parametrize("error", MADE, ids=lambda error: type(error).__name__)
-def test_an_error_is_one_of_the_family_and_travels_with_its_numbers(error):
+def test_errors_are_one_family_and_picklable(error):
     again = pickle.loads(pickle.dumps(error))
     assert isinstance(error, errors.KinetostaticsError)
     assert (type(again), str(again), vars(again)) == (type(error), str(error), vars(error))
@@ -118,7 +118,7 @@ def test_every_error_of_the_module_is_tried_here():
     assert all(issubclass(kind, Warning) for kind in kinds - family - {errors.KinetostaticsError})
 
 
-def test_a_hint_says_where_it_is_before_what_it_says_and_travels_with_both():
+def test_hints_name_their_place_and_are_picklable():
     for hint in (errors.HintWarning("saw.toml", "variants.plain", "is it in mm?"), errors.HintWarning("is it in mm?")):
         again = pickle.loads(pickle.dumps(hint))
         assert again.hint == hint.hint == "is it in mm?"

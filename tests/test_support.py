@@ -24,7 +24,7 @@ def failure(test, **fixtures):
     return str(caught.value).splitlines()
 
 
-def test_every_input_that_fails_is_named_with_its_reason_and_no_other():
+def test_failing_inputs_are_named_with_reasons():
     @every("value, limit", [(1, 2), (3, 2), (5, 2)])
     def test(value, limit):
         if value > limit:
@@ -37,7 +37,7 @@ def test_every_input_that_fails_is_named_with_its_reason_and_no_other():
     ]
 
 
-def test_an_input_that_raises_nothing_where_an_error_is_due_is_named():
+def test_input_without_its_error_is_named():
     @every("text", ["1", "one"])
     def test(text):
         with pytest.raises(ValueError, match="one"):
@@ -63,7 +63,7 @@ def test_each_input_has_the_time_of_a_test():
 
 
 @pytest.mark.parametrize("spend", [work, time.sleep])
-def test_a_test_is_stopped_once_at_work_or_waiting_so_that_its_failure_can_be_told(spend):
+def test_slow_test_is_stopped_once(spend):
     def stopped():
         with limited(0.02):
             spend(1.0)

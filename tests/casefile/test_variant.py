@@ -15,7 +15,7 @@ from support.case_files import shipped
 from support.every import every
 
 
-def test_what_the_file_derives_follows_other_numbers_and_what_it_states_stays():
+def test_derived_numbers_follow_and_stated_ones_stay():
     saw = ks.load_case("sawframe_2r63").variants["cam-circle"]
     heavier = saw.varied({"slider.mass": 660.0})
     (_, before), (_, after) = saw.loads, heavier.loads
@@ -56,7 +56,7 @@ def test_the_law_of_a_cam_gives_the_length_left_out(tmp_path):
         variant(tmp_path, HEAD + 'mechanism = "cam-crank-slider"\ncam = { kind = "circle", radius = "0.3 m" }\n')
 
 
-def test_balancing_without_a_weight_on_the_crank_is_refused(tmp_path):
+def test_balancing_needs_a_counterweight_on_the_crank(tmp_path):
     text = SAW + '[variants.a.balancing]\nmethod = "full"\ncoupler = { arm = "-0.2 m" }\n'
     with pytest.raises(ks.CaseError, match=r"needs a counterweight on the crank|balancing"):
         variant(tmp_path, text)
@@ -77,7 +77,7 @@ CASE = shipped("sawframe_2r63")
         lambda case: copy.deepcopy(case).variants["plane"],
     ],
 )
-def test_a_variant_that_is_not_there_is_an_error_of_the_case_with_the_nearest_name(ask):
+def test_unknown_variant_error_names_the_nearest(ask):
     with pytest.raises(
         ks.CaseError, match=r"sawframe_2r63.toml: 1 problem\n  variant is 'plane'.*mean 'plain'\?"
     ) as raised:
@@ -92,7 +92,7 @@ def test_a_design_that_is_not_there_is_told_so_too():
         CASE.designs["x"]
 
 
-def test_whoever_asks_whether_there_is_a_variant_gets_an_answer():
+def test_membership_test_of_variants_works():
     assert CASE.variants.get("plane") is None
     assert "plane" not in CASE.variants
     assert list(CASE.variants) == ["plain", "cam-circle", "cam-cosine"]
@@ -118,7 +118,7 @@ def test_a_centre_at_mid_length_needs_a_length():
         link_of(table)
 
 
-def test_a_guide_is_told_by_points_or_by_numbers_not_by_both():
+def test_guide_takes_points_or_numbers_not_both():
     assert guide_of(guide()).is_level
     assert guide_of(guide(guide_angle=0.3)).guide_angle == 0.3
     assert guide_of(guide(guide_through=((0.0, 1.0), (1.0, 1.0)))).guide_offset == 1.0
@@ -130,7 +130,7 @@ def test_a_guide_is_told_by_points_or_by_numbers_not_by_both():
 
 
 @pytest.mark.parametrize("name", IN_PYTHON)
-def test_numbers_of_a_chain_are_called_as_in_scenes_and_vary_as_there(name):
+def test_chain_paths_equal_those_of_scenes(name):
     """But for what the file derives of others: centres at mid-length, a spring that balances, a law's guide."""
     case = ks.load_case(EXAMPLES / f"{name}.toml")
     variant = case.variant(case.reference)
@@ -148,7 +148,7 @@ def test_numbers_of_a_chain_are_called_as_in_scenes_and_vary_as_there(name):
             assert variant.varied({path: value}).scene.parameters == scene.varied({path: value}).parameters, path
 
 
-def test_centres_at_mid_length_follow_lengths_that_vary():
+def test_mid_length_centres_follow_varied_lengths():
     variant = ks.load_case(EXAMPLES / "dyad.toml").variant("watt")
     lengths = np.array([[0.35], [0.36]])
     varied = variant.varied({"dyad1_lengthW": lengths}).scene.parameters
@@ -156,7 +156,7 @@ def test_centres_at_mid_length_follow_lengths_that_vary():
     assert varied["dyad2W.centre.along"] == 0.15
 
 
-def test_a_varied_variant_keeps_what_it_read_from_files():
+def test_a_varied_variant_keeps_its_tables():
     variant = ks.load_case(EXAMPLES / "slider.toml").variant("plain")
     assert [path.name for path in variant.files] == ["indicator.csv"]
     (before,) = (item for item in variant.loads if isinstance(item, ks.ProcessForce))

@@ -13,7 +13,7 @@ from support.cam_contacts import CAM, STEEL, contact, rolled, solved
 from support.machines import ANGLES
 
 
-def test_pressure_of_hertz_by_radii_and_the_larger_half_width():
+def test_hertz_pressure_by_radii_and_half_width():
     """By way of b = sqrt(8 F R1 R2 (1 - nu^2) / (pi w E (R1 + R2))) and p0 = 2 F / (pi b w), radius by radius."""
     for speed in (25.0, 33.5, 60.0):
         found = contact(solved(speed))
@@ -28,13 +28,13 @@ def test_pressure_of_hertz_by_radii_and_the_larger_half_width():
         assert_allclose(np.abs(cam), np.where(ring, pitch + roller, pitch - roller), rtol=1e-12)
 
 
-def test_two_materials_press_like_their_mean_compliance():
+def test_two_materials_press_by_mean_compliance():
     one, other = (210e9, 0.3), (110e9, 0.25)
     mixed = ks.design.contact(solved(), 0.05, 0.06, (one[0], other[0]), (one[1], other[1]))
     assert mixed.modulus == pytest.approx(1.0 / (0.91 / 210e9 + 0.9375 / 110e9), rel=1e-15)
 
 
-def test_steel_on_steel_has_the_factor_of_the_handbooks():
+def test_steel_on_steel_has_the_handbook_factor():
     """p0 = 0.418 sqrt(F E / (w R)) for equal moduli and a ratio of 0.3 (Dubbel; Hertz's formula by Stribeck)."""
     modulus = hertz.modulus(STEEL, STEEL)
     assert hertz.pressure(5e3, 0.02, modulus, 0.04) == pytest.approx(
@@ -42,14 +42,14 @@ def test_steel_on_steel_has_the_factor_of_the_handbooks():
     )
 
 
-def test_the_largest_pressure_is_that_between_the_angles_given():
+def test_largest_pressure_lies_between_angles():
     found = contact()
     fine = contact(solved(angles=np.linspace(0, 2 * np.pi, 20001)))
     assert found.largest_pressure.value == pytest.approx(fine.pressure.max(), rel=1e-8)
     assert found.largest_pressure.value >= found.pressure.max()
 
 
-def test_the_roller_changes_sides_where_the_cam_force_changes_its_sign():
+def test_roller_changes_sides_with_the_cam_force():
     found = contact(solved(25.0), roller_mass=2.0)
     assert len(found.changes) == 4
     assert found.sides == ("disk", "ring")
@@ -62,7 +62,7 @@ def test_the_roller_changes_sides_where_the_cam_force_changes_its_sign():
     assert contact().sides == ("ring",)
 
 
-def test_hardness_and_pressure_are_each_other_s_inverse():
+def test_hardness_and_pressure_are_inverses():
     found = contact()
     assert ks.design.pressure_from_hardness(found.hardness) == pytest.approx(found.largest_pressure.value, rel=1e-13)
     with pytest.raises(ks.ParameterError, match="tells of 180 to 400 HB, got 500"):
@@ -81,7 +81,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_what_exceeds_a_limit_is_said_with_both_numbers(name):
+def test_exceeded_limits_are_named_with_both_numbers(name):
     limit, message = BROKEN[name]
     found = contact(load_rating=120e3, roller_mass=2.0, limits={name: limit})
     (text,) = found.exceeded
@@ -92,7 +92,7 @@ def test_what_exceeds_a_limit_is_said_with_both_numbers(name):
         assert contact(load_rating=120e3, roller_mass=2.0, limits={name: wide}).exceeded == ()
 
 
-def test_the_table_has_a_row_for_each_angle_and_what_the_contact_gives():
+def test_the_contact_table_has_a_row_an_angle():
     found = contact(roller_mass=2.0)
     table = found.frame()
     assert len(table) == len(ANGLES)
@@ -100,7 +100,7 @@ def test_the_table_has_a_row_for_each_angle_and_what_the_contact_gives():
     assert set(table["side"]) == {"ring"}
 
 
-def test_a_cam_from_a_table_states_the_error_of_its_forces():
+def test_table_cam_states_its_force_error():
     angle = np.radians(np.arange(360))
     sampled = ks.cams.Sampled(angle, np.round(CAM.radius(angle)[0], 6), noise=0.29e-6)
     machine = ks.cam_crank_slider(sampled, CAM.coupler_length, slider=ks.Link(600.0))
@@ -113,7 +113,7 @@ def test_a_cam_from_a_table_states_the_error_of_its_forces():
 # The roller itself
 
 
-def test_a_roller_that_changes_sides_reverses_its_spin_by_sliding():
+def test_changing_sides_reverses_spin_by_sliding():
     found = contact(solved(25.0), roller_mass=2.0)
     for angle, reversal in zip(found.changes, found.reversals, strict=True):
         force = solved(25.0, angles=angle + np.array([-1e-6, 1e-6])).cam_force
@@ -126,7 +126,7 @@ def test_a_roller_that_changes_sides_reverses_its_spin_by_sliding():
         assert impulse == pytest.approx(0.5 * 2.0 * 0.05**2 * abs(reversal.spin), rel=1e-12)
 
 
-def test_spin_and_its_rate_are_those_of_the_path_rolled_off():
+def test_spin_is_that_of_the_path_rolled_off():
     """On a circle about its centre the roller turns evenly; elsewhere its spin is the path's speed by radius."""
     found, step = contact(), 1e-5
     motion = [solved(angles=ANGLES + side * step) for side in (-1, 0, 1)]
@@ -138,7 +138,7 @@ def test_spin_and_its_rate_are_those_of_the_path_rolled_off():
     assert_allclose(even.roller.spin_acceleration(even.solution), 0.0, atol=1e-12)
 
 
-def test_rolling_takes_the_inertia_of_the_roller_and_the_friction_of_its_pin():
+def test_rolling_takes_inertia_and_pin_friction():
     found = contact(roller_mass=4.0)
     needed = 0.5 * 4.0 * np.abs(found.roller.spin_acceleration(found.solution)) * 0.05 / np.abs(found.cam_force)
     assert_allclose(found.roller.friction_coefficient(found.solution), needed, rtol=1e-12)
@@ -148,7 +148,7 @@ def test_rolling_takes_the_inertia_of_the_roller_and_the_friction_of_its_pin():
     assert_allclose(alone, 0.1 * 0.02 / 0.05, rtol=2e-3)  # the moment of the whole pin load by the roller's radius
 
 
-def test_the_pin_carries_the_cam_force_less_inertia_and_weight_of_the_roller():
+def test_pin_carries_cam_force_less_roller_inertia():
     plain, heavy = contact(), contact(roller_mass=15.0, roller_inertia=0.0)
     assert_allclose(plain.roller.pin_load(plain.solution), np.abs(plain.cam_force), rtol=1e-14)
     velocity = plain.solution.velocity("A")
@@ -170,7 +170,7 @@ def test_life_of_a_constant_load_is_the_catalogue_s():
     assert ball.life == pytest.approx((40e3 / load) ** 3 * 1e6 / (3600 * turns_a_second), rel=1e-12)
 
 
-def test_the_equivalent_load_lies_between_mean_and_largest():
+def test_equivalent_load_is_between_mean_and_largest():
     found = contact(load_rating=120e3)
     load = found.roller.pin_load(solved(angles=np.linspace(0, 2 * np.pi, 1440, endpoint=False)))
     assert load.mean() < found.equivalent_load < load.max()
@@ -179,7 +179,7 @@ def test_the_equivalent_load_lies_between_mean_and_largest():
 # What a contact is asked with
 
 
-def test_what_is_not_told_is_that_of_the_scene_s_own_roller():
+def test_contact_defaults_to_the_scenes_roller():
     own = solved(machine=rolled((0.05, 0.06, *STEEL, 110e9)))
     found = ks.design.contact(own)
     assert_allclose(found.pressure, own.contact_pressure, rtol=1e-13)

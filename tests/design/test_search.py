@@ -14,7 +14,7 @@ from support.improved_saws import CAM, CIRCLE, ENDS, FORCE, FRONT_OF, RATIO, SAW
 pytestmark = pytest.mark.slow
 
 
-def test_several_starts_reach_the_same_design_and_the_seed_repeats_them():
+def test_starts_agree_and_the_seed_repeats_them():
     one, other = (
         ks.design.optimise(SAW, SPRING, TORQUE, variant="cam-circle", starts=4, seed=3, angles=360) for _ in range(2)
     )
@@ -42,7 +42,7 @@ class Circle:
 LIMIT = Demand(parsed("mean_absolute balancing_torque"), "<=", 1.0)
 
 
-def test_what_a_search_misses_by_little_is_made_good_by_the_least_change():
+def test_a_small_miss_is_corrected_least():
     values = search.restored(Circle([2.0, 2.0]), [LIMIT], np.array([0.6, 0.8]) * (1.0 + 1e-6))
     assert_allclose(values, [0.6, 0.8], rtol=1e-12)
     kept = np.array([0.3, 0.4])

@@ -29,7 +29,7 @@ def balanced(scene, mass=0.3, travel=0.012, **others):
 
 @pytest.mark.parametrize("load", LOADS)
 @pytest.mark.parametrize("variant", VARIANTS)
-def test_the_mean_torque_alone_is_left_with_contact_all_the_way(variant, load):
+def test_only_the_mean_torque_remains_with_contact(variant, load):
     scene = drive(variant, load)
     found = balanced(scene, guide_angle=0.4, guide_offset=0.003)
     at = np.linspace(0.01, 6.29, 2000)
@@ -47,7 +47,7 @@ def test_the_torque_by_power_agrees():
     )
 
 
-def test_a_load_that_jumps_within_a_stroke_is_balanced_too():
+def test_a_load_that_jumps_is_balanced_too():
     def press(motion):
         return np.where(np.cos(motion.crank_angle) > 0, -500.0, 0.0)
 
@@ -58,7 +58,7 @@ def test_a_load_that_jumps_within_a_stroke_is_balanced_too():
     assert np.min(np.abs(np.array(found.follower.cam.law.knots) - np.pi / 2)) < 1e-12
 
 
-def test_the_follower_keeps_to_its_travel_and_pressure_angle():
+def test_follower_keeps_travel_and_pressure_angle():
     found = balanced(drive(), pressure_angle=np.radians(25.0), guide_offset=0.002)
     position = found.scene.solve(7200).travel("follower_cam")
     assert_allclose(np.ptp(position), 0.012, rtol=1e-6)
@@ -161,13 +161,13 @@ def test_energy_is_held_and_the_cam_presses(slope, mass):
     assert np.min(force) > 0.0
 
 
-def test_without_mass_the_stretch_is_the_root_of_the_energy():
+def test_massless_stretch_is_the_root_of_energy():
     e = energy(np.sin)
     x = spring_follower.stretched(e, 8.0, 1e-13, 2.0)
     assert_allclose(x(ANGLES), np.sqrt(8.0 - e(ANGLES)), rtol=1e-11)
 
 
-def test_a_follower_runs_through_a_jump_of_the_torque_with_steady_velocity_and_acceleration():
+def test_follower_runs_smoothly_through_a_torque_jump():
     def slope(x):
         return np.sin(x) + 0.3 * (np.sin(x) > 0) * (np.mod(x, TURN) > 2.0)
 
@@ -177,12 +177,12 @@ def test_a_follower_runs_through_a_jump_of_the_torque_with_steady_velocity_and_a
     assert_allclose(before, after, atol=1e-7)
 
 
-def test_reserve_is_the_force_over_twice_the_root_of_mass_times_bend():
+def test_reserve_is_the_published_formula():
     e = energy(np.sin)  # 0 - cos + 1, least at 0 with E'' = 1
     assert_allclose(spring_follower.reserve(e, 0.0, 8.0, 4.0, 2.0), np.sqrt(2 * 2.0 * 8.0) / (2 * 2.0), rtol=1e-9)
 
 
-def test_contact_is_lost_where_the_spring_pulls_less_than_it_must():
+def test_contact_is_lost_where_the_spring_is_weak():
     e = energy(np.sin)
     bound = 2.0 * np.sqrt(2.0)  # (k x)^2 = 4 mu E'' at x^2 = C
     spring_follower.stretched(e, 8.0, 0.98 * bound**2, 2.0)
@@ -201,7 +201,7 @@ def found():
     return ks.design.torque_balancing_cam(scene, mass=0.3, travel=0.012, guide_offset=0.002)
 
 
-def test_contact_and_pressure_angle_are_the_extremes_of_the_scene(found):
+def test_contact_and_angle_are_extremes_of_the_scene(found):
     s = found.scene.solve(np.linspace(0.001, 6.281, 5000))
     force, angle = s.scalar("contact_force_cam"), np.abs(s.measure("pressure_angle_cam"))
     assert found.least_contact_force.value == pytest.approx(force.min(), rel=1e-5)
@@ -211,13 +211,13 @@ def test_contact_and_pressure_angle_are_the_extremes_of_the_scene(found):
     assert found.lifts_off == ()
 
 
-def test_the_energy_is_that_of_the_spring_between_its_ends(found):
+def test_energy_is_that_of_the_spring_ends(found):
     low, high = found.stretch
     assert_allclose(found.spring.stiffness * (high**2 - low**2) / 2, found.energy, rtol=1e-10)
     assert_allclose(found.travel, 0.012, rtol=1e-12)
 
 
-def test_the_curvature_is_that_of_the_pitch_curve_as_points(found):
+def test_curvature_is_that_of_the_pitch_curve(found):
     centre = found.follower.disk.curve(np.linspace(0, 2 * np.pi, 200_001))[0]
     step = np.diff(centre)
     bend = np.abs(np.angle(step[1:] / step[:-1])) / np.abs(step[1:])
@@ -236,7 +236,7 @@ def test_a_faster_machine_shows_where_it_lifts_off(found):
     assert np.array_equal(inside, ~pressing)
 
 
-def test_the_report_and_the_table_say_what_it_gives_and_costs(found):
+def test_report_and_table_show_gain_and_cost(found):
     for text in ("N m mean; uneven by", "preload", "positive all the way", "pressure angle      30 deg at most"):
         assert text in found.report()
     table = found.table()

@@ -25,7 +25,7 @@ def test_formulas_of_a_page_are_those_of_the_library(path):
 
 
 @pytest.mark.parametrize("path", CHECKED)
-def test_a_page_names_its_sources_and_shows_pictures_that_are_there(path):
+def test_a_page_names_sources_and_shows_pictures(path):
     text = (pages.DOCS / path).read_text(encoding="utf-8")
     assert "*Source:*" in text or path == "theory/signs.md"
     for picture in re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text):
@@ -49,7 +49,7 @@ def test_a_drawing_comes_out_as_it_is_shown(name):
 
 
 @pytest.mark.parametrize("name", APART)
-def test_forces_on_each_body_of_a_drawing_are_in_equilibrium(name, monkeypatch):
+def test_drawn_bodies_are_in_equilibrium(name, monkeypatch):
     """All of them, with the load: so each is drawn on the right body, and with the right sign."""
     seen = {}
     monkeypatch.setattr(theory, "apart", lambda solution, *rest, **more: seen.update(solution=solution))

@@ -12,7 +12,7 @@ from kinetostatics.drive.resolution import require_inertia, resolved
 from support.drives import DISC, DISC_MOTOR, driven
 
 
-def test_a_motor_too_weak_and_a_machine_that_nothing_holds_are_told():
+def test_weak_motor_and_runaway_are_reported():
     with pytest.raises(ks.errors.DriveError, match="too weak"):
         operating_speed(driven(DISC, ks.Torque(-1e4, on="crank")))
     with pytest.raises(ks.errors.DriveError, match="nothing holds the speed"):
@@ -20,14 +20,14 @@ def test_a_motor_too_weak_and_a_machine_that_nothing_holds_are_told():
 
 
 @pytest.mark.parametrize("torque", [1e-3, 2.0, 5e4])
-def test_a_constant_torque_runs_as_fast_as_friction_of_an_unbalanced_disc_lets_it(torque):
+def test_constant_torque_runs_to_the_friction_limit(torque):
     disc = ks.Mechanism("disc", ks.Crank(0.1, ks.Link(5.0, 0.02, 3.0)), ())
     scene = ks.Scene(disc, 1.0, friction={"O": ks.PinFriction(0.1, 0.03)})
     run = ks.drive.steady(scene, ks.drive.Motor.constant(torque), angles=5)
     assert run.mean_speed == pytest.approx(math.sqrt(torque / (0.1 * 0.03 * 5.0 * 0.02)), rel=1e-12)
 
 
-def test_a_motor_told_to_be_so_many_times_as_strong_carries_the_load():
+def test_stronger_motor_carries_the_load_as_advised():
     disc = ks.Mechanism("disc", ks.Crank(0.1, ks.Link(10.0, 0.1, 3.0)), ())
     scene = ks.Scene(disc, 1.0, loads=ks.Torque(-20.0, on="crank"), friction={"O": ks.PinFriction(0.5, 0.1)})
 
@@ -57,7 +57,7 @@ class Speedy:
         return [], [0.0, 2.0]
 
 
-def test_a_function_that_declares_kinks_may_still_depend_on_the_speed():
+def test_declared_kinks_may_depend_on_speed():
     found = driven(DISC, ks.Torque(Speedy(), on="crank"))
     assert found.kinks.tolist() == [2.0]
     assert found.loads_by_speed
@@ -69,7 +69,7 @@ def test_a_function_that_declares_kinks_may_still_depend_on_the_speed():
 # Running met by following a machine from above
 
 
-def test_a_machine_that_comes_to_a_standstill_says_where_and_what_is_missing():
+def test_standstill_names_angle_and_missing_torque():
     machine = driven(DISC, ks.Torque(-1e3, on="crank"))
     with pytest.raises(ks.errors.DriveError, match="comes to a standstill at crank angle") as caught:
         from_above(machine, resolved(machine, 10.0), 10.0)
@@ -79,7 +79,7 @@ def test_a_machine_that_comes_to_a_standstill_says_where_and_what_is_missing():
 # Pieces of a turn in which a machine is resolved
 
 
-def test_a_machine_without_inertia_somewhere_is_refused_with_the_crank_angle():
+def test_vanishing_inertia_is_refused_with_its_angle():
     motor = ks.drive.Motor.linear(100.0, 50.0)
     machine = driven(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), motor=motor, flywheel=0.0)
     with pytest.raises(ks.errors.DriveError, match="all inertia vanishes at crank angle"):

@@ -11,7 +11,7 @@ from kinetostatics.drive.summary import mistaken_speed, summary
 from support.drives import CUT, DISC_MOTOR, FAN, MOTOR, PUMP, SAW, TURN, saw
 
 
-def test_speed_is_the_integral_of_acceleration_and_time_that_of_slowness():
+def test_speed_and_time_are_integrals():
     run = ks.drive.steady(saw(FAN), MOTOR, 100.0, angles=[0.4, 2.9])
     change = quad(lambda angle: float(np.divide(*run.motion(np.array(angle))[::-1])), 0.4, 2.9, epsrel=1e-13)[0]
     assert change == pytest.approx(run.speed[1] - run.speed[0], rel=1e-11)
@@ -19,7 +19,7 @@ def test_speed_is_the_integral_of_acceleration_and_time_that_of_slowness():
     assert time == pytest.approx(run.time[1] - run.time[0], rel=1e-12)
 
 
-def test_extremes_frames_and_comparison_take_running_as_any_solution():
+def test_running_works_as_any_solution():
     run = ks.drive.steady(saw(CUT), MOTOR, 1000.0)
     other = ks.drive.steady(saw(CUT), MOTOR, 50.0)
     found = ks.extremes(run.solution, "balancing_torque")
@@ -49,7 +49,7 @@ RUN = ks.drive.steady(ks.Scene(SAW, 1.0, loads=ks.Gravity()), MOTOR, 30.0)
 FEW = np.array([0.1, 2.0, 9.0])
 
 
-def test_at_other_crank_angles_it_has_the_speed_that_running_has_there():
+def test_running_has_its_speed_at_other_angles():
     there, (speed, acceleration) = RUN.solution.at(FEW), RUN.motion(FEW)
     assert np.array_equal(there.crank_speed, speed)
     assert np.array_equal(there.crank_acceleration, acceleration)
@@ -59,13 +59,13 @@ def test_at_other_crank_angles_it_has_the_speed_that_running_has_there():
     assert one.balancing_torque == pytest.approx(there.balancing_torque[1], rel=1e-13)
 
 
-def test_motor_and_flywheel_give_the_torque_between_the_angles_too():
+def test_motor_torque_holds_between_the_angles():
     there, (speed, acceleration) = RUN.solution.at(FEW), RUN.motion(FEW)
     given = MOTOR.torque_at_crank(speed) - 30.0 * acceleration
     assert there.balancing_torque == pytest.approx(given, rel=1e-12, abs=1e-12 * np.abs(given).max())
 
 
-def test_it_repeats_with_running_and_says_its_mean_speed():
+def test_running_repeats_and_prints_its_mean_speed():
     assert RUN.solution.period == RUN.period
     assert repr(RUN.solution).startswith("<RunningSolution")
     assert repr(RUN.solution).endswith(f"mean speed {RUN.mean_speed:.9g} rad/s>")

@@ -55,7 +55,7 @@ def test_the_rms_torque_is_the_mean_over_time(pair):
     assert run.rms_motor_torque == pytest.approx(math.sqrt(mean), rel=1e-9)
 
 
-def test_the_flywheel_for_the_same_fluctuation_gives_it(pair):
+def test_flywheel_for_equal_fluctuation_gives_it(pair):
     compared = ks.compare(*pair)
     reference, balanced = compared.flywheels()
     assert reference == pytest.approx(1000.0, rel=1e-14)
@@ -80,7 +80,7 @@ def test_textbook_running_is_compared_too():
     assert compared.flywheels()[1] < 500.0
 
 
-def test_a_driven_machine_against_one_at_constant_speed_has_dynamic_coefficients_alone(pair):
+def test_mixed_comparison_has_coefficients_alone(pair):
     compared = ks.compare(pair[0], SAW["cam-cosine"].solve())
     assert not hasattr(compared, "flywheels")
     assert compared.mean_torque_ratio > 1.0

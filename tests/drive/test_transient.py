@@ -14,7 +14,7 @@ from support.drives import DISC_MOTOR, MOTOR, PUMP, SAW
 PENDULUM = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)), 1.0, loads=ks.Gravity())
 
 
-def test_the_slider_crank_of_sundials_swings_as_published():
+def test_sundials_slider_crank_swings_as_published():
     """Haug, *Computer Aided Kinematics and Dynamics of Mechanical Systems*, example 6.1.8, as run by SUNDIALS' IDA.
 
     Crank 0.5, rod 1, J1 = 1, m2 = 1 at the slider, J2 = 2; spring (1, free at 1) and damper (1) between the middles of
@@ -62,7 +62,7 @@ def n_four_bar(windows):
 
 
 @pytest.mark.parametrize("windows", [2, 40])
-def test_the_n_four_bar_of_iftomm_passes_its_singular_positions(windows):
+def test_iftomm_four_bar_passes_singular_positions(windows):
     """IFToMM library of benchmark problems, A02: B0 starts on top with 1 m/s; compared after 10 s."""
     motion = ks.drive.coast(n_four_bar(windows), 0.0, math.pi / 2, -1.0, 10.0)
     found = motion.crank_angle[-1]
@@ -110,7 +110,7 @@ def test_a_damper_takes_what_energy_is_lost():
     assert motion.energy_drift < 1e-11 * motion.kinetic_energy[0]
 
 
-def test_a_pendulum_reverses_at_its_height_of_release_with_its_period():
+def test_pendulum_reverses_at_its_release_height():
     """Period by the complete elliptic integral."""
     motion = ks.drive.coast(PENDULUM, 0.055, from_angle=-1.0, until=5.0)
     reversals = [event for event in motion.events if event.name == "reversal"]
@@ -135,7 +135,7 @@ def test_coasting_until_standstill_ends_there():
     assert len(motion.frame()) == motion.time.size
 
 
-def test_a_start_runs_up_to_steady_running_with_the_motor_s_work():
+def test_start_ends_in_running_with_the_motors_work():
     scene = ks.Scene(SAW, 1.0, loads=ks.Gravity())
     motion = ks.drive.start(scene, MOTOR, 100.0, from_angle=0.4)
     steady = ks.drive.steady(scene, MOTOR, 100.0)
@@ -147,7 +147,7 @@ def test_a_start_runs_up_to_steady_running_with_the_motor_s_work():
     assert np.abs(left).max() < 1e-10 * np.abs(motion.solution.balancing_torque).max()
 
 
-def test_a_machine_in_periodic_running_stays_there_over_time():
+def test_periodic_running_is_kept_over_time():
     scene = ks.Scene(SAW, 1.0, loads=(ks.Gravity(), ks.Torque(-500.0, on="crank")))
     steady = ks.drive.steady(scene, MOTOR, 30.0, angles=[0.0])
     motion = ks.drive.coast(scene, 30.0, 0.0, steady.speed[0], 2.0 * steady.duration, MOTOR)
@@ -162,7 +162,7 @@ BALANCED = shipped("sawframe_2r63").variants["cam-cosine"].scene
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("angle", "words"), [(2.3, "it does not start"), (math.pi / 2, "it starts and stops after")])
-def test_the_balanced_saw_does_not_start_against_its_springs(angle, words):
+def test_balanced_saw_does_not_start_against_springs(angle, words):
     with pytest.raises(ks.DriveError, match=words) as caught:
         ks.drive.start(BALANCED, MOTOR, 1000.0, from_angle=angle)
     assert "What helps: a motor with" in str(caught.value)
@@ -214,7 +214,7 @@ def coasting():
     return ks.drive.coast(DISC, 1.0, from_speed=3.0, until="standstill")
 
 
-def test_it_ends_at_the_standstill_with_the_energy_spent(coasting):
+def test_coasting_ends_at_rest_with_energy_spent(coasting):
     last = coasting.events[-1]
     assert (last.name, last.time, last.crank_angle) == ("standstill", pytest.approx(2.0), pytest.approx(3.0))
     assert coasting.kinetic_energy == pytest.approx(2.0 * coasting.speed**2, rel=1e-12)
@@ -249,13 +249,13 @@ RUBS = {"O": ks.PinFriction(0.1, 0.03), "guide": ks.GuideFriction(0.1)}
         (ks.Scene(PUMP, 1.0, friction=RUBS), 4.0, DISC_MOTOR, "times the kinetic energy"),
     ],
 )
-def test_a_machine_that_runs_on_is_not_followed_to_its_standstill(scene, speed, motor, words):
+def test_a_machine_that_runs_on_never_stands_still(scene, speed, motor, words):
     with pytest.raises(ks.errors.DriveError, match=f"never comes to a standstill: .*{words}"):
         ks.drive.coast(scene, 5.0, from_speed=speed, until="standstill", motor=motor)
 
 
 @pytest.mark.parametrize("speed", [2.0, -2.0])
-def test_a_disc_whose_weight_rubs_stops_when_its_momentum_is_used_up(speed):
+def test_disc_with_friction_stops_by_its_momentum(speed):
     disc = ks.Mechanism("disc", ks.Crank(0.1, ks.Link(50.0, 0.0, 3.0)), ())
     scene = ks.Scene(disc, 1.0, loads=ks.Gravity(10.0), friction={"O": ks.PinFriction(0.1, 0.03)})
     motion = ks.drive.coast(scene, 1.0, from_speed=speed, until="standstill")

@@ -39,7 +39,7 @@ def test_names_must_be_texts(name, value):
 
 @pytest.mark.parametrize("value", NUMBERS, ids=range(len(NUMBERS)))
 @pytest.mark.parametrize("name", ["mass", "travel", "stiffness", "base_radius", "pressure_angle", "roller_radius"])
-def test_numbers_of_a_torque_balancing_cam_are_refused_or_make_one(drive, name, value):
+def test_torque_cam_numbers_are_checked(drive, name, value):
     given = {"mass": 0.3, "travel": 0.012, name: value}
     if value is None and name in ("stiffness", "base_radius", "roller_radius"):
         return

@@ -44,7 +44,7 @@ def test_friction_with_one_acceleration_does_not_jam(flywheel, angle, speed):
 
 
 @pytest.mark.parametrize("step", [-4, -1, 0, 1, 4])
-def test_an_acceleration_is_found_where_the_guide_carries_nothing(step):
+def test_acceleration_at_zero_guide_force_is_found(step):
     force = 14078.237116336823 * (1.0 + step * 2.0**-52)
     rod = ks.Link(5.0, 0.2, 0.1)
     machine = ks.crank_slider(0.3, 0.5, coupler=rod, slider=ks.Link(200.0))
@@ -62,7 +62,7 @@ def test_an_acceleration_is_found_where_the_guide_carries_nothing(step):
     obeys(motion.at(motion.time[:1]), machine.system, 5.0)
 
 
-def test_friction_that_truly_jams_says_where_and_which_flywheel_helps():
+def test_true_jamming_names_angle_and_flywheel():
     """The pin's lever mu radius, 0.3 m, is longer than the crank: its friction grows faster than inertia frees."""
     crank = ks.crank_slider(0.1, 0.35, crank=ks.Link(2.0, 0.1, 0.0))
     scene = ks.Scene(crank, 1.0, loads=ks.Gravity(), friction={"O": ks.PinFriction(1.5, 0.2)})
@@ -86,14 +86,14 @@ def _steady(value, crank_speed=10.0):
 
 
 @pytest.mark.parametrize("speed", [10.0, -10.0])
-def test_a_function_of_the_crank_angle_alone_runs_without_a_motor(speed):
+def test_function_of_angle_runs_without_a_motor(speed):
     run = _steady(lambda motion: -100.0 * np.sin(np.mod(motion.crank_angle, 2.0 * np.pi)), speed)
     same = _steady(lambda motion: -1000.0 * motion.position("A")[1], speed)
     assert run.speed == pytest.approx(same.speed, rel=1e-12)
     assert run.energy_per_turn == pytest.approx(same.energy_per_turn, rel=1e-12)
 
 
-def test_a_function_of_the_position_alone_comes_to_no_standstill():
+def test_function_of_position_never_stands_still():
     """It gives back in a turn what it takes, which only a load that cannot depend on the speed surely does."""
     scene = ks.Scene(PUMP, 1.0, loads=ks.ProcessForce(lambda motion: np.round(0.0 * motion.slider_position) - 10.0))
     with pytest.raises(ks.DriveError, match="give back all that they take in a turn"):

@@ -56,7 +56,7 @@ every_kind = pytest.mark.parametrize("kind", ["yoke", "lever", "whitworth", "cyl
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_random_chains_move_and_bear_what_two_full_systems_find(seed):
+def test_random_chains_agree_with_two_full_systems(seed):
     made, angles = chain(seed)
     s = made.solve(angles)
     errors = errors_beside_full_systems(s, 0) | {"constraints": error_beside_constraints(s)}
@@ -105,7 +105,7 @@ def test_derivatives_are_those_of_differences(kind):
 
 
 @every_kind
-def test_numbers_of_every_group_and_pin_have_paths_of_their_own(kind):
+def test_every_group_and_pin_has_its_own_paths(kind):
     made = mechanism(kind, "2")
     program = ks.compile(ks.Scene(made, 30.0), ("O",), engine="numpy")
     wanted = {
@@ -136,7 +136,7 @@ def test_a_batch_of_designs_is_each_design_alone(kind):
 
 
 @every_kind
-def test_outputs_stand_in_the_frame_and_among_the_extremes_with_their_units(kind):
+def test_outputs_stand_in_frames_and_extremes(kind):
     s = scene(kind, "2").solve(ANGLES)
     columns, table = set(s.frame().columns), extremes_frame(s)
     for name, output in s.mechanism.outputs.items():

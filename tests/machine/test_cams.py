@@ -47,7 +47,7 @@ def polar(pin, angles):
 
 
 @pytest.mark.parametrize(("amplitude", "mean"), LAWS)
-def test_cosine_law_derivatives_at_and_near_the_singular_angle(amplitude, mean):
+def test_cosine_law_derivatives_at_singular_angle(amplitude, mean):
     """Against the naive radicand with its signed root, with 80 digits; r' and r'' relative to r."""
     cam = ks.cams.CosineLaw(amplitude, mean)
     angles = np.concatenate([near_singular(amplitude, mean), ANGLES])
@@ -83,7 +83,7 @@ def test_slider_follows_the_cosine_law_exactly(amplitude, mean, guide_angle):
     assert_close(s.slider_acceleration, acceleration, ROUNDING)
 
 
-def test_torque_and_cam_force_of_the_sawframe_at_and_near_the_singular_angle():
+def test_sawframe_forces_at_the_singular_angle():
     """Against the Newton-Euler reference with 80 digits of motion."""
     amplitude, mean, speed = 0.3, 2.0, 33.5
     cam = ks.cams.CosineLaw(amplitude, mean)
@@ -110,7 +110,7 @@ def test_torque_and_cam_force_of_the_sawframe_at_and_near_the_singular_angle():
 
 @pytest.mark.parametrize("nearness", [0.03, 1e-6, 1e-12])
 @pytest.mark.parametrize("direction", [(-1.0, 0.0), (0.6, -0.8), (0.0, 1.0)])
-def test_a_circle_that_o_lies_close_to_is_off_by_no_more_than_a_rounding_of_the_crank_angle(direction, nearness):
+def test_circle_close_to_o_is_off_by_rounding(direction, nearness):
     cam = ks.cams.Circle(0.3, tuple(0.3 * (1.0 - nearness) * part for part in direction))
     angles = np.linspace(0.0, 2 * np.pi, 37) + 0.01
     found = np.transpose(cam.radius(angles))
@@ -132,7 +132,7 @@ def test_a_circle_that_o_lies_close_to_is_off_by_no_more_than_a_rounding_of_the_
 
 
 @pytest.mark.parametrize("centre", [(0.0, 0.0), (-0.0219, 0.0), (0.1, -0.2), (0.0, 0.29)])
-def test_circle_derivatives_equal_those_of_the_sine_rule(centre):
+def test_circle_derivatives_equal_the_sine_rule(centre):
     """The nearer O lies to the circle, the more digits of r are lost: by radius / (radius - distance) squared."""
     cam = ks.cams.Circle(0.3, centre)
     loss = (0.3 / (0.3 - np.hypot(*centre))) ** 2
@@ -144,7 +144,7 @@ def test_circle_derivatives_equal_those_of_the_sine_rule(centre):
 
 
 @pytest.mark.parametrize(("before", "after"), [(-0.0219, -0.295), (-0.295, -0.0219)])
-def test_a_circle_with_another_centre_tells_anew_whether_o_lies_close(before, after):
+def test_changed_circle_is_checked_again(before, after):
     made = [
         ks.Scene(ks.cam_crank_slider(ks.cams.Circle(0.3, (x, 0.0)), 2.0, slider=ks.Link(600.0)), 33.5)
         for x in (before, after)
@@ -155,7 +155,7 @@ def test_a_circle_with_another_centre_tells_anew_whether_o_lies_close(before, af
     np.testing.assert_array_equal(*(scene.solve(9).reaction("O") for scene in (varied, made[1])))
 
 
-def test_a_circle_beside_one_that_o_lies_close_to_changes_by_rounding_only():
+def test_close_circles_differ_by_rounding_only():
     """One design decides on the formulas of all."""
     circle = ks.cams.Circle(0.3, (np.array([[-0.0219], [0.299]]), 0.0))
     alone, close = (ks.cams.Circle(0.3, (float(x), 0.0)) for x in (-0.0219, 0.299))
@@ -198,12 +198,12 @@ class Line(Cam):
         return 1.0 / x, y / x**2, (1.0 + y**2) / x**3
 
 
-def test_a_logarithmic_spiral_has_one_pressure_angle_and_its_known_curvature():
+def test_spiral_has_its_known_angle_and_curvature():
     assert Spiral().pressure_angle(PHI) == pytest.approx(np.full(7, np.arctan(0.3)), rel=1e-14)
     assert Spiral().curvature_radius(PHI) == pytest.approx(np.exp(0.3 * PHI) * np.sqrt(1.09), rel=1e-14)
 
 
-def test_a_circle_is_as_curved_everywhere_and_a_line_nowhere():
+def test_circle_and_line_have_their_curvature():
     assert Round().curvature_radius([0.0, 1.0]).tolist() == [2.0, 2.0]
     assert abs(1.0 / Line().curvature_radius(0.4)) < 1e-14
 
@@ -250,7 +250,7 @@ def test_a_cam_roller_alone_is_a_mechanism():
     np.testing.assert_allclose(ks.solve(machine, TURN, crank_speed=10.0).cam_force, 3.0 * 0.2 * 100.0, rtol=1e-13)
 
 
-def test_a_block_placed_where_it_is_found_knows_how_its_path_is_curved():
+def test_given_block_place_keeps_path_curvature():
     """Methods under study find joints in another way; on a circle the curvature is that of the circle."""
     placed, again = ROLLER.place(TURN), ROLLER.place(TURN)
     group = ks.CamRoller(CAM, BLOCK, ks.Roller(0.05, 0.06, 210e9, 0.3))

@@ -26,7 +26,7 @@ def hung(kind, assembly, on):
 @every("assembly", SIDES)
 @every("ahead", [(0.0, 0.5), (-0.5, 0.0), (0.3, 0.4), (-0.4, -0.3), (0.5, 0.0)])
 @every("kind", [*LINKAGES, "slider", "lever"])
-def test_group_on_a_second_throw_moves_and_bears_as_on_the_pin_of_a_crank_turned_ahead(kind, ahead, assembly):
+def test_second_throw_equals_a_crank_turned_ahead(kind, ahead, assembly):
     """Both count the crank angle from where the pin points to the pivot, or along the guide's right normal."""
     radius = LINKAGES[kind][0] * 0.5 if kind in LINKAGES else 0.5
     at = tuple(2.0 * radius * part for part in ahead)
@@ -53,7 +53,7 @@ def test_group_on_a_second_throw_moves_and_bears_as_on_the_pin_of_a_crank_turned
 @pytest.mark.parametrize("assembly", SIDES)
 @pytest.mark.parametrize("name", ["parallelogram", "kite", "deltoid", "rhombus", "near"])
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-def test_second_throw_is_as_exact_as_the_first_however_near_a_change_point(name, assembly):
+def test_second_throw_is_as_exact_as_the_first(name, assembly):
     """The whole turned by a quarter: crank angles near the change point stay as fine as they can be."""
     a, b, h, d = map(float, LINKAGES[name])
     links = {link: LINKS[link] for link in ("coupler", "rocker")}
@@ -66,7 +66,7 @@ def test_second_throw_is_as_exact_as_the_first_however_near_a_change_point(name,
     assert np.all(np.maximum(abs(along + y), abs(across - x)) < 1e-12 * np.maximum(abs(x), abs(y)))
 
 
-def test_program_refuses_another_place_of_the_pin_and_takes_one_at_the_same_radius():
+def test_program_keeps_the_radius_of_the_pin():
     made = thrown(hung("parallelogram", "open", "C"), (0.4, 0.3))
     found = ks.compile(ks.Scene(made, SPEED, loads=ks.Gravity()), "balancing_torque", engine="numpy")
     with pytest.raises(ks.ParameterError, match="another kind"):
@@ -80,7 +80,7 @@ def test_program_refuses_another_place_of_the_pin_and_takes_one_at_the_same_radi
 
 
 @pytest.mark.parametrize("at", [(0.0, 0.625), (0.375, 0.5), (-0.625, 0.0)])
-def test_enclosures_of_a_second_throw_hold_what_other_formulas_give(at):
+def test_second_throw_enclosures_hold(at):
     pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
     from kinetostatics.studies.methods.certified import certified
 
@@ -91,7 +91,7 @@ def test_enclosures_of_a_second_throw_hold_what_other_formulas_give(at):
 
 
 @pytest.mark.parametrize("at", [(0.0, 0.0), (0.5, 0.0)])
-def test_pins_at_the_centre_of_the_crank_or_on_other_links_have_no_change_points(at):
+def test_other_pins_have_no_change_points(at):
     if any(at):
         groups = (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.Pin("coupler", at), hung("deltoid", "open", "C"))
     else:

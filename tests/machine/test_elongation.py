@@ -24,7 +24,7 @@ def off(found, exact):
 
 
 @every("name", [*WAYS, "knuckle"])
-def test_elongation_near_a_dead_centre_is_without_the_rounding_of_the_travel(name, flint):
+def test_elongation_near_dead_centre_is_exact(name, flint):
     """Its error is less than half that of their difference, where it is counted from a place near the dead centre."""
     scene, turn = shipped("toggle_press").variants["idle"].scene, STRAIGHT
     if name in WAYS:
@@ -38,7 +38,7 @@ def test_elongation_near_a_dead_centre_is_without_the_rounding_of_the_travel(nam
 
 
 @every("name", WAYS)
-def test_departure_is_the_second_derivative_plus_the_elongation(name, flint):
+def test_departure_is_curvature_plus_elongation(name, flint):
     """On a pin of the crank, from the coupler alone."""
     mechanism, turn = WAYS[name]
     s = ks.Scene(mechanism, 30.0).solve(turn)
@@ -51,7 +51,7 @@ def test_departure_is_the_second_derivative_plus_the_elongation(name, flint):
     assert off(group.departure(s.dynamics.placement, free), exact) < 1e-17
 
 
-def test_what_a_cam_of_the_user_s_adds_to_a_harmonic_one_is_not_left_out():
+def test_own_cam_beside_a_harmonic_one_counts():
     class Larger(ks.cams.Harmonic):
         """By a millimetre."""
 

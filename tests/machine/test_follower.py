@@ -11,14 +11,14 @@ from support.followers import ANGLES, BODY, KINDS, LAW, SWING, scene
 
 
 @pytest.mark.parametrize("kind", [name for name in KINDS if "flat" not in name])
-def test_the_path_of_the_roller_centre_bends_as_the_pitch_curve_of_the_disk(kind):
+def test_roller_path_bends_as_the_pitch_curve(kind):
     follower = KINDS[kind]()
     joint = scene(follower).solve(ANGLES).placement.joints["R"]
     place = follower.disk.curve(ANGLES)[0]
     assert_allclose(1.0 / bend(joint), follower.disk.curvature_radius(np.angle(place)), rtol=1e-11)
 
 
-def test_every_follower_names_its_link_and_says_what_touches_the_cam():
+def test_follower_names_its_link_and_contact():
     roller, face = ks.Roller(0.01, 0.02, 210e9, 0.3), ks.Face(0.02, 210e9, 0.3)
     made = (ks.RollerFollower(LAW, roller=roller), ks.FlatFollower(LAW, label="2", face=face))
     for follower, moved, pressed in zip(made, ("follower", "follower2"), (roller, face), strict=True):
@@ -72,7 +72,7 @@ def test_the_follower_moves_by_the_law(kind):
 
 
 @every_face
-def test_the_torque_is_that_of_spring_and_inertia_whatever_the_offset(kind):
+def test_torque_is_of_spring_and_inertia(kind):
     law = LAW(ANGLES)
     expected = (2.0 * 144.0 * law.acceleration + 5e3 * (law.position - 0.01)) * law.velocity
     for offset in (0.0, 0.02):
@@ -94,7 +94,7 @@ def test_the_pressure_angle_is_the_textbooks():
     assert_allclose(s.measure("pressure_angle_1"), expected, rtol=1e-14)
 
 
-def test_the_contact_force_is_along_the_normal_of_the_pitch_curve():
+def test_contact_force_is_normal_to_pitch_curve():
     follower = KINDS["roller, offset"]()
     s = scene(follower).solve(ANGLES)
     centre, first, _ = follower.disk.curve(ANGLES)
@@ -106,7 +106,7 @@ def test_the_contact_force_is_along_the_normal_of_the_pitch_curve():
     assert_allclose(s.balancing_torque - bare.balancing_torque, torque, rtol=1e-11)
 
 
-def test_the_side_of_the_offset_trades_pressure_angle_of_rise_and_return():
+def test_offset_trades_pressure_angles():
     peaks = []
     for offset in (-0.01, 0.01):
         follower = ks.RollerFollower(LAW, ks.Guide.at(0.0, offset))
@@ -132,7 +132,7 @@ def test_a_guide_may_rub():
     assert_allclose(rubbing.balancing_torque, rubbing.balancing_torque_by_power, rtol=0, atol=1e-12 * size)
 
 
-def test_a_roller_centre_behind_o_is_refused_with_its_coordinate():
+def test_roller_behind_o_is_refused():
     follower = ks.RollerFollower(ks.laws.cosine(0.02, 0.01))
     with pytest.raises(ks.AssemblyError, match=r"ahead of O along its guide, but its coordinate falls to -0\.0"):
         ks.solve(ks.Mechanism("cam drive", ks.Crank(None), (follower,)), np.linspace(0, 6, 60), crank_speed=1.0)
@@ -165,7 +165,7 @@ def test_the_contact_is_as_far_aside_as_the_velocity():
     )
 
 
-def test_the_guide_bears_the_moment_of_the_contact_alone():
+def test_guide_bears_the_contact_moment():
     for offset in (0.0, 0.01):
         s = solved(offset=offset)
         lever = s.measure("contact_place") - offset
@@ -185,7 +185,7 @@ def three_lobes(phi):
     return 0.05 + c, -3 * s, -9 * c, 27 * s
 
 
-def test_a_cam_that_would_be_hollow_is_refused_with_its_curvature():
+def test_hollow_cam_is_refused_with_its_curvature():
     with pytest.raises(ks.AssemblyError, match=r"convex, but its radius of curvature s \+ s'' falls to -0\.03 m"):
         solved(three_lobes, angles=np.linspace(0, 6, 90))
 
@@ -197,7 +197,7 @@ both_sides = pytest.mark.parametrize("kind", ["swinging", "swinging, other side"
 
 
 @both_sides
-def test_the_arm_stands_at_the_angle_of_the_law_from_the_line_of_centres(kind):
+def test_arm_stands_at_the_angle_of_the_law(kind):
     follower = KINDS[kind]()
     s = scene(follower).solve(ANGLES)
     pivot = complex(*follower.pivot)
@@ -207,7 +207,7 @@ def test_the_arm_stands_at_the_angle_of_the_law_from_the_line_of_centres(kind):
 
 
 @both_sides
-def test_the_pressure_angle_is_between_normal_and_way_of_the_roller(kind):
+def test_pressure_angle_is_normal_to_path(kind):
     follower = KINDS[kind]()
     s = scene(follower).solve(ANGLES)
     _, first, _ = follower.disk.curve(ANGLES)
@@ -234,7 +234,7 @@ def test_moments_about_the_pivot_balance(kind):
     assert_allclose(s.reaction("Q"), [-force.real, -force.imag], rtol=1e-11)
 
 
-def test_an_arm_that_crosses_the_line_of_centres_is_refused():
+def test_arm_crossing_the_centre_line_is_refused():
     follower = ks.SwingingFollower(ks.laws.cosine(0.3, 0.2), 0.1, (0.12, 0.03))
     with pytest.raises(ks.AssemblyError, match="must stay on its side of the line from O to Q"):
         ks.solve(ks.Mechanism("cam drive", ks.Crank(None), (follower,)), np.linspace(0, 6, 60), crank_speed=1.0)
@@ -263,7 +263,7 @@ every_kind = pytest.mark.parametrize("kind", KINDS)
 
 
 @every_kind
-def test_the_roller_centre_is_on_it_at_each_crank_angle(kind):
+def test_roller_centre_is_on_the_disk_curve(kind):
     """Seen from the crank: as placed in a mechanism, turned back by the crank angle."""
     follower = KINDS[kind]()
     phi = follower.disk.crank_angle(PSI)
@@ -289,14 +289,14 @@ def test_its_derivatives_are_those_of_its_radius(kind):
     assert_allclose(second, weights @ slopes / step, atol=1e-12)
 
 
-def test_a_follower_through_o_has_the_radius_of_its_law():
+def test_follower_through_o_has_the_laws_radius():
     """Without offset the pitch curve is r(psi) = s(guide angle - psi)."""
     disk = ks.RollerFollower(LAW, ks.Guide.at(0.7)).disk
     s, v, a, _ = LAW(0.7 - PSI)
     assert_allclose(disk.radius(PSI), [s, -v, a], atol=1e-15)
 
 
-def test_the_curvature_of_a_flat_followers_cam_is_s_and_its_second_derivative():
+def test_flat_follower_curvature_is_s_and_s2():
     follower = KINDS["flat"]()
     law = LAW(follower.disk.crank_angle(PSI))
     assert_allclose(follower.disk.curvature_radius(PSI), law.position + law.acceleration, rtol=1e-10)
@@ -315,7 +315,7 @@ def test_it_is_made_for_the_workshop(tmp_path):
         disk.profile(0.2, 90)
 
 
-def test_a_pitch_curve_that_does_not_go_around_is_refused():
+def test_pitch_curve_must_go_around_o():
     small = ks.RollerFollower(ks.laws.cosine(0.1, 0.101), ks.Guide.at(0.0, 0.02))
     with pytest.raises(ks.ParameterError, match="go around O once"):
         small.disk.radius(PSI)

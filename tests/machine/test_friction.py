@@ -24,7 +24,7 @@ def test_each_pair_has_its_kind(mechanism, joint, kind):
     assert friction.kind_for(mechanism.pairs[name]) is kind
 
 
-def test_a_mapping_keeps_all_joints_and_acts_where_it_is_not_zero():
+def test_mapping_keeps_joints_without_friction():
     given = {"O": ks.PinFriction(0.1, 0.02), "guide": ks.GuideFriction(0.0)}
     kept = friction.taken(given)
     assert dict(kept) == given

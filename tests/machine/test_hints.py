@@ -59,7 +59,7 @@ def test_angles_in_radians_are_not(angles):
         ({"coupler": ks.Link(1.0, np.array([[1.0], [150.0]]))}, "coupler.centre.along is 150 m"),
     ],
 )
-def test_slips_of_units_in_links_are_hinted_at_by_solve_and_not_by_constructors(changes, words):
+def test_solve_hints_at_unit_slips_in_links(changes, words):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         made = mechanism(**changes)

@@ -35,7 +35,7 @@ def directions(mechanism):
 
 
 @every("side, axis", [(side, axis) for side in SIDES for axis in (0, 1)])
-def test_pin_of_a_knuckle_is_off_its_line_by_what_lengths_leave(side, axis, flint):
+def test_toggle_pin_is_off_its_line_by_lengths(side, axis, flint):
     mechanism = press(way=SIDES[side], axis=axis)
     assert mechanism.groups[0].knuckle == "xy"[axis]
     exact = on_arb(flint.arb, ks.Scene(mechanism, 6.0).solve(TURN)).placement.links["rocker"].direction[axis]
@@ -70,7 +70,7 @@ def test_a_batch_is_one_if_all_its_designs_are():
         assert ks.Mechanism("presses", ks.Crank(CRANK), chain).groups[0].knuckle == knuckle
 
 
-def test_where_the_coupler_points_to_either_side_it_is_right_all_the_same():
+def test_coupler_may_point_to_either_side():
     """As in a program, whose lengths may become others after it was recorded."""
     bars = ks.Mechanism("double crank", ks.Crank(0.4), (ks.RockerGroup(0.3, 0.35, (0.1, 0.02)),))
     for knuckle, axis in (("x", 0), ("y", 1)):

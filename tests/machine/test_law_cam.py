@@ -36,7 +36,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_the_slider_follows_the_law_also_at_and_near_the_singular_angles(name):
+def test_slider_follows_the_law_at_singular_angles(name):
     """Position, velocity and acceleration through the whole mechanism, in a guide turned by 0.3 rad."""
     law, offset = LAWS[name]
     cam = ks.cams.from_law(law, guide_angle=0.3, guide_offset=offset)
@@ -51,7 +51,7 @@ def test_the_slider_follows_the_law_also_at_and_near_the_singular_angles(name):
     assert_allclose(solution.slider_acceleration, expected.acceleration, rtol=0, atol=3e-14)
 
 
-def test_the_cosine_law_is_the_closed_form_of_the_sawframe():
+def test_cosine_law_is_the_closed_form():
     law, cam = ks.cams.CosineLaw(0.3, 2.0, 0.2), ks.cams.from_law(laws.cosine(0.3, 2.0), guide_angle=0.2)
     assert cam.coupler_length == pytest.approx(law.coupler_length, rel=1e-15)
     assert cam.singular_angles[0] - 0.2 == pytest.approx(law.singular_angle, abs=1e-8)
@@ -109,7 +109,7 @@ def test_a_mechanism_off_the_law_is_warned_of():
         ks.cam_crank_slider(cam, cam.coupler_length)
 
 
-def test_a_cam_from_a_table_follows_the_spline_exactly_and_tells_its_error():
+def test_table_cam_follows_its_spline():
     angle = np.linspace(0.0, TURN, 120, endpoint=False)
     law = laws.table(angle, 2.0 + 0.3 * np.cos(angle))
     cam = ks.cams.from_law(law)
@@ -123,7 +123,7 @@ def test_a_cam_from_a_table_follows_the_spline_exactly_and_tells_its_error():
 # The coupler length with which a law has a smooth cam, and laws that have none
 
 
-def test_a_cosine_law_beside_the_guide_is_refused_with_both_lengths_and_the_phase_that_repairs_it():
+def test_cosine_law_off_the_guide_is_refused():
     law = laws.cosine(0.3, 2.0)
     message = (
         r"coupler would have to be 2\.019120\d+ m long at 82\.26\d+ deg .* and 2\.02487\d+ m at 278\.79\d* deg.*"

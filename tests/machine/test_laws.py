@@ -46,7 +46,7 @@ def rise_dwell_return(name="cycloidal", **options):
 
 
 @pytest.mark.parametrize("name", SMOOTH)
-def test_rise_dwell_return_runs_through_its_segments_and_repeats(name):
+def test_rise_dwell_return_runs_and_repeats(name):
     law = rise_dwell_return(name)
     assert_allclose(law([0.0, 1.0, 2.2, 3.75, 5.5]).position, [1.7, 2.0, 2.3, 2.0, 1.7], rtol=1e-15)
     phi = np.linspace(0.0, TURN, 77)
@@ -55,7 +55,7 @@ def test_rise_dwell_return_runs_through_its_segments_and_repeats(name):
 
 
 @pytest.mark.parametrize("name", SMOOTH)
-def test_position_velocity_and_acceleration_are_continuous_where_segments_meet(name):
+def test_motion_is_continuous_between_segments(name):
     law = rise_dwell_return(name)
     knots = np.unique(law.knots)
     before, after = law(knots - 1e-9), law(knots + 1e-9)
@@ -70,7 +70,7 @@ def test_a_table_gives_the_law_that_it_was_taken_from():
         assert_allclose(found, expected, rtol=0, atol=10.0 ** (2 * order - 12))
 
 
-def test_a_measured_law_smoothed_by_its_noise_tells_forces_a_hundred_times_better():
+def test_smoothed_law_gives_better_forces():
     angle = np.linspace(0.0, TURN, 360, endpoint=False)
     exact = laws.cosine(0.3, 2.0)
     rounded = np.round(exact(angle).position, 6)
@@ -101,12 +101,12 @@ def test_a_measured_law_smoothed_by_its_noise_tells_forces_a_hundred_times_bette
         ([], "no segments"),
     ],
 )
-def test_segments_that_do_not_join_are_refused_with_the_place_and_both_numbers(segments, message):
+def test_open_segments_are_refused_with_the_place(segments, message):
     with pytest.raises(ks.ParameterError, match=message):
         laws.joined(*segments)
 
 
-def test_a_jump_of_the_acceleration_is_taken_where_it_is_allowed():
+def test_allowed_acceleration_jump_is_taken():
     law = rise_dwell_return("harmonic", smooth="velocity")
     assert law(2.0 - 1e-9).acceleration == pytest.approx(-0.5 * 0.6 * (np.pi / 2) ** 2, rel=1e-6)
     assert law(2.0 + 1e-9).acceleration == 0.0
@@ -145,7 +145,7 @@ def test_what_is_only_called_has_no_knots_and_no_error():
     assert_allclose(Own().shifted(0.1)(0.5), Own()(0.4), rtol=0, atol=1e-15)
 
 
-def test_a_law_that_does_not_say_what_it_is_cannot_be_called():
+def test_law_without_values_cannot_be_called():
     class Empty(Law):
         pass
 
@@ -153,7 +153,7 @@ def test_a_law_that_does_not_say_what_it_is_cannot_be_called():
         Empty()(0.0)
 
 
-def test_knots_bend_where_the_acceleration_or_the_jerk_jumps_and_nowhere_else():
+def test_knots_mark_jumps_of_acceleration_or_jerk():
     rise, back = ks.laws.harmonic(0.05, 0.07, 2.0), ks.laws.cycloidal(0.07, 0.05, 2.0)
     rest = 2 * np.pi - 5.0
     law = ks.laws.joined(rise, ks.laws.dwell(0.07, 1.0), back, ks.laws.dwell(0.05, rest), smooth="velocity")
@@ -204,7 +204,7 @@ def test_a_dwell_rests():
     assert_allclose(segments.dwell(0.1, 1.0)([0.0, 0.4, 1.0]), [[0.1] * 3, [0.0] * 3, [0.0] * 3, [0.0] * 3])
 
 
-def test_an_angle_beyond_the_segment_is_refused_and_rounding_beyond_it_is_its_end():
+def test_angle_beyond_a_segment_is_refused():
     segment = segments.cycloidal(0.0, 1.0, 1.0)
     assert segment(1.0 + 1e-13).position == 1.0
     with pytest.raises(ks.ParameterError, match=r"segment: angles must lie from 0 to its 1 rad, got -0\.1 to 0\.5"):

@@ -21,7 +21,7 @@ def z(vector):
 ARM = complex(ALONG, ACROSS) * np.exp(1j * ANGLE)
 
 
-def test_load_is_weight_less_mass_times_acceleration_about_the_joint():
+def test_load_is_weight_less_inertia_at_the_joint():
     body = ks.Link(3.0, (ALONG, ACROSS), 0.2).body
     found = links.load(LINK, body, SPEED**2, ACCELERATION, (0.0, -9.81))
     centre = (z(JOINT.second) + (1j * SLOPE - RATIO**2) * ARM) * SPEED**2
@@ -34,7 +34,7 @@ def test_load_is_weight_less_mass_times_acceleration_about_the_joint():
     assert links.virtual_work(LINK, found) == pytest.approx(work, rel=1e-14)
 
 
-def test_what_turns_a_link_is_as_exact_however_fast_it_spins():
+def test_fast_spin_keeps_the_moment_exact():
     """The pull of its mass centre, 1e16 times as large, goes through its reference joint."""
     body = links.Body(2.0, ALONG, ACROSS, 0.3)
     spinning = LINK._replace(ratio=1e8)

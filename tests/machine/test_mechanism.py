@@ -18,7 +18,7 @@ ANGLES_OF_SLIDERS = np.linspace(0.1, 6.0, 5)
 
 
 @pytest.mark.parametrize(("labels", "meant"), [(("2",), "slider2"), (("", "2"), "slider"), (("2", ""), "slider")])
-def test_the_only_slider_and_the_one_without_a_label_need_no_name(labels, meant):
+def test_single_or_unlabelled_slider_needs_no_name(labels, meant):
     s = two_sliders(*labels)
     assert np.array_equal(s.slider_position, s.travel(meant))
     assert np.array_equal(s.slider_velocity, s.travel_velocity(meant))
@@ -26,7 +26,7 @@ def test_the_only_slider_and_the_one_without_a_label_need_no_name(labels, meant)
     assert np.array_equal(s.elongation(0.2), s.elongation(0.2, meant))
 
 
-def test_which_of_several_sliders_is_meant_must_be_said():
+def test_one_of_several_sliders_must_be_named():
     with pytest.raises(
         ks.QuantityError, match=r'engine has 2 sliders, slider1, slider2; say which, .*travel\("slider1"\)'
     ):
@@ -62,7 +62,7 @@ class Forgetful(ks.Crank):
         return super().resolve(placement, loads, along)._replace(scalars={})
 
 
-def test_a_class_derived_from_the_librarys_crank_is_not_trusted_but_looked_at():
+def test_derived_crank_is_checked():
     groups = (ks.SliderGroup(2.0, slider=ks.Link(600.0)),)
     assert ks.Mechanism("own", ks.Crank(0.3), groups).trusted
     own = ks.Mechanism("own", Forgetful(0.3), groups)

@@ -49,7 +49,7 @@ def pin(at):
 
 
 @every("seed", range(20))
-def test_a_four_bar_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
+def test_four_bar_equals_its_joint_motion(seed):
     a, b, h, pivot, aside = lengths(seed)
     placement = placed(a, None if seed % 2 else (a, aside))
     name = "A" if seed % 2 else "C"
@@ -63,7 +63,7 @@ def test_a_four_bar_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
 
 
 @every("seed", range(20))
-def test_a_slotted_lever_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
+def test_slotted_lever_equals_its_joint_motion(seed):
     a, _, _, pivot, offset = lengths(seed)
     placement = placed(a, None if seed % 2 else (a, offset))
     name, offset = "A" if seed % 2 else "C", None if seed % 4 == 0 else offset
@@ -75,7 +75,7 @@ def test_a_slotted_lever_is_the_same_as_from_the_motion_of_its_inner_joint(seed)
 
 
 @every("seed", range(20))
-def test_a_slider_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
+def test_slider_equals_its_joint_motion(seed):
     a, length, angle, _, offset = lengths(seed)
     placement = placed(a, None if seed % 2 else (a, offset))
     name = "A" if seed % 2 else "C"
@@ -87,7 +87,7 @@ def test_a_slider_is_the_same_as_from_the_motion_of_its_inner_joint(seed):
         same((*found.travel, *found[2:6]), (*wanted.travel, *wanted[2:6]), wanted.closure)
 
 
-def test_a_pivot_at_the_crank_centre_and_a_pin_that_meets_its_pivot_have_finite_motions():
+def test_pivot_at_the_centre_has_finite_motion():
     together = ks.solve(ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=(0.0, 0.0)), TURN, crank_speed=1.0)
     np.testing.assert_allclose(together.rate("rocker"), 1.0, rtol=1e-14)
     many = ks.four_bar(0.5, 0.4, 0.3, rocker_pivot=(np.array([[0.0], [0.2]]), np.array([[0.0], [0.1]])))
@@ -111,14 +111,14 @@ def test_a_pivot_at_the_crank_centre_and_a_pin_that_meets_its_pivot_have_finite_
         ((0.3, np.array([[0.0], [0.1]]), 0.5001), False),
     ],
 )
-def test_lengths_that_differ_little_from_what_others_leave_them_are_told(given, close):
+def test_nearly_equal_lengths_are_recognised(given, close):
     radius, offset, length = given
     assert on_crank.is_small(Throw((radius, 0.0), True), offset, length) is close
     assert on_crank.is_small(Throw((0.6 * radius, 0.8 * radius)), offset, length) is close
 
 
 @pytest.mark.slow
-def test_what_jax_traces_is_no_known_length_and_has_derivatives(double):
+def test_traced_lengths_have_derivatives(double):
     body = ks.Link(3.0, 0.1, 0.1)
 
     def torque(x):
@@ -143,7 +143,7 @@ INCLINED = {
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("name", INCLINED)
-def test_torque_keeps_its_digits_where_reactions_that_it_is_balanced_by_lose_them(flint, name):
+def test_torque_keeps_digits_that_reactions_lose(flint, name):
     group, angle = INCLINED[name]
     machine = ks.Mechanism(name, ks.Crank(5 / 16, ks.Link(1.0, 0.1)), (group,))
     for distance in (1e-12, 1e-8, 1e-4):
@@ -155,7 +155,7 @@ def test_torque_keeps_its_digits_where_reactions_that_it_is_balanced_by_lose_the
         assert np.max(relative_errors(s.reaction("O"), support)) < 5e-16 / distance
 
 
-def test_torque_of_what_stays_clear_of_its_pivot_is_that_of_the_crank_in_equilibrium():
+def test_clear_pivot_torque_is_crank_equilibrium():
     clear = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=HEAVY)
     assert not clear.outgrown
     s = ks.solve(clear, TURN, crank_speed=9.0)

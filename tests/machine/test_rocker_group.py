@@ -126,7 +126,7 @@ def test_no_absolute_number_hides_in_the_rocker_group(power):
 
 @pytest.mark.parametrize("assembly", [1, -1])
 @pytest.mark.parametrize("turn", [0.7, np.pi / 2, -2.9])
-def test_turning_everything_turns_vectors_and_leaves_the_rest(turn, assembly):
+def test_turning_everything_turns_vectors_only(turn, assembly):
     """Pivot, gravity and the zero of the crank angle together."""
     around = np.exp(1j * turn)
     bar = FourBar(assembly=assembly)
@@ -140,7 +140,7 @@ def test_turning_everything_turns_vectors_and_leaves_the_rest(turn, assembly):
 
 
 @pytest.mark.parametrize("assembly", [1, -1])
-def test_mirrored_four_bar_is_the_other_assembly_with_mirrored_forces(assembly):
+def test_mirrored_four_bar_has_mirrored_forces(assembly):
     """Mirror in the x axis: left becomes right, and moments change sign."""
     bar = FourBar(assembly=assembly)
     mirrored = replace(
@@ -159,7 +159,7 @@ def test_mirrored_four_bar_is_the_other_assembly_with_mirrored_forces(assembly):
 
 
 @pytest.mark.parametrize("assembly", [1, -1])
-def test_derivatives_of_joints_and_links_are_the_slopes_of_positions(assembly):
+def test_derivatives_are_slopes_of_positions(assembly):
     """By complex steps, exact to rounding: f(x + ih) = f(x) + ih f'(x), with h so small that nothing is subtracted."""
     step = 1e-30
     mechanism = FourBar(assembly=assembly).solve().mechanism
@@ -178,7 +178,7 @@ def test_derivatives_of_joints_and_links_are_the_slopes_of_positions(assembly):
         assert_close(link.ratio_slope, slope(changed.ratio))
 
 
-def test_batch_of_designs_equals_the_loop_over_single_designs():
+def test_batch_equals_the_loop_over_designs():
     """Lengths, pivots and masses together."""
     size = np.array([[0.2], [0.3], [0.37]])
 
@@ -266,7 +266,7 @@ def assert_error_is_that_of_rounded_lengths(bar, angles):
 
 @pytest.mark.parametrize("kind", ["stretched", "folded", "folded, long coupler"])
 @pytest.mark.parametrize("margin", 10.0 ** -np.arange(2, 15, 2))
-def test_error_near_a_toggle_is_that_of_rounded_lengths(kind, margin):
+def test_error_near_a_toggle_is_of_rounded_lengths(kind, margin):
     """A closing margin of 1e-14 leaves a sine of the transmission angle of 1e-7.
 
     The condition grows as 1 / sine for positions, 1 / sine^2 for rates and 1 / sine^3 for accelerations.
@@ -279,7 +279,7 @@ def test_error_near_a_toggle_is_that_of_rounded_lengths(kind, margin):
 
 @pytest.mark.parametrize("assembly", [1, -1])
 @pytest.mark.parametrize("longer", [1e2, 1e4, 1e6])
-def test_error_with_one_long_link_is_that_of_rounded_lengths(longer, assembly):
+def test_error_with_a_long_link_is_of_rounded_lengths(longer, assembly):
     """Differences of squares would cost twice as many digits as the long link has more than the short one."""
     for coupler, rocker in ((1.0, longer), (longer, 1.0)):
         bar = FourBar(0.5, coupler, rocker, 0.8 + 1j * longer, assembly)

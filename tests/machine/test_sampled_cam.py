@@ -21,7 +21,7 @@ def circle_table(count, start=0.3):
 
 
 @pytest.mark.parametrize("start", [-4.0, 0.3])
-def test_sampled_cam_converges_to_the_circle_by_the_order_of_its_spline(start):
+def test_sampled_cam_converges_by_spline_order(start):
     """Twice the points: a quintic spline errs 2^6 less in r, 2^5 in r', 2^4 in r''."""
     phi = np.linspace(-7.0, 7.0, 400)
     errors = []
@@ -33,7 +33,7 @@ def test_sampled_cam_converges_to_the_circle_by_the_order_of_its_spline(start):
         assert_allclose(np.log2(np.divide(coarse, fine)), [6, 5, 4], atol=0.7)
 
 
-def test_sampled_cam_passes_through_its_points_and_repeats_after_a_turn():
+def test_sampled_cam_passes_its_points():
     _, angle, radius = circle_table(40)
     cam = ks.cams.Sampled(angle, radius)
     assert_allclose(cam.radius(angle)[0], radius, rtol=1e-15)
@@ -41,7 +41,7 @@ def test_sampled_cam_passes_through_its_points_and_repeats_after_a_turn():
         assert_allclose(far, near, rtol=0, atol=1e-13)
 
 
-def test_sampled_cam_drives_a_mechanism_like_the_circle_it_was_taken_from():
+def test_sampled_cam_drives_like_its_circle():
     circle, angle, radius = circle_table(360)
     machines = [
         ks.cam_crank_slider(cam, 1.1, coupler=ks.Link(7.0, 0.5, 0.9), slider=ks.Link(11.0))
@@ -53,14 +53,14 @@ def test_sampled_cam_drives_a_mechanism_like_the_circle_it_was_taken_from():
 
 
 @pytest.mark.parametrize("digits", [4, 5])
-def test_sampled_cam_warns_of_a_table_whose_rounding_shows_in_the_second_derivative(digits):
+def test_rounding_in_the_second_derivative_warns(digits):
     """A radius read to 0.1 or 0.01 mm at every degree: the error over the step squared is of the size of r."""
     _, angle, radius = circle_table(360)
     with pytest.warns(UserWarning, match=r"360 points are too coarse or too noisy: r'' is uncertain by up to"):
         ks.cams.Sampled(angle, np.round(radius, digits))
 
 
-def test_sampled_cam_warns_of_too_few_points_for_its_harmonics():
+def test_too_few_points_for_harmonics_warn():
     angle = 2 * np.pi * np.arange(12) / 12
     with pytest.warns(UserWarning, match="12 points are too coarse"):
         ks.cams.Sampled(angle, 0.3 + 0.05 * np.cos(4 * angle))
@@ -109,7 +109,7 @@ def rounded(cam, count, step):
 @every("step", [1e-7, 1e-6, 1e-5])
 @every("count", [90, 360, 3600])
 @every("name", CAMS)
-def test_stated_error_of_forces_bounds_the_true_one_within_ten_times(name, count, step):
+def test_stated_force_error_is_within_ten_times(name, count, step):
     sampled = ks.cams.Sampled(*rounded(CAMS[name], count, step))
     exact = balanced_cam_force(CAMS[name])
     true = largest(balanced_cam_force(sampled) - exact) / largest(exact)
@@ -121,7 +121,7 @@ def test_stated_error_of_forces_bounds_the_true_one_within_ten_times(name, count
 
 @every("count", [90, 360, 3600])
 @every("name", CAMS)
-def test_exact_tables_are_silent_and_state_their_truncation(name, count):
+def test_exact_tables_state_their_truncation(name, count):
     angle = 2 * np.pi * np.arange(count) / count
     sampled = ks.cams.Sampled(angle, CAMS[name].radius(angle)[0])
     exact = balanced_cam_force(CAMS[name])
@@ -145,7 +145,7 @@ def test_a_warning_comes_from_one_per_cent(step, warned):
 @pytest.mark.parametrize("step", [1e-7, 1e-6, 1e-5])
 @pytest.mark.parametrize("count", [90, 360])
 @pytest.mark.parametrize("name", CAMS)
-def test_stated_noise_is_smoothed_away_and_what_is_left_is_stated(name, count, step):
+def test_stated_noise_is_smoothed_away(name, count, step):
     """What is stated bounds the error in each, and at every degree smoothing takes nine tenths of it and more."""
     table = rounded(CAMS[name], count, step)
     smooth = ks.cams.Sampled(*table, noise=step / np.sqrt(12))
@@ -157,7 +157,7 @@ def test_stated_noise_is_smoothed_away_and_what_is_left_is_stated(name, count, s
         assert true < rough / 10
 
 
-def test_a_table_rounded_to_a_micrometre_gives_forces_to_a_thousandth_once_its_noise_is_stated():
+def test_micrometre_rounding_gives_force_to_1e_3():
     """The sawframe at every degree: 12 per cent without."""
     exact = balanced_cam_force(LAW)
     with pytest.warns(UserWarning, match="state their noise to have them smoothed"):
@@ -177,7 +177,7 @@ def test_noise_unlike_that_of_the_table_is_warned_of(noise, words):
         ks.cams.Sampled(*table, noise=noise)
 
 
-def test_a_sampled_cam_that_jax_traces_is_refused_with_what_to_do(double):
+def test_traced_sampled_cam_is_refused(double):
     mechanism = ks.cam_crank_slider(ks.cams.Sampled(*rounded(LAW, 360, 1e-9)), 2.0, slider=ks.Link(600.0))
     with pytest.raises(ks.NotGivenError, match=r"sampled cam.*ks.compile"):
         double.jit(lambda angle: ks.solve(mechanism, angle, crank_speed=3.0, on_gap="nan").balancing_torque)(np.ones(3))
@@ -204,7 +204,7 @@ def table(angle, values, noise=None):
     return TurnTable.of("table", angle, values, "value", noise)
 
 
-def test_the_spline_and_its_derivatives_repeat_after_a_turn_and_pass_through_every_point():
+def test_spline_repeats_and_passes_every_point():
     made = table(uneven(180), value(uneven(180)))
     assert_allclose(made.splines[0](made.angle), made.values, rtol=1e-15)
     for order, (spline, allowed) in enumerate(zip(made.splines, (1e-9, 1e-7, 1e-5, 1e-3), strict=True)):
@@ -212,7 +212,7 @@ def test_the_spline_and_its_derivatives_repeat_after_a_turn_and_pass_through_eve
         assert_allclose(spline(FINE - 4 * np.pi), spline(FINE), rtol=0, atol=1e-10)
 
 
-def test_the_second_derivative_is_continuous_at_the_points_and_across_the_seam():
+def test_second_derivative_is_continuous():
     """The step across a point vanishes in proportion to its width, also where the table ends and begins again."""
     angle = uneven(24)
     second, third = table(angle, value(angle)).splines[2:]
@@ -221,7 +221,7 @@ def test_the_second_derivative_is_continuous_at_the_points_and_across_the_seam()
 
 
 @pytest.mark.parametrize(("count", "step"), [(90, 1e-6), (360, 1e-6), (24, 0.0)])
-def test_the_error_stated_is_that_of_the_second_derivative(count, step):
+def test_stated_error_is_of_the_second_derivative(count, step):
     """By rounding to a step, or by few points."""
     angle = 2 * np.pi * np.arange(count) / count
     made = table(angle, np.round(value(angle) / step) * step if step else value(angle))

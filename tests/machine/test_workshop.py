@@ -35,7 +35,7 @@ def test_a_dxf_read_back_gives_the_same_points(tmp_path, units):
 
 
 @pytest.mark.parametrize("units", UNITS)
-def test_a_csv_read_back_gives_the_same_points_and_the_same_cam(tmp_path, units):
+def test_csv_gives_back_points_and_cam(tmp_path, units):
     LAW.export(tmp_path / "cam.csv", units=units, **GIVEN)
     names = dict.fromkeys(("roller_x", "roller_y", "surface_x", "surface_y", "cutter_x", "cutter_y", "radius"), "m")
     columns = dict(zip(names, read_columns(tmp_path / "cam.csv", names), strict=True))
@@ -80,7 +80,7 @@ def read_svg(path):
 
 
 @pytest.mark.parametrize("side", ["disk", "ring"])
-def test_a_drawing_is_one_to_one_and_its_curve_the_profile(tmp_path, side):
+def test_drawing_is_one_to_one(tmp_path, side):
     LAW.export(tmp_path / "cam.svg", side=side, **GIVEN)
     root, space = read_svg(tmp_path / "cam.svg")
     left, top, width, height = map(float, root.get("viewBox").split())
@@ -95,7 +95,7 @@ def test_a_drawing_is_one_to_one_and_its_curve_the_profile(tmp_path, side):
         assert top < -y < top + height
 
 
-def test_a_drawing_has_dimensions_zero_mark_and_sense_of_rotation(tmp_path):
+def test_drawing_has_dimensions_and_rotation_mark(tmp_path):
     LAW.export(tmp_path / "cam.svg", clockwise=True, **GIVEN)
     root, space = read_svg(tmp_path / "cam.svg")
     texts = [item.text for item in root.findall("svg:text", space)]

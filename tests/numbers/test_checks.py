@@ -155,7 +155,7 @@ def test_single_precision_angles_are_warned_of():
         (lambda s: s.pressure_angle, "crank-slider: quantity is 'pressure_angle', allowed: 'balancing_torque'"),
     ],
 )
-def test_unknown_names_are_answered_with_the_valid_ones_and_the_nearest(ask, message):
+def test_unknown_names_list_valid_and_nearest(ask, message):
     with pytest.raises(ks.QuantityError, match=message):
         ask(solve(crank_slider()))
 
@@ -196,6 +196,6 @@ def test_a_class_of_cam_must_say_its_radius():
         type("Flat", (ks.cams.Cam,), {})().radius(0.0)
 
 
-def test_a_constant_of_a_batch_has_the_shape_of_the_batch():
+def test_constant_of_a_batch_has_its_shape():
     batch = solve(ks.crank_slider(np.array([[0.2], [0.3]]), 2.0, slider=ks.Link(1.0)), np.array([0.0, 1.0, 2.0]))
     assert batch.guide_moment.shape == batch.balancing_torque.shape == (2, 3)

@@ -14,7 +14,7 @@ from kinetostatics.numbers.elementary import APART, ROUNDING, apart, divisor, re
 from support.every import every
 
 
-def test_a_square_below_zero_by_rounding_only_has_the_root_zero():
+def test_square_below_zero_by_rounding_has_root_zero():
     square = np.array([4.0, 0.0, -0.5 * ROUNDING, -2.0 * ROUNDING])
     found = root(square, 1.0)
     assert found[:3].tolist() == [2.0, 0.0, 0.0]
@@ -22,13 +22,13 @@ def test_a_square_below_zero_by_rounding_only_has_the_root_zero():
     assert not np.isnan(root(square, 3.0)).any()
 
 
-def test_a_square_and_a_unit_too_small_for_the_precision_have_no_root():
+def test_too_small_squares_have_no_root():
     lost = np.array([-1e-60, 1e-60]).astype(np.float32)
     assert np.isnan(root(lost, np.float32(0.0))).all()
     assert root(np.zeros(1), 1e-300).tolist() == [0.0]
 
 
-def test_divisors_stay_off_zero_and_distances_have_a_direction():
+def test_divisors_stay_off_zero():
     assert divisor(np.array([0.0, 2.0]), 1e-3).tolist() == [1e-3, 2.0]
     assert apart(0.0, 2.0) == 2.0 * APART > 0.0
     assert apart(1.0, 2.0) == 1.0
@@ -68,7 +68,7 @@ def test_a_length_with_its_rest_has_twice_the_digits():
     assert 2.0**-60 < np.max(np.abs(found / length)) < 2.0**-52
 
 
-def test_a_rest_in_single_precision_is_all_that_rounding_took_from_numpy_and_from_jax(jax):
+def test_single_precision_rest_is_the_rounding(jax):
     x, y = np.random.default_rng(3).uniform(0.1, 1.0, (2, 50)).astype(np.float32)
     length = np.sqrt(x * x + y * y)
     lost = np.sqrt(x.astype(float) ** 2 + y.astype(float) ** 2) - length
@@ -78,7 +78,7 @@ def test_a_rest_in_single_precision_is_all_that_rounding_took_from_numpy_and_fro
         np.testing.assert_allclose(found, lost, rtol=1e-6, atol=1e-14)
 
 
-def test_a_rest_of_numbers_with_slopes_has_none_and_enclosures_have_no_rest():
+def test_dual_rest_has_no_slopes():
     seeded = [Dual(np.array(part), np.ones((1, 1))) for part in (0.5, 0.3, 0.4)]
     found = rest(*seeded)
     assert found.slopes is None
@@ -96,7 +96,7 @@ NUMBERS = {
 
 
 @every("name", NUMBERS)
-def test_a_total_takes_six_numbers_of_any_kind_and_absent_ones_do_not_count(name):
+def test_sum_takes_six_numbers_of_any_kind(name):
     number = NUMBERS[name]
     total(*[number] * 6, None)
     assert type(total(None, number)) is type(number)
@@ -110,6 +110,6 @@ def test_a_total_has_the_slopes_of_a_sum():
     np.testing.assert_array_equal(found.slopes, [[1.0], [-2.0]])
 
 
-def test_numbers_of_any_precision_are_not_moved_off_zero():
+def test_exact_numbers_are_not_moved_off_zero():
     assert apart(Fraction(0), 1.0) == 0
     assert apart(0, 1.0) == apart(0.0, 1.0) == APART

@@ -16,7 +16,7 @@ def test_blanks_in_headings_count_as_underscores(tmp_path):
     assert [column.tolist() for column in read_columns(path, {"force_back": "N"})] == [[1000.0, 1000.0]]
 
 
-def test_a_file_that_is_larger_than_it_may_be_is_refused(tmp_path):
+def test_too_large_a_file_is_refused(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text("x" * 100)
     assert read_text(path, 100) == "x" * 100

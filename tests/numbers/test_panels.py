@@ -41,7 +41,7 @@ def test_mean_and_integral_are_exact():
     assert_allclose(found, expected, atol=1e-13)
 
 
-def test_roots_are_changes_of_sign_and_jumps_across_zero():
+def test_roots_are_sign_changes_and_jumps():
     assert_allclose(Panels.of(np.cos, TURN).roots, [np.pi / 2, 3 * np.pi / 2], atol=1e-12)
     jumping = Panels.of(lambda x: np.where(np.mod(x - 1.0, TURN) < np.pi, 1.0, -1.0), TURN)
     assert_allclose(jumping.roots, [1.0, 1.0 + np.pi], atol=1e-12)
@@ -49,7 +49,7 @@ def test_roots_are_changes_of_sign_and_jumps_across_zero():
     assert touching.roots.size == 0
 
 
-def test_what_is_rough_everywhere_is_refused_with_the_place():
+def test_rough_functions_are_refused_with_the_place():
     rough = np.random.default_rng(0)
     with pytest.raises(ParameterError, match="not smooth between finitely many kinks: not near"):
         Panels.of(lambda x: rough.normal(size=np.shape(x)), TURN)

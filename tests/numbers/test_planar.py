@@ -14,7 +14,7 @@ def z(vector):
     return complex(*planar.vector(vector))
 
 
-def test_products_lengths_and_turns_are_those_of_complex_numbers():
+def test_products_and_turns_are_those_of_complex():
     ray = cmath.rect(1.0, 0.7)
     assert complex(planar.dot(A, B), planar.cross(A, B)) == z(A).conjugate() * z(B)
     assert planar.length(A) == pytest.approx(abs(z(A)), rel=1e-15)
@@ -24,7 +24,7 @@ def test_products_lengths_and_turns_are_those_of_complex_numbers():
     assert planar.turned(A, None) is A is planar.unturned(A, None)
 
 
-def test_a_circle_run_to_the_left_has_the_curvature_of_its_radius_at_whatever_speed():
+def test_circle_has_the_curvature_of_its_radius():
     for angle, rate, growth in product((0.0, 1.0, 4.0), (2.0, -3.0), (0.0, 5.0)):
         turn = cmath.exp(1j * angle)
         first = 0.4j * rate * turn

@@ -24,6 +24,6 @@ def test_numbers_without_a_unit_are_said_to_have_none(reader, given):
 
 
 @every("given", [[70, 85], (0.07, 0.085, 10), np.linspace(0.07, 0.085, 3), ["70 mm", "85 mm"]])
-def test_bare_numbers_are_refused_with_the_forms_there_are(given):
+def test_bare_numbers_name_the_allowed_forms(given):
     with pytest.raises(ks.ParameterError, match=r'each with its unit; write "600\.\.900 kN/m:40" for a grid'):
         spreads.read({"crank_length": given}, spreads.axis)

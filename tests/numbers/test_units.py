@@ -31,7 +31,7 @@ def test_what_measures_something_else_is_refused(text, unit):
 
 @pytest.mark.parametrize("unit", ["degC", "°C", "degF", "°F", "dB"])
 @pytest.mark.parametrize("wanted", ["K", "m"])
-def test_units_with_a_zero_of_their_own_are_refused_in_words(unit, wanted):
+def test_units_with_their_own_zero_are_refused(unit, wanted):
     with pytest.raises(ValueError, match=f'unit "{unit}" has a zero of its own.* as K, or delta_degC'):
         to_si(f"20 {unit}", wanted)
 

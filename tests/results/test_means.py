@@ -39,7 +39,7 @@ def test_the_mean_is_that_of_calculus(name):
 
 
 @pytest.mark.parametrize("of", [mean_absolute_torque, energy_per_turn])
-def test_where_friction_jams_in_the_turn_there_is_no_mean(of):
+def test_jamming_leaves_no_mean(of):
     solution = ks.solve(
         ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0)), 0.3, crank_speed=3.0, friction={"guide": ks.GuideFriction(0.9)}
     )
@@ -71,7 +71,7 @@ def _exact_rule():
         ]
 
 
-def test_the_rounding_of_a_mean_is_a_bound_on_that_of_its_own_sum_and_near_it():
+def test_rounding_bound_of_a_mean_is_near():
     """The torque of a Scotch yoke is m r^2 omega^2 sin 2 phi / 2; the sum of its nodes is taken in 40 digits."""
     mp = pytest.importorskip("mpmath")
     s = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=7.0)
@@ -90,7 +90,7 @@ def test_the_rounding_of_a_mean_is_a_bound_on_that_of_its_own_sum_and_near_it():
     assert 0 < error <= rounding < 5e-15 * mean
 
 
-def test_where_the_torque_grows_without_bound_the_mean_and_its_errors_are_infinite(monkeypatch):
+def test_unbounded_torque_has_infinite_mean(monkeypatch):
     s = ks.solve(ks.scotch_yoke(0.1, slider=ks.Link(3.0)), 0.0, crank_speed=7.0)
     found = ks.extremes(s, "balancing_torque")
     growing = replace(found, value=np.where(found.maximum, np.inf, found.value))

@@ -93,7 +93,7 @@ def test_numbers_and_doubts_are_those_of_numpy(handed_on, count, turns):
         np.testing.assert_array_equal(doubtful, doubted, err_msg=str(item))
 
 
-def test_designs_that_do_not_close_or_nearly_do_not_are_told(handed_on):
+def test_open_designs_are_reported(handed_on):
     closure = np.ones((4, 20))
     closure[1, 7] = 0.005
     closure[2, 3:6] = -0.1

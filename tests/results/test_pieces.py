@@ -76,12 +76,12 @@ def test_two_turns_are_reduced_over_both():
     assert 7.0 <= found("largest_at O", second, bends, 384, 2 * TURN)[0] <= 9.0
 
 
-def test_the_magnitude_of_a_vector_that_passes_zero_is_known_there():
+def test_vector_magnitude_near_zero_is_right():
     near = lambda angle: np.hypot(np.sin(angle - 2.3456), 1e-4)  # noqa: E731
     assert found("smallest O", near, np.array([[1.0]]), vector=True) == pytest.approx(1e-4, rel=1e-3)
 
 
-def test_values_that_go_on_otherwise_in_the_next_piece_are_told():
+def test_discontinuous_pieces_are_reported():
     """A kink between the last node of a piece and its end is seen by none of them."""
     pieces = Pieces.of(np.array([[1.0]]), TURN, 192)
     for beside, doubted in ((-0.002, True), (0.002, True), (0.0, False)):
@@ -92,7 +92,7 @@ def test_values_that_go_on_otherwise_in_the_next_piece_are_told():
         assert (kinked.max() > 1e-4) == doubted, (beside, kinked)
 
 
-def test_a_kink_just_before_a_bend_is_told_by_the_step_there():
+def test_kink_just_before_a_bend_is_found():
     """No node lies between a kink and a bend that is near; what jumps there is no sign of it."""
     kink = lambda angle: np.abs(angle - 0.9999) + np.where(angle > 1.0, -2.0 * (angle - 1.0), 0.0)  # noqa: E731
     for jump in (False, True):
@@ -103,7 +103,7 @@ def test_a_kink_just_before_a_bend_is_told_by_the_step_there():
         assert (doubts[at - 1] > 1e-4) != jump
 
 
-def test_values_that_are_no_polynomial_between_bends_are_told():
+def test_non_polynomial_pieces_are_reported():
     pieces = Pieces.of(np.array([[1.0]]), TURN, 192)
     middle = np.pi / 24  # of the first piece
     for place in (middle, middle + 0.02, 3.0):
@@ -112,7 +112,7 @@ def test_values_that_are_no_polynomial_between_bends_are_told():
             assert pieces.estimated(parsed(text), values)[1].all(), (place, text)
 
 
-def test_a_design_with_what_is_no_number_spoils_no_other():
+def test_nan_in_one_design_spoils_no_other():
     pieces = Pieces.of(BENDS, TURN, 192)
     values = np.cos(pieces.angle)
     values[0, 5] = np.nan
@@ -122,7 +122,7 @@ def test_a_design_with_what_is_no_number_spoils_no_other():
         assert np.isfinite(numbers[1])
 
 
-def test_a_jump_between_a_bend_and_an_even_edge_that_rounding_sets_apart_is_no_peak():
+def test_jump_between_bend_and_edge_is_no_peak():
     place = np.linspace(0.0, TURN, 25)[3]
     step = lambda angle: np.where(angle > place, 3.0, 1.0)  # noqa: E731
     for beside in (np.nextafter(place, 9.0), place + 1e-14):
@@ -158,7 +158,7 @@ def hyperbola(width):
 
 @pytest.mark.parametrize("width", [0.0, 1e-9, 1e-6, 1e-4, 1e-2])
 @pytest.mark.parametrize("text", ["smallest O", "largest O", "mean O", "smallest_at O", "rms O", "range O"])
-def test_a_size_that_passes_near_zero_is_told_however_near(text, width):
+def test_size_passing_near_zero_is_found(text, width):
     numbers, rough, pieces = run(text, hyperbola(width))
     high, angle = np.hypot(2.0, width), np.linspace(0.0, TURN, 7)
     fine = np.sort(np.concatenate([[0.0], np.ravel([TURN * 2.0**-k for k in range(45)]), angle[1:-1]]))
@@ -179,7 +179,7 @@ def test_a_size_that_passes_near_zero_is_told_however_near(text, width):
     assert pieces.max() < 150
 
 
-def test_a_jump_that_nobody_declares_is_told_from_both_sides():
+def test_undeclared_jump_is_seen_from_both_sides():
     step = lambda angle, designs: np.where((angle > 1.0) & (angle < PLACE[designs]), 2.0, 0.5)  # noqa: E731
     for text, truth in {"largest O": 2.0, "smallest O": 0.5, "range O": 1.5}.items():
         numbers, rough, _ = run(text, step)
@@ -207,7 +207,7 @@ def solved(loads=(), friction=None, crank=0.05, offset=0.01):
     return ks.solve(pump, np.zeros(1), crank_speed=30.0, loads=loads, friction=friction)
 
 
-def test_rows_of_a_smooth_curve_bend_nothing_until_they_are_looked_at_more_closely():
+def test_smooth_rows_bend_only_at_fine_tolerance():
     x = np.linspace(0.1, 0.3, 1100)
     one, other = (ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel", back=back)) for back in (None, -x))
     assert not bent(solved([one]), "O")
@@ -216,7 +216,7 @@ def test_rows_of_a_smooth_curve_bend_nothing_until_they_are_looked_at_more_close
     assert bends(solved([one, other])).angle.shape[1] == 2  # where strokes that differ may jump
 
 
-def test_a_table_over_the_angle_bends_in_every_turn_of_the_period():
+def test_angle_table_bends_in_every_turn():
     x = np.arange(0.0, 6.1, 0.5)
     twice = ks.Torque(ks.Table(x, np.interp(x, [0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0])), on="crank")
     four = ks.ProcessForce(ks.Table(np.linspace(0, 4 * np.pi, 9), np.zeros(9), period=4 * np.pi), period=4 * np.pi)
@@ -224,7 +224,7 @@ def test_a_table_over_the_angle_bends_in_every_turn_of_the_period():
     assert {0.0, 1.0, 2.0, 2 * np.pi, 1.0 + 2 * np.pi, 2.0 + 2 * np.pi} <= set(at)
 
 
-def test_no_bend_is_beyond_a_period_that_is_thirteen_turns_but_for_rounding():
+def test_no_bend_lies_beyond_thirteen_turns():
     once = ks.Torque(ks.Table([0.0, 1.0, 2.0, 6.0], [0.0, 1.0, 0.0, 0.0]), on="crank")
     long = ks.ProcessForce(ks.Table(np.linspace(0, 26 * np.pi, 9), np.zeros(9), period=26 * np.pi), period=26 * np.pi)
     s = solved([once, long])
@@ -233,7 +233,7 @@ def test_no_bend_is_beyond_a_period_that_is_thirteen_turns_but_for_rounding():
     assert np.sum(np.isclose(at % (2 * np.pi), 1.0)) == 13
 
 
-def test_friction_of_designs_bends_for_each_where_it_does_alone():
+def test_friction_of_designs_bends_as_alone():
     friction, crank = {"guide": ks.GuideFriction(0.1), "B": ks.PinFriction(0.1, 0.02)}, np.array([[0.03], [0.05]])
     both = np.sort(bends(solved((), friction, crank)).angle, axis=1)
     for row, length in zip(both, crank[:, 0], strict=True):

@@ -30,7 +30,7 @@ def test_motion_and_shaking_force_compute_no_reaction(monkeypatch):
     assert solution.position("B").shape == solution.shaking_force.shape == (2, TURN.size)
 
 
-def test_a_standing_mechanism_is_held_by_the_statics_of_its_loads():
+def test_standing_mechanism_is_in_static_equilibrium():
     standing = solved(crank_speed=0.0)
     work = 150 * 9.81 * standing.at(TURN).position("coupler")[1]
     slope = np.fft.irfft(1j * np.arange(TURN.size // 2 + 1) * np.fft.rfft(work), TURN.size)
@@ -45,7 +45,7 @@ def test_power_residual_shows_a_torque_that_is_wrong(monkeypatch):
     assert 1e-5 < solution.power_residual < 1e-4
 
 
-def test_cosine_law_cam_warns_of_a_mechanism_that_breaks_the_law():
+def test_cosine_cam_warns_off_its_law():
     law = ks.cams.CosineLaw(0.3, 2.0)
     with pytest.warns(UserWarning, match=r"coupler_length 2.0 m is not the cam's 2.02"):
         ks.cam_crank_slider(law, 2.0)
@@ -60,7 +60,7 @@ def rockers_slider(length, assembly=1):
 
 
 @pytest.mark.parametrize("mechanism", [ks.crank_slider(0.1, 0.1, assembly="crossed"), rockers_slider(0.3)])
-def test_a_slider_that_stands_still_all_over_the_turn_is_warned_of(mechanism):
+def test_slider_that_never_moves_is_warned_of(mechanism):
     with pytest.warns(
         ks.HintWarning, match=r"the slider2? stands still all over the turn: the coupler2? is as long as"
     ):
@@ -91,7 +91,7 @@ def test_a_single_crank_angle_gives_single_values():
     assert solution.power_residual < 1e-14
 
 
-def test_results_cannot_be_written_to_and_follow_no_later_change_of_the_angles():
+def test_results_are_read_only_and_stay():
     turn = TURN.copy()
     solution = solved(turn)
     before = solution.guide_force.copy()
@@ -101,7 +101,7 @@ def test_results_cannot_be_written_to_and_follow_no_later_change_of_the_angles()
         solution.guide_force[0] = 0.0
 
 
-def test_whole_numbers_as_crank_angles_do_not_cut_results_off():
+def test_integer_angles_do_not_truncate_results():
     np.testing.assert_array_equal(solved(np.arange(4)).rate("crank"), np.full(4, 33.5))
 
 
@@ -130,7 +130,7 @@ def test_the_period_is_that_of_loads_and_mechanism():
 # Drive and loads in a line, and tables among them
 
 
-def test_scene_and_solution_show_themselves_in_a_line_however_long_their_tables():
+def test_scene_and_solution_print_in_a_line():
     speed = np.linspace(30.0, 40.0, TURN.size)
     scene = ks.Scene(SAW, speed, loads=[ks.Gravity(), ks.ProcessForce(speed)])
     drive = "crank_speed=<array of shape (24,)>, crank_acceleration=0.0, Gravity, ProcessForce>"
@@ -142,7 +142,7 @@ def test_scene_and_solution_show_themselves_in_a_line_however_long_their_tables(
 # A solution as a table
 
 
-def test_frame_has_a_row_for_each_angle_and_a_unit_in_every_column():
+def test_frame_has_a_row_an_angle_with_units():
     table = solved().frame()
     assert len(table) == TURN.size
     assert all(name.endswith("]") for name in table.columns)
@@ -168,7 +168,7 @@ def two_sliders(*labels):
 ANGLES_OF_SLIDERS = np.linspace(0.1, 6.0, 5)
 
 
-def test_the_frame_holds_travel_velocity_and_acceleration_of_every_slider_with_units():
+def test_frame_has_motion_of_every_slider():
     s = two_sliders("1", "2")
     table = s.frame()
     for slider in ("slider1", "slider2"):

@@ -68,7 +68,7 @@ def test_what_cannot_be_done_is_refused(name):
 
 
 @pytest.mark.parametrize("name", ["rms O [N]", "failed"])
-def test_a_column_of_the_designs_named_like_an_output_is_refused(name):
+def test_column_named_like_an_output_is_refused(name):
     designs = DESIGNS[["mass"]].assign(**{name: 1.0})
     with pytest.raises(ks.ParameterError, match="of the designs has the name of an output") as caught:
         sweep(factories.pump, designs, ["rms O"])
@@ -94,7 +94,7 @@ def test_many_crank_angles_are_compiled_unless_told(monkeypatch):
         sweep(factories.pump, DESIGNS, OUTPUTS, engine="compiled")
 
 
-def test_columns_of_quantities_are_refused_with_their_unit():
+def test_columns_of_quantities_name_their_unit():
     (problem,) = _type_problems(SimpleNamespace(dtypes={"slider.mass": SimpleNamespace(units="kilogram")}))
     assert "with the unit kilogram in its heading" in problem
 
@@ -102,7 +102,7 @@ def test_columns_of_quantities_are_refused_with_their_unit():
 # The trial of a sweep
 
 
-def test_unknown_quantities_of_design_and_reference_are_refused(tmp_path):
+def test_unknown_sweep_quantities_are_refused(tmp_path):
     for outputs, message in ((["rms cam_forc"], "cam_force"), (["ratio rms cam_force"], "crank-slider: quantity")):
         with pytest.raises(ks.QuantityError, match=message):
             sweep(
@@ -121,7 +121,7 @@ class OneSided(ks.SliderGroup):
         return found if placement.joints["A"].position[0].sum() > 0 else found._replace(scalars=dict(found.scalars))
 
 
-def test_what_cannot_be_compiled_is_left_to_numpy_unless_told(interpreted, monkeypatch):
+def test_uncompilable_sweeps_use_numpy(interpreted, monkeypatch):
     mechanism = ks.Mechanism("one-sided", ks.Crank(0.1), (OneSided(0.4, slider=ks.Link(1.0)),))
     made = lambda: ks.Scene(mechanism, 10.0)  # noqa: E731
     designs = pd.DataFrame(index=range(2))
@@ -132,7 +132,7 @@ def test_what_cannot_be_compiled_is_left_to_numpy_unless_told(interpreted, monke
 
 
 @every("angles", [12, 13, 36, 48, 100])
-def test_few_crank_angles_a_turn_are_as_many_as_tell_its_numbers(angles):
+def test_few_angles_are_raised_to_enough(angles):
     outputs, designs = ["largest balancing_torque", "mean_absolute A"], pd.DataFrame({"crank_speed": [2.0, 2.5]})
     options = {"variant": "idle"}
     found = sweep(shipped("shaper"), designs, outputs, angles=angles, **options)

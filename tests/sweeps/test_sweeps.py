@@ -59,7 +59,7 @@ def test_rows_equal_case_files_with_these_values(tmp_path, case, reference, name
     assert table.iloc[:, 1:4].to_numpy() == pytest.approx(np.array(expected), rel=1e-12)
 
 
-def test_ratios_are_dynamic_coefficients_to_sampling_error():
+def test_ratios_are_dynamic_coefficients():
     """Of 360 angles the mean of an absolute value, which has corners, is right to some 1e-5."""
     found = sweep(SAW, pd.DataFrame(index=[0]), ["ratio mean_absolute balancing_torque"], variant="cam-cosine")
     exact = SAW.compare("plain", "cam-cosine").mean_torque_ratio
@@ -83,7 +83,7 @@ def test_the_table_keeps_the_designs_and_names_units():
     assert_equal(found[designs.columns], designs)
 
 
-def test_variants_are_the_first_beside_the_reference_and_the_reference_unless_told():
+def test_swept_variant_defaults_beside_the_reference():
     designs = ks.designs.grid({"slider.mass": "600..600 kg:1"})
     ratio = "ratio mean_absolute balancing_torque"
     assert_equal(sweep(SAW, designs, ratio), sweep(SAW, designs, ratio, variant="cam-circle", reference="plain"))
@@ -115,7 +115,7 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 
-def test_tables_beforehand_are_cut_into_blocks_like_designs(interpreted, monkeypatch):
+def test_given_tables_are_cut_into_blocks(interpreted, monkeypatch):
     """What NumPy computes beforehand has its rows for each design too."""
     monkeypatch.setattr(together, "VALUES", 50)
     monkeypatch.setattr(together, "BLOCK", 50)
@@ -152,7 +152,7 @@ def test_memory_is_that_of_a_chunk(monkeypatch):
     assert peak(12_000) - peak(3000) < 9000 * 100
 
 
-def test_the_bar_counts_every_design_also_those_on_disk(tmp_path, monkeypatch):
+def test_bar_counts_designs_on_disk(tmp_path, monkeypatch):
     shown = io.StringIO()
     monkeypatch.setattr(sys, "stderr", shown)
     sweep(factories.pump, DESIGNS, OUTPUTS, chunk=7, folder=tmp_path)
@@ -181,7 +181,7 @@ print(hashlib.sha256(table.iloc[:, :-1].to_numpy(float).tobytes()).hexdigest())
 
 
 @pytest.mark.slow
-def test_machine_code_just_made_and_taken_from_disk_gives_the_same_bits(tmp_path):
+def test_new_and_stored_machine_code_agree(tmp_path):
     pytest.importorskip("numba")
     environment = {**os.environ, "KINETOSTATICS_CACHE": str(tmp_path)}
     found = [
@@ -194,7 +194,7 @@ def test_machine_code_just_made_and_taken_from_disk_gives_the_same_bits(tmp_path
     assert len(found[0].stdout.strip()) == 64
 
 
-def test_what_looks_like_a_slip_is_told_once_where_the_sweep_is_called_and_loses_no_design():
+def test_slips_are_hinted_once_at_the_call():
     scene = ks.Scene(ks.crank_slider(50.0, 200.0, slider=ks.Link(1.0)), 1.0)
     designs = pd.DataFrame({"coupler_length": np.linspace(150.0, 200.0, 1000)})
     with pytest.warns(ks.HintWarning) as told:

@@ -19,7 +19,7 @@ from support.factories import DESIGNS, OUTPUTS
 from support.sweeping import assert_equal, sweep
 
 
-def test_a_function_of_plain_numbers_is_called_for_each_design():
+def test_plain_function_is_called_a_design():
     found = sweep(factories.by_plain_numbers, DESIGNS, OUTPUTS, angles=36)
     pd.testing.assert_frame_equal(found, sweep(factories.pump, DESIGNS, OUTPUTS, angles=36), rtol=1e-14)
 
@@ -30,7 +30,7 @@ def test_a_batch_of_another_shape_is_refused():
     assert found[FAILED].str.contains("arrays must have the shape (designs, 1)", regex=False).all()
 
 
-def test_as_many_designs_as_crank_angles_are_told_from_values_at_these():
+def test_as_many_designs_as_angles_is_no_batch():
     pump = ks.crank_slider(0.1, 0.4, coupler=ks.Link(1.0, 0.2, 0.01), slider=ks.Link(2.0))
 
     def made(shape):
@@ -45,7 +45,7 @@ OF_SPIKES = ["largest", "smallest", "range", "mean_absolute", "rms"]
 
 
 @every("seed, angles", [(seed, (12, 13, 360)[seed % 3]) for seed in range(6)])
-def test_no_spike_of_a_table_is_missed_however_few_the_crank_angles(seed, angles):
+def test_no_spike_of_a_table_is_missed(seed, angles):
     scene, names = spikes.spiky(seed), ("balancing_torque", "O")
     length = scene.parameters["crank_length"]
     designs = pd.DataFrame({"crank_length": [0.97 * length, length]})
@@ -68,7 +68,7 @@ def test_no_spike_of_a_table_is_missed_however_few_the_crank_angles(seed, angles
 
 
 @every("angles", [13, 360, 361])
-def test_a_pump_whose_force_rises_within_a_tenth_of_a_millimetre_has_its_largest_torque(angles):
+def test_steep_pump_force_has_its_largest_torque(angles):
     found = sweep(steep_pump, pd.DataFrame({"crank": [0.04, 0.05]}), ["largest balancing_torque"], angles=angles)
     scene = steep_pump(0.05)
     truth = ks.extremes(scene.solve(36), "balancing_torque").range[1]
@@ -97,7 +97,7 @@ def of_smooth_curve(count, around=True):
 
 @every("around", [True, False])
 @every("angles", [12, 360])
-def test_a_smooth_curve_in_fine_rows_is_swept_as_one_without_parting_any_turn(monkeypatch, around, angles):
+def test_fine_smooth_rows_are_swept_as_one(monkeypatch, around, angles):
     monkeypatch.setattr(together, "Parted", None)
     scene, names = of_smooth_curve(1100, around), ("balancing_torque", "O")
     outputs = [f"{kind} {name}" for name in names for kind in ("largest", "mean_absolute", "rms")]
@@ -113,7 +113,7 @@ def test_a_smooth_curve_in_fine_rows_is_swept_as_one_without_parting_any_turn(mo
 KINDS = ("largest", "mean_absolute", "rms")
 
 
-def test_rows_of_a_curve_that_keep_an_output_from_being_resolved_are_taken_one_by_one():
+def test_unresolved_rows_are_taken_one_by_one():
     designs = pd.DataFrame({"slider.mass": [2.021, 1.396], "guide_offset": [-0.003, -0.001]})
     designs = designs.assign(crank_length=[0.043, 0.038], crank_speed=[38.019, 38.316])
     found = sweep(of_smooth_curve(700), designs, ["smallest B"])
@@ -138,7 +138,7 @@ def test_jumps_of_friction_are_seen_from_both_sides(angles):
 @every(
     "angle, back, rubs", [(15, True, False), (120, True, True), (30, False, True), (-90, True, True), (45, True, False)]
 )
-def test_jumps_at_dead_centres_are_no_peaks_by_rounding(angle, back, rubs):
+def test_dead_centre_jumps_make_no_peaks(angle, back, rubs):
     """Guides stand at whole parts of the turn, so stops meet its even parts; strokes and friction jump at the same."""
     pump = ks.crank_slider(0.05, 0.2, guide_angle=np.radians(angle), coupler=ks.Link(1.0, 0.1), slider=ks.Link(2.0))
     table = ks.Table([0.1, 0.3], [300.0, -200.0], over="travel", back=[-100.0, 500.0] if back else None)
@@ -159,7 +159,7 @@ def test_a_slider_that_leaves_its_table_is_still_told():
 
 @pytest.mark.slow
 @every("engine", ["numpy", "compiled"])
-def test_it_does_not_matter_which_designs_are_parted_together(engine, numba):
+def test_grouping_of_designs_does_not_matter(engine, numba):
     scene = spikes.spiky(1)
     length = scene.parameters["crank_length"]
     designs = pd.DataFrame({"crank_length": np.linspace(0.9 * length, length, 9)})
@@ -182,7 +182,7 @@ VARIED = {
 
 @pytest.mark.slow
 @every("case, variant", VARIED)
-def test_what_designs_have_in_common_is_computed_once_to_the_same_bits(numba, monkeypatch, case, variant):
+def test_common_work_gives_the_same_bits(numba, monkeypatch, case, variant):
     scene = shipped(case).variants[variant].scene
     designs = ks.designs.random(VARIED[case, variant], 50)
     outputs = ["largest O", "mean_absolute balancing_torque", "smallest balancing_torque", "harmonic_2 O"]
@@ -216,7 +216,7 @@ def test_laws_of_cams_are_parted_where_they_jump():
 
 
 @every("seed", range(6))
-def test_friction_bends_where_a_reaction_passes_near_zero_however_near(seed):
+def test_near_zero_reactions_are_resolved(seed):
     """Where |R| is sqrt(a^2 + b^2 t^2), friction bends within a / b; nobody tells where that is."""
     rng = np.random.default_rng([3, seed])
     saw = ks.crank_slider(

@@ -34,7 +34,7 @@ def test_axes_given_are_those_drawn_on():
         canvas.axes(3)
 
 
-def test_a_solution_by_itself_is_labelled_by_the_quantity_and_lines_differ():
+def test_single_solution_is_labelled_by_quantity():
     (label,) = canvas.labelled(PUMP, "balancing_torque")
     assert "torque" in label
     named = canvas.labelled({"a": PUMP, "b": PUMP}, "balancing_torque")
@@ -53,7 +53,7 @@ def test_missing_columns_and_rows_are_named():
         canvas.require_columns("plots", pd.DataFrame({"a": []}), ["a"])
 
 
-def test_curves_that_cover_each_other_share_a_label_and_zero_says_so():
+def test_equal_curves_share_a_label():
     turn = np.linspace(0, 6, 50)
     curves = {
         "a": np.sin(turn),
@@ -65,12 +65,12 @@ def test_curves_that_cover_each_other_share_a_label_and_zero_says_so():
     assert canvas.distinct(curves) == {"a, b": "a", "c": "c", "rounding (0)": "rounding", "short": "short"}
 
 
-def test_small_curves_are_no_zero_beside_others_as_small():
+def test_small_curves_are_not_called_zero():
     assert canvas.distinct({"a": np.array([0.0, 1e-12]), "b": np.array([1e-12, 0.0])}) == {"a": "a", "b": "b"}
     assert canvas.distinct({"alone": np.zeros(3)}) == {"alone": "alone"}
 
 
-def test_gaps_of_curves_are_gaps_of_those_that_cover_them():
+def test_equal_curves_have_equal_gaps():
     assert list(canvas.distinct({"a": np.array([1.0, np.nan]), "b": np.array([1.0, np.nan])})) == ["a, b"]
     assert list(canvas.distinct({"a": np.array([1.0, np.nan]), "b": np.array([1.0, 2.0])})) == ["a", "b"]
 
@@ -96,7 +96,7 @@ def test_headings_of_tables_read_as_words_with_units(column, text):
     assert canvas.readable(column) == text
 
 
-def test_curves_drawn_apart_are_compared_by_their_own_extent():
+def test_separate_curves_compare_by_their_extent():
     turn = np.linspace(0, 6, 50)
     curves = {"large": 100.0 * np.sin(turn), "small": np.sin(turn), "smaller": 0.9 * np.sin(turn)}
     assert list(canvas.distinct(curves)) == ["large", "small, smaller"]
@@ -115,7 +115,7 @@ def test_curves_drawn_apart_are_compared_by_their_own_extent():
         ([], 0.0, np.inf),
     ],
 )
-def test_a_few_values_that_grow_without_bound_set_no_unit_and_flatten_no_curve(values, largest, seen):
+def test_few_unbounded_values_set_no_unit(values, largest, seen):
     arrays = [np.array(values, dtype=float)]
     assert canvas.ordinary(arrays) == pytest.approx(largest, rel=1e-3)
     assert canvas.in_sight(arrays) == pytest.approx(seen, rel=1e-3)
@@ -128,7 +128,7 @@ def test_a_unit_is_chosen_by_ordinary_values():
 
 
 @pytest.mark.parametrize(("width", "columns"), [(6.4, 3), (3.4, 2), (1.6, 1)])
-def test_a_legend_has_as_many_columns_as_fit_and_stands_above_the_curves(width, columns):
+def test_legend_stands_above_the_curves(width, columns):
     figure, ax = plt.subplots(figsize=(width, 4.0))
     for name in ("plain", "cam-circle", "cam-cosine", "plain-rolling", "cam-rolling"):
         ax.plot([0.0, 180.0, 360.0], [-1.0, 1.0, -1.0], label=name)
@@ -146,7 +146,7 @@ def test_a_legend_has_as_many_columns_as_fit_and_stands_above_the_curves(width, 
 # The door to all figures
 
 
-def test_every_figure_is_a_function_with_axes_or_a_search_to_draw_and_an_example():
+def test_every_figure_function_has_an_example():
     figures = {name: getattr(ks.plots, name) for name in ks.plots.__all__}
     assert all(">>>" in inspect.getdoc(figure) for figure in figures.values())
     without_axes = {name for name, figure in figures.items() if "ax" not in inspect.signature(figure).parameters}

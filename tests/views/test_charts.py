@@ -20,7 +20,7 @@ def torque():
     return torque_study()
 
 
-def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_each_setting(torque):
+def test_work_precision_chart_is_logarithmic(torque):
     figure, ax = plt.subplots()
     assert charts.work_precision(torque, ax=ax) is ax
     assert ks.plots.work_precision is charts.work_precision
@@ -37,14 +37,14 @@ def test_work_precision_chart_has_logarithmic_axes_with_units_and_a_curve_for_ea
     plt.close(figure)
 
 
-def test_a_method_that_runs_on_an_accelerator_says_so_in_the_legend(torque):
+def test_accelerator_is_named_in_the_legend(torque):
     table = torque.assign(device=["gpu: X" if name == "ours, NumPy" else "cpu" for name in torque["method"]])
     labels = charts.work_precision(table).get_legend_handles_labels()[1]
     assert "ours, NumPy, on gpu: X" in labels
     assert sum("on gpu" in label for label in labels) == 1
 
 
-def test_error_of_zero_is_drawn_below_rounding_and_a_method_that_gives_nothing_is_not_drawn(torque):
+def test_zero_error_is_drawn_below_rounding(torque):
     table = torque.assign(error=torque["error"].where(torque["method"] != "two-mass coupler"))
     table.loc[table["method"] == "ours, NumPy", "error"] = 0.0
     figure, ax = plt.subplots()
@@ -80,7 +80,7 @@ def test_a_front_is_drawn_with_the_source_beside_it():
 UNIT = ks.linkage.chain_unit(0.1, 1.0, 0.5)
 
 
-def test_motion_of_the_chain_unit_is_relative_to_the_speed_and_counted_in_the_sense_of_the_crank(axes):
+def test_chain_unit_motion_is_relative(axes):
     for speed in (1.0, 7.0, -7.0):
         for order in (1, 2):
             ks.plots.chain_unit_motion(ks.Scene(UNIT, speed).solve(90), "rocker", order, ax=axes)
@@ -95,7 +95,7 @@ def test_motion_relative_to_a_crank_at_rest_is_refused(axes):
         ks.plots.chain_unit_motion(ks.Scene(UNIT, 0.0).solve(8), "rocker", ax=axes)
 
 
-def test_shaking_force_is_as_long_as_it_is_large_in_its_own_direction():
+def test_shaking_force_is_drawn_to_its_size():
     s = ks.Scene(ks.crank_slider(0.04, 0.3, slider=ks.Link(5.0)), 60.0).solve(90)
     ax = ks.plots.shaking_force(s)
     s = with_peaks({"": s}, "shaking_force")[""]

@@ -29,7 +29,7 @@ def test_one_figure_is_drawn_to_its_file(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_figure_that_the_case_has_not_is_answered_with_those_it_has(tmp_path):
+def test_unknown_figure_lists_the_known_ones(tmp_path):
     with pytest.raises(ks.ParameterError, match=r"figure is 'presure_angle'.*did you mean 'pressure_angle'"):
         draw_case(CASE, tmp_path, only="presure_angle")
     with pytest.raises(ks.ParameterError, match="figure is 'cam_force'"):
@@ -38,7 +38,7 @@ def test_a_figure_that_the_case_has_not_is_answered_with_those_it_has(tmp_path):
 
 
 @every("name", ["sawframe_2r63", "mower_drive", "chain_unit"])
-def test_every_axis_has_its_unit_and_crank_angles_are_counted_in_one_way(name):
+def test_every_axis_has_its_unit(name):
     case = shipped(name)
     counted = FROM_Y_CLOCKWISE if name == "chain_unit" else FROM_X
     for figure, (_, applies) in figures.FIGURES.items():
@@ -52,7 +52,7 @@ def test_every_axis_has_its_unit_and_crank_angles_are_counted_in_one_way(name):
             plt.close(made)
 
 
-def test_machines_that_differ_in_counterweights_only_are_one_panel_with_all_of_them():
+def test_counterweight_variants_share_a_panel():
     made = drawn("mower_drive", "mechanism")
     (ax,) = made.axes
     assert ax.get_title() == "unbalanced, full, partial-1, partial-2, partial-3, optimal"
@@ -63,13 +63,13 @@ def test_machines_that_differ_in_counterweights_only_are_one_panel_with_all_of_t
     plt.close(made)
 
 
-def test_machines_of_different_geometry_have_panels_of_their_own():
+def test_different_geometry_has_its_own_panel():
     made = drawn("sawframe_2r63", "mechanism")
     assert [ax.get_title() for ax in made.axes] == list(CASE.variants)
     plt.close(made)
 
 
-def test_what_only_one_variant_bears_is_named_in_the_legend():
+def test_part_of_one_variant_is_in_the_legend():
     made = drawn("compressor", "mechanism")
     (ax,) = made.axes
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["load: loaded"]
@@ -86,7 +86,7 @@ MEANT = {
 
 
 @every("name", MEANT)
-def test_a_cosine_law_is_compared_with_where_one_is_meant_only(name):
+def test_cosine_law_is_compared_where_meant(name):
     assert figures.FIGURES["acceleration_error"][1](shipped(name)) == MEANT[name]
 
 
@@ -102,7 +102,7 @@ def test_a_figure_of_the_study_carries_its_number(name, number, tmp_path, monkey
     plt.close(seen[0])
 
 
-def test_a_number_for_a_figure_that_there_is_not_is_an_error_of_the_case(tmp_path):
+def test_number_of_an_absent_figure_is_refused(tmp_path):
     text = CASE.path.read_text(encoding="utf-8").replace('torque = "6a"', 'torqe = "6a"')
     path = tmp_path / "saw.toml"
     path.write_text(text, encoding="utf-8")
@@ -110,7 +110,7 @@ def test_a_number_for_a_figure_that_there_is_not_is_an_error_of_the_case(tmp_pat
         draw_case(ks.load_case(path), tmp_path)
 
 
-def test_the_chain_unit_counts_crank_angles_as_its_study_in_all_its_figures():
+def test_chain_unit_figures_count_as_the_study():
     solution = shipped("chain_unit").solve("rho-0.5", 360)
     ax = ks.plots.torque(solution, counted=FROM_Y_CLOCKWISE)
     curve = next(line for line in ax.lines if len(line.get_xdata()) > 2)
@@ -121,7 +121,7 @@ def test_the_chain_unit_counts_crank_angles_as_its_study_in_all_its_figures():
     plt.close(ax.figure)
 
 
-def test_progress_goes_through_the_names_of_the_figures(tmp_path):
+def test_progress_names_the_figures(tmp_path):
     seen = []
 
     def progress(names):
@@ -143,7 +143,7 @@ def test_drawing_leaves_the_settings_of_others_alone(tmp_path):
     ("case", "name"),
     [("compressor", "loaded"), ("toggle_press", "coining"), ("shaper", "cutting"), ("sawframe_2r63", "cam-cosine")],
 )
-def test_an_overview_draws_the_variant_whose_loads_show(case, name):
+def test_overview_takes_the_variant_with_loads(case, name):
     ax = drawn(case, "overview", angles=36).axes[0]
     assert ax.get_title().startswith(f"{name}: ")
     assert any(len(line.get_xdata()) == len(symbols.ARROW) for line in ax.lines) or case == "sawframe_2r63"

@@ -15,7 +15,7 @@ def saw():
     return {name: case.solve(name, 180) for name in ("plain", "cam-cosine")}
 
 
-def test_the_stack_over_the_turn_reaches_to_the_whole_loss(saw, axes):
+def test_stack_reaches_the_whole_loss(saw, axes):
     solution = saw["plain"]
     assert ks.plots.lost_power(solution, ax=axes) is axes
     top = np.max([path.vertices[:, 1].max() for item in axes.collections for path in item.get_paths()])
@@ -37,7 +37,7 @@ def test_bars_stand_on_each_other_up_to_the_mean_loss(saw, axes):
     assert [text.get_text() for text in axes.get_xticklabels()] == list(saw)
 
 
-def test_one_solution_is_one_bar_and_watts_stay_watts_where_they_are_few(axes):
+def test_single_solution_is_one_bar_in_watts(axes):
     pump = ks.crank_slider(0.1, 0.4, slider=ks.Link(1.0))
     solution = ks.solve(
         pump, [0.0, 1.0], crank_speed=3.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(0.1)}
@@ -48,7 +48,7 @@ def test_one_solution_is_one_bar_and_watts_stay_watts_where_they_are_few(axes):
 
 
 @pytest.mark.parametrize("name", ["friction_loss", "guide_friction", "O_friction_loss"])
-def test_quantities_of_friction_are_drawn_over_the_turn(saw, axes, name):
+def test_friction_quantities_are_drawn(saw, axes, name):
     ks.plots.over_turn(saw, name, ax=axes)
     assert axes.get_ylabel().startswith("friction" if name != "guide_friction" else "friction guide")
 
@@ -70,7 +70,7 @@ def test_what_has_no_losses_to_draw_says_why(saw, draw, given, words):
 
 
 @pytest.mark.slow
-def test_figures_of_a_case_with_friction_have_both_and_of_one_without_none(tmp_path):
+def test_only_cases_with_friction_have_figures(tmp_path):
     case = ks.load_case("sawframe_2r63_friction")
     (path,) = figures.draw_case(case, tmp_path, "svg", "losses")
     assert "mean power lost [kW]" in path.read_text(encoding="utf-8") or path.stat().st_size > 5000
@@ -91,7 +91,7 @@ def driven_saw(*loads):
     return ks.Scene(SAW, 33.0, loads=(ks.Gravity(), *loads))
 
 
-def test_figures_show_speed_and_the_torques_at_the_crank():
+def test_speed_and_torque_figures_are_drawn():
     run = ks.drive.steady(driven_saw(CUT), MOTOR, 1000.0)
     speed, torques = run.plot()
     assert speed.get_ylabel() == "crank speed [rad/s]"

@@ -14,7 +14,7 @@ from support.case_chains import (
 from support.case_files import PLAIN, case_file, problems
 
 
-def test_a_cam_of_a_kind_that_is_not_there_is_told_the_nearest(tmp_path):
+def test_unknown_cam_kind_names_the_nearest(tmp_path):
     text = PLAIN + '[variants.cam]\nmechanism = "cam-crank-slider"\ncoupler_length = "2 m"\ncam = { kind = "cirkle" }\n'
     kind, radius = problems(tmp_path, text)
     assert kind.startswith("variants.cam.cam.kind is 'cirkle'")
@@ -33,7 +33,7 @@ roller = { radius = "50 mm", width = "60 mm", youngs_modulus = "210 GPa", poisso
 )
 
 
-def test_a_roller_with_units_makes_the_pressure_an_output(tmp_path):
+def test_a_roller_makes_the_pressure_an_output(tmp_path):
     case = ks.load_case(case_file(tmp_path, ROLLED))
     variant = case.variant("cam")
     assert variant.units["roller.width"] == "m"
@@ -66,7 +66,7 @@ def test_a_roller_with_units_makes_the_pressure_an_output(tmp_path):
         ('radius = "50 mm"', 'radius = "3 m"', "undercuts the side of its cam"),
     ],
 )
-def test_what_is_wrong_with_a_roller_is_told_with_its_key(tmp_path, good, bad, message):
+def test_wrong_rollers_are_named_with_their_key(tmp_path, good, bad, message):
     (told,) = problems(
         tmp_path, ROLLED.replace(good, bad) + 'spring = { stiffness = "1.5 MN/m", free_position = "2 m" }\n'
     )
@@ -87,7 +87,7 @@ def test_a_load_of_each_kind_is_the_one_made_in_python(tmp_path, name):
     assert variant.scene.period == ks.Scene(variant.mechanism, rpm(60), loads=load).period
 
 
-def test_loads_of_a_kind_are_numbered_after_those_with_tables_of_their_own(tmp_path):
+def test_loads_of_a_kind_are_numbered_in_order(tmp_path):
     springs = '[[variants.loaded.loads]]\nkind = "spring"\nstiffness = "{} N/m"\nfree_position = "0.4 m"\n'
     own = 'spring = { stiffness = "1 N/m", free_position = "0 m" }\n'
     variant = ks.load_case(case_file(tmp_path, PUMP + own + springs.format(2) + springs.format(3))).variant("loaded")

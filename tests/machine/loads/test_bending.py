@@ -70,7 +70,7 @@ def test_no_spike_of_three_rows_passes_as_a_parabola(width, height):
     assert bending(along(x, y)).tolist() == [2, 3, 4]
 
 
-def test_a_bump_narrower_than_the_parts_of_a_turn_is_parted_though_it_is_smooth():
+def test_a_narrow_smooth_bump_is_split():
     x = np.linspace(0.1, 0.3, 20_001)
     found = x[bending(along(x, np.exp(-(((x - 0.2) / 3e-3) ** 2))))]
     assert 4 < found.size < 20
@@ -78,7 +78,7 @@ def test_a_bump_narrower_than_the_parts_of_a_turn_is_parted_though_it_is_smooth(
 
 
 @every("seed", range(4))
-def test_between_rows_that_bend_a_table_is_near_a_polynomial(seed):
+def test_between_bends_a_table_is_polynomial(seed):
     rng = np.random.default_rng(seed)
     x = np.sort(np.append(rng.uniform(0.1, 0.3, 400), [0.1, 0.3]))
     y = gas(x) + 10.0 ** rng.uniform(-1, 3) * np.cumsum(rng.standard_normal(x.size) * (rng.random(x.size) < 0.05))

@@ -93,7 +93,7 @@ OUTSIDE = ([8.0], [1.0 - 4 * np.pi, 1.0 + 2e-5 + 2 * np.pi, -1.0]), ([9.0, -20.0
 
 
 @pytest.mark.parametrize("declared", OUTSIDE)
-def test_kinks_declared_outside_the_period_are_those_within_it(declared):
+def test_kinks_outside_the_period_are_wrapped(declared):
     tables = [
         sweep(
             ks.Scene(PUMP, 30.0, loads=ks.ProcessForce(pulse)),
@@ -111,13 +111,13 @@ def test_kinks_declared_outside_the_period_are_those_within_it(declared):
 @pytest.mark.parametrize(
     "declared", [None, [1.0, 2.0, 3.0], ([np.nan], [1.0]), ([], [np.inf]), (["a"], []), ([1j], [])]
 )
-def test_what_are_no_crank_angles_of_kinks_is_refused_by_name(declared):
+def test_wrong_kink_angles_are_refused_by_name(declared):
     s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=ks.ProcessForce(Declaring(declared)))
     with pytest.raises(ks.ParameterError, match=r"Declaring\.kinks must return two arrays of finite crank angles"):
         ks.extremes(s, "O")
 
 
-def test_the_load_on_the_page_of_loads_is_seen_however_narrow():
+def test_documented_narrow_load_is_seen():
     page = Path(__file__).parents[3] / "docs" / "api" / "loads.md"
     names = {"ks": ks, "np": np}
     exec(re.search("```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)[1], names)

@@ -41,7 +41,7 @@ def written(folder, angles, forces, period=""):
     return folder / "case.toml"
 
 
-def test_a_table_is_linear_between_its_rows_and_repeats_after_its_period():
+def test_a_table_is_linear_and_periodic():
     table = Table(np.radians([0, 90, 180, 270]), np.array([0.0, 10.0, 4.0, -2.0]))
     angle = np.radians([0, 45, 90, 315, 360 + 45, -45])
     assert pushed(table, angle) == pytest.approx([0, 5, 10, -1, 5, -1], abs=1e-12)
@@ -53,7 +53,7 @@ def test_a_table_over_two_turns_is_not_folded_to_one():
     assert pushed(table, angle) == pytest.approx([-2500, 0, -2500, 0, -5000, 0], abs=1e-9)
 
 
-def test_the_end_of_the_period_may_be_given_or_left_out_and_angles_may_fall():
+def test_period_end_is_optional_and_angles_may_fall():
     closed, left_out = (
         Table(STROKES, GAS, period=2 * TURN),
         Table(np.append(STROKES[:-1], 3 * np.pi), GAS, period=2 * TURN),
@@ -70,7 +70,7 @@ def test_an_end_rounded_in_radians_counts_as_the_start():
     assert Table(angle, np.sin(angle) * (angle < 6.28)).x.size == 36
 
 
-def test_tables_are_frozen_equal_by_content_and_can_be_pickled():
+def test_tables_are_frozen_comparable_and_pickled():
     table, same = (Table(STROKES, GAS, period=2 * TURN) for _ in range(2))
     assert table == same == pickle.loads(pickle.dumps(table))
     assert hash(table) == hash(same)
@@ -83,13 +83,13 @@ def test_tables_are_frozen_equal_by_content_and_can_be_pickled():
 
 
 @pytest.mark.parametrize("turns", [1, 2, 3, 7])
-def test_a_period_of_whole_turns_is_taken_up_to_rounding(turns):
+def test_whole_turns_are_taken_up_to_rounding(turns):
     assert ks.ProcessForce(1.0).period == TURN
     assert ks.ProcessForce(1.0, period=turns * TURN * (1 + 1e-12)).period == turns * TURN
 
 
 @pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow)])
-def test_a_four_stroke_engine_has_its_gas_force_in_every_other_turn(tmp_path, engine):
+def test_four_stroke_gas_force_acts_every_other_turn(tmp_path, engine):
     if engine == "compiled":
         pytest.importorskip("numba")
     variant = ks.load_case(written(tmp_path, STROKES, GAS, "720 deg")).variants["a"]

@@ -36,7 +36,7 @@ ARM = ks.Mechanism("arm", ks.Crank(0.5, ks.Link(3.0, (0.2, 0.1), 0.0)), ())
 
 
 @pytest.mark.parametrize("direction", [-np.pi / 2, 0.0, 2.0])
-def test_the_torque_at_rest_holds_the_weight_at_its_arm(direction):
+def test_torque_at_rest_holds_the_weight(direction):
     s = ks.solve(ARM, TWELVE, crank_speed=0.0, loads=ks.Gravity(9.81, direction))
     x, y = s.position("crank")
     expected = -3.0 * 9.81 * (x * np.sin(direction) - y * np.cos(direction))

@@ -41,14 +41,14 @@ CUTTING = ks.Scene(SAW, 33.5, loads=(ks.Gravity(), CUT))
 
 
 @pytest.mark.slow
-def test_running_at_many_digits_is_that_of_the_reference_which_shares_no_formula():
+def test_many_digit_running_equals_the_reference():
     pytest.importorskip("flint")
     found = exact_speed(running.Problem(IDLE, MOTOR, 1000.0, ANGLES).driven, ANGLES)
     assert np.abs(found / np.array(REFERENCE["speed"], float) - 1.0).max() < 3e-16
 
 
 @pytest.mark.slow
-def test_ours_is_running_at_many_digits_with_a_load_that_has_kinks():
+def test_running_with_kinks_equals_many_digits():
     pytest.importorskip("flint")
     problem = running.Problem(CUTTING, MOTOR, 1000.0, ANGLES)
     found = BY_NAME["ours, NumPy"].prepare(problem, "", None)()

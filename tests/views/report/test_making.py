@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow
 pytest.importorskip("bokeh")
 
 
-def test_a_report_of_scenes_is_written_and_its_path_given(tmp_path):
+def test_report_of_scenes_returns_its_path(tmp_path):
     path = ks.report({"press": plain()}, tmp_path / "new" / "press.html", title="Press")
     assert path == tmp_path / "new" / "press.html"
     assert "Press" in words(path.read_text(encoding="utf-8"))
@@ -28,7 +28,7 @@ def test_a_report_of_scenes_is_written_and_its_path_given(tmp_path):
     ("", "is a folder"), ("report.txt", "the ending"), ("no.html/report.html", "no.html is no folder"),
     ("bad\0.html", "is no name of a file"),
 ])  # fmt: skip
-def test_a_place_that_cannot_be_written_is_refused_before_any_work(name, message, tmp_path, monkeypatch):
+def test_unwritable_report_is_refused_first(name, message, tmp_path, monkeypatch):
     (tmp_path / "no.html").write_text("x", encoding="utf-8")
     monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
     with pytest.raises(ks.KinetostaticsError, match=message):
@@ -60,7 +60,7 @@ def test_the_case_file_is_not_replaced(tmp_path):
         ks.report(case, case)
 
 
-def test_a_pdf_without_a_browser_is_refused_before_any_work(tmp_path, monkeypatch):
+def test_pdf_without_a_browser_is_refused_first(tmp_path, monkeypatch):
     monkeypatch.setattr(printing, "BROWSERS", ("no-such-browser",))
     monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
     with pytest.raises(ks.KinetostaticsError, match="none of no-such-browser is found"):
@@ -103,7 +103,7 @@ def a_browser(folder, monkeypatch, script):
     return page
 
 
-def test_without_a_browser_it_is_said_which_were_looked_for(monkeypatch):
+def test_missing_browsers_are_listed(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda name: None)
     with pytest.raises(ks.KinetostaticsError, match=r"none of chromium, .* is found: install one, or open the report"):
         printing.browser()
@@ -117,7 +117,7 @@ def test_what_the_browser_prints_is_the_pdf(tmp_path, monkeypatch):
     assert (tmp_path / "page.pdf").read_bytes() == b"%PDF-1.4 x"
 
 
-def test_a_browser_that_prints_nothing_is_told_with_what_it_said(tmp_path, monkeypatch):
+def test_failed_browser_is_reported(tmp_path, monkeypatch):
     page = a_browser(tmp_path, monkeypatch, "echo no display here >&2; exit 7")
     with pytest.raises(FileError, match="ended with status 7 and without a PDF: no display here"):
         printing.print_page(page, tmp_path / "page.pdf")

@@ -24,7 +24,7 @@ def of(case):
     return {"quantities": readings(machines), "counts": [m.solution.crank_angle.size for m in machines.values()]}
 
 
-def test_every_value_is_that_of_the_solution_and_rounding_is_0():
+def test_readings_are_the_solutions_values():
     for case in ("sawframe_2r63", "v_twin"):
         found = of(case)
         for row, machine in enumerate(subject(case).machines.values()):
@@ -61,7 +61,7 @@ def test_a_quantity_that_a_machine_lacks_stands_empty():
     assert values[1] is not None
 
 
-def test_units_read_well_and_are_the_same_for_all_machines():
+def test_units_are_the_same_for_all_machines():
     found = of("sawframe_2r63")["quantities"]
     assert (found["balancing_torque"]["unit"], found["O"]["unit"]) == ("kN·m", "kN")
     assert found["pressure_angle"]["unit"] == "°"
@@ -70,7 +70,7 @@ def test_units_read_well_and_are_the_same_for_all_machines():
     assert found["O"]["text"] == "ground on crank"
 
 
-def test_forces_stand_before_motion_and_what_never_turns_is_left_out():
+def test_forces_precede_motion():
     names = list(of("sawframe_2r63")["quantities"])
     assert names[0] == "balancing_torque"
     assert names.index("O") < names.index("slider_position")
@@ -85,7 +85,7 @@ def test_decimals_give_the_largest_value_six_digits(largest, count):
     assert decimals(largest) == count
 
 
-def test_a_reaction_near_a_change_point_sets_neither_unit_nor_decimals_nor_scale():
+def test_reaction_near_change_point_sets_no_scale():
     with warnings.catch_warnings(action="ignore"):
         found = readings(subject_of({"a": near_change_points()}).machines)
     assert (found["O"]["unit"], found["O"]["factor"], found["O"]["decimals"]) == ("N", 1.0, 4)
@@ -107,19 +107,19 @@ FRAME = pd.DataFrame(
 )
 
 
-def test_a_frame_becomes_text_with_readable_units_and_no_more_digits_than_wanted():
+def test_frame_becomes_text_with_wanted_digits():
     found = of_frame(FRAME, "caption", "note")
     assert found.columns == ["quantity", "unit", "plain", "ratio", "largest at [deg]"]
     assert found.rows == [["torque", "N·m", "286772", "6.081", "0.00"], ["power residual", "", "3.2e-16", "", "39.29"]]
     assert (found.words, found.caption, found.note) == (2, "caption", "note")
 
 
-def test_published_figures_stand_in_brackets_behind_ours():
+def test_published_figures_stand_in_brackets():
     found = with_published(FRAME, {"torque": {"plain": "about 287 kN m"}}, "x.toml", "")
     assert found.rows[0][2] == "286772 (about 287 kN m)"
 
 
-def test_published_figures_without_a_row_or_column_are_refused_all_at_once():
+def test_misplaced_published_figures_are_refused():
     published = {"torqe": {"plain": "1"}, "torque": {"plan": "1"}}
     with pytest.raises(ks.CaseError, match=r"2 problems[\s\S]*row is 'torqe'[\s\S]*column of 'torque' is 'plan'"):
         with_published(FRAME, published, "x.toml", "")
