@@ -53,6 +53,7 @@ def work(seconds):
         pass
 
 
+@pytest.mark.slow
 def test_each_input_has_the_time_of_a_test():
     @every("seconds", [0.3, 0.0, 0.06, 0.06, 0.06])
     def test(seconds):

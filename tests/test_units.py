@@ -378,6 +378,7 @@ def _in_peace():
         yield
 
 
+@pytest.mark.slow
 @every(("name", "parameter"), numbers(DOORS))
 def test_quantity_equals_the_plain_number(name, parameter):
     make, given, others = DOORS[name]

@@ -30,6 +30,7 @@ def test_cosine_law_gives_the_coupler_length():
     assert mechanism.groups[-1].coupler_length == pytest.approx(2.02190517686444745, rel=1e-15)
 
 
+@pytest.mark.slow
 def test_compare_gives_the_published_rows_beside_ours():
     table = ks.load_case("sawframe_2r63").comparison_table("cam-cosine")
     assert table.loc["mean |balancing torque|", "published"] == "6.77 (ratio)"

@@ -213,6 +213,7 @@ def test_a_point_before_digits_stays_in_the_name(tmp_path, capsys):
     assert [path.name for path in tmp_path.iterdir()] == ["press 2.5.toml"]
 
 
+@pytest.mark.slow
 @every(
     "arguments",
     [

@@ -56,6 +56,7 @@ def test_run_prints_uncertainty_and_its_sources(monkeypatch, capsys):
     assert (path, share) == ("crank_length", "100")
 
 
+@pytest.mark.slow
 def test_number_of_no_variant_is_refused(capsys):
     assert main([*PLAIN[:2], "--variant", "cam-cosine", "--uncertain", "crank_length=1 mm"]) == 2
     assert "did you mean" in capsys.readouterr().err

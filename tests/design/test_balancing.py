@@ -207,6 +207,7 @@ def test_two_weights_reach_a_linear_programmes_optimum():
     assert found <= best + 1e-4 * largest(bare)
 
 
+@pytest.mark.slow
 def test_weight_on_moment_trades_force_for_moment():
     """A counterweight on the crank alone leaves the moment about O as it is."""
 

@@ -19,6 +19,7 @@ def test_shipped_scenes_written_and_read_are_the_same(tmp_path, name):
         np.testing.assert_array_equal(read.solve(variant, 24).balancing_torque, item.solve(24).balancing_torque)
 
 
+@pytest.mark.slow
 def test_groups_loads_and_friction_are_written(tmp_path):
     bar, link = ks.Link(2.0, (0.1, 0.02), 0.01), ks.Link(1.0)
     cam = ks.cams.Harmonic((0.1, 0.01), (0.002,), 0.3)

@@ -36,6 +36,7 @@ def test_transmission_angle_obeys_the_law_of_cosines(data):
     assert_allclose(transmission_angle(s), np.arccos(cosine), rtol=0, atol=1e-13)
 
 
+@pytest.mark.slow
 @settings(reproducible, max_examples=15)
 @given(data=st.data(), start=number(0.0, 6.28))
 def test_swing_reaches_both_limit_positions(data, start):

@@ -28,6 +28,7 @@ SCENES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", OUTPUTS)
 @pytest.mark.parametrize("kind", SCENES)
 def test_derivatives_are_those_of_the_number(kind, text):

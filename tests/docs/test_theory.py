@@ -16,6 +16,7 @@ APART = ("crank_slider", "four_bar", "lever", "cylinder", "yoke", "cam_roller")
 DRAWINGS = theory.DRAWINGS if theory else {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", CHECKED)
 def test_formulas_of_a_page_are_those_of_the_library(path):
     names: dict = {}

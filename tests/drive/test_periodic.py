@@ -19,6 +19,7 @@ def reference():
     return json.loads((DATA / "driven_sawframe.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
 def test_the_plain_sawframe_runs_as_30_digits_say(reference, engine):
     if engine == "compiled":
@@ -33,6 +34,7 @@ def test_the_plain_sawframe_runs_as_30_digits_say(reference, engine):
         assert getattr(run, name) == pytest.approx(float(reference[name]), rel=1e-12), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mechanism", "loads", "flywheel"),
     [

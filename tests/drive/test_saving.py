@@ -30,6 +30,7 @@ def test_compare_takes_running_and_its_solution_alike(pair):
     assert compared.energies_per_turn == pytest.approx((1400.0 * math.pi,) * 2, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_all_that_the_drives_take_stands_in_the_table(pair):
     frame = ks.compare(*pair).frame()
     for quantity, name in (
@@ -67,6 +68,7 @@ def test_flywheel_for_equal_fluctuation_gives_it(pair):
     )
 
 
+@pytest.mark.slow
 def test_a_motor_without_air_gap_leaves_its_rows_out():
     linear = ks.drive.Motor.linear(4e3, 40.0)
     frame = ks.compare(running("plain", linear), running("cam-cosine", linear)).frame()

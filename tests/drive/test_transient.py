@@ -14,6 +14,7 @@ from support.drives import DISC_MOTOR, MOTOR, PUMP, SAW
 PENDULUM = ks.Scene(ks.crank_slider(0.3, 1.0, crank=ks.Link(2.0, 0.15, 0.02)), 1.0, loads=ks.Gravity())
 
 
+@pytest.mark.slow
 def test_sundials_slider_crank_swings_as_published():
     """Haug, *Computer Aided Kinematics and Dynamics of Mechanical Systems*, example 6.1.8, as run by SUNDIALS' IDA.
 
@@ -61,6 +62,7 @@ def n_four_bar(windows):
     return ks.Scene(ks.Mechanism("N-four-bar", ks.Crank(1.0, bar), groups), 1.0, loads=ks.Gravity())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("windows", [2, 40])
 def test_iftomm_four_bar_passes_singular_positions(windows):
     """IFToMM library of benchmark problems, A02: B0 starts on top with 1 m/s; compared after 10 s."""

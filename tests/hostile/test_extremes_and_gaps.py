@@ -353,6 +353,7 @@ def test_a_noisy_table_is_compared_in_bounded_time():
 SHARP = (0.283648, 0.616619, 0.657347), (0.345486, -0.001611)
 
 
+@pytest.mark.slow
 @every("angles", [12, 37, 72, 180, 360, 720])
 def test_sweeps_take_as_many_angles_as_peaks_need(angles):
     lengths, pivot = SHARP

@@ -17,6 +17,7 @@ OPPOSED = {
 """Laws of one force: 300 N against the motion of the slider."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", OPPOSED)
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.parametrize("until", ["standstill", 0.2])

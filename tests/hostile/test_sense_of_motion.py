@@ -38,6 +38,7 @@ def test_coasting_reads_the_stroke_by_its_motion(sense, others):
     assert motion.energy_drift < 1e-11
 
 
+@pytest.mark.slow
 def test_energy_drift_uses_the_solved_loads():
     """It shares nothing with the integration but the motion: a motion under another load does not balance."""
     scene = press(ks.ProcessForce(INDICATOR))
@@ -50,6 +51,7 @@ def test_energy_drift_uses_the_solved_loads():
     assert lost > 10.0
 
 
+@pytest.mark.slow
 def test_rocking_back_reads_the_other_stroke():
     """Thrown up against gravity, the machine comes back; the force takes energy on outward strokes alone."""
     hung = ks.crank_slider(0.1, 0.35, crank=ks.Link(6.0, 0.09, 0.02), slider=ks.Link(1.0))

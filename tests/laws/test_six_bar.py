@@ -142,6 +142,7 @@ def unbalanced(s):
     return {key: float(value / scale[key[1]]) for key, value in lack.items()}
 
 
+@pytest.mark.slow
 @every_scheme
 @settings(reproducible, max_examples=10)
 @given(data=st.data())
@@ -158,6 +159,7 @@ def whole(parts):
     return np.array(np.broadcast_arrays(*parts))
 
 
+@pytest.mark.slow
 @every_scheme
 @settings(reproducible, max_examples=5)
 @given(data=st.data())

@@ -204,6 +204,7 @@ def test_group_passes_the_check_and_powers_balance(solution):
     assert solution.power_residual < 1e-13
 
 
+@pytest.mark.slow
 def test_group_outputs_stand_in_frame_and_extremes():
     s = scene("_saw").solve(ANGLES)
     columns = set(s.frame().columns)
@@ -247,6 +248,7 @@ def test_condition_is_small_where_nothing_is_lost(solution):
     assert np.all((solution.condition >= 1.0) & (solution.condition < 1e4))
 
 
+@pytest.mark.slow
 def test_needs_and_series_work_with_the_group():
     s = ks.solve(mechanism(), np.linspace(0, 2 * np.pi, 24, endpoint=False), crank_speed=30.0)
     found = ks.needs(s, "balancing_torque", 0.01)
@@ -264,6 +266,7 @@ def test_principal_points_find_the_shaking_force(solution):
     assert np.max(np.abs(solution.shaking_force - direct)) < 1e-13 * np.max(np.abs(direct))
 
 
+@pytest.mark.slow
 def test_group_is_drawn_and_animated(solution, tmp_path):
     ax = plt.subplots()[1]
     ks.plots.mechanism(solution, angles=(30,), ax=ax)
@@ -313,6 +316,7 @@ class Paired(Yoke):
         return {self.on: Turning("block", self.on), "slot": slot, "guide": guide}
 
 
+@pytest.mark.slow
 def test_methods_know_the_group_by_its_pairs(solution):
     own = vars(mechanism().groups[0])
     paired = replace(solution, mechanism=replace(mechanism(), groups=(Paired(**own),)))

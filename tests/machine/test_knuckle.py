@@ -1,6 +1,7 @@
 """Knuckles: which rockers are some, and how far off their pins are from the line of the slider."""
 
 import numpy as np
+import pytest
 
 import kinetostatics as ks
 from kinetostatics.numbers.leaves import with_fields
@@ -34,6 +35,7 @@ def directions(mechanism):
     return ks.Scene(mechanism, 6.0).solve(TURN).dynamics.placement.links["rocker"].direction
 
 
+@pytest.mark.slow
 @every("side, axis", [(side, axis) for side in SIDES for axis in (0, 1)])
 def test_toggle_pin_is_off_its_line_by_lengths(side, axis, flint):
     mechanism = press(way=SIDES[side], axis=axis)

@@ -292,6 +292,7 @@ def test_reactions_alone_warn_at_change_points(assembly):
         solution.reaction("A")
 
 
+@pytest.mark.slow
 @meeting
 def test_torque_extremes_stay_finite(assembly):
     scene = ks.Scene(lever("meeting", assembly), SPEED, loads=ks.Gravity())

@@ -100,6 +100,7 @@ def test_slotted_crank_bears_what_hangs_on_a_pin(link):
     assert s.power_residual < 1e-13
 
 
+@pytest.mark.slow
 @reproducible
 @given(offset=st.floats(-3.0, 3.0), radius=st.floats(0.02, 0.1), length=st.floats(0.25, 0.5))
 def test_articulated_rod_meets_the_guide(offset, radius, length):

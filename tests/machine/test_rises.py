@@ -56,6 +56,7 @@ def integrated(name, u):
     return [float(size * part) for part in (position, quad(lambda t: shape(name, t), u), shape(name, u))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RISES)
 def test_rise_integrates_its_textbook_acceleration(name):
     rise = RISES[name]

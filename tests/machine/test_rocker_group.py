@@ -85,6 +85,7 @@ def test_motion_and_forces_equal_the_full_system(kind, data):
     assert_close(abs(B - bar.pivot), np.full(A.shape, bar.rocker))
 
 
+@pytest.mark.slow
 @every_kind
 @settings(reproducible, max_examples=10)
 @given(data=st.data())

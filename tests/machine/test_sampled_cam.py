@@ -119,6 +119,7 @@ def test_stated_force_error_is_within_ten_times(name, count, step):
     assert 0.5 * found <= sampled.second_derivative_error <= 2 * found
 
 
+@pytest.mark.slow
 @every("count", [90, 360, 3600])
 @every("name", CAMS)
 def test_exact_tables_state_their_truncation(name, count):
@@ -141,6 +142,7 @@ def test_a_warning_comes_from_one_per_cent(step, warned):
         assert ks.cams.Sampled(*table).force_error < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:sampled cam")
 @pytest.mark.parametrize("step", [1e-7, 1e-6, 1e-5])
 @pytest.mark.parametrize("count", [90, 360])

@@ -16,6 +16,7 @@ GIVEN = {"roller_radius": 0.05, "cutter_radius": 0.02, "points": 500}
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("units", UNITS)
 def test_a_dxf_read_back_gives_the_same_points(tmp_path, units):
     ezdxf = pytest.importorskip("ezdxf")

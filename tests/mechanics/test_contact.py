@@ -137,6 +137,7 @@ def test_sweeps_give_true_pressures_or_undercutting():
     assert np.isnan(table["largest contact_pressure [Pa]"][2])
 
 
+@pytest.mark.slow
 def test_tables_and_frames_have_it_in_pascal():
     found = solved(25.0, machine=rolled())
     row = extremes_frame(found).loc["contact pressure"]

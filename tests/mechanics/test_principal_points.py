@@ -117,6 +117,7 @@ def test_shaking_force_balances_other_forces(kind, data):
 # Mass centre
 
 
+@pytest.mark.slow
 @each_kind
 @seeded
 @given(data=st.data())

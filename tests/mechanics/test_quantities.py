@@ -40,6 +40,7 @@ def v_engine(second=0.5):
     return ks.Mechanism("V engine", ks.Crank(0.1, ks.Link(2.0)), groups)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("label", ["2", "_saw", "_rate", "_position", "_torque"])
 def test_six_bar_guide_outputs_have_their_units(label):
     solution = ks.solve(chain(label), TURN, crank_speed=20.0, loads=ks.Gravity())
@@ -59,6 +60,7 @@ def test_moment_with_label_saw_is_in_newton_metres():
     plt.close(ax.figure)
 
 
+@pytest.mark.slow
 def test_comparison_uses_declared_names():
     solution = ks.solve(swinging("_saw"), TURN, crank_speed=20.0)
     rows = ks.compare(solution, solution).frame().index
@@ -118,6 +120,7 @@ def test_linkages_are_recognised_by_their_bars():
     ]
 
 
+@pytest.mark.slow
 def test_counterweight_effect_covers_every_guide():
     engine = v_engine()
     balanced = ks.balancing.counterweight(engine, "crank", -0.05, ks.balancing.Counterweight(arm=-0.05))
@@ -132,6 +135,7 @@ def test_along_needs_parallel_guides():
         ks.balancing.optimal(v_engine(), "along", crank=ks.balancing.Counterweight(arm=0.05))
 
 
+@pytest.mark.slow
 def test_second_group_reactions_start_at_their_joint(tmp_path):
     film = ks.plots.animation(ks.solve(chain("2"), TURN, crank_speed=20.0), joints=("B2", "guide2"), frames=2)
     film.save(tmp_path / "chain.gif", writer=PillowWriter(fps=10))
@@ -139,6 +143,7 @@ def test_second_group_reactions_start_at_their_joint(tmp_path):
     plt.close("all")
 
 
+@pytest.mark.slow
 def test_shipped_quantities_have_unit_and_label():
     for name in ("sawframe_2r63", "mower_drive"):
         case = ks.load_case(name)

@@ -170,6 +170,7 @@ def test_all_results_at_exact_limit_positions_are_finite_and_warned_of():
         assert s.condition[0] > 1e14
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*near a limit position:kinetostatics.errors.ConditionWarning")
 def test_loops_close_at_and_around_limit_positions_on_the_chosen_side():
     """Coupler and rocker keep their lengths to rounding, the slider stays on its guide, and B on its side."""

@@ -273,6 +273,7 @@ def test_table_kinks_are_samples():
         assert np.sum((turn.angle > kink) & (turn.angle < following)) >= 3
 
 
+@pytest.mark.slow
 @every("seed", [2, 6, 16])
 def test_no_extremum_hides_between_close_kinks(seed):
     scene = spikes.spiky(seed)
@@ -334,6 +335,7 @@ def test_what_is_rounding_stands_as_zero():
     assert (table.loc["guide force", ["smallest", "largest"]] == 0.0).all()
 
 
+@pytest.mark.slow
 def test_value_and_bound_tables_have_equal_shape():
     saw = ks.crank_slider(0.3, 2.0, coupler=ks.Link(150, 1.0, 20.5), slider=ks.Link(600))
     solution = ks.solve(saw, 0.0, crank_speed=33.5)

@@ -40,6 +40,7 @@ def test_error_without_a_bound_is_unknown():
     assert np.isnan(found.end("O", np.argmax).error)
 
 
+@pytest.mark.slow
 def test_value_beside_a_jump_has_its_sides_bound():
     """At the dead centre of the knuckle the force jumps by 400 kN; on which side a crank angle lies is not sure."""
     solution = ks.load_case("toggle_press").solve("coining")

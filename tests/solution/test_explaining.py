@@ -66,6 +66,7 @@ def test_shipped_cases(name):
             ask(solution, quantity, 2.3)
 
 
+@pytest.mark.slow
 @every("seed", range(3))
 def test_random_chains_of_every_group(seed):
     scene, angles = chain(seed)
@@ -112,6 +113,7 @@ def test_magnitudes_of_what_is_no_vector_are_refused(quantity, words):
         solved(SCENES["plain, everything"], 1.1).explain(quantity, 1.1)
 
 
+@pytest.mark.slow
 @every("name", ["plain, everything", "circle cam, everything", "six-bar"])
 def test_inclined_guides_and_all_masses(name):
     for quantity in ("balancing_torque", "shaking_moment", "kinetic_energy"):
@@ -133,6 +135,7 @@ LOADS = {
 }
 
 
+@pytest.mark.slow
 @every("name", LOADS)
 def test_every_load(name):
     scene = ks.Scene(LOADED.mechanism, 40.0, 30.0, (ks.Gravity(), LOADS[name]))

@@ -99,6 +99,7 @@ def test_rounding_stands_as_zero():
     )
 
 
+@pytest.mark.slow
 def test_table_rounding_is_zero_too():
     """Horizontally the counterweights of the mower balance the pin: 3e-10 N are left of kilonewtons."""
     solution = ks.load_case("mower_drive").solve("full", 8)

@@ -77,6 +77,7 @@ def held(name):
     return made[name]()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", CASES)
 def test_cases_are_pickled_with_results(name, way):

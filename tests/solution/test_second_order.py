@@ -76,6 +76,7 @@ def terms_of(compute, deviations, numbers=(0.0,) * 9):
     return Terms(lambda moved: compute(*moved.numbers), compute(*numbers), leaves, places, deviations)
 
 
+@pytest.mark.slow
 @every("count", range(2, 9))
 @every("signs", [(1.0, 1.0), (1.0, -1.0)])
 def test_products_with_common_input_are_all_seen(count, signs):

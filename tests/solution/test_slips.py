@@ -148,6 +148,7 @@ def test_far_off_lengths_and_angles_are_reported(name):
         assert look(far)[1], item.path
 
 
+@pytest.mark.slow
 def test_shipped_cases_have_no_slips():
     for name in shipped_cases():
         with warnings.catch_warnings():

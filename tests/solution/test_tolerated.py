@@ -22,6 +22,7 @@ def test_extremum_uncertainty_is_its_formula():
     assert 0.0 < row["rounding"] < 1e-14
 
 
+@pytest.mark.slow
 def test_peak_at_a_table_row_moves_with_inputs():
     """The torque on a yoke without mass is F sqrt(r^2 - x^2) where the row stands, however steep it is beside."""
     work = ks.Table([-0.2, 0.0599, 0.06, 0.0601, 0.2], [0.0, 0.0, 1000.0, 0.0, 0.0], over="travel")
@@ -40,6 +41,7 @@ RUBBING = ks.solve(
 )
 
 
+@pytest.mark.slow
 def test_motion_at_a_jump_keeps_its_uncertainty():
     """The slider is r + l from O at the outer dead centre, where friction and the load jump."""
     table = largest_with_uncertainty(RUBBING, {"crank_length": 1e-4, "coupler_length": 1e-4})

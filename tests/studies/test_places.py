@@ -43,6 +43,7 @@ FOLDING = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("place", FOLDING, ids=lambda place: place.name)
 @every("tight", [False, True])
@@ -66,6 +67,7 @@ def test_inclined_twins_are_as_near_as_rounding(flint, place):
     assert set(rows["raised"]) == {""}
 
 
+@pytest.mark.slow
 @every("place", INCLINED, ids=lambda place: place.name)
 def test_inclined_twin_values_stay_in_bounds(flint, place):
     for number in place.numbers[::5]:

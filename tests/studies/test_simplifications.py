@@ -15,6 +15,7 @@ def few_models(monkeypatch):
     monkeypatch.setattr(ingredients, "MOST_MODELS", 10)
 
 
+@pytest.mark.slow
 def test_every_present_ingredient_is_offered(few_models):
     mechanism = cranked(guide_angle=0.3, guide_offset=0.05)
     loads = [ks.Gravity(), ks.Spring(1e3, 1.0), ks.ProcessForce(20.0), ks.Force(5.0, at="B")]
@@ -68,6 +69,7 @@ def test_massless_link_carries_its_coupler_share(name, output):
 BEYOND = {"before A": -0.2, "behind B": 1.5}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", BEYOND)
 def test_outer_coupler_mass_is_no_two_masses(place):
     """One of them would be negative; all else is tried."""
@@ -82,6 +84,7 @@ def test_outer_coupler_mass_is_no_two_masses(place):
     assert "two-mass coupler" not in alone(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [0.0, 1.3])
 def test_coupler_mass_at_a_joint_is_two_masses(place):
     found = ks.needs(solved(cranked(coupler=ks.Link(4.0, place, 0.3))), "O")

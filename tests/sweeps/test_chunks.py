@@ -86,6 +86,7 @@ def test_the_hundredth_design_impossible_among_many():
     assert found.loc[1::100, FAILED].str.startswith("crank-slider cannot be assembled").all()
 
 
+@pytest.mark.slow
 @every("case, variant", [("shaper", "idle"), ("mower_drive_optimal", "cam-robust"), ("sawframe_2r63", "cam-circle")])
 @every("angles", [13, 72, 180])
 def test_few_angles_give_right_numbers(case, variant, angles):
@@ -105,6 +106,7 @@ def rippled(crank):
     return ks.Scene(made, 30.0, loads=push, friction={"guide": ks.GuideFriction(0.2)})
 
 
+@pytest.mark.slow
 def test_unresolved_pieces_are_reported():
     """Both are halved to the same pieces, so that they agree tells nothing."""
     found = sweep(rippled, pd.DataFrame({"crank": [0.05, 0.06]}), ["largest B", "mean B"])

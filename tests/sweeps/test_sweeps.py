@@ -115,6 +115,7 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 
+@pytest.mark.slow
 def test_given_tables_are_cut_into_blocks(interpreted, monkeypatch):
     """What NumPy computes beforehand has its rows for each design too."""
     monkeypatch.setattr(together, "VALUES", 50)

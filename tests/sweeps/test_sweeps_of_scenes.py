@@ -199,6 +199,7 @@ def test_spreads_and_data_sets_of_new_groups_and_loads(tmp_path):
     assert first.iloc[:, 1].is_monotonic_increasing
 
 
+@pytest.mark.slow
 def test_case_losses_are_outputs():
     """Up to what even samples make of the jumps of friction between them."""
     case = ks.load_case("sawframe_2r63_friction")

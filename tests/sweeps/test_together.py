@@ -30,6 +30,7 @@ def test_a_batch_of_another_shape_is_refused():
     assert found[FAILED].str.contains("arrays must have the shape (designs, 1)", regex=False).all()
 
 
+@pytest.mark.slow
 def test_as_many_designs_as_angles_is_no_batch():
     pump = ks.crank_slider(0.1, 0.4, coupler=ks.Link(1.0, 0.2, 0.01), slider=ks.Link(2.0))
 
@@ -44,6 +45,7 @@ def test_as_many_designs_as_angles_is_no_batch():
 OF_SPIKES = ["largest", "smallest", "range", "mean_absolute", "rms"]
 
 
+@pytest.mark.slow
 @every("seed, angles", [(seed, (12, 13, 360)[seed % 3]) for seed in range(6)])
 def test_no_spike_of_a_table_is_missed(seed, angles):
     scene, names = spikes.spiky(seed), ("balancing_torque", "O")
@@ -67,6 +69,7 @@ def test_no_spike_of_a_table_is_missed(seed, angles):
             assert others == pytest.approx(means, rel=1e-5)
 
 
+@pytest.mark.slow
 @every("angles", [13, 360, 361])
 def test_steep_pump_force_has_its_largest_torque(angles):
     found = sweep(steep_pump, pd.DataFrame({"crank": [0.04, 0.05]}), ["largest balancing_torque"], angles=angles)
@@ -95,6 +98,7 @@ def of_smooth_curve(count, around=True):
     return ks.Scene(pump, 30.0, loads=[ks.ProcessForce(table), ks.Gravity()])
 
 
+@pytest.mark.slow
 @every("around", [True, False])
 @every("angles", [12, 360])
 def test_fine_smooth_rows_are_swept_as_one(monkeypatch, around, angles):
@@ -122,6 +126,7 @@ def test_unresolved_rows_are_taken_one_by_one():
     assert found.iloc[1, 4] == pytest.approx(ks.extremes(own.solve(36), "B").range[0], rel=1e-3)
 
 
+@pytest.mark.slow
 @every("angles", [13, 360])
 def test_jumps_of_friction_are_seen_from_both_sides(angles):
     friction = {"guide": ks.GuideFriction(0.15), "B": ks.PinFriction(0.1, 0.02)}
@@ -135,6 +140,7 @@ def test_jumps_of_friction_are_seen_from_both_sides(angles):
     np.testing.assert_allclose(found.to_numpy(dtype=float), truth, rtol=1e-6)
 
 
+@pytest.mark.slow
 @every(
     "angle, back, rubs", [(15, True, False), (120, True, True), (30, False, True), (-90, True, True), (45, True, False)]
 )
@@ -215,6 +221,7 @@ def test_laws_of_cams_are_parted_where_they_jump():
     assert found.iloc[1, 2] == pytest.approx(at.min(), rel=1e-9)
 
 
+@pytest.mark.slow
 @every("seed", range(6))
 def test_near_zero_reactions_are_resolved(seed):
     """Where |R| is sqrt(a^2 + b^2 t^2), friction bends within a / b; nobody tells where that is."""

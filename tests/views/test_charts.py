@@ -20,6 +20,7 @@ def torque():
     return torque_study()
 
 
+@pytest.mark.slow
 def test_work_precision_chart_is_logarithmic(torque):
     figure, ax = plt.subplots()
     assert charts.work_precision(torque, ax=ax) is ax

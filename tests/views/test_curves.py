@@ -27,6 +27,7 @@ def saw():
     return {name: case.solve(name, angles=360) for name in case.variants}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PLOTS)
 def test_plot_returns_the_given_axes(name, saw, axes):
     open_figures = plt.get_fignums()

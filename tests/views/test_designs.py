@@ -25,6 +25,7 @@ def test_every_design_has_its_page(case, found, tmp_path):
     assert sorted((tmp_path / "new").iterdir()) == paths
 
 
+@pytest.mark.slow
 def test_page_shows_curves_before_and_after(found):
     figure = designs.before_and_after(found["stiffer"])
     titles = [ax.get_title() for ax in figure.axes]

@@ -170,12 +170,14 @@ def test_three_joint_links_are_plates(axes):
     assert any(len(plate) == 3 and np.allclose(plate, corners) for plate in plates(axes))
 
 
+@pytest.mark.slow
 def test_only_links_with_mass_show_a_centre(axes):
     pose = drawn(FOUR_BAR, axes)
     marked = [line.get_xydata()[0] for line in axes.lines if line.get_marker() is symbols.MASS_CENTRE]
     assert np.allclose(marked, [pose.position(link)[:, 0] for link in ("coupler", "rocker")])
 
 
+@pytest.mark.slow
 def test_labels_lie_clear_of_each_other(axes):
     parts = (
         *FOUR_BAR.groups,

@@ -54,6 +54,7 @@ def test_derivatives_go_through_the_travel_of_a_table():
     assert largest(exact - (above - below) / step) < 1e-4 * largest(exact)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", ["angle", "travel"])
 def test_any_load_takes_a_table(over):
     x, y = ([0.0, 2.0, 4.0], [1.0, 5.0, 2.0]) if over == "angle" else ([-2.0, 0.5, 2.0], [1.0, 5.0, 2.0])
@@ -143,6 +144,7 @@ def two_turns(back):
     return ks.Scene(mechanism, 1.0, 0.0, ks.ProcessForce(table, "slider2")), table
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("back", [False, True])
 def test_second_turn_of_a_branch_is_known(back):
     """Work and peaks of both turns, beside values at many crank angles by hand."""
@@ -214,6 +216,7 @@ def test_jax_gradients_equal_the_recorded_ones(double, name):
             assert largest(found - expected[path]) <= 1e-13 * largest(expected[path]), path
 
 
+@pytest.mark.slow
 def test_beyond_a_table_over_travel_jax_gives_nan(double):
     traced = double.jit(torque, static_argnums=0)
     found = np.asarray(traced(DIAGRAM, MANY, 0.24, 100.0))

@@ -24,6 +24,7 @@ def at(found, degrees):
     return rows
 
 
+@pytest.mark.slow
 def test_report_curve_is_the_solutions():
     solutions = subject("sawframe_2r63").solutions
     plot = figures.over_turn(solutions, "balancing_torque")

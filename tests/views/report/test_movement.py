@@ -1,6 +1,7 @@
 """Drawings as data: rigid strokes and others come back as they were, arrows have one scale."""
 
 import numpy as np
+import pytest
 
 from kinetostatics.views.report.movement import FILLED, LONGEST, REACH, movements, packed, unpacked
 from kinetostatics.views.shape import Shape
@@ -31,6 +32,7 @@ def test_numbers_come_back_as_they_were_packed():
     np.testing.assert_array_equal(unpacked(packed(values, "<f8"), "<f8"), values)
 
 
+@pytest.mark.slow
 def test_strokes_are_restored_in_each_pose():
     for case in ("sawframe_2r63", "mower_drive", "shaper"):
         for machine, drawing in zip(subject(case).machines.values(), drawn(case)["drawings"], strict=True):

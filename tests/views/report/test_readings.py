@@ -24,6 +24,7 @@ def of(case):
     return {"quantities": readings(machines), "counts": [m.solution.crank_angle.size for m in machines.values()]}
 
 
+@pytest.mark.slow
 def test_readings_are_the_solutions_values():
     for case in ("sawframe_2r63", "v_twin"):
         found = of(case)
@@ -39,6 +40,7 @@ def test_readings_are_the_solutions_values():
                 assert (np.abs(difference) <= 2 * FLOOR * largest + 1e-15 * np.abs(wanted)).all(), name
 
 
+@pytest.mark.slow
 def test_extremes_stand_between_the_angles():
     for case in ("sawframe_2r63", "compressor"):
         found = of(case)["quantities"]

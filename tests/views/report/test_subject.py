@@ -45,6 +45,7 @@ def test_words_of_the_case_become_numbers():
     assert given["coupler_length"] == (pytest.approx(2.02190518), "m")
 
 
+@pytest.mark.slow
 def test_scenes_have_their_labels_and_units():
     found = subject_of({"light": plain(), "heavy": plain().varied({"slider.mass": 80.0})})
     assert found.title == "crank-slider"
