@@ -10,8 +10,6 @@ import kinetostatics as ks
 from support.machines import (
     ANGLES,
     CLOSE,
-    TORQUES,
-    TURNING,
     VECTORS,
     Machine,
     assert_close,
@@ -83,32 +81,6 @@ def test_turning_everything_turns_vectors_only(kind, turn):
     expected = {name: values * (around if name in VECTORS else 1) for name, values in results(before).items()}
     assert_equal(results(after), expected)
     assert_equal(motions(after), {name: around * values for name, values in motions(before).items()})
-
-
-@every_kind
-@pytest.mark.parametrize("assembly", [1, -1])
-def test_mirrored_mechanism_has_mirrored_forces(kind, assembly):
-    """Mirror in the x axis: y, angles, offsets to the left and moments change sign, the assembly does not.
-
-    Ahead along the guide stays ahead; the left normal of the mirrored guide is minus the mirrored normal.
-    """
-    machine = Machine(kind, assembly=assembly)
-    mirrored = replace(
-        machine,
-        guide_angle=-machine.guide_angle,
-        guide_offset=-machine.guide_offset,
-        centre=(machine.centre[0], -machine.centre[1]),
-        links={name: (m, (along, -across), inertia) for name, (m, (along, across), inertia) in machine.links.items()},
-        gravity=(machine.gravity[0], -machine.gravity[1]),
-        speed=-machine.speed,
-        acceleration=-machine.acceleration,
-    )
-    before, after = machine.solve(), mirrored.solve(-ANGLES)
-    expected = {
-        name: -values if name in (*TURNING, *TORQUES) else np.conj(values) for name, values in results(before).items()
-    }
-    assert_equal(results(after), expected)
-    assert_equal(motions(after), {name: np.conj(values) for name, values in motions(before).items()})
 
 
 def test_other_assembly_is_the_reversed_guide():

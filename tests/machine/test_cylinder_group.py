@@ -37,21 +37,6 @@ def test_its_length_is_by_the_law_of_cosines():
     assert np.max(np.abs(solve(ks.CylinderGroup(PIVOT)).measure("cylinder_length") - expected)) < 1e-15
 
 
-def test_cylinder_bears_what_a_lever_bears():
-    """The rod's mass on a block, in the block's own axes; only the couple is taken about another point."""
-    block = ks.Link(ROD.mass, (-ROD.centre[0], -ROD.centre[1]), ROD.inertia)
-    cylinder = solve(ks.CylinderGroup(PIVOT, rod=ROD, cylinder=CYLINDER))
-    lever = solve(ks.LeverGroup(PIVOT, lever=CYLINDER, block=block))
-    for name in ("A", "O2", "O"):
-        error = np.max(np.abs(cylinder.reaction(name) - lever.reaction(name)))
-        assert error < 1e-14 * np.max(np.abs(lever.reaction(name)))
-    force = lever.scalar("slot_force")
-    assert np.max(np.abs(cylinder.scalar("cylinder_force") - force)) < 1e-14 * np.max(np.abs(force))
-    about_pivot = lever.scalar("slot_moment") + force * cylinder.measure("cylinder_length")
-    found = cylinder.scalar("cylinder_moment")
-    assert np.max(np.abs(found - about_pivot)) < 1e-13 * np.max(np.abs(force))
-
-
 def test_a_cylinder_of_no_mass_bears_no_couple():
     s = solve(ks.CylinderGroup(PIVOT, rod=ROD))
     assert np.all(s.scalar("cylinder_moment") == 0.0)

@@ -124,26 +124,10 @@ def test_two_followers_stand_side_by_side():
     assert {"contact_force", "contact_force_2"} <= set(s.scalars)
 
 
-def test_a_guide_may_rub():
-    drive = scene(KINDS["roller"]())
-    rubbing = ks.Scene(drive.mechanism, 12.0, 0.0, drive.loads, {"guide": ks.GuideFriction(0.1, 0.05)}).solve(ANGLES)
-    assert np.all(rubbing.friction_loss > 0)
-    size = np.max(rubbing.dynamics.largest_torque_term)
-    assert_allclose(rubbing.balancing_torque, rubbing.balancing_torque_by_power, rtol=0, atol=1e-12 * size)
-
-
 def test_roller_behind_o_is_refused():
     follower = ks.RollerFollower(ks.laws.cosine(0.02, 0.01))
     with pytest.raises(ks.AssemblyError, match=r"ahead of O along its guide, but its coordinate falls to -0\.0"):
         ks.solve(ks.Mechanism("cam drive", ks.Crank(None), (follower,)), np.linspace(0, 6, 60), crank_speed=1.0)
-
-
-def test_its_numbers_are_parameters_with_derivatives():
-    drive = scene(KINDS["roller, offset"]())
-    program = ks.compile(drive, ("contact_force_1",), engine="numpy")
-    slope = program.derivatives(0.7)["contact_force_1"]["guide_offset_1"]
-    low, high = (drive.varied({"guide_offset_1": 0.013 + side}).solve(np.array([0.7])) for side in (-1e-5, 1e-5))
-    assert_allclose(slope, (high.scalar("contact_force_1") - low.scalar("contact_force_1"))[0] / 2e-5, rtol=1e-7)
 
 
 # Flat followers on a cam that turns

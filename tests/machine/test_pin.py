@@ -118,13 +118,6 @@ def test_articulated_rod_meets_the_guide(offset, radius, length):
     assert np.max(np.abs(s.travel("slider2") - expected)) < 1e-14
 
 
-def test_pin_adds_no_closure_and_no_link():
-    s = solve(ks.SliderGroup(0.4), ks.Pin(on="slider", at=(0.1, 0.1)))
-    assert list(s.mechanism.links) == ["crank", "coupler", "slider"]
-    assert set(s.reactions) == {"A", "B", "guide", "O"}
-    assert np.all(s.closure[1] == 1.0)
-
-
 # What is refused
 
 

@@ -141,25 +141,6 @@ def test_turning_everything_turns_vectors_only(turn, assembly):
 
 
 @pytest.mark.parametrize("assembly", [1, -1])
-def test_mirrored_four_bar_has_mirrored_forces(assembly):
-    """Mirror in the x axis: left becomes right, and moments change sign."""
-    bar = FourBar(assembly=assembly)
-    mirrored = replace(
-        bar,
-        pivot=bar.pivot.conjugate(),
-        assembly=-assembly,
-        links={name: replace(link, centre=(link.centre[0], -link.centre[1])) for name, link in bar.links.items()},
-        gravity=(bar.gravity[0], -bar.gravity[1]),
-        speed=-bar.speed,
-        acceleration=-bar.acceleration,
-    )
-    before, after = bar.solve(), mirrored.solve(-ANGLES)
-    expected = {name: np.conj(v) if np.iscomplexobj(v) else -v for name, v in bar_results(before).items()}
-    assert_equal(bar_results(after), expected)
-    assert_equal(motions(after), {name: np.conj(values) for name, values in motions(before).items()})
-
-
-@pytest.mark.parametrize("assembly", [1, -1])
 def test_derivatives_are_slopes_of_positions(assembly):
     """By complex steps, exact to rounding: f(x + ih) = f(x) + ih f'(x), with h so small that nothing is subtracted."""
     step = 1e-30

@@ -206,31 +206,12 @@ def table(angle, values, noise=None):
     return TurnTable.of("table", angle, values, "value", noise)
 
 
-def test_spline_repeats_and_passes_every_point():
-    made = table(uneven(180), value(uneven(180)))
-    assert_allclose(made.splines[0](made.angle), made.values, rtol=1e-15)
-    for order, (spline, allowed) in enumerate(zip(made.splines, (1e-9, 1e-7, 1e-5, 1e-3), strict=True)):
-        assert_allclose(spline(FINE), value(FINE, order), rtol=0, atol=allowed)
-        assert_allclose(spline(FINE - 4 * np.pi), spline(FINE), rtol=0, atol=1e-10)
-
-
 def test_second_derivative_is_continuous():
     """The step across a point vanishes in proportion to its width, also where the table ends and begins again."""
     angle = uneven(24)
     second, third = table(angle, value(angle)).splines[2:]
     for width in (1e-4, 1e-7):
         assert largest(second(angle + width) - second(angle - width)) < 2 * width * largest(third(FINE)) * 1.01
-
-
-@pytest.mark.parametrize(("count", "step"), [(90, 1e-6), (360, 1e-6), (24, 0.0)])
-def test_stated_error_is_of_the_second_derivative(count, step):
-    """By rounding to a step, or by few points."""
-    angle = 2 * np.pi * np.arange(count) / count
-    made = table(angle, np.round(value(angle) / step) * step if step else value(angle))
-    true = largest(made.splines[2](FINE) - value(FINE, 2))
-    assert 0.5 * true <= made.second_derivative_error <= 10 * true
-    assert made.force_error(0.1) == pytest.approx(70.0 * made.second_derivative_error)
-    assert made.force_error(0.0) == np.inf
 
 
 def test_noise_stated_too_small_hides_no_error():

@@ -255,42 +255,6 @@ def test_round_cam_about_o_equals_a_plain_crank():
 # Batches, absent masses
 
 
-def batched_crank_slider(length, mass):
-    links = {"crank": ks.Link(2.0, (length / 2, 0.01)), "coupler": ks.Link(mass, (length, 0.1))}
-    return ks.crank_slider(length, 3 * length, guide_angle=0.3, slider=ks.Link(2 * mass, 0.1), **links)
-
-
-def batched_cam(length, mass):
-    links = {"block": ks.Link(mass, 0.01), "slider": ks.Link(2 * mass, 0.05)}
-    return ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.05, 0.03)), 3 * length, crank=CRANK, **links)
-
-
-def batched_four_bar(length, mass):
-    links = {"crank": ks.Link(2.0, 0.1), "rocker": ks.Link(mass, (length, 0.1))}
-    return ks.four_bar(0.2, 0.8, 0.6 + length, rocker_pivot=(0.7, 0.0), coupler=COUPLER, **links)
-
-
-@pytest.mark.parametrize("make", [batched_crank_slider, batched_cam, batched_four_bar])
-@pytest.mark.parametrize("count", [2, 3])
-def test_batch_equals_the_loop_over_designs(make, count):
-    """Two designs too: as many as a vector has components."""
-    lengths, masses = np.array([[0.2], [0.3], [0.37]])[:count], np.array([[4.0], [0.5], [9.0]])[:count]
-
-    def measured(mechanism):
-        s = ks.solve(mechanism, TURN, crank_speed=9.0, crank_acceleration=2.0)
-        points = ks.principal_points(mechanism)
-        asked = points.mass_centre, points.mass_centre_velocity, points.mass_centre_acceleration, points.shaking_force
-        return [function(s) for function in asked] + list(points.contour(s)[1:])
-
-    batch = measured(make(lengths, masses))
-    assert batch[0].shape == (2, count, TURN.size)
-    for i in range(count):
-        single = measured(make(float(lengths[i, 0]), float(masses[i, 0])))
-        for found, expected in zip(batch, single, strict=True):
-            one = found[:, i] if found.ndim == 3 else found
-            np.testing.assert_allclose(one, expected, rtol=0, atol=1e-14 * largest(expected))
-
-
 def test_no_mass_has_no_mass_centre():
     s = ks.solve(ks.crank_slider(0.3, 0.8), TURN, crank_speed=9.0)
     points = ks.principal_points(s.mechanism)
@@ -300,15 +264,6 @@ def test_no_mass_has_no_mass_centre():
     with pytest.raises(ks.ParameterError, match="no mass"):
         _ = points.moduli
     np.testing.assert_array_equal(points.shaking_force(s), np.zeros((2, TURN.size)))
-
-
-def test_links_without_mass_change_nothing():
-    """The mass centre of a mechanism with one heavy link is that of the link."""
-    s = ks.solve(ks.four_bar(0.3, 0.8, 0.6, rocker_pivot=(0.7, 0.0), coupler=COUPLER), TURN, crank_speed=9.0)
-    points = ks.principal_points(s.mechanism)
-    np.testing.assert_allclose(points.mass_centre(s), s.position("coupler"), rtol=0, atol=1e-15)
-    np.testing.assert_allclose(points.mass_centre_velocity(s), s.velocity("coupler"), rtol=0, atol=1e-14)
-    assert points.carried == {}
 
 
 def test_mass_centre_on_the_pivot_shakes_nothing():

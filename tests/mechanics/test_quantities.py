@@ -6,7 +6,6 @@ import pytest
 from matplotlib.animation import PillowWriter
 
 import kinetostatics as ks
-from kinetostatics.design.shapes import crank_sliders, four_bar
 from kinetostatics.mechanics.quantities import of_mechanism
 from kinetostatics.results.tables import extremes_frame
 from kinetostatics.studies.simplifications import ingredients, two_mass_coupler
@@ -101,23 +100,6 @@ def test_coupler_on_a_coupler_keeps_its_mass():
     masses = two_mass_coupler(chained)
     total, kept = (sum(link.mass for link in made.links.values()) for made in (chained, masses))
     assert kept == pytest.approx(total, rel=1e-15)
-
-
-def test_linkages_are_recognised_by_their_bars():
-    bar = ks.Mechanism(
-        "other names", ks.Crank(0.2), (ks.RockerGroup(0.5, 0.4, (0.6, 0.0), pin="P", pivot_name="Q", label="x"),)
-    )
-    found = four_bar(bar)
-    assert (found.coupler.link, found.rocker.link, found.pivot) == ("couplerx", "rockerx", (0.6, 0.0))
-    assert ks.linkage.grashof(bar).kind == "crank-rocker"
-    s = ks.solve(bar, TURN, crank_speed=1.0)
-    assert ks.linkage.swing(s).range > 0
-    assert four_bar(chain("2")) is None
-    assert four_bar(ks.crank_slider(0.1, 0.3)) is None
-    assert [(chain.coupler.link, chain.slider) for chain in crank_sliders(v_engine())] == [
-        ("coupler", "slider"),
-        ("coupler2", "slider2"),
-    ]
 
 
 @pytest.mark.slow

@@ -77,12 +77,6 @@ def test_nothing_is_made_up_beside_jumps_and_corners(name):
     assert found == pytest.approx([highest, highest], abs=np.sqrt(np.finfo(float).eps))
 
 
-@pytest.mark.parametrize("count", [1, 2, 8, 9])
-def test_few_samples_give_at_least_the_largest(count):
-    values = np.cos(2 * np.pi * np.arange(count) / count + 0.1)[None]
-    assert values.max() <= REDUCTIONS["largest"](values)[0] <= 1.0 + 1e-12
-
-
 def test_what_is_no_number_stays_none():
     values = np.vstack([TURN, np.where(np.arange(360) == 9, np.nan, TURN)])
     for name in (*REDUCTIONS, "harmonic_2"):

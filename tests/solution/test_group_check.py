@@ -104,12 +104,6 @@ def test_own_cam_is_taken_as_it_is_when_made(interpreted, engine, mean):
     )
 
 
-def test_own_cams_are_copied_library_cams_not():
-    fixed, own = ks.cams.Circle(0.3, (0.02, 0.0)), Flat(0.3)
-    assert ks.CamRoller(fixed).cam is fixed
-    assert ks.CamRoller(own).cam is not own
-
-
 def test_own_load_is_taken_as_it_is_when_solved():
     push = type("Push", (), {"on": "slider", "push": lambda self, motion: self.force})()
     made = []

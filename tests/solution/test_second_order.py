@@ -111,19 +111,6 @@ def test_products_without_common_input_are_all_seen(count):
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
 
-def test_many_first_order_inputs_need_few_sums():
-    calls = []
-
-    def compute(*given):
-        calls.append(given)
-        return np.array([[sum(given)]])
-
-    paths = [f"x{place}" for place in range(20)]
-    terms = terms_of(compute, dict.fromkeys(paths, 0.5), [0.0] * 20)
-    assert found(terms, 20, np.zeros(1), dict.fromkeys(paths, np.ones((1, 1))), np.zeros((1, 1))) is None
-    assert len(calls) == 1 + 40 + 10
-
-
 def test_product_of_two_inputs_equals_monte_carlo():
     """At a dead centre the guide's offset alone moves the slider, and a force has a torque by that: T = F r e / l."""
     inputs, random = {"process_force.force": 300.0, "guide_offset": 2e-4}, np.random.default_rng(4)

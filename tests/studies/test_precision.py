@@ -174,14 +174,6 @@ def test_unexpected_error_of_a_method_is_raised(case, error):
         precision.study(case.solve("plain", 4), methods=[Method("at fault", prepare)], repeats=1)
 
 
-def test_a_library_that_is_missing_is_a_reason(case):
-    def prepare(solution, quantity, setting):
-        raise ks.errors.MissingLibraryError("abacus is not installed")
-
-    table = precision.study(case.solve("plain", 4), methods=[Method("counting", prepare)], repeats=1)
-    assert table["not given"].tolist() == ["abacus is not installed"]
-
-
 # Files and charts
 
 

@@ -115,23 +115,6 @@ def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     assert_equal(sweep(SAW, rising(30), engine="compiled", **options), found)
 
 
-@pytest.mark.slow
-def test_given_tables_are_cut_into_blocks(interpreted, monkeypatch):
-    """What NumPy computes beforehand has its rows for each design too."""
-    monkeypatch.setattr(together, "VALUES", 50)
-    monkeypatch.setattr(together, "BLOCK", 50)
-
-    def made(crank, mass):
-        push = ks.ProcessForce(lambda motion: np.where(motion.slider_velocity > 0, -50.0, 20.0))
-        return ks.Scene(factories.pump(crank, mass).mechanism, 100.0, 0.0, (push,))
-
-    pd.testing.assert_frame_equal(
-        sweep(made, DESIGNS, OUTPUTS, angles=12, engine="compiled"),
-        sweep(made, DESIGNS, OUTPUTS, angles=12, engine="numpy"),
-        rtol=1e-13,
-    )
-
-
 # Memory and progress
 
 

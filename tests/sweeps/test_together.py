@@ -5,15 +5,12 @@ import pandas as pd
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.engines import sharing
-from kinetostatics.engines.sharing import shared
 from kinetostatics.mechanics.quantities import sizes
 from kinetostatics.sweeps import together
 from kinetostatics.sweeps.job import LEAST
 from kinetostatics.sweeps.sweeps import FAILED
 from support import factories
 from support import sweeping as spikes
-from support.case_files import shipped
 from support.every import every
 from support.factories import DESIGNS, OUTPUTS
 from support.sweeping import assert_equal, sweep
@@ -173,34 +170,6 @@ def test_grouping_of_designs_does_not_matter(engine, numba):
     alone, some, together = (sweep(scene, designs, outputs, chunk=chunk, engine=engine) for chunk in (1, 4, 9))
     assert_equal(alone, together)
     assert_equal(some, together)
-
-
-VARIED = {
-    ("sawframe_2r63", "plain"): {"slider.mass": "500..700 kg"},
-    ("sawframe_2r63", "cam-circle"): {"spring.stiffness": "600..900 kN/m", "crank_speed": "20..40 rad/s"},
-    ("sawframe_2r63", "cam-cosine"): {"spring.stiffness": "600..900 kN/m", "slider.mass": "500..700 kg"},
-    ("chain_unit", "rho-0.5"): {"crank_speed": "5..20 rad/s"},
-    ("mower_drive", "unbalanced"): {"crank_speed": "50..90 rad/s"},
-    ("shaper", "cutting"): {"crank_speed": "5..6 rad/s"},
-    ("toggle_press", "coining"): {"crank_speed": "3..4 rad/s"},
-}
-
-
-@pytest.mark.slow
-@every("case, variant", VARIED)
-def test_common_work_gives_the_same_bits(numba, monkeypatch, case, variant):
-    scene = shipped(case).variants[variant].scene
-    designs = ks.designs.random(VARIED[case, variant], 50)
-    outputs = ["largest O", "mean_absolute balancing_torque", "smallest balancing_torque", "harmonic_2 O"]
-    asked = {"angles": 360, "engine": "compiled", "progress": False}
-    whole = ks.sweep(scene, designs, outputs, **asked)
-    monkeypatch.setattr(sharing, "VALUES", 1)
-    monkeypatch.setattr(sharing, "SHARE", 0.0)
-    made = []
-    monkeypatch.setattr(together.sharing, "shared", lambda *given: made.append(shared(*given)) or made[-1])
-    pd.testing.assert_frame_equal(ks.sweep(scene, designs, outputs, **asked), whole, check_exact=True)
-    assert made
-    assert all(len(tables) for _, tables in made)
 
 
 def followed(mass):

@@ -70,11 +70,6 @@ def test_small_curves_are_not_called_zero():
     assert canvas.distinct({"alone": np.zeros(3)}) == {"alone": "alone"}
 
 
-def test_equal_curves_have_equal_gaps():
-    assert list(canvas.distinct({"a": np.array([1.0, np.nan]), "b": np.array([1.0, np.nan])})) == ["a, b"]
-    assert list(canvas.distinct({"a": np.array([1.0, np.nan]), "b": np.array([1.0, 2.0])})) == ["a", "b"]
-
-
 def test_crank_angles_are_counted_there_and_back():
     angles = np.array([0.0, 90.0, 123.0, 359.0])
     assert np.array_equal(canvas.FROM_X(angles), angles)
@@ -94,13 +89,6 @@ def test_crank_angles_are_counted_there_and_back():
 )
 def test_headings_of_tables_read_as_words_with_units(column, text):
     assert canvas.readable(column) == text
-
-
-def test_separate_curves_compare_by_their_extent():
-    turn = np.linspace(0, 6, 50)
-    curves = {"large": 100.0 * np.sin(turn), "small": np.sin(turn), "smaller": 0.9 * np.sin(turn)}
-    assert list(canvas.distinct(curves)) == ["large", "small, smaller"]
-    assert list(canvas.distinct(curves, apart=True)) == ["large", "small", "smaller"]
 
 
 @pytest.mark.parametrize(

@@ -121,18 +121,6 @@ def test_chain_unit_figures_count_as_the_study():
     plt.close(ax.figure)
 
 
-def test_progress_names_the_figures(tmp_path):
-    seen = []
-
-    def progress(names):
-        for name in names:
-            seen.append(name)
-            yield name
-
-    draw_case(shipped("yoke_pump"), tmp_path, only="torque", progress=progress)
-    assert seen == ["torque"]
-
-
 def test_drawing_leaves_the_settings_of_others_alone(tmp_path):
     before = dict(plt.rcParams), plt.get_fignums()
     draw_case(shipped("yoke_pump"), tmp_path, only="hodograph")

@@ -47,12 +47,6 @@ def test_single_solution_is_one_bar_in_watts(axes):
     assert axes.get_ylabel() == "mean power lost [W]"
 
 
-@pytest.mark.parametrize("name", ["friction_loss", "guide_friction", "O_friction_loss"])
-def test_friction_quantities_are_drawn(saw, axes, name):
-    ks.plots.over_turn(saw, name, ax=axes)
-    assert axes.get_ylabel().startswith("friction" if name != "guide_friction" else "friction guide")
-
-
 @pytest.mark.parametrize("draw", [ks.plots.losses, ks.plots.lost_power])
 @pytest.mark.parametrize(
     ("given", "words"),
