@@ -13,6 +13,7 @@ import kinetostatics as ks
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.elementary import UNIT
 from kinetostatics.studies.methods.certified import differences, enclosure, relative_errors
+from support import multibody
 from support.enclosed import assert_enclosed
 
 DATA = {"crank": (2.0, 0.3, 0.1, 0.2), "lever": (1.5, 0.7, -0.2, 0.1), "block": (3.0, 0.04, 0.25, 0.5)}
@@ -30,8 +31,6 @@ SIDES = {"open": 1, "crossed": -1}
 every = pytest.mark.parametrize(("name", "assembly"), list(product(LEVERS, SIDES)))
 meeting = pytest.mark.parametrize("assembly", SIDES)
 SPEED, ACCELERATION, WEIGHT = 2.0, 1.5, 9.81
-DIGITS = 240
-"""Carried; differences over a step of 1e-80 leave more than 60, also 1e-17 rad from a change point."""
 
 
 def lever(name, assembly, start=0.0, **links):
@@ -45,60 +44,19 @@ def solve(made, angles, **options):
     return ks.solve(made, angles, **given | options)
 
 
-# Reference: angles of the line O2 A and of the offset in it, differences of positions, moments of lever and block
-
-
-def places(name, assembly, angle):
-    """A, O2, directions and mass centres of the links, as complex numbers, and the place of the block in the slot."""
-    distance, offset = map(mp.mpf, LEVERS[name])
-    ray, A = mp.expj(angle), mp.expj(angle)
-    toward = A - distance
-    side = SIDES[assembly] * mp.sign(mp.sin(angle / 2))
-    lean = mp.asin(offset / abs(toward)) if offset else mp.mpf(0)
-    way = mp.expj(mp.arg(toward) - (lean if side > 0 else mp.pi - lean))
-    ways = (ray, way, way)
-    centres = [
-        joint + direction * mp.mpc(along, across)
-        for joint, direction, (_, along, across, _) in zip((0, distance, A), ways, DATA.values(), strict=True)
-    ]
-    return [A, distance, *ways, *centres], (mp.conj(way) * toward).real
-
-
 @cache
 def reference(name, assembly, angle):
     """By quantity."""
-    with mp.workdps(DIGITS):
-        phi, step = mp.mpf(angle), mp.mpf(10) ** -80
-        times = (-step, mp.mpf(0), step)
-        (before, _), (here, reach), (after, _) = (
-            places(name, assembly, phi + SPEED * t + ACCELERATION * t * t / 2) for t in times
-        )
-        first = [(y - x) / (2 * step) for x, y in zip(before, after, strict=True)]
-        second = [(x - 2 * m + y) / step**2 for x, m, y in zip(before, here, after, strict=True)]
-        rates = [(v / way).imag for v, way in zip(first[2:5], here[2:5], strict=True)]
-        slopes = [(v / way).imag for v, way in zip(second[2:5], here[2:5], strict=True)]
-        data = list(DATA.values())
-        forces = [mass * (-1j * mp.mpf(WEIGHT) - a) for (mass, *_), a in zip(data, second[5:], strict=True)]
-        moments = [-inertia * slope for (*_, inertia), slope in zip(data, slopes, strict=True)]
-        parts = zip(forces, first[5:], moments, rates, strict=True)
-        torque = -sum((mp.conj(v) * f).real + m * rate for f, v, m, rate in parts) / SPEED
-        A, O2, _, way, _ = here[:5]
-        of_lever = (mp.conj(here[6] - O2) * forces[1]).imag + moments[1]
-        of_block = (mp.conj(here[7] - A) * forces[2]).imag + moments[2]
-        slot = (of_lever + of_block) / reach  # lever on block, along the left normal of the lever
-        inner = -slot * 1j * way - forces[2]
-        return {
-            "balancing_torque": torque,
-            "rate": rates[1],
-            "slope": slopes[1],
-            "reach": reach,
-            "direction": way,
-            "slot_force": slot,
-            "slot_moment": -of_block,
-            "A": inner,
-            "O2": slot * 1j * way - forces[1],
-            "O": inner - forces[0],
-        }
+    branch = lambda phi: SIDES[assembly] * mp.sign(mp.sin(phi / 2))  # noqa: E731
+    bodies = {link: multibody.Body(mass, (along, across), i) for link, (mass, along, across, i) in DATA.items()}
+    with mp.workdps(multibody.FINE_DIGITS):
+        system = multibody.slotted_lever(*LEVERS[name], branch, bodies, SPEED, ACCELERATION, mp.mpc(0, -WEIGHT))
+        solved = system.solve(angle)
+        direction = system.poses["lever"][1](mp.mpf(angle))
+        reach = mp.re(mp.conj(direction) * (mp.expj(angle) - LEVERS[name][0]))
+    names = ("balancing_torque", "slot_force", "slot_moment", "A", "O2", "O")
+    turning = {"rate": solved["velocity"]["lever", "angle"], "slope": solved["acceleration"]["lever", "angle"]}
+    return {name: solved[name] for name in names} | turning | {"reach": reach, "direction": direction}
 
 
 def found(solution, place):
